@@ -1,0 +1,106 @@
+//! A finished Laguerre MPC design.
+
+use alloc::vec::Vec;
+
+use nalgebra::{Complex, DMatrix};
+
+use crate::laguerre::InputBasis;
+use crate::{
+    Augmented, DesignError, Dlqr, LaguerreBasis, Prediction, Weighting, Weights, condition_number,
+    eigenvalues, spectral_radius,
+};
+
+/// Without constraints the optimum η = −Ω⁻¹Ψx (50) makes the first move Δu(k) = L(0)ᵀη = −K x.
+///
+/// A design is held only if its closed loop is stable; beside it stands the infinite-horizon regulator
+/// of the same weights, which it approaches as N grows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LmpcDesign {
+    gain: DMatrix<f64>,
+    prediction: Prediction,
+    dlqr: Dlqr,
+    closed_loop: DMatrix<f64>,
+    spectral_radius: f64,
+    outputs: usize,
+}
+
+impl LmpcDesign {
+    /// Designs the controller of an augmented model with one Laguerre basis per input and a prediction
+    /// horizon of N_p = `horizon` samples.
+    ///
+    /// # Errors
+    /// [`DesignError::Unstable`] when the closed loop is not stable, [`DesignError::IllConditioned`] when
+    /// Ω cannot be factored, and those of [`Dlqr::new`], [`Prediction::new`] and [`Weights::new`].
+    pub fn new(
+        model: &Augmented,
+        weights: &Weights,
+        bases: &[LaguerreBasis],
+        horizon: usize,
+        weighting: Weighting,
+    ) -> Result<Self, DesignError> {
+        let dlqr = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), weighting.lambda())?;
+        let cost = weighting.stage_cost(weights, &dlqr)?;
+        let prediction = Prediction::new(
+            &(model.a() / cost.alpha),
+            &(model.b() / cost.alpha),
+            &cost.q,
+            &cost.r,
+            bases,
+            horizon,
+            cost.terminal.as_ref(),
+        )?;
+
+        // K = L(0)ᵀ Ω⁻¹ Ψ
+        let factor =
+            prediction.omega().clone().cholesky().ok_or_else(|| DesignError::IllConditioned {
+                condition: condition_number(prediction.omega()),
+            })?;
+        let gain = InputBasis::new(bases).row() * factor.solve(prediction.psi());
+
+        let closed_loop = model.a() - model.b() * &gain;
+        let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
+        // Written so that a NaN is refused too.
+        if !(spectral_radius < 1.0) {
+            return Err(DesignError::Unstable { spectral_radius });
+        }
+        Ok(Self { gain, prediction, dlqr, closed_loop, spectral_radius, outputs: model.plant().outputs() })
+    }
+
+    /// K, p×(n+q): Δu = −K \[Δx_m; y − r\].
+    pub fn gain(&self) -> &DMatrix<f64> {
+        &self.gain
+    }
+
+    /// Ω and Ψ.
+    pub fn prediction(&self) -> &Prediction {
+        &self.prediction
+    }
+
+    /// The infinite-horizon regulator of the same weights and degree of stability.
+    pub fn dlqr(&self) -> &Dlqr {
+        &self.dlqr
+    }
+
+    /// Number of outputs q, the last entries of the augmented state.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Eigenvalues of A − BK.
+    ///
+    /// # Errors
+    /// [`DesignError::Eigenvalues`] when the iteration does not converge.
+    pub fn closed_loop_eigenvalues(&self) -> Result<Vec<Complex<f64>>, DesignError> {
+        eigenvalues("A − BK", &self.closed_loop)
+    }
+
+    /// Largest magnitude of the closed-loop eigenvalues, below 1.
+    pub fn spectral_radius(&self) -> f64 {
+        self.spectral_radius
+    }
+
+    /// Condition number of Ω.
+    pub fn condition_number(&self) -> f64 {
+        condition_number(self.prediction.omega())
+    }
+}

@@ -1,0 +1,148 @@
+//! What can be wrong with a design.
+
+use thiserror::Error;
+
+/// A violated precondition of a design, one variant each, with the numbers that show it.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum DesignError {
+    /// A matrix has the wrong shape.
+    #[error("{name} is {}×{}, expected {}×{}", actual.0, actual.1, expected.0, expected.1)]
+    Dimension {
+        /// The matrix, by the name the documentation uses.
+        name: &'static str,
+        /// Expected (rows, columns).
+        expected: (usize, usize),
+        /// Given (rows, columns).
+        actual: (usize, usize),
+    },
+    /// A matrix or number contains NaN or an infinity.
+    #[error("{name} contains a value that is not finite")]
+    NotFinite {
+        /// The matrix or number.
+        name: &'static str,
+    },
+    /// A matrix must be symmetric and is not.
+    #[error(
+        "{name} is not symmetric: elements ({row}, {column}) and ({column}, {row}) differ by {difference:e}"
+    )]
+    NotSymmetric {
+        /// The matrix.
+        name: &'static str,
+        /// Row of the worst pair.
+        row: usize,
+        /// Column of the worst pair.
+        column: usize,
+        /// By how much it differs.
+        difference: f64,
+    },
+    /// R must be positive definite.
+    #[error("{name} is not positive definite")]
+    NotPositiveDefinite {
+        /// The matrix.
+        name: &'static str,
+    },
+    /// Q must be positive semidefinite.
+    #[error("{name} is not positive semidefinite: it has the eigenvalue {eigenvalue:e}")]
+    NotPositiveSemidefinite {
+        /// The matrix.
+        name: &'static str,
+        /// Its smallest eigenvalue.
+        eigenvalue: f64,
+    },
+    /// The sample time must be positive.
+    #[error("sample time {value} s is outside (0, ∞)")]
+    SampleTime {
+        /// Given sample time, s.
+        value: f64,
+    },
+    /// A Laguerre basis needs at least one term.
+    #[error("the number of Laguerre terms N must be at least 1")]
+    NoLaguerreTerms,
+    /// The Laguerre scaling factor must lie in [0, 1).
+    #[error("Laguerre scaling factor a = {value} is outside [0, 1)")]
+    LaguerreScale {
+        /// Given scaling factor.
+        value: f64,
+    },
+    /// The control horizon must be positive for a ≈ e^(−N/N_c) to lie in [0, 1).
+    #[error("control horizon N_c = {value} is outside (0, ∞)")]
+    ControlHorizon {
+        /// Given control horizon, samples.
+        value: f64,
+    },
+    /// There must be one Laguerre basis for each input.
+    #[error("{actual} Laguerre bases given for {expected} inputs")]
+    BasisCount {
+        /// Number of inputs.
+        expected: usize,
+        /// Number of bases given.
+        actual: usize,
+    },
+    /// N samples cannot determine more than N coefficients.
+    #[error("prediction horizon N_p = {horizon} is shorter than the {terms} terms of a Laguerre basis")]
+    HorizonTooShort {
+        /// Given prediction horizon, samples.
+        horizon: usize,
+        /// Number of terms of the longest basis.
+        terms: usize,
+    },
+    /// The exponential weight must be at least 1.
+    #[error("exponential weight α = {value} is outside [1, ∞)")]
+    Alpha {
+        /// Given weight.
+        value: f64,
+    },
+    /// The degree of stability must lie in (0, 1].
+    #[error("degree of stability λ = {value} is outside (0, 1]")]
+    Lambda {
+        /// Given degree.
+        value: f64,
+    },
+    /// A mode on or outside the circle of radius λ cannot be moved by the inputs.
+    #[error("the mode at {re} {im:+}i is not controllable, so no gain stabilises it")]
+    Uncontrollable {
+        /// Real part of the eigenvalue.
+        re: f64,
+        /// Imaginary part of the eigenvalue.
+        im: f64,
+    },
+    /// A mode on or outside the circle of radius λ does not show in the cost.
+    #[error("the mode at {re} {im:+}i is not detectable through Q, so the optimum need not stabilise it")]
+    Undetectable {
+        /// Real part of the eigenvalue.
+        re: f64,
+        /// Imaginary part of the eigenvalue.
+        im: f64,
+    },
+    /// The Riccati iteration did not reach a solution.
+    #[error(
+        "the Riccati equation was not solved: relative residual {residual:e} after {iterations} iterations"
+    )]
+    Riccati {
+        /// ‖residual‖ / ‖P‖.
+        residual: f64,
+        /// Doubling steps made.
+        iterations: usize,
+    },
+    /// The quadratic form Ω cannot be factored.
+    #[error(
+        "Ω is not positive definite in floating point (condition number {condition:e}); use exponential weighting"
+    )]
+    IllConditioned {
+        /// Condition number of Ω.
+        condition: f64,
+    },
+    /// An eigenvalue iteration did not converge.
+    #[error("the eigenvalues of {name} were not found")]
+    Eigenvalues {
+        /// The matrix.
+        name: &'static str,
+    },
+    /// The closed loop of this design is not stable.
+    #[error("the closed loop is not stable: its largest eigenvalue has magnitude {spectral_radius}")]
+    Unstable {
+        /// Largest magnitude of the closed-loop eigenvalues.
+        spectral_radius: f64,
+    },
+}
