@@ -38,6 +38,8 @@ pub enum Status {
 pub struct Step<const P: usize> {
     /// u(k), the input to apply. Report what was applied in truth with [`ControllerState::apply`].
     pub input: SVector<f64, P>,
+    /// −K_y (y − r), the share of the integral action in Δu.
+    pub integral: SVector<f64, P>,
     /// How it was found.
     pub status: Status,
 }
@@ -69,6 +71,27 @@ impl<const N: usize, const P: usize> ControllerState<N, P> {
         if finite(&feedback) {
             self.feedback = feedback;
         }
+    }
+
+    /// As [`ControllerState::apply`], but an input that saturated keeps its state feedback and loses only
+    /// the integral action `integral` of the step that asked for it.
+    ///
+    /// For inputs that saturate on kicks of a few samples: the state feedback of a kick that was cut off is
+    /// still there when the state has come back, and the integral action waits.
+    pub fn apply_holding_integral(&mut self, applied: &SVector<f64, P>, integral: &SVector<f64, P>) {
+        let cut = applied - self.applied();
+        for input in 0..P {
+            // Rounding of the actuators' own arithmetic is not saturation.
+            let held = self.feedback[input] - integral[input];
+            if libm::fabs(cut[input]) > 1e-9 * (1.0 + libm::fabs(applied[input])) && held.is_finite() {
+                self.feedback[input] = held;
+            }
+        }
+    }
+
+    /// The last measured state, x(k−1).
+    pub fn measured(&self) -> SVector<f64, N> {
+        self.measured
     }
 
     /// The input that was applied last, u(k−1).
@@ -116,10 +139,14 @@ impl<const N: usize, const P: usize, const Q: usize> Controller<N, P, Q> {
         Self::new(design.gain(), output)
     }
 
-    /// Δv for a motion `delta` = Δe that the reference does not explain and an output error
-    /// `error` = y − r. For plants whose difference of states is not a subtraction (attitudes).
-    pub fn increment(&self, delta: &SVector<f64, N>, error: &SVector<f64, Q>) -> SVector<f64, P> {
-        -(self.state_gain * delta) - self.output_gain * error
+    /// K_x, the part of the gain on Δx_m, P×N.
+    pub fn state_gain(&self) -> &SMatrix<f64, P, N> {
+        &self.state_gain
+    }
+
+    /// K_y, the part of the gain on y − r, P×Q.
+    pub fn output_gain(&self) -> &SMatrix<f64, P, Q> {
+        &self.output_gain
     }
 
     /// One sample: from the measured state and the reference to the input.
@@ -144,13 +171,14 @@ impl<const N: usize, const P: usize, const Q: usize> Controller<N, P, Q> {
         error: &SVector<f64, Q>,
         input_reference: &SVector<f64, P>,
     ) -> Step<P> {
-        let feedback = state.feedback + self.increment(delta, error);
+        let integral = -(self.output_gain * error);
+        let feedback = state.feedback - self.state_gain * delta + integral;
         let input = input_reference + feedback;
         if !(finite(measured) && finite(&input)) {
-            return Step { input: state.applied(), status: Status::Held };
+            return Step { input: state.applied(), integral: SVector::zeros(), status: Status::Held };
         }
         *state = ControllerState { measured: *measured, feedback, input_reference: *input_reference };
-        Step { input, status: Status::Optimal }
+        Step { input, integral, status: Status::Optimal }
     }
 }
 

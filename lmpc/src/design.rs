@@ -59,8 +59,8 @@ impl LmpcDesign {
 
         let closed_loop = model.a() - model.b() * &gain;
         let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
-        // Written so that a NaN is refused too.
-        if !(spectral_radius < 1.0) {
+        // A NaN is refused too.
+        if spectral_radius.is_nan() || spectral_radius >= 1.0 {
             return Err(DesignError::Unstable { spectral_radius });
         }
         Ok(Self { gain, prediction, dlqr, closed_loop, spectral_radius, outputs: model.plant().outputs() })

@@ -1,0 +1,1 @@
+//! The closed-loop quadrotor as an FMI 2.0 co-simulation library.

@@ -1,0 +1,75 @@
+//! The vehicle's physical constants.
+
+use serde::{Deserialize, Serialize};
+
+/// Standard acceleration of free fall, m/s² (ISO 80000-3). The paper writes g and gives no number.
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+
+/// Mass, geometry, rotors and drag of a quadrotor in "+" configuration: rotors at the front, right,
+/// back and left (Figure 1).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Airframe {
+    /// m, kg.
+    pub mass_kg: f64,
+    /// l, distance from the centre of mass to each rotor, m.
+    pub arm_length_m: f64,
+    /// Diagonal of the inertia tensor J_x, J_y, J_z, kg·m².
+    pub inertia_kg_m2: [f64; 3],
+    /// k₁ of (1), thrust per squared rotor speed, N·s².
+    pub thrust_coefficient_n_s2: f64,
+    /// k₂ of (1), drag torque per squared rotor speed, N·m·s².
+    pub torque_coefficient_n_m_s2: f64,
+    /// Lowest rotor speed while armed, rad/s.
+    pub rotor_speed_min_rad_s: f64,
+    /// Highest rotor speed, rad/s.
+    pub rotor_speed_max_rad_s: f64,
+    /// Time constant of the first-order lag from commanded to actual rotor speed, s.
+    pub rotor_time_constant_s: f64,
+    /// Linear drag along the world axes north, east, down, N·s/m.
+    pub drag_n_s_m: [f64; 3],
+}
+
+/// The paper's Table 1, and our choice of what it leaves out:
+///
+/// | constant | default | reason |
+/// | --- | --- | --- |
+/// | m, l, J | Table 1 | the paper |
+/// | k₁ | 2.7e-5 N·s² | 12-inch propeller (D = 0.305 m, the largest that clears a 0.275 m arm): C_T ρ D⁴/4π² with C_T = 0.1 |
+/// | k₂ | 6.0e-7 N·m·s² | the same propeller: k₂/k₁ = D C_Q/C_T = 0.022 m with C_Q = 0.0073 |
+/// | ω min | 50 rad/s | idle at a fifth of the hover speed, keeps the motors synchronised |
+/// | ω max | 450 rad/s | thrust to weight of 3.2, usual for a vehicle that must carry a load |
+/// | rotor lag | 0.03 s | brushless motor with a propeller of this size |
+/// | drag | 0 | the paper has none |
+impl Default for Airframe {
+    fn default() -> Self {
+        Self {
+            mass_kg: 0.7,
+            arm_length_m: 0.275,
+            inertia_kg_m2: [0.1063, 0.1063, 0.2122],
+            thrust_coefficient_n_s2: 2.7e-5,
+            torque_coefficient_n_m_s2: 6.0e-7,
+            rotor_speed_min_rad_s: 50.0,
+            rotor_speed_max_rad_s: 450.0,
+            rotor_time_constant_s: 0.03,
+            drag_n_s_m: [0.0; 3],
+        }
+    }
+}
+
+impl Airframe {
+    /// Weight m g, N: the thrust in hover.
+    pub fn weight_n(&self) -> f64 {
+        self.mass_kg * GRAVITY_M_S2
+    }
+
+    /// Speed at which four equal rotors carry the weight, rad/s: f(x₀, u₀) = 0 with 4 k₁ ω² = m g.
+    pub fn hover_rotor_speed_rad_s(&self) -> f64 {
+        libm::sqrt(self.weight_n() / (4.0 * self.thrust_coefficient_n_s2))
+    }
+
+    /// Smallest and largest thrust that the four rotors make together, N.
+    pub fn thrust_range_n(&self) -> (f64, f64) {
+        let thrust = |speed: f64| 4.0 * self.thrust_coefficient_n_s2 * speed * speed;
+        (thrust(self.rotor_speed_min_rad_s), thrust(self.rotor_speed_max_rad_s))
+    }
+}

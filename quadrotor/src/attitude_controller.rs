@@ -1,0 +1,99 @@
+//! Attitude: from the attitude and body rates to torques.
+
+use lmpc::ControllerState;
+use nalgebra::{UnitQuaternion, Vector2, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::attitude_error;
+use crate::governor::{Governor, proportional_rate};
+use crate::{CascadeDesign, Limits};
+
+/// Share of the torque-limited angular acceleration that braking a large rotation counts on.
+const BRAKING_SHARE: f64 = 0.5;
+
+/// State of the attitude controller.
+///
+/// The model (23) has Euler angles; here their error is the rotation from the reference in body axes,
+/// which for small angles is the same and has no singularity. The whole state is the error: the
+/// attitude reference moves continuously.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AttitudeController {
+    lmpc: ControllerState<6, 3>,
+    /// The error that the controller saw last, rad.
+    error_rad: Vector3<f64>,
+    /// p, q, r less their references, rad/s.
+    rate_error_rad_s: Vector3<f64>,
+    /// Integral action of the last step, N·m.
+    integral_n_m: Vector3<f64>,
+}
+
+impl AttitudeController {
+    /// Takes over a vehicle, as if it had been on its reference: the whole error and the whole rate count
+    /// from the first sample on.
+    pub fn new() -> Self {
+        Self {
+            lmpc: ControllerState::new(Vector6::zeros(), Vector3::zeros(), Vector3::zeros()),
+            error_rad: Vector3::zeros(),
+            rate_error_rad_s: Vector3::zeros(),
+            integral_n_m: Vector3::zeros(),
+        }
+    }
+
+    /// One sample: torques in FRD, N·m, without the gyroscopic ones, from attitude and body rates, rad/s,
+    /// and their references, the rate in the axes of the reference. Report what the rotors were asked
+    /// for in the end with [`AttitudeController::apply`].
+    pub fn step(
+        &mut self,
+        design: &CascadeDesign,
+        limits: &Limits,
+        (attitude, body_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
+        (reference, reference_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
+    ) -> Vector3<f64> {
+        let to_body = attitude.inverse() * reference;
+        let whole = attitude_error(reference, attitude);
+        let error_rad = governed(design, limits, &whole);
+        // While a large error is closed at the governed rate, integrating it would only exceed that rate.
+        let lean_integrated = if whole.xy() == error_rad.xy() { whole.xy() } else { Vector2::zeros() };
+        let turn_integrated = if whole.z == error_rad.z { whole.z } else { 0.0 };
+        let integrated = Vector3::new(lean_integrated.x, lean_integrated.y, turn_integrated);
+        let rate_error_rad_s = body_rate_rad_s - to_body * reference_rate_rad_s;
+        let step = design.attitude.step_from(
+            &mut self.lmpc,
+            &interleaved(&error_rad, &rate_error_rad_s),
+            &interleaved(&(error_rad - self.error_rad), &(rate_error_rad_s - self.rate_error_rad_s)),
+            &integrated,
+            &Vector3::zeros(),
+        );
+        self.error_rad = error_rad;
+        self.rate_error_rad_s = rate_error_rad_s;
+        self.integral_n_m = step.integral;
+        step.input
+    }
+
+    /// Reports the torques, N·m, that the rotors were asked for.
+    pub fn apply(&mut self, torque_n_m: &Vector3<f64>) {
+        self.lmpc.apply_holding_integral(torque_n_m, &self.integral_n_m);
+    }
+}
+
+/// The error that the controller may see: leaning as one vector, the heading for itself.
+fn governed(design: &CascadeDesign, limits: &Limits, error_rad: &Vector3<f64>) -> Vector3<f64> {
+    let leaning = Governor {
+        rate: proportional_rate(&design.attitude, 0).min(proportional_rate(&design.attitude, 1)),
+        deceleration: BRAKING_SHARE * limits.tilt_acceleration_rad_s2,
+        speed: limits.tilt_rate_rad_s,
+    };
+    let turning = Governor {
+        rate: proportional_rate(&design.attitude, 2),
+        deceleration: limits.yaw_acceleration_rad_s2,
+        speed: limits.yaw_rate_rad_s,
+    };
+    let lean = leaning.seen_vector(&error_rad.xy());
+    let turn = turning.seen_vector(&error_rad.fixed_rows::<1>(2).into_owned());
+    Vector3::new(lean.x, lean.y, turn.x)
+}
+
+/// φ, φ̇, θ, θ̇, ψ, ψ̇: the order of (22).
+fn interleaved(angle: &Vector3<f64>, rate: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(angle.x, rate.x, angle.y, rate.y, angle.z, rate.z)
+}

@@ -1,0 +1,224 @@
+//! The cascade of Figure 2: position → tilt, altitude → thrust, attitude → torques.
+
+use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::altitude_controller::AltitudeController;
+use crate::attitude::{tilt_angles, turned};
+use crate::attitude_controller::AttitudeController;
+use crate::guidance::Heading;
+use crate::position_controller::PositionController;
+use crate::ramp::Ramp;
+use crate::reference_motion::ReferenceMotion;
+use crate::setpoint::Setpoint;
+use crate::{
+    CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench, wrench_of_rotors,
+};
+
+/// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
+/// the thrust is the smallest allowed: it would push sideways or down.
+const UPRIGHT: f64 = 0.3;
+
+/// Share of the tilt limit that is commanded: the attitude loop overshoots a saturated command by an
+/// eighth at most.
+const COMMANDED_TILT_SHARE: f64 = 0.85;
+
+/// State of the three controllers and of the commands between them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cascade {
+    position: PositionController,
+    altitude: AltitudeController,
+    attitude: AttitudeController,
+    /// Horizontal acceleration wanted, NED, m/s².
+    horizontal: Ramp<2>,
+    /// Vertical acceleration wanted, NED, m/s².
+    vertical: Ramp<1>,
+    tilt_reference_rad: [f64; 2],
+    rotor_command_rad_s: [f64; 4],
+}
+
+impl Cascade {
+    /// Takes over a vehicle, with its rotors at `rotor_command_rad_s`.
+    pub fn new(body: &RigidBody, rotor_command_rad_s: [f64; 4], time_us: u64) -> Self {
+        Self {
+            position: PositionController::new(body.position_m.xy()),
+            altitude: AltitudeController::new(body.position_m.z),
+            attitude: AttitudeController::new(),
+            horizontal: Ramp::still(time_us),
+            vertical: Ramp::still(time_us),
+            tilt_reference_rad: [0.0; 2],
+            rotor_command_rad_s,
+        }
+    }
+
+    /// φ, θ asked of the attitude controller, rad.
+    pub fn tilt_reference_rad(&self) -> [f64; 2] {
+        self.tilt_reference_rad
+    }
+
+    /// Commanded rotor speeds, rad/s.
+    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
+        self.rotor_command_rad_s
+    }
+
+    /// A sample of the position controller.
+    pub fn sample_position(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        body: &RigidBody,
+        setpoint: &Setpoint,
+        time_us: u64,
+    ) {
+        let period_us = configuration.controllers.position.sample_time_us;
+        let vertical = self.vertical.at(time_us, configuration.controllers.altitude.sample_time_us).x;
+        let reference = &setpoint.reference;
+        let motion = ReferenceMotion {
+            position: reference.position_m.xy(),
+            velocity: reference.velocity_m_s.xy(),
+            acceleration: reference.acceleration_m_s2.xy(),
+            jerk: setpoint.jerk_m_s3.xy(),
+        };
+        let limits = &configuration.limits;
+        let before = self.horizontal;
+        let to = self.position.step(
+            design,
+            &configuration.controllers.position,
+            limits,
+            (body.position_m.xy(), body.velocity_m_s.xy()),
+            &motion,
+            |wanted| {
+                // ẍ = −g θ: what bounds the rate of the tilt bounds the rate of the acceleration.
+                let paced = before.towards(
+                    within_tilt(wanted, vertical, limits.tilt_rad),
+                    GRAVITY_M_S2 * limits.tilt_rate_rad_s,
+                    GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2,
+                    time_us,
+                    period_us,
+                );
+                within_tilt(paced, vertical, limits.tilt_rad)
+            },
+        );
+        self.horizontal.go_to(to, time_us, period_us);
+    }
+
+    /// A sample of the altitude controller.
+    pub fn sample_altitude(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        body: &RigidBody,
+        setpoint: &Setpoint,
+        time_us: u64,
+    ) {
+        let period_us = configuration.controllers.altitude.sample_time_us;
+        let reference = &setpoint.reference;
+        let axis = |vector: &Vector3<f64>| [vector.z].into();
+        let motion = ReferenceMotion {
+            position: axis(&reference.position_m),
+            velocity: axis(&reference.velocity_m_s),
+            acceleration: axis(&reference.acceleration_m_s2),
+            jerk: axis(&setpoint.jerk_m_s3),
+        };
+        let to = self.altitude.step(
+            design,
+            configuration,
+            [body.position_m.z, body.velocity_m_s.z],
+            &motion,
+            vertical_range(configuration, upright(body)),
+        );
+        self.vertical.go_to(Vector1::new(to), time_us, period_us);
+    }
+
+    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds.
+    pub fn sample_attitude(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        body: &RigidBody,
+        heading: &Heading,
+        time_us: u64,
+    ) {
+        let period_us = configuration.controllers.attitude.sample_time_us;
+        let period_s = configuration.controllers.attitude.sample_time_s();
+        let (tilt, reference) = self.attitude_reference(configuration, heading.yaw_rad, time_us);
+        self.tilt_reference_rad = tilt;
+        let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
+        let (_, next) = self.attitude_reference(configuration, next_yaw_rad, time_us + period_us);
+        let rate = turned(&reference, &next) / period_s;
+
+        let vertical = self.vertical.at(time_us, configuration.controllers.altitude.sample_time_us).x;
+        let torque = self.attitude.step(
+            design,
+            &configuration.limits,
+            (&body.rotation(), &body.body_rate_rad_s),
+            (&reference, &rate),
+        );
+        let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
+        let wanted = Wrench {
+            thrust_n: thrust(configuration, vertical, upright(body)),
+            torque_n_m: torque + gyroscopic,
+        };
+        self.rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
+        let made = wrench_of_rotors(&configuration.airframe, &self.rotor_command_rad_s);
+        self.attitude.apply(&(made.torque_n_m - gyroscopic));
+    }
+
+    /// φ, θ and the attitude whose thrust axis makes the accelerations wanted at `time_us`.
+    fn attitude_reference(
+        &self,
+        configuration: &Configuration,
+        yaw_rad: f64,
+        time_us: u64,
+    ) -> ([f64; 2], UnitQuaternion<f64>) {
+        let controllers = &configuration.controllers;
+        let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
+        let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us).x;
+        // m a = m g e₃ − F b₃: the thrust axis points along g e₃ − a
+        let horizontal = within_tilt(horizontal, vertical, configuration.limits.tilt_rad);
+        let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - vertical);
+        let (phi, theta) = tilt_angles(&axis, yaw_rad);
+        ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
+    }
+}
+
+/// Cosine of the tilt: the down component of the body's down axis.
+fn upright(body: &RigidBody) -> f64 {
+    (body.rotation() * Vector3::z()).z
+}
+
+/// A horizontal acceleration, NED, m/s², shortened so that commands keep the thrust axis within
+/// `tilt_rad` when the vertical acceleration is `vertical_m_s2`: |a| ≤ tan(0.85 tilt) (g − G).
+fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
+    let limit = libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0);
+    let norm = wanted.norm();
+    if norm > limit { wanted * (limit / norm) } else { wanted }
+}
+
+/// Mass that the controllers believe in, kg.
+fn believed_mass_kg(configuration: &Configuration) -> f64 {
+    configuration.airframe.mass_kg * configuration.controllers.mass_factor
+}
+
+/// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.
+fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
+    let share = upright.max(UPRIGHT) / believed_mass_kg(configuration);
+    let limits = &configuration.limits;
+    (GRAVITY_M_S2 - limits.thrust_max_n * share, GRAVITY_M_S2 - limits.thrust_min_n * share)
+}
+
+/// F = m (g − G) of (7), divided by cos φ cos θ because a tilted thrust carries less.
+fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f64 {
+    let limits = &configuration.limits;
+    if upright < UPRIGHT {
+        return believed_mass_kg(configuration) * GRAVITY_M_S2;
+    }
+    let level = believed_mass_kg(configuration) * (GRAVITY_M_S2 - vertical_m_s2);
+    (level / upright).clamp(limits.thrust_min_n, limits.thrust_max_n)
+}
+
+/// ω × Jω, N·m: what (3) takes from the torques, given back.
+fn gyroscopic_torque(configuration: &Configuration, body_rate_rad_s: &Vector3<f64>) -> Vector3<f64> {
+    let inertia = Vector3::from(configuration.airframe.inertia_kg_m2) * configuration.controllers.mass_factor;
+    body_rate_rad_s.cross(&inertia.component_mul(body_rate_rad_s))
+}

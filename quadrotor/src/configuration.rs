@@ -1,0 +1,221 @@
+//! Everything about a flight that does not change while it lasts.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use crate::Airframe;
+
+/// The whole configuration: plain data, checked when a [`Simulation`](crate::Simulation) is made of it.
+///
+/// [`PARAMETERS`](crate::PARAMETERS) lists every field with its public name, unit and range.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Configuration {
+    /// The vehicle.
+    pub airframe: Airframe,
+    /// The world around it.
+    pub environment: Environment,
+    /// Where the flight begins.
+    pub initial: InitialState,
+    /// The three controllers.
+    pub controllers: Controllers,
+    /// What the controllers and the shaper keep within.
+    pub limits: Limits,
+    /// Whether references pass through the jerk-limited shaper.
+    pub reference: ReferenceSettings,
+}
+
+/// The world around the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Environment {
+    /// Whether there is ground at z = 0. Off by default: the paper flies in free space.
+    pub ground_plane: bool,
+}
+
+/// State at the start of the flight.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct InitialState {
+    /// Position in NED, m.
+    pub position_m: [f64; 3],
+    /// Velocity in NED, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// Euler angles φ, θ, ψ (ZYX), rad.
+    pub attitude_rad: [f64; 3],
+    /// Body rates p, q, r in FRD, rad/s.
+    pub body_rate_rad_s: [f64; 3],
+}
+
+/// How references are treated before the cascade sees them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceSettings {
+    /// On: a position reference is a goal, approached on a jerk-limited profile within the speed,
+    /// acceleration and jerk limits. Off: position, velocity and acceleration go straight to the cascade.
+    pub shaping: bool,
+}
+
+impl Default for ReferenceSettings {
+    fn default() -> Self {
+        Self { shaping: cfg!(feature = "shaper") }
+    }
+}
+
+/// The cascade: position → tilt, altitude → thrust, attitude → torques (Figure 2).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Controllers {
+    /// Mass that the controllers believe in, as a multiple of the true one: a way to fly with a wrong
+    /// model.
+    pub mass_factor: f64,
+    /// Altitude controller on (9), input G.
+    pub altitude: ControllerSettings<1>,
+    /// Position controller on (15), inputs θ, φ for outputs x, y.
+    pub position: ControllerSettings<2>,
+    /// Attitude controller on (23), inputs τ_φ, τ_θ, τ_ψ for outputs φ, θ, ψ.
+    pub attitude: ControllerSettings<3>,
+}
+
+/// One Laguerre MPC with P inputs and P outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ControllerSettings<const P: usize> {
+    /// ΔT, µs.
+    pub sample_time_us: u64,
+    /// N, Laguerre terms per input.
+    pub terms: u32,
+    /// a, Laguerre scaling factor.
+    pub scale: f64,
+    /// N_p, prediction horizon in samples.
+    pub prediction_horizon: u32,
+    /// α > 1: exponential data weighting with transformed weights; α = 1: the Riccati solution as
+    /// terminal weight.
+    pub alpha: f64,
+    /// λ, degree of stability.
+    pub lambda: f64,
+    /// Diagonal of Q on y − r, per output.
+    pub output_weight: SVector<f64, P>,
+    /// Diagonal of Q on the increment of each output's rate (damping); the paper has 0.
+    pub rate_weight: SVector<f64, P>,
+    /// Diagonal of R on Δu, per input.
+    pub increment_weight: SVector<f64, P>,
+}
+
+/// The paper's N = 5, a = 0.8187, α = 1.2 and Q = CᵀC, and our choice of what it leaves out:
+///
+/// | setting | default | reason |
+/// | --- | --- | --- |
+/// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
+/// | N_p | 100 | the weighted horizon has died out long before (α^(−200) ≈ 1e-16) |
+/// | R | see the code | sets the bandwidths, see the cascade's documentation |
+impl Default for Controllers {
+    fn default() -> Self {
+        let paper = |sample_time_us, weight| ControllerSettings {
+            sample_time_us,
+            terms: 5,
+            scale: 0.8187,
+            prediction_horizon: 100,
+            alpha: 1.2,
+            lambda: 1.0,
+            output_weight: SVector::from([1.0]),
+            rate_weight: SVector::from([0.0]),
+            increment_weight: SVector::from([weight]),
+        };
+        Self {
+            mass_factor: 1.0,
+            altitude: paper(50_000, 1.0),
+            position: paper(50_000, 600.0).with_weights([1.0; 2], [0.0; 2], [600.0; 2]),
+            attitude: paper(10_000, 1.0).with_weights([1.0; 3], [0.0; 3], [12.0, 12.0, 300.0]),
+        }
+    }
+}
+
+impl<const P: usize> ControllerSettings<P> {
+    /// The same settings for another number of inputs.
+    pub fn with_weights<const R: usize>(
+        &self,
+        output: [f64; R],
+        rate: [f64; R],
+        increment: [f64; R],
+    ) -> ControllerSettings<R> {
+        ControllerSettings {
+            sample_time_us: self.sample_time_us,
+            terms: self.terms,
+            scale: self.scale,
+            prediction_horizon: self.prediction_horizon,
+            alpha: self.alpha,
+            lambda: self.lambda,
+            output_weight: SVector::from(output),
+            rate_weight: SVector::from(rate),
+            increment_weight: SVector::from(increment),
+        }
+    }
+
+    /// ΔT, s.
+    pub fn sample_time_s(&self) -> f64 {
+        self.sample_time_us as f64 * 1e-6
+    }
+}
+
+/// Limits of the cascade and of the shaper.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Largest angle between the thrust axis and the vertical, rad.
+    pub tilt_rad: f64,
+    /// Largest rate of the tilt command, rad/s.
+    pub tilt_rate_rad_s: f64,
+    /// Largest angular acceleration of the tilt command, rad/s².
+    pub tilt_acceleration_rad_s2: f64,
+    /// Smallest thrust that the altitude controller asks for, N.
+    pub thrust_min_n: f64,
+    /// Largest thrust that the altitude controller asks for, N.
+    pub thrust_max_n: f64,
+    /// Largest horizontal speed of shaped references, m/s.
+    pub speed_horizontal_m_s: f64,
+    /// Largest climb rate of shaped references, m/s.
+    pub speed_up_m_s: f64,
+    /// Largest sink rate of shaped references, m/s.
+    pub speed_down_m_s: f64,
+    /// Largest horizontal acceleration of shaped references, m/s².
+    pub acceleration_horizontal_m_s2: f64,
+    /// Largest vertical acceleration of shaped references, m/s².
+    pub acceleration_vertical_m_s2: f64,
+    /// Largest horizontal jerk of shaped references, m/s³.
+    pub jerk_horizontal_m_s3: f64,
+    /// Largest vertical jerk of shaped references, m/s³.
+    pub jerk_vertical_m_s3: f64,
+    /// Largest rate of the yaw reference, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Largest angular acceleration of the shaped yaw reference, rad/s².
+    pub yaw_acceleration_rad_s2: f64,
+    /// Largest angular jerk of the shaped yaw reference, rad/s³.
+    pub yaw_jerk_rad_s3: f64,
+}
+
+/// Our choice; the paper names no limit.
+///
+/// | limit | default | reason |
+/// | --- | --- | --- |
+/// | tilt | 0.5 rad | thrust to hold altitude grows by 14 %, the linear model errs by 4 % |
+/// | tilt command | 2 rad/s, 8 rad/s² | 0.85 N·m, nine tenths of the torque in hover |
+/// | thrust | 3.4 to 13.7 N | half and twice the weight: leaves the mixer room for torques at both ends |
+/// | speed | 8, up 4, down 3 m/s | an inspection flight |
+/// | acceleration | 3 and 2.5 m/s² | a tilt of 0.3 rad: feedback keeps 40 % of the tilt limit |
+/// | jerk | 4 m/s³ | a jump of the tilt rate by 0.4 rad/s is the kick that the torques just follow |
+/// | yaw | 0.8 rad/s, 0.3 rad/s², 0.6 rad/s³ | half of the yaw torque in hover |
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            tilt_rad: 0.5,
+            tilt_rate_rad_s: 2.0,
+            tilt_acceleration_rad_s2: 8.0,
+            thrust_min_n: 3.4,
+            thrust_max_n: 13.7,
+            speed_horizontal_m_s: 8.0,
+            speed_up_m_s: 4.0,
+            speed_down_m_s: 3.0,
+            acceleration_horizontal_m_s2: 3.0,
+            acceleration_vertical_m_s2: 2.5,
+            jerk_horizontal_m_s3: 4.0,
+            jerk_vertical_m_s3: 4.0,
+            yaw_rate_rad_s: 0.8,
+            yaw_acceleration_rad_s2: 0.3,
+            yaw_jerk_rad_s3: 0.6,
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What can be wrong with a configuration, or happen to a flight.
+
+use lmpc::DesignError;
+use thiserror::Error;
+
+/// Why a configuration was refused. Nothing has changed then.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ConfigurationError {
+    /// A value is outside its range.
+    #[error("{name} = {value} is outside [{minimum}, {maximum}]")]
+    OutOfRange {
+        /// Public name of the parameter.
+        name: &'static str,
+        /// Given value.
+        value: f64,
+        /// Smallest allowed value.
+        minimum: f64,
+        /// Largest allowed value.
+        maximum: f64,
+    },
+    /// Two values do not fit together.
+    #[error("{name} = {value} must be {relation} {other} = {other_value}")]
+    Inconsistent {
+        /// Public name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// "below", "at most", …
+        relation: &'static str,
+        /// What it is compared with.
+        other: &'static str,
+        /// The other value.
+        other_value: f64,
+    },
+    /// A controller cannot be designed.
+    #[error("the {controller} controller cannot be designed: {source}")]
+    Design {
+        /// "altitude", "position" or "attitude".
+        controller: &'static str,
+        /// Why not.
+        source: DesignError,
+    },
+    /// A function that this build was made without.
+    #[error("{name} = true needs the cargo feature \"shaper\"")]
+    Unavailable {
+        /// Public name of the parameter.
+        name: &'static str,
+    },
+    /// A parameter that is fixed during the flight would change.
+    #[error("{name} is fixed during the flight")]
+    Fixed {
+        /// Public name of the parameter.
+        name: &'static str,
+    },
+}
+
+/// Why a flight could not go on.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// An input is not finite.
+    #[error("the input {name} is not finite at {time_us} µs")]
+    InputNotFinite {
+        /// Public name of the input.
+        name: &'static str,
+        /// When.
+        time_us: u64,
+    },
+    /// Time only goes forward.
+    #[error("cannot advance to {requested_us} µs: the flight is already at {time_us} µs")]
+    Backwards {
+        /// Time of the flight.
+        time_us: u64,
+        /// Time asked for.
+        requested_us: u64,
+    },
+    /// The state has left the range of finite numbers.
+    #[error("the state is no longer finite at {time_us} µs")]
+    Diverged {
+        /// When.
+        time_us: u64,
+    },
+}

@@ -1,0 +1,54 @@
+//! The linear models of the paper's three controllers.
+
+use lmpc::{DesignError, Discretization, StateSpace};
+use nalgebra::DMatrix;
+
+use crate::GRAVITY_M_S2;
+
+/// Chains of two integrators, one per input: ẍ_i = gain_i u_i, y_i = x_i.
+fn double_integrators(
+    gains: &[f64],
+    sample_time_s: f64,
+    discretization: Discretization,
+) -> Result<StateSpace, DesignError> {
+    let count = gains.len();
+    let mut a = DMatrix::zeros(2 * count, 2 * count);
+    let mut b = DMatrix::zeros(2 * count, count);
+    let mut c = DMatrix::zeros(count, 2 * count);
+    for (i, gain) in gains.iter().enumerate() {
+        a[(2 * i, 2 * i + 1)] = 1.0;
+        b[(2 * i + 1, i)] = *gain;
+        c[(i, 2 * i)] = 1.0;
+    }
+    StateSpace::from_continuous(&a, &b, &c, sample_time_s, discretization)
+}
+
+/// (9): states z, v_z; input G = z̈; output z.
+///
+/// # Errors
+/// [`DesignError::SampleTime`] unless the sample time is positive.
+pub fn altitude_model(sample_time_s: f64, discretization: Discretization) -> Result<StateSpace, DesignError> {
+    double_integrators(&[1.0], sample_time_s, discretization)
+}
+
+/// (15): states x, v_x, y, v_y; inputs θ, φ; outputs x, y.
+///
+/// # Errors
+/// [`DesignError::SampleTime`] unless the sample time is positive.
+pub fn position_model(sample_time_s: f64, discretization: Discretization) -> Result<StateSpace, DesignError> {
+    double_integrators(&[-GRAVITY_M_S2, GRAVITY_M_S2], sample_time_s, discretization)
+}
+
+/// (23), with τ_ψ where (21) misprints τ_θ and the output matrix whose ones were lost in print: states
+/// φ, φ̇, θ, θ̇, ψ, ψ̇; inputs τ_φ, τ_θ, τ_ψ; outputs φ, θ, ψ.
+///
+/// # Errors
+/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`] when a
+/// moment of inertia, kg·m², is 0.
+pub fn attitude_model(
+    inertia_kg_m2: &[f64; 3],
+    sample_time_s: f64,
+    discretization: Discretization,
+) -> Result<StateSpace, DesignError> {
+    double_integrators(&inertia_kg_m2.map(f64::recip), sample_time_s, discretization)
+}

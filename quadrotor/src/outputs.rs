@@ -1,0 +1,40 @@
+//! What can be observed of the closed loop.
+
+use nalgebra::Vector3;
+
+use crate::PositionReference;
+
+/// The observable state at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outputs {
+    /// Time since the start of the flight, µs.
+    pub time_us: u64,
+    /// x, y, z in NED, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity in NED, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Acceleration in NED, m/s².
+    pub acceleration_m_s2: Vector3<f64>,
+    /// u, v, w: velocity in FRD, m/s.
+    pub body_velocity_m_s: Vector3<f64>,
+    /// φ, θ, ψ (ZYX), rad; φ and ψ within ±π, θ within ±π/2.
+    pub attitude_rad: Vector3<f64>,
+    /// Hamilton quaternion q₀ … q₃, scalar first, FRD into NED.
+    pub quaternion: [f64; 4],
+    /// p, q, r in FRD, rad/s.
+    pub body_rate_rad_s: Vector3<f64>,
+    /// F, the thrust of the four rotors, N.
+    pub thrust_n: f64,
+    /// τ_φ, τ_θ, τ_ψ of the four rotors, N·m.
+    pub torque_n_m: Vector3<f64>,
+    /// Speeds of the front, right, back and left rotor, rad/s.
+    pub rotor_speed_rad_s: [f64; 4],
+    /// φ and θ that the position controller asks of the attitude controller, rad.
+    pub tilt_reference_rad: [f64; 2],
+    /// The reference that the cascade tracks, after shaping.
+    pub setpoint: PositionReference,
+    /// Position minus that reference, m.
+    pub tracking_error_m: Vector3<f64>,
+    /// Heading minus that reference, within ±π, rad.
+    pub yaw_error_rad: f64,
+}

@@ -1,0 +1,45 @@
+//! The motion of a reference between two samples.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+/// Position and its derivatives on some axes, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceMotion<const AXES: usize> {
+    /// Position.
+    pub position: SVector<f64, AXES>,
+    /// Velocity.
+    pub velocity: SVector<f64, AXES>,
+    /// Acceleration.
+    pub acceleration: SVector<f64, AXES>,
+    /// Jerk.
+    pub jerk: SVector<f64, AXES>,
+}
+
+impl<const AXES: usize> Default for ReferenceMotion<AXES> {
+    fn default() -> Self {
+        let zero = SVector::zeros();
+        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero }
+    }
+}
+
+impl<const AXES: usize> ReferenceMotion<AXES> {
+    /// Increments \[Δposition, Δvelocity\] of each axis since the previous sample, as far as the
+    /// derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
+    ///
+    /// Hermite's rule, exact for constant jerk:
+    /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
+    pub fn increments_since(&self, previous: &Self, sample_time_s: f64) -> [[f64; 2]; AXES] {
+        let t = sample_time_s;
+        core::array::from_fn(|axis| {
+            let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
+            let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);
+            [t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0, t * (a + a_before) / 2.0]
+        })
+    }
+
+    /// The acceleration `ahead_s` later.
+    pub fn acceleration_after(&self, ahead_s: f64) -> SVector<f64, AXES> {
+        self.acceleration + self.jerk * ahead_s
+    }
+}

@@ -1,0 +1,84 @@
+//! The six-degree-of-freedom rigid body (2)–(3), with a quaternion in place of the Euler angles.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::{Airframe, Disturbance, GRAVITY_M_S2, Wrench};
+
+/// Position and velocity in NED, attitude FRD into NED, body rates in FRD.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigidBody {
+    /// x, y, z, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity in NED, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Hamilton quaternion, unit but for rounding inside an integration step.
+    pub attitude: Quaternion<f64>,
+    /// p, q, r, rad/s.
+    pub body_rate_rad_s: Vector3<f64>,
+}
+
+/// External force in NED, N, and torque in FRD, N·m, other than gravity and rotors.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct External {
+    /// NED, N.
+    pub force_n: Vector3<f64>,
+    /// FRD, N·m.
+    pub torque_n_m: Vector3<f64>,
+}
+
+impl RigidBody {
+    /// The rotation FRD into NED.
+    pub fn rotation(&self) -> UnitQuaternion<f64> {
+        UnitQuaternion::new_normalize(self.attitude)
+    }
+
+    /// Time derivative under rotor wrench and external force and torque.
+    pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench, external: &External) -> Self {
+        // R of (2). Inside an integration step the quaternion is not exactly unit: normalise.
+        let rotation = self.rotation();
+        let inertia = Vector3::from(airframe.inertia_kg_m2);
+        let rate = self.body_rate_rad_s;
+
+        // World frame NED: v̇ = g e₃ − (F/m) R e₃ + f/m. With v = R [u v w]ᵀ this is the first line of (3).
+        let thrust = rotation * Vector3::new(0.0, 0.0, -rotors.thrust_n);
+        let acceleration =
+            Vector3::new(0.0, 0.0, GRAVITY_M_S2) + (thrust + external.force_n) / airframe.mass_kg;
+
+        // q̇ = ½ q ⊗ [0, p, q, r]: the second line of (2) without its singularity at θ = ±90°
+        let attitude_rate = self.attitude * Quaternion::from_imag(rate) * 0.5;
+
+        // Body frame FRD: J ω̇ = τ − ω × Jω, the second line of (3)
+        let torque = rotors.torque_n_m + external.torque_n_m - rate.cross(&inertia.component_mul(&rate));
+
+        Self {
+            position_m: self.velocity_m_s,
+            velocity_m_s: acceleration,
+            attitude: attitude_rate,
+            body_rate_rad_s: torque.component_div(&inertia),
+        }
+    }
+
+    /// self + h · derivative, each component for itself.
+    pub(crate) fn plus(&self, derivative: &Self, h: f64) -> Self {
+        Self {
+            position_m: self.position_m + derivative.position_m * h,
+            velocity_m_s: self.velocity_m_s + derivative.velocity_m_s * h,
+            attitude: self.attitude + derivative.attitude * h,
+            body_rate_rad_s: self.body_rate_rad_s + derivative.body_rate_rad_s * h,
+        }
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.position_m.iter().chain(&self.velocity_m_s).chain(&self.body_rate_rad_s).all(|x| x.is_finite())
+            && self.attitude.coords.iter().all(|x| x.is_finite())
+    }
+}
+
+impl Disturbance {
+    /// The disturbance and the linear drag on a body that moves with `velocity_m_s` in NED.
+    pub(crate) fn external(&self, airframe: &Airframe, velocity_m_s: &Vector3<f64>) -> External {
+        let drag = Vector3::from(airframe.drag_n_s_m).component_mul(&(velocity_m_s - self.wind_m_s));
+        External { force_n: self.force_n - drag, torque_n_m: self.torque_n_m }
+    }
+}

@@ -1,0 +1,211 @@
+//! The jerk-limited reference shaper.
+//!
+//! The profiles are Ruckig's (Berscheid and Kröger 2021): time-optimal for third-order limits from any
+//! state to any state. This file chooses the axes and limits, and keeps the result as plain data.
+
+use nalgebra::{Rotation2, Vector2, Vector3};
+use rsruckig::prelude::{
+    DataArrayOrVec, InputParameter, Ruckig, Synchronization, ThrowErrorHandler, Trajectory,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::wrapped;
+use crate::motion_profile::{Motion, MotionProfile};
+use crate::setpoint::Setpoint;
+use crate::{Limits, PositionReference};
+
+/// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
+const STRAIGHT: [f64; 2] = [0.98, 0.198];
+/// Both when the motion is not along that line: the largest square inside the circle.
+const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
+
+/// A plan from one state to the goal, as profiles over time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shaper {
+    start_us: u64,
+    goal: PositionReference,
+    limits: Limits,
+    /// Direction of the first horizontal axis, rad from north.
+    bearing_rad: f64,
+    /// Along the bearing, across it to the right, down.
+    axes: [MotionProfile; 3],
+    yaw: MotionProfile,
+}
+
+impl Shaper {
+    /// A shaper that rests in one place since `time_us`.
+    pub fn at_rest(position_m: &Vector3<f64>, yaw_rad: f64, limits: &Limits, time_us: u64) -> Self {
+        let rest = |position| MotionProfile::constant(Motion::at(position));
+        Self {
+            start_us: time_us,
+            goal: PositionReference::goal((*position_m).into(), yaw_rad),
+            limits: *limits,
+            bearing_rad: 0.0,
+            axes: [rest(position_m.x), rest(position_m.y), rest(position_m.z)],
+            yaw: rest(yaw_rad),
+        }
+    }
+
+    /// The shaped reference at `time_us`.
+    pub fn setpoint(&self, time_us: u64) -> Setpoint {
+        let time_s = self.elapsed_s(time_us);
+        let motions = self.axes.map(|axis| axis.at(time_s));
+        let yaw = self.yaw.at(time_s);
+        let turn = Rotation2::new(self.bearing_rad);
+        let world = |part: fn(&Motion) -> f64| {
+            let [along, across, down] = motions.each_ref().map(part);
+            let horizontal = turn * Vector2::new(along, across);
+            Vector3::new(horizontal.x, horizontal.y, down)
+        };
+        Setpoint {
+            reference: PositionReference {
+                position_m: world(|motion| motion.position),
+                velocity_m_s: world(|motion| motion.velocity),
+                acceleration_m_s2: world(|motion| motion.acceleration),
+                yaw_rad: yaw.position,
+                yaw_rate_rad_s: yaw.velocity,
+            },
+            jerk_m_s3: world(|motion| motion.jerk),
+        }
+    }
+
+    /// Plans anew if the goal or the limits have changed. A problem that has no solution leaves the old
+    /// plan in force.
+    pub fn update(&mut self, goal: &PositionReference, limits: &Limits, time_us: u64) {
+        if *goal == self.goal && *limits == self.limits {
+            return;
+        }
+        let now = self.setpoint(time_us).reference;
+        let yaw_now = self.yaw.at(self.elapsed_s(time_us));
+        let way = (goal.position_m - now.position_m).xy();
+        let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
+        let axes = plan_position(&now, goal, limits, bearing_rad);
+        let yaw = plan_yaw(&yaw_now, goal, limits);
+        if let (Some(axes), Some([yaw])) = (axes, yaw) {
+            *self = Self { start_us: time_us, goal: *goal, limits: *limits, bearing_rad, axes, yaw };
+        }
+    }
+
+    fn elapsed_s(&self, time_us: u64) -> f64 {
+        time_us.saturating_sub(self.start_us) as f64 * 1e-6
+    }
+}
+
+/// Along the bearing, across it and down, from a state to a goal.
+fn plan_position(
+    from: &PositionReference,
+    goal: &PositionReference,
+    limits: &Limits,
+    bearing_rad: f64,
+) -> Option<[MotionProfile; 3]> {
+    let turn = Rotation2::new(-bearing_rad);
+    let local = |world: &Vector3<f64>| {
+        let horizontal = turn * world.xy();
+        [horizontal.x, horizontal.y, world.z]
+    };
+    // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT and TURNING.
+    let across = |vector: &Vector3<f64>, limit: f64| local(vector)[1].abs() / limit;
+    let straight = across(&from.velocity_m_s, limits.speed_horizontal_m_s) <= STRAIGHT[1]
+        && across(&from.acceleration_m_s2, limits.acceleration_horizontal_m_s2) <= STRAIGHT[1];
+    let shares = if straight { STRAIGHT } else { TURNING };
+    let limit = |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
+
+    let max_velocity = limit(limits.speed_horizontal_m_s, limits.speed_down_m_s);
+    let mut min_velocity = max_velocity.map(|speed| -speed);
+    min_velocity[2] = -limits.speed_up_m_s;
+    let target_velocity = local(&goal.velocity_m_s);
+    Request {
+        from: core::array::from_fn(|axis| Motion {
+            position: local(&from.position_m)[axis],
+            velocity: local(&from.velocity_m_s)[axis],
+            acceleration: local(&from.acceleration_m_s2)[axis],
+            jerk: 0.0,
+        }),
+        target_position: local(&goal.position_m),
+        target_velocity: core::array::from_fn(|axis| {
+            target_velocity[axis].clamp(min_velocity[axis], max_velocity[axis])
+        }),
+        max_velocity,
+        min_velocity,
+        max_acceleration: limit(limits.acceleration_horizontal_m_s2, limits.acceleration_vertical_m_s2),
+        max_jerk: limit(limits.jerk_horizontal_m_s3, limits.jerk_vertical_m_s3),
+    }
+    .solve()
+}
+
+/// The heading, the short way round.
+fn plan_yaw(from: &Motion, goal: &PositionReference, limits: &Limits) -> Option<[MotionProfile; 1]> {
+    let rate = limits.yaw_rate_rad_s;
+    Request {
+        from: [*from],
+        target_position: [from.position + wrapped(goal.yaw_rad - from.position)],
+        target_velocity: [goal.yaw_rate_rad_s.clamp(-rate, rate)],
+        max_velocity: [rate],
+        min_velocity: [-rate],
+        max_acceleration: [limits.yaw_acceleration_rad_s2],
+        max_jerk: [limits.yaw_jerk_rad_s3],
+    }
+    .solve()
+}
+
+/// A state-to-state problem for `DOF` axes that arrive together.
+struct Request<const DOF: usize> {
+    from: [Motion; DOF],
+    target_position: [f64; DOF],
+    target_velocity: [f64; DOF],
+    max_velocity: [f64; DOF],
+    min_velocity: [f64; DOF],
+    max_acceleration: [f64; DOF],
+    max_jerk: [f64; DOF],
+}
+
+impl<const DOF: usize> Request<DOF> {
+    fn solve(&self) -> Option<[MotionProfile; DOF]> {
+        let mut input = InputParameter::<DOF>::new(None);
+        input.synchronization = Synchronization::Time;
+        input.current_position = stack(self.from.map(|motion| motion.position));
+        input.current_velocity = stack(self.from.map(|motion| motion.velocity));
+        input.current_acceleration = stack(self.from.map(|motion| motion.acceleration));
+        input.target_position = stack(self.target_position);
+        input.target_velocity = stack(self.target_velocity);
+        input.max_velocity = stack(self.max_velocity);
+        input.min_velocity = Some(stack(self.min_velocity));
+        input.max_acceleration = stack(self.max_acceleration);
+        input.max_jerk = stack(self.max_jerk);
+
+        let mut trajectory = Trajectory::<DOF>::new(None);
+        // The cycle time matters only for discrete durations, which are not asked for.
+        let mut ruckig = Ruckig::<DOF, ThrowErrorHandler>::new(None, 0.01);
+        ruckig.calculate(&input, &mut trajectory).ok()?;
+        let profiles = trajectory.profiles.first()?;
+        Some(core::array::from_fn(|axis| {
+            let profile = &profiles[axis];
+            let (mut start_s, mut pieces) = (0.0, None);
+            let brake = &profile.brake;
+            let parts = (0..2).map(|i| (brake.t[i], brake.p[i], brake.v[i], brake.a[i], brake.j[i])).chain(
+                (0..7).map(|i| (profile.t[i], profile.p[i], profile.v[i], profile.a[i], profile.j[i])),
+            );
+            for (duration_s, position, velocity, acceleration, jerk) in parts {
+                if duration_s > 0.0 {
+                    add(&mut pieces, start_s, Motion { position, velocity, acceleration, jerk });
+                    start_s += duration_s;
+                }
+            }
+            let [position, velocity, acceleration] = [profile.p[7], profile.v[7], profile.a[7]];
+            let last = Motion { position, velocity, acceleration, jerk: 0.0 };
+            add(&mut pieces, start_s, last);
+            pieces.unwrap_or_else(|| MotionProfile::constant(last))
+        }))
+    }
+}
+
+fn add(pieces: &mut Option<MotionProfile>, start_s: f64, motion: Motion) {
+    match pieces {
+        Some(profile) => profile.push(start_s, motion),
+        None => *pieces = Some(MotionProfile::constant(motion)),
+    }
+}
+
+fn stack<const DOF: usize>(values: [f64; DOF]) -> DataArrayOrVec<f64, DOF> {
+    DataArrayOrVec::Stack(values)
+}

@@ -1,0 +1,229 @@
+//! The closed loop as a deterministic discrete-event simulation.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::wrapped;
+use crate::cascade::Cascade;
+use crate::guidance::Guidance;
+use crate::plant::Plant;
+use crate::schedule::{next_event_us, ticks};
+use crate::validation::only_tunables_differ;
+use crate::{
+    CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs, Outputs,
+    SimulationError,
+};
+
+/// Everything that changes during a flight, and all there is to save and restore.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulationState {
+    /// The present, µs after the start.
+    time_us: u64,
+    /// The last event, at or before the present: the state below is the one there.
+    event_us: u64,
+    /// Whether the controllers have sampled at the last event.
+    sampled: bool,
+    plant: Plant,
+    disturbance: Disturbance,
+    armed: bool,
+    guidance: Guidance,
+    cascade: Cascade,
+}
+
+/// A flight: configuration, controllers designed from it, and state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    configuration: Configuration,
+    design: CascadeDesign,
+    state: SimulationState,
+}
+
+impl Simulation {
+    /// A flight at time zero, in the configured initial state.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
+    /// controller cannot be designed.
+    pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
+        let design = CascadeDesign::new(configuration)?;
+        let plant = Plant::new(configuration, inputs.armed);
+        let (guidance, cascade) = engaged(configuration, &plant, 0);
+        let state = SimulationState {
+            time_us: 0,
+            event_us: 0,
+            sampled: false,
+            plant,
+            disturbance: inputs.disturbance,
+            armed: inputs.armed,
+            guidance,
+            cascade,
+        };
+        Ok(Self { configuration: *configuration, design, state })
+    }
+
+    /// A flight that goes on from a saved state of a flight with the same configuration.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn from_state(
+        configuration: &Configuration,
+        state: SimulationState,
+    ) -> Result<Self, ConfigurationError> {
+        let design = CascadeDesign::new(configuration)?;
+        Ok(Self { configuration: *configuration, design, state })
+    }
+
+    /// The configuration.
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The controllers.
+    pub fn design(&self) -> &CascadeDesign {
+        &self.design
+    }
+
+    /// The state, to be saved.
+    pub fn state(&self) -> &SimulationState {
+        &self.state
+    }
+
+    /// Goes back, or on, to a saved state of this flight.
+    pub fn restore(&mut self, state: SimulationState) {
+        self.state = state;
+    }
+
+    /// Time since the start, µs.
+    pub fn time_us(&self) -> u64 {
+        self.state.time_us
+    }
+
+    /// Changes tunable parameters during the flight and redesigns the controllers if their weights
+    /// changed. Incremental controllers go on from the input that they applied last, without a bump.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`Simulation::new`];
+    /// nothing has changed then.
+    pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        only_tunables_differ(&self.configuration, configuration)?;
+        self.design = CascadeDesign::new(configuration)?;
+        self.configuration = *configuration;
+        Ok(())
+    }
+
+    /// Flies on to `time_us`. However the way there is split into calls, the flight is the same: inputs are
+    /// sampled at the events of the engine's own schedule, and an arrival between two events does not
+    /// disturb the integration.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; the flight then stands at the last event before it.
+    pub fn advance_to(&mut self, time_us: u64, inputs: &impl InputSignal) -> Result<(), SimulationError> {
+        if time_us < self.state.time_us {
+            return Err(SimulationError::Backwards { time_us: self.state.time_us, requested_us: time_us });
+        }
+        // The events strictly before the goal; one at the goal belongs to the next call, whose inputs
+        // apply from there on.
+        while self.state.event_us < time_us {
+            if !self.state.sampled {
+                self.sample(&inputs.at(self.state.event_us))?;
+            }
+            let next_us = next_event_us(&self.configuration, self.state.event_us);
+            if next_us > time_us {
+                break;
+            }
+            let plant = self.plant_at(next_us);
+            if !plant.is_finite() {
+                return Err(SimulationError::Diverged { time_us: next_us });
+            }
+            self.state.plant = plant;
+            self.state.event_us = next_us;
+            self.state.time_us = next_us;
+            self.state.sampled = false;
+        }
+        self.state.time_us = time_us;
+        Ok(())
+    }
+
+    /// What can be observed now.
+    pub fn outputs(&self) -> Outputs {
+        let state = &self.state;
+        let plant = self.plant_at(state.time_us);
+        let rotation = plant.body.rotation();
+        let (phi, theta, psi) = rotation.euler_angles();
+        let wrench = plant.wrench(&self.configuration);
+        let setpoint = state.guidance.setpoint(state.time_us).reference;
+        Outputs {
+            time_us: state.time_us,
+            position_m: plant.body.position_m,
+            velocity_m_s: plant.body.velocity_m_s,
+            acceleration_m_s2: plant.acceleration_m_s2(&self.configuration, &state.disturbance),
+            body_velocity_m_s: rotation.inverse_transform_vector(&plant.body.velocity_m_s),
+            attitude_rad: Vector3::new(phi, theta, psi),
+            quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
+            body_rate_rad_s: plant.body.body_rate_rad_s,
+            thrust_n: wrench.thrust_n,
+            torque_n_m: wrench.torque_n_m,
+            rotor_speed_rad_s: plant.rotor_speed_rad_s,
+            tilt_reference_rad: state.cascade.tilt_reference_rad(),
+            setpoint,
+            tracking_error_m: plant.body.position_m - setpoint.position_m,
+            yaw_error_rad: wrapped(psi - setpoint.yaw_rad),
+        }
+    }
+
+    /// The plant at `time_us`, not before the last event nor after the next.
+    fn plant_at(&self, time_us: u64) -> Plant {
+        let state = &self.state;
+        if time_us == state.event_us {
+            return state.plant;
+        }
+        let command = if state.armed { state.cascade.rotor_command_rad_s() } else { [0.0; 4] };
+        let h_s = (time_us - state.event_us) as f64 * 1e-6;
+        state.plant.step(&self.configuration, &command, &state.disturbance, h_s)
+    }
+
+    /// Samples the inputs and runs the controllers whose clocks tick at the last event.
+    fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
+        let (configuration, design) = (&self.configuration, &self.design);
+        let state = &mut self.state;
+        let time_us = state.event_us;
+        inputs.check(time_us)?;
+
+        state.disturbance = inputs.disturbance;
+        if inputs.armed && !state.armed {
+            (state.guidance, state.cascade) = engaged(configuration, &state.plant, time_us);
+        }
+        state.armed = inputs.armed;
+        state.sampled = true;
+        if !state.armed {
+            return Ok(());
+        }
+
+        let controllers = &configuration.controllers;
+        let (reference, limits, body) = (&inputs.reference, &configuration.limits, &state.plant.body);
+        let position_us = controllers.position.sample_time_us;
+        if ticks(time_us, position_us) {
+            state.guidance.sample(reference, limits, time_us, position_us);
+            let setpoint = state.guidance.setpoint(time_us);
+            state.cascade.sample_position(configuration, design, body, &setpoint, time_us);
+        }
+        if ticks(time_us, controllers.altitude.sample_time_us) {
+            let setpoint = state.guidance.setpoint(time_us);
+            state.cascade.sample_altitude(configuration, design, body, &setpoint, time_us);
+        }
+        if ticks(time_us, controllers.attitude.sample_time_us) {
+            let heading = state.guidance.sample_heading(reference, limits, time_us);
+            state.cascade.sample_attitude(configuration, design, body, &heading, time_us);
+        }
+        Ok(())
+    }
+}
+
+/// Reference and controllers that take over the vehicle where it is.
+fn engaged(configuration: &Configuration, plant: &Plant, time_us: u64) -> (Guidance, Cascade) {
+    let (_, _, psi) = plant.body.rotation().euler_angles();
+    (
+        Guidance::new(configuration, &plant.body.position_m, psi, time_us),
+        Cascade::new(&plant.body, plant.rotor_speed_rad_s, time_us),
+    )
+}

@@ -1,0 +1,82 @@
+//! Checks on a configuration: every range, then what must fit together.
+
+use crate::{Configuration, ConfigurationError, GRAVITY_M_S2, PARAMETERS, Parameter};
+
+/// Checks every parameter against its range and the values that depend on one another.
+pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
+    PARAMETERS.iter().try_for_each(|parameter| parameter.check(configuration))?;
+    if configuration.reference.shaping && !cfg!(feature = "shaper") {
+        return Err(ConfigurationError::Unavailable { name: "reference.shaping" });
+    }
+
+    let airframe = &configuration.airframe;
+    let limits = &configuration.limits;
+    let (weakest, strongest) = airframe.thrust_range_n();
+    below(
+        ("airframe.rotor.speed_min", airframe.rotor_speed_min_rad_s),
+        ("airframe.rotor.speed_max", airframe.rotor_speed_max_rad_s),
+    )?;
+    below(("the weight in newton", airframe.weight_n()), ("the thrust of all rotors in newton", strongest))?;
+    below(
+        ("the thrust of four idle rotors in newton", weakest),
+        ("the weight in newton", airframe.weight_n()),
+    )?;
+    below(
+        ("limits.thrust.min", limits.thrust_min_n),
+        ("the weight that the controllers believe in, in newton", believed_weight_n(configuration)),
+    )?;
+    below(
+        ("the weight that the controllers believe in, in newton", believed_weight_n(configuration)),
+        ("limits.thrust.max", limits.thrust_max_n),
+    )?;
+    below(
+        ("limits.acceleration.horizontal", limits.acceleration_horizontal_m_s2),
+        ("the acceleration at limits.tilt", GRAVITY_M_S2 * libm::tan(limits.tilt_rad)),
+    )?;
+    let controllers = &configuration.controllers;
+    for (name, outer) in [
+        ("controller.position.sample_time", controllers.position.sample_time_s()),
+        ("controller.altitude.sample_time", controllers.altitude.sample_time_s()),
+    ] {
+        let inner = controllers.attitude.sample_time_s();
+        if outer < inner {
+            return Err(ConfigurationError::Inconsistent {
+                name,
+                value: outer,
+                relation: "at least",
+                other: "controller.attitude.sample_time",
+                other_value: inner,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Parameters that are fixed must not differ between the two.
+pub(crate) fn only_tunables_differ(
+    old: &Configuration,
+    new: &Configuration,
+) -> Result<(), ConfigurationError> {
+    for Parameter { name, tunable, access, .. } in PARAMETERS {
+        if !tunable && !access.same(old, new) {
+            return Err(ConfigurationError::Fixed { name });
+        }
+    }
+    Ok(())
+}
+
+/// m g of the controllers' model, N.
+pub(crate) fn believed_weight_n(configuration: &Configuration) -> f64 {
+    configuration.airframe.weight_n() * configuration.controllers.mass_factor
+}
+
+fn below(
+    (name, value): (&'static str, f64),
+    (other, other_value): (&'static str, f64),
+) -> Result<(), ConfigurationError> {
+    if value < other_value {
+        Ok(())
+    } else {
+        Err(ConfigurationError::Inconsistent { name, value, relation: "below", other, other_value })
+    }
+}
