@@ -86,7 +86,8 @@ mod tests {
                 * UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, turn))
                 * UnitQuaternion::from_scaled_axis(axis * tilt);
             let error = attitude_error(&reference, &body);
-            prop_assert!((error - (axis * tilt + Vector3::new(0.0, 0.0, turn))).norm() < 1e-9, "{error}");
+            let expected: Vector3<f64> = axis * tilt + Vector3::new(0.0, 0.0, turn);
+            prop_assert!((error - expected).norm() < 1e-9, "{error}");
         }
 
         /// For small angles the error is the difference of the Euler angles: the paper's case.

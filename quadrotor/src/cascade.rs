@@ -19,9 +19,9 @@ use crate::{
 /// the thrust is the smallest allowed: it would push sideways or down.
 const UPRIGHT: f64 = 0.3;
 
-/// Share of the tilt limit that is commanded: the attitude loop overshoots a saturated command by an
-/// eighth at most.
-const COMMANDED_TILT_SHARE: f64 = 0.85;
+/// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots
+/// its command, by half in the worst of many steps tried.
+pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.6;
 
 /// State of the three controllers and of the commands between them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -188,7 +188,7 @@ fn upright(body: &RigidBody) -> f64 {
 }
 
 /// A horizontal acceleration, NED, m/s², shortened so that commands keep the thrust axis within
-/// `tilt_rad` when the vertical acceleration is `vertical_m_s2`: |a| ≤ tan(0.85 tilt) (g − G).
+/// `tilt_rad` when the vertical acceleration is `vertical_m_s2`: |a| ≤ tan(0.6 tilt) (g − G).
 fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
     let limit = libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0);
     let norm = wanted.norm();

@@ -119,8 +119,8 @@ impl Default for Controllers {
         Self {
             mass_factor: 1.0,
             altitude: paper(50_000, 1.0),
-            position: paper(50_000, 600.0).with_weights([1.0; 2], [0.0; 2], [600.0; 2]),
-            attitude: paper(10_000, 1.0).with_weights([1.0; 3], [0.0; 3], [12.0, 12.0, 300.0]),
+            position: paper(50_000, 1200.0).with_weights([1.0; 2], [0.0; 2], [1200.0; 2]),
+            attitude: paper(10_000, 1.0).with_weights([1.0; 3], [3.0, 3.0, 0.0], [12.0, 12.0, 300.0]),
         }
     }
 }
@@ -191,26 +191,26 @@ pub struct Limits {
 ///
 /// | limit | default | reason |
 /// | --- | --- | --- |
-/// | tilt | 0.5 rad | thrust to hold altitude grows by 14 %, the linear model errs by 4 % |
+/// | tilt | 0.6 rad | thrust to hold altitude grows by 21 % |
 /// | tilt command | 2 rad/s, 8 rad/s² | 0.85 N·m, nine tenths of the torque in hover |
-/// | thrust | 3.4 to 13.7 N | half and twice the weight: leaves the mixer room for torques at both ends |
+/// | thrust | 4.8 to 13.7 N | 0.7 and twice the weight: leaves the mixer room for torques at both ends |
 /// | speed | 8, up 4, down 3 m/s | an inspection flight |
-/// | acceleration | 3 and 2.5 m/s² | a tilt of 0.3 rad: feedback keeps 40 % of the tilt limit |
+/// | acceleration | 2.5 and 2 m/s² | a tilt of 0.25 rad, 0.31 while sinking: leaves the feedback room |
 /// | jerk | 4 m/s³ | a jump of the tilt rate by 0.4 rad/s is the kick that the torques just follow |
 /// | yaw | 0.8 rad/s, 0.3 rad/s², 0.6 rad/s³ | half of the yaw torque in hover |
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            tilt_rad: 0.5,
+            tilt_rad: 0.6,
             tilt_rate_rad_s: 2.0,
             tilt_acceleration_rad_s2: 8.0,
-            thrust_min_n: 3.4,
+            thrust_min_n: 4.8,
             thrust_max_n: 13.7,
             speed_horizontal_m_s: 8.0,
             speed_up_m_s: 4.0,
             speed_down_m_s: 3.0,
-            acceleration_horizontal_m_s2: 3.0,
-            acceleration_vertical_m_s2: 2.5,
+            acceleration_horizontal_m_s2: 2.5,
+            acceleration_vertical_m_s2: 2.0,
             jerk_horizontal_m_s3: 4.0,
             jerk_vertical_m_s3: 4.0,
             yaw_rate_rad_s: 0.8,

@@ -39,31 +39,44 @@ pub fn rotors_of_wrench(airframe: &Airframe, wanted: &Wrench) -> [f64; 4] {
     let (weakest, strongest) = airframe.thrust_range_n();
     let (weakest, strongest) = (weakest / 4.0, strongest / 4.0);
 
-    // Thrust of each rotor: F/4 ± τ_φ/2l, τ_θ/2l ± τ_ψ k₁/4k₂
+    // Thrust of each rotor, front, right, back, left:
+    //   F/4 + pitch − yaw,  F/4 − roll + yaw,  F/4 − pitch − yaw,  F/4 + roll + yaw
     let mean = (wanted.thrust_n / 4.0).clamp(weakest, strongest);
     let roll = wanted.torque_n_m.x / (2.0 * airframe.arm_length_m);
     let pitch = wanted.torque_n_m.y / (2.0 * airframe.arm_length_m);
     let yaw = wanted.torque_n_m.z * k1 / (4.0 * airframe.torque_coefficient_n_m_s2);
 
-    let tilting = [pitch, -roll, -pitch, roll];
-    let turning = [-yaw, yaw, -yaw, yaw];
-    let base = add_within([mean; 4], tilting, weakest, strongest);
-    let thrust = add_within(base, turning, weakest, strongest);
+    let below = mean - weakest;
+    let above = strongest - mean;
+    let share = tilting_share(roll.abs(), pitch.abs(), (yaw.min(0.0), yaw.max(0.0)), below, above);
+    let (roll, pitch) = (share * roll, share * pitch);
+    // What is left for yaw: all four rotors within their range. Rounding may cross the two bounds.
+    let least = (pitch.abs() - above).max(roll.abs() - below);
+    let most = (below - pitch.abs()).min(above - roll.abs());
+    let yaw = yaw.min(most).max(least.min(most));
+
+    let thrust = [mean + pitch - yaw, mean - roll + yaw, mean - pitch - yaw, mean + roll + yaw];
     // ω = √(thrust / k₁)
     thrust.map(|newton| libm::sqrt(newton.clamp(weakest, strongest) / k1))
 }
 
-/// base + s · change with the largest s in [0, 1] that keeps every rotor within its range.
-fn add_within(base: [f64; 4], change: [f64; 4], weakest: f64, strongest: f64) -> [f64; 4] {
-    let mut share: f64 = 1.0;
-    for (from, by) in base.iter().zip(change) {
-        let room = if by > 0.0 { strongest - from } else { weakest - from };
-        // room and by have the same sign.
-        if by != 0.0 && room / by < share {
-            share = (room / by).max(0.0);
-        }
-    }
-    core::array::from_fn(|rotor| base[rotor] + share * change[rotor])
+/// Largest s ≤ 1 for which s·roll and s·pitch fit together with some share of the yaw, whose thrusts lie
+/// between `yaw.0` ≤ 0 and `yaw.1` ≥ 0, when each rotor may lose `below` and gain `above`.
+///
+/// Yaw must lie between `least` = max(s|pitch| − above, s|roll| − below) and
+/// `most` = min(below − s|pitch|, above − s|roll|); each bound here keeps these three intervals in touch.
+fn tilting_share(roll: f64, pitch: f64, yaw: (f64, f64), below: f64, above: f64) -> f64 {
+    let bounds = [
+        (pitch, above + yaw.1),
+        (roll, below + yaw.1),
+        (pitch, below - yaw.0),
+        (roll, above - yaw.0),
+        (2.0 * pitch, above + below),
+        (2.0 * roll, above + below),
+        (pitch + roll, 2.0 * above),
+        (pitch + roll, 2.0 * below),
+    ];
+    bounds.iter().filter(|(size, _)| *size > 0.0).map(|(size, room)| room / size).fold(1.0, f64::min)
 }
 
 #[cfg(test)]
@@ -102,16 +115,19 @@ mod tests {
             let made = wrench_of_rotors(&airframe, &speeds);
             prop_assert!((made.thrust_n - thrust.clamp(weakest, strongest)).abs() < 1e-9);
 
-            // Without the yaw torque, roll and pitch come out the same: yaw never costs them anything.
+            // Yaw never costs roll and pitch anything.
             let level = Wrench { torque_n_m: Vector3::new(x, y, 0.0), ..wanted };
             let without_yaw = wrench_of_rotors(&airframe, &rotors_of_wrench(&airframe, &level));
-            prop_assert!((made.torque_n_m.xy() - without_yaw.torque_n_m.xy()).norm() < 1e-9);
+            prop_assert!(made.torque_n_m.xy().norm() >= without_yaw.torque_n_m.xy().norm() - 1e-9);
             // Roll and pitch are scaled by one factor in [0, 1].
             let share = made.torque_n_m.xy().norm() / wanted.torque_n_m.xy().norm();
             prop_assert!(share <= 1.0 + 1e-9);
             prop_assert!((made.torque_n_m.xy() - wanted.torque_n_m.xy() * share).norm() < 1e-9);
-            // Yaw is never reversed.
-            prop_assert!(made.torque_n_m.z * z >= -1e-12);
+            // Yaw is never reversed nor exceeded.
+            prop_assert!(made.torque_n_m.z * z >= -1e-12 && made.torque_n_m.z.abs() <= z.abs() + 1e-9);
+            // Nothing is given up while there is room: some rotor is at a limit, or all is delivered.
+            let at_limit = speeds.iter().any(|speed| (speed - 50.0).abs() < 1e-6 || (speed - 450.0).abs() < 1e-6);
+            prop_assert!(at_limit || (made.torque_n_m - wanted.torque_n_m).norm() < 1e-9);
         }
     }
 }

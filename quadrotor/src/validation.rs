@@ -1,5 +1,6 @@
 //! Checks on a configuration: every range, then what must fit together.
 
+use crate::cascade::COMMANDED_TILT_SHARE;
 use crate::{Configuration, ConfigurationError, GRAVITY_M_S2, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -31,7 +32,10 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     )?;
     below(
         ("limits.acceleration.horizontal", limits.acceleration_horizontal_m_s2),
-        ("the acceleration at limits.tilt", GRAVITY_M_S2 * libm::tan(limits.tilt_rad)),
+        (
+            "the acceleration at the commanded tilt",
+            GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad),
+        ),
     )?;
     let controllers = &configuration.controllers;
     for (name, outer) in [

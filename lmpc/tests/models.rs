@@ -1,0 +1,78 @@
+//! Discretisation and augmentation.
+
+use lmpc::{Augmented, DesignError, Discretization, StateSpace};
+use nalgebra::{DMatrix, dmatrix};
+
+mod common;
+use common::double_integrators;
+
+#[test]
+fn forward_euler_gives_the_papers_altitude_model() {
+    // (9)
+    let plant = double_integrators(&[1.0], 0.05, Discretization::ForwardEuler);
+    assert_eq!(*plant.a(), dmatrix![1.0, 0.05; 0.0, 1.0]);
+    assert_eq!(*plant.b(), dmatrix![0.0; 0.05]);
+    assert_eq!(*plant.c(), dmatrix![1.0, 0.0]);
+}
+
+#[test]
+fn zero_order_hold_of_a_double_integrator_is_exact() {
+    let t = 0.3;
+    let plant = double_integrators(&[2.0], t, Discretization::ZeroOrderHold);
+    assert!((plant.a() - dmatrix![1.0, t; 0.0, 1.0]).amax() < 1e-15);
+    assert!((plant.b() - dmatrix![2.0 * t * t / 2.0; 2.0 * t]).amax() < 1e-15);
+}
+
+#[test]
+fn zero_order_hold_of_an_oscillator_is_exact() {
+    // ẍ = −w² x + w² u: x = cos, sin; the step response is 1 − cos wt.
+    let (w, t): (f64, f64) = (7.0, 0.4);
+    let plant = StateSpace::from_continuous(
+        &dmatrix![0.0, 1.0; -w * w, 0.0],
+        &dmatrix![0.0; w * w],
+        &dmatrix![1.0, 0.0],
+        t,
+        Discretization::ZeroOrderHold,
+    )
+    .unwrap();
+    let (s, c) = (w * t).sin_cos();
+    assert!((plant.a() - dmatrix![c, s / w; -w * s, c]).amax() < 1e-12);
+    assert!((plant.b() - dmatrix![1.0 - c; w * s]).amax() < 1e-12);
+}
+
+#[test]
+fn augmentation_of_the_double_integrator() {
+    // Wang 2009, section 1.2: A = [A_m 0; C_m A_m 1] and B = [B_m; C_m B_m], by hand.
+    let plant =
+        StateSpace::new(dmatrix![1.0, 1.0; 0.0, 1.0], dmatrix![0.5; 1.0], dmatrix![1.0, 0.0]).unwrap();
+    let model = Augmented::new(&plant);
+    assert_eq!(*model.a(), dmatrix![1.0, 1.0, 0.0; 0.0, 1.0, 0.0; 1.0, 1.0, 1.0]);
+    assert_eq!(*model.b(), dmatrix![0.5; 1.0; 0.5]);
+    assert_eq!(*model.c(), dmatrix![0.0, 0.0, 1.0]);
+}
+
+#[test]
+fn wrong_models_are_refused_by_name() {
+    let a = dmatrix![1.0, 1.0; 0.0, 1.0];
+    let (b, c) = (dmatrix![0.5; 1.0], dmatrix![1.0, 0.0]);
+    let refused = |a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>| {
+        StateSpace::new(a.clone(), b.clone(), c.clone()).unwrap_err()
+    };
+    assert_eq!(
+        refused(&a, &dmatrix![1.0], &c),
+        DesignError::Dimension { name: "B", expected: (2, 1), actual: (1, 1) }
+    );
+    assert_eq!(
+        refused(&a, &b, &dmatrix![1.0]),
+        DesignError::Dimension { name: "C", expected: (1, 2), actual: (1, 1) }
+    );
+    assert_eq!(
+        refused(&dmatrix![1.0, 1.0], &b, &c),
+        DesignError::Dimension { name: "A", expected: (1, 1), actual: (1, 2) }
+    );
+    assert_eq!(refused(&(&a * f64::NAN), &b, &c), DesignError::NotFinite { name: "A" });
+    for time in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = StateSpace::from_continuous(&a, &b, &c, time, Discretization::ForwardEuler).unwrap_err();
+        assert!(matches!(error, DesignError::SampleTime { .. }), "{error}");
+    }
+}

@@ -1,0 +1,118 @@
+//! What the closed loop must achieve on the nonlinear plant, with rotor lag and limits on.
+
+use nalgebra::Vector3;
+use proptest::prelude::*;
+use quadrotor::{Configuration, InputSignal};
+
+mod common;
+use common::{Extremes, GOAL_M, distance, fly, goal, overshoot, smooth_flight, unshaped};
+
+#[test]
+fn a_smooth_flight_is_followed_to_millimetres() {
+    let configuration = unshaped();
+    let signal = smooth_flight(GOAL_M, 0.5, 10.0);
+    let (mut squares, mut count, mut yaw_error) = (Vector3::zeros(), 0.0, 0.0_f64);
+    let simulation = fly(&configuration, &signal, 10.0, |outputs| {
+        let reference = signal.at(outputs.time_us).reference;
+        let error = outputs.position_m - reference.position_m;
+        squares += error.component_mul(&error);
+        count += 1.0;
+        yaw_error = yaw_error.max((outputs.attitude_rad.z - reference.yaw_rad).abs());
+    });
+    let rms = (squares / count).map(f64::sqrt);
+    assert!(rms.amax() < 0.005, "RMS error {rms} m");
+    assert!(distance(&simulation.outputs(), GOAL_M) < 0.001);
+    assert!(yaw_error.to_degrees() < 0.5, "{}°", yaw_error.to_degrees());
+}
+
+#[test]
+fn a_raw_step_arrives_within_the_limits() {
+    let configuration = unshaped();
+    let (mut extremes, mut beyond) = (Extremes::new(), 0.0_f64);
+    let simulation = fly(&configuration, &goal(GOAL_M, 0.5), 20.0, |outputs| {
+        extremes.see(outputs);
+        beyond = beyond.max(overshoot(outputs, GOAL_M));
+    });
+    assert!(distance(&simulation.outputs(), GOAL_M) < 0.001);
+    assert!(beyond < 0.2, "overshoot {beyond}");
+    extremes.assert_within(&configuration);
+}
+
+#[test]
+fn a_shaped_step_does_not_overshoot() {
+    let configuration = Configuration::default();
+    let (mut extremes, mut beyond) = (Extremes::new(), 0.0_f64);
+    let simulation = fly(&configuration, &goal(GOAL_M, 0.5), 20.0, |outputs| {
+        extremes.see(outputs);
+        beyond = beyond.max(overshoot(outputs, GOAL_M));
+    });
+    assert!(distance(&simulation.outputs(), GOAL_M) < 0.001);
+    assert!(beyond < 0.01, "overshoot {beyond}");
+    extremes.assert_within(&configuration);
+}
+
+#[test]
+fn a_goal_one_kilometre_away_is_reached_within_the_limits() {
+    for goal_m in [[1000.0, 0.0, 0.0], [-600.0, 800.0, -30.0], [0.0, 0.0, -1000.0]] {
+        let configuration = Configuration::default();
+        let limits = configuration.limits;
+        let mut extremes = Extremes::new();
+        let simulation = fly(&configuration, &goal(goal_m, 0.0), 300.0, |outputs| extremes.see(outputs));
+        let arrived = distance(&simulation.outputs(), goal_m);
+        assert!(arrived < 0.02, "{goal_m:?}: {arrived} m off");
+        extremes.assert_within(&configuration);
+        assert!(extremes.horizontal_speed_m_s <= limits.speed_horizontal_m_s * 1.01, "{extremes:?}");
+        assert!(extremes.climb_m_s <= limits.speed_up_m_s * 1.01, "{extremes:?}");
+        assert!(extremes.sink_m_s <= limits.speed_down_m_s * 1.01, "{extremes:?}");
+        assert!(extremes.thrust_n[0] >= limits.thrust_min_n - 1e-6, "{extremes:?}");
+        assert!(extremes.thrust_n[1] <= limits.thrust_max_n + 1e-6, "{extremes:?}");
+    }
+}
+
+#[test]
+fn side_force_and_wrong_mass_leave_no_error() {
+    for mass_factor in [0.8, 1.2] {
+        let mut configuration = Configuration::default();
+        configuration.controllers.mass_factor = mass_factor;
+        let mut inputs = goal([0.0; 3], 0.0);
+        inputs.disturbance.force_n = Vector3::new(0.8, -0.6, 0.0);
+        let simulation = fly(&configuration, &inputs, 40.0, |_| {});
+        let left = simulation.outputs().position_m.norm();
+        assert!(left < 1e-6, "mass factor {mass_factor}: {left} m");
+    }
+}
+
+/// A drag force is a disturbance like any other, and wind is what it is relative to.
+#[test]
+fn steady_wind_leaves_no_error() {
+    let mut configuration = Configuration::default();
+    configuration.airframe.drag_n_s_m = [0.2, 0.2, 0.3];
+    let mut inputs = goal([3.0, -2.0, -4.0], 1.0);
+    inputs.disturbance.wind_m_s = Vector3::new(4.0, -3.0, 1.0);
+    let simulation = fly(&configuration, &inputs, 40.0, |_| {});
+    assert!(distance(&simulation.outputs(), [3.0, -2.0, -4.0]) < 1e-6);
+    // It leans into the wind: ẍ = 0 needs tan(tilt) = drag · wind / m g (1 + …) to first order.
+    let [phi, theta] = simulation.outputs().tilt_reference_rad;
+    assert!(phi.hypot(theta) > 0.1);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Steps in any direction, shaped or raw, arrive with the tilt and the rotors within their limits.
+    #[test]
+    fn steps_in_any_direction_stay_within_the_limits(
+        x in -30.0..30.0, y in -30.0..30.0, z in -20.0..20.0, yaw in -3.0..3.0, shaping in any::<bool>(),
+    ) {
+        let mut configuration = Configuration::default();
+        configuration.reference.shaping = shaping;
+        let mut extremes = Extremes::new();
+        let simulation = fly(&configuration, &goal([x, y, z], yaw), 40.0, |outputs| extremes.see(outputs));
+        let left = distance(&simulation.outputs(), [x, y, z]);
+        prop_assert!(left < 0.01, "{left} m off");
+        prop_assert!(simulation.outputs().yaw_error_rad.abs() < 1e-3);
+        prop_assert!(extremes.tilt_rad <= configuration.limits.tilt_rad, "{extremes:?}");
+        prop_assert!(extremes.rotor_speed_rad_s[0] >= configuration.airframe.rotor_speed_min_rad_s - 1e-9);
+        prop_assert!(extremes.rotor_speed_rad_s[1] <= configuration.airframe.rotor_speed_max_rad_s + 1e-9);
+    }
+}
