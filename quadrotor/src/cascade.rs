@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
-/// the thrust is the smallest allowed: it would push sideways or down.
+/// the thrust is the weight: it pushes sideways or down, but leaves the rotors room for torques.
 const UPRIGHT: f64 = 0.3;
 
 /// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots

@@ -1,0 +1,124 @@
+//! A number or switch of a [`Configuration`], by its public name.
+
+use crate::{Configuration, ConfigurationError};
+
+/// Unit of a parameter or output, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Dimensionless.
+    One,
+    /// kg
+    Kilogram,
+    /// m
+    Metre,
+    /// s
+    Second,
+    /// rad
+    Radian,
+    /// N
+    Newton,
+    /// N·m
+    NewtonMetre,
+    /// m/s
+    MetrePerSecond,
+    /// m/s²
+    MetrePerSecondSquared,
+    /// m/s³
+    MetrePerSecondCubed,
+    /// rad/s
+    RadianPerSecond,
+    /// rad/s²
+    RadianPerSecondSquared,
+    /// rad/s³
+    RadianPerSecondCubed,
+    /// kg·m²
+    KilogramSquareMetre,
+    /// N·s²
+    NewtonSecondSquared,
+    /// N·m·s²
+    NewtonMetreSecondSquared,
+    /// N·s/m
+    NewtonSecondPerMetre,
+}
+
+/// One parameter of a [`Configuration`].
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Public name, structured with dots.
+    pub name: &'static str,
+    /// What it is, for a person.
+    pub description: &'static str,
+    /// Unit of its value.
+    pub unit: Unit,
+    /// Whether it may change during the flight; else it is fixed at the start.
+    pub tunable: bool,
+    /// Its type, range and place in the configuration.
+    pub access: Access,
+}
+
+/// Type, range and place of a parameter.
+#[derive(Clone, Copy, Debug)]
+pub enum Access {
+    /// A real number within [minimum, maximum].
+    Real {
+        /// Smallest value.
+        minimum: f64,
+        /// Largest value.
+        maximum: f64,
+        /// Reads it.
+        get: fn(&Configuration) -> f64,
+        /// Writes it, unchecked.
+        set: fn(&mut Configuration, f64),
+    },
+    /// A whole number within [minimum, maximum].
+    Integer {
+        /// Smallest value.
+        minimum: i32,
+        /// Largest value.
+        maximum: i32,
+        /// Reads it.
+        get: fn(&Configuration) -> i32,
+        /// Writes it, unchecked.
+        set: fn(&mut Configuration, i32),
+    },
+    /// A switch.
+    Boolean {
+        /// Reads it.
+        get: fn(&Configuration) -> bool,
+        /// Writes it.
+        set: fn(&mut Configuration, bool),
+    },
+}
+
+impl Access {
+    /// Whether both configurations have the same value here.
+    pub(crate) fn same(&self, one: &Configuration, other: &Configuration) -> bool {
+        match *self {
+            Self::Real { get, .. } => get(one) == get(other),
+            Self::Integer { get, .. } => get(one) == get(other),
+            Self::Boolean { get, .. } => get(one) == get(other),
+        }
+    }
+}
+
+impl Parameter {
+    /// Checks the value that a configuration has for this parameter against its range.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::OutOfRange`] with the name, the value and the range.
+    pub fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        let (value, minimum, maximum) = match self.access {
+            Access::Real { minimum, maximum, get, .. } => (get(configuration), minimum, maximum),
+            Access::Integer { minimum, maximum, get, .. } => {
+                (f64::from(get(configuration)), f64::from(minimum), f64::from(maximum))
+            }
+            Access::Boolean { .. } => return Ok(()),
+        };
+        // NaN is in no range.
+        if (minimum..=maximum).contains(&value) {
+            Ok(())
+        } else {
+            Err(ConfigurationError::OutOfRange { name: self.name, value, minimum, maximum })
+        }
+    }
+}
