@@ -46,6 +46,7 @@
 
 extern crate alloc;
 
+mod active_set;
 mod augmented;
 mod controller;
 mod design;
@@ -55,6 +56,7 @@ mod error;
 mod exponential;
 mod laguerre;
 mod prediction;
+mod quadratic_program;
 mod reachability;
 mod riccati;
 mod state_space;
@@ -70,6 +72,7 @@ pub use eigenvalues::{condition_number, eigenvalues, spectral_radius};
 pub use error::DesignError;
 pub use laguerre::LaguerreBasis;
 pub use prediction::Prediction;
+pub use quadratic_program::{Outcome, QuadraticProgram, Solution, WarmStart};
 pub use reachability::{uncontrollable_eigenvalues, unobservable_eigenvalues};
 pub use riccati::{riccati_residual, solve_riccati};
 pub use state_space::{Discretization, StateSpace};

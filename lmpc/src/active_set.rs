@@ -1,0 +1,157 @@
+//! The orthogonal factorisation of the active constraints of a quadratic program.
+
+use nalgebra::{SMatrix, SVector};
+
+/// Below this share of a unit normal that is left after removing the active normals, it depends on them.
+const DEPENDENT: f64 = 1e-7;
+
+/// Active constraint normals v_j (unit vectors) as Q R, Q with orthonormal columns and R upper triangular,
+/// with their multipliers: at most N of them, no allocation.
+#[derive(Clone, Debug)]
+pub(crate) struct ActiveSet<const N: usize> {
+    /// Constraint index of each column.
+    constraints: [usize; N],
+    multipliers: [f64; N],
+    count: usize,
+    q: SMatrix<f64, N, N>,
+    r: SMatrix<f64, N, N>,
+}
+
+/// A normal against the active ones: v = Q Qᵀv + rest.
+pub(crate) struct Split<const N: usize> {
+    /// Qᵀ v.
+    within: SVector<f64, N>,
+    /// v − Q Qᵀ v, zero when v depends on the active normals.
+    pub(crate) rest: SVector<f64, N>,
+    /// ‖rest‖².
+    pub(crate) rest_squared: f64,
+}
+
+impl<const N: usize> ActiveSet<N> {
+    pub(crate) fn empty() -> Self {
+        Self {
+            constraints: [0; N],
+            multipliers: [0.0; N],
+            count: 0,
+            q: SMatrix::zeros(),
+            r: SMatrix::zeros(),
+        }
+    }
+
+    pub(crate) fn constraints(&self) -> &[usize] {
+        &self.constraints[..self.count]
+    }
+
+    pub(crate) fn multipliers(&self) -> &[f64] {
+        &self.multipliers[..self.count]
+    }
+
+    pub(crate) fn contains(&self, constraint: usize) -> bool {
+        self.constraints().contains(&constraint)
+    }
+
+    /// Splits a normal by Gram and Schmidt's method, twice, which is enough (Kahan).
+    pub(crate) fn split(&self, normal: &SVector<f64, N>) -> Split<N> {
+        let mut within = SVector::zeros();
+        let mut rest = *normal;
+        for _ in 0..2 {
+            for j in 0..self.count {
+                let along = self.q.column(j).dot(&rest);
+                within[j] += along;
+                rest -= self.q.column(j) * along;
+            }
+        }
+        let mut rest_squared = rest.norm_squared();
+        if rest_squared <= DEPENDENT * DEPENDENT || self.count == N {
+            rest.fill(0.0);
+            rest_squared = 0.0;
+        }
+        Split { within, rest, rest_squared }
+    }
+
+    /// r = R⁻¹ Qᵀ v: by how much the multipliers sink per unit of the multiplier of v.
+    pub(crate) fn exchange(&self, split: &Split<N>) -> SVector<f64, N> {
+        self.back_substituted(&split.within)
+    }
+
+    /// Adds a normal with its multiplier. `false` when it depends on the active ones.
+    pub(crate) fn add(&mut self, constraint: usize, split: &Split<N>, multiplier: f64) -> bool {
+        if split.rest_squared == 0.0 {
+            return false;
+        }
+        let length = libm::sqrt(split.rest_squared);
+        self.q.set_column(self.count, &(split.rest / length));
+        self.r.set_column(self.count, &split.within);
+        self.r[(self.count, self.count)] = length;
+        self.constraints[self.count] = constraint;
+        self.multipliers[self.count] = multiplier;
+        self.count += 1;
+        true
+    }
+
+    /// Removes the constraint in column `column` and restores the triangle by Givens rotations.
+    pub(crate) fn remove(&mut self, column: usize) {
+        for j in column + 1..self.count {
+            let moved = self.r.column(j).into_owned();
+            self.r.set_column(j - 1, &moved);
+            self.constraints[j - 1] = self.constraints[j];
+            self.multipliers[j - 1] = self.multipliers[j];
+        }
+        self.count -= 1;
+        for j in column..self.count {
+            let (a, b) = (self.r[(j, j)], self.r[(j + 1, j)]);
+            let length = libm::hypot(a, b);
+            if length == 0.0 {
+                continue;
+            }
+            let (cosine, sine) = (a / length, b / length);
+            for k in j..self.count {
+                let (upper, lower) = (self.r[(j, k)], self.r[(j + 1, k)]);
+                self.r[(j, k)] = cosine * upper + sine * lower;
+                self.r[(j + 1, k)] = cosine * lower - sine * upper;
+            }
+            for k in 0..N {
+                let (left, right) = (self.q[(k, j)], self.q[(k, j + 1)]);
+                self.q[(k, j)] = cosine * left + sine * right;
+                self.q[(k, j + 1)] = cosine * right - sine * left;
+            }
+        }
+    }
+
+    /// Moves the multipliers by −t r.
+    pub(crate) fn sink(&mut self, by: &SVector<f64, N>, t: f64) {
+        for j in 0..self.count {
+            self.multipliers[j] = (self.multipliers[j] - t * by[j]).max(0.0);
+        }
+    }
+
+    /// Sets the multipliers for which all active constraints hold with equality: RᵀR u = excess, where
+    /// excess = V z₀ − h. Returns the column of the most negative one, if any.
+    pub(crate) fn solve_multipliers(&mut self, excess: &SVector<f64, N>) -> Option<usize> {
+        // Rᵀ y = excess, R u = y
+        let mut y = SVector::<f64, N>::zeros();
+        for i in 0..self.count {
+            let known: f64 = (0..i).map(|k| self.r[(k, i)] * y[k]).sum();
+            y[i] = (excess[i] - known) / self.r[(i, i)];
+        }
+        let u = self.back_substituted(&y);
+        let mut worst = None;
+        for j in 0..self.count {
+            self.multipliers[j] = u[j];
+            if u[j] < 0.0 && worst.is_none_or(|column: usize| u[j] < u[column]) {
+                worst = Some(j);
+            }
+        }
+        worst
+    }
+
+    /// R⁻¹ y on the active columns.
+    fn back_substituted(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut x = SVector::zeros();
+        for i in (0..self.count).rev() {
+            let known: f64 = (i + 1..self.count).map(|k| self.r[(i, k)] * x[k]).sum();
+            x[i] = (y[i] - known) / self.r[(i, i)];
+        }
+        x
+    }
+}

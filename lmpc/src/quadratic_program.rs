@@ -1,0 +1,298 @@
+//! A small dense strictly convex quadratic program, solved exactly by a dual active-set method.
+
+use alloc::vec::Vec;
+
+use nalgebra::{DMatrix, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use crate::active_set::ActiveSet;
+use crate::{DesignError, validate};
+
+/// How far beyond its bound a constraint counts as met, relative to the size of the numbers in it.
+const FEASIBILITY: f64 = 1e-10;
+
+/// min ½ xᵀHx + fᵀx subject to G x ≤ h, with N unknowns, H and G known at design time.
+///
+/// The dual method of Goldfarb and Idnani (1983, Mathematical Programming 27) in the coordinates z = Lᵀx,
+/// H = L Lᵀ, in which the cost is the distance from the unconstrained optimum. It starts there, adds the
+/// most violated constraint in each iteration and keeps all multipliers non-negative, so that it ends
+/// with the exact optimum or with a proof that there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuadraticProgram<const N: usize> {
+    /// L⁻¹: f in the coordinates of z.
+    inverse_factor: SMatrix<f64, N, N>,
+    /// Rows of G L⁻ᵀ, scaled to unit length.
+    normals: Vec<SVector<f64, N>>,
+    /// One over the length before scaling.
+    scales: Vec<f64>,
+}
+
+/// How a solution ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Outcome {
+    /// The exact optimum.
+    Optimal,
+    /// No point meets all constraints.
+    Infeasible,
+    /// The iteration limit came first; the point met is neither optimal nor feasible.
+    IterationLimit,
+    /// f or h contains a value that is not finite, or so large that the arithmetic overflows.
+    NotFinite,
+}
+
+/// A solution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution<const N: usize> {
+    /// The optimum, if [`Outcome::Optimal`].
+    pub x: SVector<f64, N>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Constraints added, and removed again.
+    pub iterations: u32,
+    /// How many constraints hold with equality.
+    pub active: usize,
+    /// Lagrange multipliers of those, in the order of [`WarmStart::constraints`]; zero beyond.
+    pub multipliers: SVector<f64, N>,
+}
+
+/// The constraints that were active in the last solution: where the next one starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WarmStart<const N: usize> {
+    #[serde(with = "indices")]
+    constraints: [u32; N],
+    count: u32,
+}
+
+impl<const N: usize> Default for WarmStart<N> {
+    fn default() -> Self {
+        Self { constraints: [0; N], count: 0 }
+    }
+}
+
+impl<const N: usize> WarmStart<N> {
+    /// Indices of the constraints, rows of G.
+    pub fn constraints(&self) -> impl Iterator<Item = usize> + '_ {
+        self.constraints.iter().take(self.count as usize).map(|&constraint| constraint as usize)
+    }
+
+    fn remember(&mut self, constraints: &[usize]) {
+        self.count = 0;
+        for (slot, constraint) in self.constraints.iter_mut().zip(constraints) {
+            *slot = u32::try_from(*constraint).unwrap_or(u32::MAX);
+            self.count += 1;
+        }
+    }
+}
+
+/// Arrays of any length, which serde's derive does not take.
+mod indices {
+    use nalgebra::SVector;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer, const N: usize>(values: &[u32; N], to: S) -> Result<S::Ok, S::Error> {
+        SVector::<u32, N>::from_column_slice(values).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<[u32; N], D::Error> {
+        let vector = SVector::<u32, N>::deserialize(from)?;
+        Ok(core::array::from_fn(|index| vector[index]))
+    }
+}
+
+impl<const N: usize> QuadraticProgram<N> {
+    /// For a positive definite H, N×N, and any number of constraint rows G, M×N.
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
+    /// [`DesignError::NotPositiveDefinite`].
+    pub fn new(h: &DMatrix<f64>, g: &DMatrix<f64>) -> Result<Self, DesignError> {
+        validate::shape("H", h, (N, N))?;
+        validate::shape("G", g, (g.nrows(), N))?;
+        validate::positive_definite("H", h)?;
+        let h: SMatrix<f64, N, N> = SMatrix::from_fn(|row, column| h[(row, column)]);
+        let inverse_factor = h
+            .cholesky()
+            .and_then(|factor| factor.l().try_inverse())
+            .ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
+
+        let (mut normals, mut scales) = (Vec::new(), Vec::new());
+        for row in 0..g.nrows() {
+            // (G L⁻ᵀ)ᵀ = L⁻¹ Gᵀ
+            let normal = inverse_factor * SVector::<f64, N>::from_fn(|column, _| g[(row, column)]);
+            let length = normal.norm();
+            // A row of zeros stays one: 0 ≤ h either holds or shows that there is no solution.
+            let scale = if length > 0.0 { 1.0 / length } else { 1.0 };
+            normals.push(normal * scale);
+            scales.push(scale);
+        }
+        Ok(Self { inverse_factor, normals, scales })
+    }
+
+    /// Number of constraints M.
+    pub fn constraints(&self) -> usize {
+        self.normals.len()
+    }
+
+    /// Solves for one f and h (M values; further ones are ignored, missing ones are no bound), starting
+    /// from the active set of the last solution and remembering this one's. Allocates nothing.
+    ///
+    /// `iteration_limit` bounds the work: each iteration costs O(N (N + M)).
+    pub fn solve(
+        &self,
+        f: &SVector<f64, N>,
+        h: &[f64],
+        warm_start: &mut WarmStart<N>,
+        iteration_limit: u32,
+    ) -> Solution<N> {
+        // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
+        let z_0 = -(self.inverse_factor * f);
+        let magnitude = z_0.amax();
+        if !(magnitude * magnitude).is_finite() || h.iter().any(|bound| bound.is_nan()) {
+            *warm_start = WarmStart::default();
+            return self.solution(&z_0, &ActiveSet::empty(), Outcome::NotFinite, 0);
+        }
+
+        let mut search = Search { program: self, h, z_0, z: z_0, active: ActiveSet::empty(), iterations: 0 };
+        search.resume(warm_start);
+        let outcome = search.run(iteration_limit);
+        if outcome == Outcome::Optimal {
+            warm_start.remember(search.active.constraints());
+        } else {
+            *warm_start = WarmStart::default();
+        }
+        self.solution(&search.z, &search.active, outcome, search.iterations)
+    }
+
+    fn solution(
+        &self,
+        z: &SVector<f64, N>,
+        active: &ActiveSet<N>,
+        outcome: Outcome,
+        iterations: u32,
+    ) -> Solution<N> {
+        // x = L⁻ᵀ z
+        let x = self.inverse_factor.tr_mul(z);
+        let outcome = if x.iter().all(|value| value.is_finite()) { outcome } else { Outcome::NotFinite };
+        // The normals were scaled to unit length, which scaled their multipliers the other way.
+        let mut multipliers = SVector::zeros();
+        for (j, (&constraint, &u)) in active.constraints().iter().zip(active.multipliers()).enumerate() {
+            multipliers[j] = u * self.scales[constraint];
+        }
+        Solution { x, outcome, iterations, active: active.constraints().len(), multipliers }
+    }
+}
+
+/// One run of the dual method.
+struct Search<'a, const N: usize> {
+    program: &'a QuadraticProgram<N>,
+    h: &'a [f64],
+    z_0: SVector<f64, N>,
+    z: SVector<f64, N>,
+    active: ActiveSet<N>,
+    iterations: u32,
+}
+
+impl<const N: usize> Search<'_, N> {
+    /// Starts from an earlier active set, without the constraints that would pull instead of push.
+    fn resume(&mut self, warm_start: &WarmStart<N>) {
+        for constraint in warm_start.constraints() {
+            let bounded = constraint < self.program.normals.len().min(self.h.len());
+            if bounded && self.h[constraint].is_finite() && !self.active.contains(constraint) {
+                let split = self.active.split(&self.program.normals[constraint]);
+                self.active.add(constraint, &split, 0.0);
+            }
+        }
+        loop {
+            let mut excess = SVector::zeros();
+            for (j, &constraint) in self.active.constraints().iter().enumerate() {
+                let normal = &self.program.normals[constraint];
+                excess[j] = normal.dot(&self.z_0) - self.h[constraint] * self.program.scales[constraint];
+            }
+            match self.active.solve_multipliers(&excess) {
+                Some(column) => self.active.remove(column),
+                None => break,
+            }
+        }
+        self.z = self.point();
+    }
+
+    fn run(&mut self, iteration_limit: u32) -> Outcome {
+        while let Some(constraint) = self.most_violated() {
+            let mut multiplier = 0.0;
+            loop {
+                if self.iterations >= iteration_limit {
+                    return Outcome::IterationLimit;
+                }
+                self.iterations += 1;
+                let split = self.active.split(&self.program.normals[constraint]);
+                let sinking = self.active.exchange(&split);
+                // How far until the first active multiplier is used up, and until the constraint is met.
+                let leaving = self.first_to_leave(&sinking);
+                let until_met = if split.rest_squared > 0.0 {
+                    (-self.slack(constraint)).max(0.0) / split.rest_squared
+                } else {
+                    f64::INFINITY
+                };
+                let until_leaving = leaving.map_or(f64::INFINITY, |(_, t)| t);
+                let t = until_met.min(until_leaving);
+                if t == f64::INFINITY {
+                    return Outcome::Infeasible;
+                }
+                self.z -= split.rest * t;
+                self.active.sink(&sinking, t);
+                multiplier += t;
+                match leaving {
+                    Some((column, until)) if until < until_met => self.active.remove(column),
+                    _ => {
+                        self.active.add(constraint, &split, multiplier);
+                        break;
+                    }
+                }
+            }
+        }
+        // What the steps have added up in rounding goes out here.
+        self.z = self.point();
+        Outcome::Optimal
+    }
+
+    /// z = z₀ − Σ u_j v_j: where all gradients balance.
+    fn point(&self) -> SVector<f64, N> {
+        let mut z = self.z_0;
+        for (&constraint, &multiplier) in self.active.constraints().iter().zip(self.active.multipliers()) {
+            z -= self.program.normals[constraint] * multiplier;
+        }
+        z
+    }
+
+    /// h − v·z of one constraint, scaled; negative when violated.
+    fn slack(&self, constraint: usize) -> f64 {
+        self.h[constraint] * self.program.scales[constraint] - self.program.normals[constraint].dot(&self.z)
+    }
+
+    fn most_violated(&self) -> Option<usize> {
+        let (mut worst, mut least) = (None, 0.0);
+        let magnitude = self.z.norm();
+        for (constraint, (bound, scale)) in self.h.iter().zip(&self.program.scales).enumerate() {
+            let bound = bound * scale;
+            let slack = bound - self.program.normals[constraint].dot(&self.z);
+            let rounding = FEASIBILITY * (1.0 + magnitude + libm::fabs(bound));
+            if slack < least && slack < -rounding && !self.active.contains(constraint) {
+                (worst, least) = (Some(constraint), slack);
+            }
+        }
+        worst
+    }
+
+    fn first_to_leave(&self, sinking: &SVector<f64, N>) -> Option<(usize, f64)> {
+        let mut first: Option<(usize, f64)> = None;
+        for (column, &multiplier) in self.active.multipliers().iter().enumerate() {
+            if sinking[column] > 0.0 {
+                let until = multiplier / sinking[column];
+                if first.is_none_or(|(_, earliest)| until < earliest) {
+                    first = Some((column, until));
+                }
+            }
+        }
+        first
+    }
+}

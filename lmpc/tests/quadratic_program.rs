@@ -1,0 +1,296 @@
+//! The dual active-set solver against optimality conditions, enumeration and an interior-point solver.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+use lmpc::{DesignError, Outcome, QuadraticProgram, WarmStart};
+use nalgebra::{DMatrix, DVector, SVector, dmatrix};
+use proptest::prelude::*;
+
+const N: usize = 6;
+const LIMIT: u32 = 1000;
+
+#[derive(Clone, Debug)]
+struct Problem {
+    h: DMatrix<f64>,
+    f: SVector<f64, N>,
+    g: DMatrix<f64>,
+    bounds: Vec<f64>,
+}
+
+impl Problem {
+    fn cost(&self, x: &SVector<f64, N>) -> f64 {
+        let x = DVector::from_column_slice(x.as_slice());
+        0.5 * (x.transpose() * &self.h * &x)[0]
+            + self.f.dot(&SVector::<f64, N>::from_column_slice(x.as_slice()))
+    }
+
+    fn violation(&self, x: &SVector<f64, N>) -> f64 {
+        let left = &self.g * DVector::from_column_slice(x.as_slice());
+        left.iter().zip(&self.bounds).map(|(left, bound)| left - bound).fold(0.0, f64::max)
+    }
+}
+
+/// Random problems: H from well to badly conditioned, bounds from loose to contradictory, some constraints
+/// repeated or almost repeated.
+fn problem() -> impl Strategy<Value = Problem> {
+    (
+        prop::collection::vec(-1.0..1.0, N * N),
+        -3.0..1.0,
+        prop::array::uniform6(-5.0..5.0),
+        (0usize..25).prop_flat_map(|m| {
+            (prop::collection::vec(-1.0..1.0, m * N), prop::collection::vec(-0.3..1.0, m))
+        }),
+        any::<bool>(),
+        0.0..1e-6,
+    )
+        .prop_map(|(root, regular, f, (rows, mut bounds), repeated, nearly)| {
+            let root = DMatrix::from_vec(N, N, root);
+            let h = root.transpose() * &root + DMatrix::identity(N, N) * 10_f64.powf(regular);
+            let mut g = DMatrix::from_row_slice(bounds.len(), N, &rows);
+            if repeated && bounds.len() > 1 {
+                let last = bounds.len() - 1;
+                let first = g.row(0).into_owned();
+                g.set_row(last, &(first * (1.0 + nearly)));
+                bounds[last] = bounds[0];
+            }
+            Problem { h, f: f.into(), g, bounds }
+        })
+}
+
+/// The same problem by Clarabel: optimum, or none.
+fn clarabel(problem: &Problem) -> Option<SVector<f64, N>> {
+    let upper = problem.h.upper_triangle();
+    let p = CscMatrix::from(
+        upper
+            .row_iter()
+            .map(|row| row.iter().copied().collect::<Vec<_>>())
+            .collect::<Vec<_>>()
+            .iter()
+            .map(Vec::as_slice),
+    );
+    let rows: Vec<Vec<f64>> = problem.g.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let a = if rows.is_empty() {
+        CscMatrix::zeros((0, N))
+    } else {
+        CscMatrix::from(rows.iter().map(Vec::as_slice))
+    };
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .tol_gap_abs(1e-11)
+        .tol_gap_rel(1e-11)
+        .tol_feas(1e-11)
+        .build()
+        .unwrap();
+    let cones = [NonnegativeConeT(problem.bounds.len())];
+    let mut solver =
+        DefaultSolver::new(&p, problem.f.as_slice(), &a, &problem.bounds, &cones, settings).unwrap();
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {
+            Some(SVector::from_column_slice(&solver.solution.x))
+        }
+        _ => None,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// Karush, Kuhn and Tucker's conditions, which for a convex problem are the optimum:
+    /// H x + f + Gᵀu = 0, u ≥ 0, G x ≤ h, and u = 0 wherever the bound is not met.
+    #[test]
+    fn solutions_meet_the_optimality_conditions(problem in problem()) {
+        let program = QuadraticProgram::<N>::new(&problem.h, &problem.g).unwrap();
+        let mut active = WarmStart::default();
+        let solution = program.solve(&problem.f, &problem.bounds, &mut active, LIMIT);
+        prop_assert!(matches!(solution.outcome, Outcome::Optimal | Outcome::Infeasible));
+        if solution.outcome == Outcome::Optimal {
+            let x = DVector::from_column_slice(solution.x.as_slice());
+            let mut gradient = &problem.h * &x + DVector::from_column_slice(problem.f.as_slice());
+            let scale = 1.0 + gradient.norm() + solution.multipliers.norm();
+            for (j, row) in active.constraints().enumerate() {
+                let u = solution.multipliers[j];
+                gradient += problem.g.row(row).transpose() * u;
+                prop_assert!(u >= 0.0);
+                let slack = problem.bounds[row] - (problem.g.row(row) * &x)[0];
+                prop_assert!(slack.abs() < 1e-7 * (1.0 + x.norm()), "constraint {row}: {slack}");
+            }
+            prop_assert!(gradient.norm() < 1e-8 * scale, "{}", gradient.norm() / scale);
+            prop_assert!(problem.violation(&solution.x) < 1e-8 * (1.0 + x.norm()));
+        }
+    }
+
+    /// An interior-point solver finds the same optimum, or none either. On the border between feasible and
+    /// not the two may differ: there, bounds that are tighter or looser by a millionth decide.
+    #[test]
+    fn solutions_are_clarabels(problem in problem()) {
+        let program = QuadraticProgram::<N>::new(&problem.h, &problem.g).unwrap();
+        let solution = program.solve(&problem.f, &problem.bounds, &mut WarmStart::default(), LIMIT);
+        let moved = |by: f64| Problem { bounds: problem.bounds.iter().map(|b| b + by).collect(), ..problem.clone() };
+        match (solution.outcome, clarabel(&problem)) {
+            (Outcome::Optimal, Some(x)) => {
+                let scale = 1.0 + problem.cost(&x).abs();
+                prop_assert!((problem.cost(&solution.x) - problem.cost(&x)).abs() < 1e-6 * scale);
+            }
+            (Outcome::Optimal, None) => prop_assert!(clarabel(&moved(1e-6)).is_some()),
+            (Outcome::Infeasible, _) => prop_assert!(clarabel(&moved(-1e-6)).is_none()),
+            (outcome, _) => prop_assert!(false, "{outcome:?}"),
+        }
+    }
+
+    /// Where there are few constraints, all active sets can be tried.
+    #[test]
+    fn solutions_are_those_of_enumeration(mut problem in problem()) {
+        let few = problem.bounds.len().min(6);
+        problem.bounds.truncate(few);
+        problem.g = problem.g.rows(0, few).into_owned();
+        let program = QuadraticProgram::<N>::new(&problem.h, &problem.g).unwrap();
+        let solution = program.solve(&problem.f, &problem.bounds, &mut WarmStart::default(), LIMIT);
+        if let Some((best, _)) = enumerated(&problem) {
+            prop_assert_eq!(solution.outcome, Outcome::Optimal);
+            let scale = 1.0 + problem.cost(&best).abs();
+            prop_assert!((problem.cost(&solution.x) - problem.cost(&best)).abs() < 1e-6 * scale);
+        }
+    }
+
+    /// A warm start from any active set, however wrong, ends at the same optimum.
+    #[test]
+    fn warm_starts_change_nothing(first in problem(), f in prop::array::uniform6(-5.0..5.0)) {
+        let program = QuadraticProgram::<N>::new(&first.h, &first.g).unwrap();
+        let mut warm = WarmStart::default();
+        program.solve(&first.f, &first.bounds, &mut warm, LIMIT);
+        let warm_solution = program.solve(&f.into(), &first.bounds, &mut warm, LIMIT);
+        let cold_solution = program.solve(&f.into(), &first.bounds, &mut WarmStart::default(), LIMIT);
+        prop_assert_eq!(warm_solution.outcome, cold_solution.outcome);
+        if cold_solution.outcome == Outcome::Optimal {
+            let scale = 1.0 + cold_solution.x.norm();
+            prop_assert!((warm_solution.x - cold_solution.x).norm() < 1e-6 * scale);
+        }
+        // The second time it is there at once.
+        let again = program.solve(&f.into(), &first.bounds, &mut warm, LIMIT);
+        if cold_solution.outcome == Outcome::Optimal {
+            prop_assert_eq!(again.iterations, 0);
+        }
+    }
+
+    /// Nothing makes it panic, loop or return numbers that are none.
+    #[test]
+    fn absurd_numbers_are_survived(
+        problem in problem(),
+        f in prop::array::uniform6(prop_oneof![any::<f64>(), Just(f64::NAN), Just(1e300), Just(-0.0)]),
+        bounds in prop::collection::vec(prop_oneof![any::<f64>(), Just(f64::NAN), Just(f64::INFINITY), Just(-1e300)], 0..30),
+    ) {
+        let program = QuadraticProgram::<N>::new(&problem.h, &problem.g).unwrap();
+        let bounds = &bounds[..bounds.len().min(program.constraints())];
+        let solution = program.solve(&f.into(), bounds, &mut WarmStart::default(), 50);
+        prop_assert!(solution.iterations <= 50);
+        if solution.outcome == Outcome::Optimal {
+            prop_assert!(solution.x.iter().all(|x| x.is_finite()));
+        }
+    }
+}
+
+/// The best of all points that meet some constraints with equality, are feasible and have non-negative
+/// multipliers: the optimum, by trying every active set.
+fn enumerated(problem: &Problem) -> Option<(SVector<f64, N>, f64)> {
+    let m = problem.bounds.len();
+    let f = DVector::from_column_slice(problem.f.as_slice());
+    let mut best: Option<(SVector<f64, N>, f64)> = None;
+    for set in 0_u32..1 << m {
+        let rows: Vec<usize> = (0..m).filter(|row| set >> row & 1 == 1).collect();
+        if rows.len() > N {
+            continue;
+        }
+        // [H Gᵀ; G 0] [x; u] = [−f; h]
+        let size = N + rows.len();
+        let mut kkt = DMatrix::zeros(size, size);
+        let mut right = DVector::zeros(size);
+        kkt.view_mut((0, 0), (N, N)).copy_from(&problem.h);
+        right.rows_mut(0, N).copy_from(&-&f);
+        for (j, &row) in rows.iter().enumerate() {
+            for column in 0..N {
+                kkt[(N + j, column)] = problem.g[(row, column)];
+                kkt[(column, N + j)] = problem.g[(row, column)];
+            }
+            right[N + j] = problem.bounds[row];
+        }
+        let Some(solution) = kkt.lu().solve(&right) else { continue };
+        let x = SVector::<f64, N>::from_column_slice(&solution.as_slice()[..N]);
+        let pushes = solution.rows(N, rows.len()).iter().all(|&u| u >= -1e-9);
+        if pushes && problem.violation(&x) < 1e-9 && best.is_none_or(|(_, cost)| problem.cost(&x) < cost) {
+            best = Some((x, problem.cost(&x)));
+        }
+    }
+    best
+}
+
+#[test]
+fn the_unconstrained_optimum_is_returned_when_it_is_feasible() {
+    let program =
+        QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &dmatrix![1.0, 0.0; 0.0, 1.0]).unwrap();
+    let f = SVector::<f64, 2>::new(-1.0, 2.0);
+    let solution = program.solve(&f, &[5.0, 5.0], &mut WarmStart::default(), LIMIT);
+    assert_eq!((solution.x, solution.iterations, solution.active), (-f, 0, 0));
+}
+
+#[test]
+fn a_projection_onto_a_corner_is_exact() {
+    // min ½|x − (3, 4)|² with x₁ ≤ 1, x₂ ≤ 2, x₁ + x₂ ≤ 10
+    let g = dmatrix![1.0, 0.0; 0.0, 1.0; 1.0, 1.0];
+    let program = QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &g).unwrap();
+    let solution = program.solve(
+        &SVector::<f64, 2>::new(-3.0, -4.0),
+        &[1.0, 2.0, 10.0],
+        &mut WarmStart::default(),
+        LIMIT,
+    );
+    assert!((solution.x - SVector::<f64, 2>::new(1.0, 2.0)).norm() < 1e-15);
+    assert_eq!(solution.active, 2);
+}
+
+#[test]
+fn contradictions_are_seen() {
+    // x₁ ≤ −1 and −x₁ ≤ −1; then 0 ≤ −1
+    let program =
+        QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &dmatrix![1.0, 0.0; -1.0, 0.0]).unwrap();
+    let solve = |program: &QuadraticProgram<2>, bounds: &[f64]| {
+        program.solve(&SVector::zeros(), bounds, &mut WarmStart::default(), LIMIT).outcome
+    };
+    assert_eq!(solve(&program, &[-1.0, -1.0]), Outcome::Infeasible);
+    assert_eq!(solve(&program, &[1.0, -1.0]), Outcome::Optimal);
+    let empty = QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &dmatrix![0.0, 0.0]).unwrap();
+    assert_eq!(solve(&empty, &[-1.0]), Outcome::Infeasible);
+    assert_eq!(solve(&empty, &[0.0]), Outcome::Optimal);
+}
+
+#[test]
+fn the_iteration_limit_is_kept_and_a_solution_does_not_allocate() {
+    let g = DMatrix::from_fn(40, N, |row, column| f64::sin((row * 7 + column * 3) as f64));
+    let program = QuadraticProgram::<N>::new(&DMatrix::identity(N, N), &g).unwrap();
+    let f = SVector::<f64, N>::repeat(10.0);
+    let bounds = [0.5; 40];
+    let cut = program.solve(&f, &bounds, &mut WarmStart::default(), 2);
+    assert_eq!((cut.outcome, cut.iterations), (Outcome::IterationLimit, 2));
+    let allocations = allocation_counter::measure(|| {
+        let solution = program.solve(&f, &bounds, &mut WarmStart::default(), LIMIT);
+        assert_eq!(solution.outcome, Outcome::Optimal);
+    });
+    assert_eq!(allocations.count_total, 0);
+}
+
+#[test]
+fn wrong_problems_are_refused() {
+    let identity = DMatrix::identity(2, 2);
+    assert!(matches!(
+        QuadraticProgram::<3>::new(&identity, &dmatrix![1.0, 0.0]),
+        Err(DesignError::Dimension { name: "H", .. })
+    ));
+    assert!(matches!(
+        QuadraticProgram::<2>::new(&identity, &dmatrix![1.0]),
+        Err(DesignError::Dimension { name: "G", .. })
+    ));
+    assert!(matches!(
+        QuadraticProgram::<2>::new(&-identity, &dmatrix![1.0, 0.0]),
+        Err(DesignError::NotPositiveDefinite { name: "H" })
+    ));
+}
