@@ -27,8 +27,12 @@ impl<const N: usize, const P: usize> Reference<N, P> {
 /// How a control step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
-    /// The input minimises the cost.
+    /// The input minimises the cost within all limits.
     Optimal,
+    /// No input keeps all limits: this one minimises cost and violation together.
+    Relaxed,
+    /// The solver ran out of iterations: the previous input is held.
+    IterationLimit,
     /// The measurement, the reference or the result was not finite: the previous input is held.
     Held,
 }
@@ -87,6 +91,32 @@ impl<const N: usize, const P: usize> ControllerState<N, P> {
                 self.feedback[input] = held;
             }
         }
+    }
+
+    /// Takes over what a step has found and returns the input; `None`, and no change, unless all of it is
+    /// finite.
+    pub(crate) fn accept(
+        &mut self,
+        measured: &SVector<f64, N>,
+        feedback: &SVector<f64, P>,
+        input_reference: &SVector<f64, P>,
+    ) -> Option<SVector<f64, P>> {
+        let input = input_reference + feedback;
+        if !(finite(measured) && finite(&input)) {
+            return None;
+        }
+        *self = Self { measured: *measured, feedback: *feedback, input_reference: *input_reference };
+        Some(input)
+    }
+
+    /// v(k−1), the part of the applied input that feedback added.
+    pub(crate) fn feedback(&self) -> SVector<f64, P> {
+        self.feedback
+    }
+
+    /// u_r(k−1).
+    pub(crate) fn input_reference(&self) -> SVector<f64, P> {
+        self.input_reference
     }
 
     /// The last measured state, x(k−1).
@@ -173,12 +203,10 @@ impl<const N: usize, const P: usize, const Q: usize> Controller<N, P, Q> {
     ) -> Step<P> {
         let integral = -(self.output_gain * error);
         let feedback = state.feedback - self.state_gain * delta + integral;
-        let input = input_reference + feedback;
-        if !(finite(measured) && finite(&input)) {
-            return Step { input: state.applied(), integral: SVector::zeros(), status: Status::Held };
+        match state.accept(measured, &feedback, input_reference) {
+            Some(input) => Step { input, integral, status: Status::Optimal },
+            None => Step { input: state.applied(), integral: SVector::zeros(), status: Status::Held },
         }
-        *state = ControllerState { measured: *measured, feedback, input_reference: *input_reference };
-        Step { input, integral, status: Status::Optimal }
     }
 }
 

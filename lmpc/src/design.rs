@@ -21,7 +21,9 @@ pub struct LmpcDesign {
     dlqr: Dlqr,
     closed_loop: DMatrix<f64>,
     spectral_radius: f64,
-    outputs: usize,
+    model: Augmented,
+    bases: Vec<LaguerreBasis>,
+    alpha: f64,
 }
 
 impl LmpcDesign {
@@ -63,7 +65,16 @@ impl LmpcDesign {
         if spectral_radius.is_nan() || spectral_radius >= 1.0 {
             return Err(DesignError::Unstable { spectral_radius });
         }
-        Ok(Self { gain, prediction, dlqr, closed_loop, spectral_radius, outputs: model.plant().outputs() })
+        Ok(Self {
+            gain,
+            prediction,
+            dlqr,
+            closed_loop,
+            spectral_radius,
+            model: model.clone(),
+            bases: bases.to_vec(),
+            alpha: cost.alpha,
+        })
     }
 
     /// K, p×(n+q): Δu = −K \[Δx_m; y − r\].
@@ -81,9 +92,19 @@ impl LmpcDesign {
         &self.dlqr
     }
 
-    /// Number of outputs q, the last entries of the augmented state.
-    pub fn outputs(&self) -> usize {
-        self.outputs
+    /// The augmented model that it was designed on.
+    pub fn model(&self) -> &Augmented {
+        &self.model
+    }
+
+    /// One Laguerre basis per input.
+    pub fn bases(&self) -> &[LaguerreBasis] {
+        &self.bases
+    }
+
+    /// α of the prediction: the move at sample m is Δu(k+m) = αᵐ L(m)ᵀ η.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
     }
 
     /// Eigenvalues of A − BK.

@@ -144,10 +144,23 @@ impl<const N: usize> QuadraticProgram<N> {
         warm_start: &mut WarmStart<N>,
         iteration_limit: u32,
     ) -> Solution<N> {
+        let bound = |row: usize| h.get(row).copied().unwrap_or(f64::INFINITY);
+        self.solve_with(f, bound, warm_start, iteration_limit)
+    }
+
+    /// As [`QuadraticProgram::solve`], with the bound of each row from a function that is called a few times
+    /// per row.
+    pub(crate) fn solve_with(
+        &self,
+        f: &SVector<f64, N>,
+        h: impl Fn(usize) -> f64,
+        warm_start: &mut WarmStart<N>,
+        iteration_limit: u32,
+    ) -> Solution<N> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
         let z_0 = -(self.inverse_factor * f);
         let magnitude = z_0.amax();
-        if !(magnitude * magnitude).is_finite() || h.iter().any(|bound| bound.is_nan()) {
+        if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h(row).is_nan()) {
             *warm_start = WarmStart::default();
             return self.solution(&z_0, &ActiveSet::empty(), Outcome::NotFinite, 0);
         }
@@ -183,21 +196,21 @@ impl<const N: usize> QuadraticProgram<N> {
 }
 
 /// One run of the dual method.
-struct Search<'a, const N: usize> {
+struct Search<'a, const N: usize, H: Fn(usize) -> f64> {
     program: &'a QuadraticProgram<N>,
-    h: &'a [f64],
+    h: H,
     z_0: SVector<f64, N>,
     z: SVector<f64, N>,
     active: ActiveSet<N>,
     iterations: u32,
 }
 
-impl<const N: usize> Search<'_, N> {
+impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
     /// Starts from an earlier active set, without the constraints that would pull instead of push.
     fn resume(&mut self, warm_start: &WarmStart<N>) {
         for constraint in warm_start.constraints() {
-            let bounded = constraint < self.program.normals.len().min(self.h.len());
-            if bounded && self.h[constraint].is_finite() && !self.active.contains(constraint) {
+            let bounded = constraint < self.program.constraints() && (self.h)(constraint).is_finite();
+            if bounded && !self.active.contains(constraint) {
                 let split = self.active.split(&self.program.normals[constraint]);
                 self.active.add(constraint, &split, 0.0);
             }
@@ -206,7 +219,7 @@ impl<const N: usize> Search<'_, N> {
             let mut excess = SVector::zeros();
             for (j, &constraint) in self.active.constraints().iter().enumerate() {
                 let normal = &self.program.normals[constraint];
-                excess[j] = normal.dot(&self.z_0) - self.h[constraint] * self.program.scales[constraint];
+                excess[j] = normal.dot(&self.z_0) - (self.h)(constraint) * self.program.scales[constraint];
             }
             match self.active.solve_multipliers(&excess) {
                 Some(column) => self.active.remove(column),
@@ -266,14 +279,14 @@ impl<const N: usize> Search<'_, N> {
 
     /// h − v·z of one constraint, scaled; negative when violated.
     fn slack(&self, constraint: usize) -> f64 {
-        self.h[constraint] * self.program.scales[constraint] - self.program.normals[constraint].dot(&self.z)
+        (self.h)(constraint) * self.program.scales[constraint] - self.program.normals[constraint].dot(&self.z)
     }
 
     fn most_violated(&self) -> Option<usize> {
         let (mut worst, mut least) = (None, 0.0);
         let magnitude = self.z.norm();
-        for (constraint, (bound, scale)) in self.h.iter().zip(&self.program.scales).enumerate() {
-            let bound = bound * scale;
+        for (constraint, scale) in self.program.scales.iter().enumerate() {
+            let bound = (self.h)(constraint) * scale;
             let slack = bound - self.program.normals[constraint].dot(&self.z);
             let rounding = FEASIBILITY * (1.0 + magnitude + libm::fabs(bound));
             if slack < least && slack < -rounding && !self.active.contains(constraint) {
