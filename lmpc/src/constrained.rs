@@ -6,15 +6,9 @@ use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::limit::{LimitRow, limit_rows};
-use crate::{
-    Controller, ControllerState, DesignError, Limit, LmpcDesign, Outcome, QuadraticProgram, Solution, Status,
-    Step, WarmStart, validate,
-};
+use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
+use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Solution, Status, Step};
 
-/// Weight of the slack against the largest element of Ω: limits give way when they must, not to save cost.
-const SLACK_WEIGHT: f64 = 1e4;
-/// Share of the slack that hard limits get in a relaxed problem.
-const HARD_SHARE: f64 = 1e-3;
 /// Relative violation that rounding may leave.
 const ROUNDING: f64 = 1e-9;
 
@@ -34,10 +28,8 @@ pub struct ConstrainedController<const N: usize, const P: usize, const Q: usize,
     /// L(0)ᵀ: Δu(k) = L(0)ᵀ η.
     first_move: SMatrix<f64, P, E>,
     rows: Vec<KnownPart<N, P, Q>>,
-    strict: QuadraticProgram<E>,
-    relaxed: QuadraticProgram<E>,
+    program: RelaxableProgram<E>,
     bounds: usize,
-    iteration_limit: u32,
 }
 
 /// What of a limit's left-hand side is known before η is chosen, and what it is at the unconstrained η.
@@ -69,14 +61,13 @@ struct Sample<const N: usize, const P: usize, const Q: usize> {
 pub struct ConstrainedState<const N: usize, const P: usize, const E: usize> {
     /// As of the unconstrained controller.
     pub controller: ControllerState<N, P>,
-    warm_start: WarmStart<E>,
-    relaxed_warm_start: WarmStart<E>,
+    warm_start: RelaxableWarmStart<E>,
 }
 
 impl<const N: usize, const P: usize, const E: usize> ConstrainedState<N, P, E> {
     /// Around the state of the unconstrained controller.
     pub fn new(controller: ControllerState<N, P>) -> Self {
-        Self { controller, warm_start: WarmStart::default(), relaxed_warm_start: WarmStart::default() }
+        Self { controller, warm_start: RelaxableWarmStart::default() }
     }
 }
 
@@ -101,24 +92,13 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         let unconstrained = Controller::from_design(design, design.model().plant().c())?;
         let (omega, psi) = (design.prediction().omega(), design.prediction().psi());
         let terms = omega.nrows();
-        if terms + 1 > E {
-            return Err(DesignError::Dimension {
-                name: "Ω with slack",
-                expected: (E, E),
-                actual: (terms + 1, terms + 1),
-            });
-        }
-
-        // Unknowns beyond ΣN + 1 are there for the size alone: unit cost, no influence.
-        let mut h = DMatrix::<f64>::identity(E, E);
-        h.view_mut((0, 0), (terms, terms)).copy_from(omega);
-        h[(terms, terms)] = SLACK_WEIGHT * omega.amax();
-
         let rows = limit_rows(design, limits)?;
-        let slackless = |_: &LimitRow| 0.0;
-        let slack = |row: &LimitRow| if row.soft { -1.0 } else { -HARD_SHARE };
-        let strict = QuadraticProgram::new(&h, &constraint_matrix(&rows, terms, E, slackless))?;
-        let relaxed = QuadraticProgram::new(&h, &constraint_matrix(&rows, terms, E, slack))?;
+        let soft: Vec<bool> = rows.iter().map(|row| row.soft).collect();
+        let mut g = DMatrix::zeros(rows.len(), terms);
+        for (index, row) in rows.iter().enumerate() {
+            g.set_row(index, &row.eta);
+        }
+        let program = RelaxableProgram::new(omega, &g, &soft)?;
 
         let eta_gain =
             omega.clone().cholesky().ok_or(DesignError::NotPositiveDefinite { name: "Ω" })?.solve(psi);
@@ -130,10 +110,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
             psi_output: SMatrix::from_fn(|i, j| if i < terms { psi[(i, N + j)] } else { 0.0 }),
             first_move: SMatrix::from_fn(|i, j| first[(i, j)]),
             rows: rows.iter().map(|row| KnownPart::new(row, &eta_gain)).collect(),
-            strict,
-            relaxed,
+            program,
             bounds: limits.iter().map(|limit| limit.directions.nrows()).sum(),
-            iteration_limit: 4 * (E as u32 + rows.len() as u32),
         })
     }
 
@@ -168,29 +146,13 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         if self.rows.iter().all(|row| row.holds_unconstrained(&sample, upper)) {
             let controller = &mut state.controller;
             let step = self.unconstrained.step_from(controller, measured, delta, error, input_reference);
-            state.warm_start = WarmStart::default();
+            state.warm_start = RelaxableWarmStart::default();
             return ConstrainedStep { step, iterations: 0, active: 0 };
         }
-        let (solution, status) = self.solve(state, &sample, upper);
-        self.taken(state, &sample, input_reference, &solution, status)
-    }
-
-    /// The quadratic program of one sample, relaxed if it has no solution.
-    fn solve(
-        &self,
-        state: &mut ConstrainedState<N, P, E>,
-        sample: &Sample<N, P, Q>,
-        upper: &[f64],
-    ) -> (Solution<E>, Status) {
         let f = self.psi_state * sample.delta + self.psi_output * sample.error;
-        let bound = |row: usize| self.rows[row].room(sample, upper);
-        let strict = self.strict.solve_with(&f, bound, &mut state.warm_start, self.iteration_limit);
-        if strict.outcome != Outcome::Infeasible {
-            return (strict, status_of(strict.outcome, Status::Optimal));
-        }
-        let relaxed = self.relaxed.solve_with(&f, bound, &mut state.relaxed_warm_start, self.iteration_limit);
-        let iterations = strict.iterations + relaxed.iterations;
-        (Solution { iterations, ..relaxed }, status_of(relaxed.outcome, Status::Relaxed))
+        let bound = |row: usize| self.rows[row].room(&sample, upper);
+        let (solution, status) = self.program.solve(&f, bound, &mut state.warm_start);
+        self.taken(state, &sample, input_reference, &solution, status)
     }
 
     fn taken(
@@ -253,29 +215,4 @@ impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
 
 fn part<const C: usize>(row: &RowDVector<f64>, from: usize) -> RowSVector<f64, C> {
     RowSVector::from_fn(|_, column| row[from + column])
-}
-
-fn status_of(outcome: Outcome, solved: Status) -> Status {
-    match outcome {
-        Outcome::Optimal => solved,
-        // Relaxed limits can always be met; in floating point they may come out as if not.
-        Outcome::IterationLimit | Outcome::Infeasible => Status::IterationLimit,
-        Outcome::NotFinite => Status::Held,
-    }
-}
-
-/// G of the program: the rows in η, their share of the slack, and nothing for the rest.
-fn constraint_matrix(
-    rows: &[LimitRow],
-    terms: usize,
-    unknowns: usize,
-    slack: impl Fn(&LimitRow) -> f64,
-) -> DMatrix<f64> {
-    let mut g = DMatrix::zeros(rows.len(), unknowns);
-    for (index, row) in rows.iter().enumerate() {
-        g.view_mut((index, 0), (1, terms)).copy_from(&row.eta);
-        g[(index, terms)] = slack(row);
-    }
-    debug_assert!(validate::finite("G", &g).is_ok());
-    g
 }

@@ -61,6 +61,7 @@ mod limit;
 mod prediction;
 mod quadratic_program;
 mod reachability;
+mod relaxable;
 mod riccati;
 mod state_space;
 mod stein;

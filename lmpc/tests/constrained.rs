@@ -272,7 +272,7 @@ fn wrong_limits_are_refused() {
     let refused = ConstrainedController::<2, 1, 1, 6>::new(&design, &[wrong]).unwrap_err();
     assert!(matches!(refused, DesignError::Dimension { name: "directions of a limit", .. }), "{refused}");
     let small = ConstrainedController::<2, 1, 1, 5>::new(&design, &[]).unwrap_err();
-    assert!(matches!(small, DesignError::Dimension { name: "Ω with slack", .. }), "{small}");
+    assert!(matches!(small, DesignError::Dimension { name: "H with slack", .. }), "{small}");
 }
 
 /// The polygon lies inside the circle that its bound describes and touches it with its corners.
