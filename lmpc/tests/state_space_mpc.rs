@@ -1,0 +1,158 @@
+//! State-space MPC against simulated predictions, LMPC with unit pulses, and its own limits.
+
+use lmpc::{
+    DesignError, Discretization, Limit, Quantity, StateSpace, StateSpaceMpc, StateSpaceMpcDesign,
+    StateSpaceMpcState, Status,
+};
+use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix};
+use proptest::prelude::*;
+
+mod common;
+use common::double_integrators;
+
+const TIME: f64 = 0.05;
+const MOVES: usize = 25;
+
+fn plant() -> StateSpace {
+    double_integrators(&[1.0], TIME, Discretization::ZeroOrderHold)
+}
+
+fn design() -> StateSpaceMpcDesign {
+    StateSpaceMpcDesign::new(&plant(), &dmatrix![1.0], &dmatrix![1.0], 100, MOVES).unwrap()
+}
+
+fn advanced(x: Vector2<f64>, u: f64) -> Vector2<f64> {
+    Vector2::new(x.x + TIME * x.y + TIME * TIME / 2.0 * u, x.y + TIME * u)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// The first move is the one that minimises (34): simulate the cost as a function of the moves, and find
+    /// its minimum by Newton's method with numerical derivatives, which for a quadratic is one step.
+    #[test]
+    fn the_first_move_minimises_the_simulated_cost(
+        z in -3.0..3.0, v in -1.0..1.0, u in -1.0..1.0, r in prop::collection::vec(-2.0..2.0, 12),
+    ) {
+        const N: usize = 12;
+        const N_C: usize = 4;
+        let design = StateSpaceMpcDesign::new(&plant(), &dmatrix![3.0], &dmatrix![0.02], N, N_C);
+        // A horizon this short need not be stable in closed loop; the prediction is what is tested.
+        prop_assume!(design.is_ok());
+        let controller = StateSpaceMpc::<2, 1, 1, 5>::new(&design.unwrap(), &[]).unwrap();
+        let cost = |moves: &DVector<f64>| {
+            let (mut x, mut input, mut cost): (Vector2<f64>, f64, f64) = (Vector2::new(z, v), u, 0.0);
+            for (n, reference) in r.iter().enumerate().take(N) {
+                cost += 0.5 * 3.0 * f64::powi(x.x - reference, 2);
+                if n < N_C {
+                    input += moves[n];
+                    cost += 0.5 * 0.02 * moves[n].powi(2);
+                }
+                x = advanced(x, input);
+            }
+            cost
+        };
+        let unit = |i: usize| DVector::from_fn(N_C, |k, _| f64::from(k == i));
+        let zero = DVector::zeros(N_C);
+        let gradient = DVector::from_fn(N_C, |i, _| (cost(&unit(i)) - cost(&-unit(i))) / 2.0);
+        let hessian = DMatrix::from_fn(N_C, N_C, |i, j| {
+            cost(&(unit(i) + unit(j))) - cost(&unit(i)) - cost(&unit(j)) + cost(&zero)
+        });
+        let best = -hessian.lu().solve(&gradient).unwrap();
+
+        let references: Vec<Vector1<f64>> = r.iter().map(|&value| Vector1::new(value)).collect();
+        let mut state = StateSpaceMpcState::new(Vector1::new(u));
+        let step = controller.step(&mut state, &Vector2::new(z, v), &references, &[]);
+        prop_assert!((step.input.x - u - best[0]).abs() < 1e-7 * (1.0 + best[0].abs()));
+    }
+
+    #[test]
+    fn absurd_estimates_are_survived(
+        values in prop::collection::vec(prop_oneof![any::<f64>(), Just(f64::NAN), Just(f64::INFINITY)], 9),
+    ) {
+        let limits = [Limit::range(Quantity::Input, 1, 0..10)];
+        let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
+        let mut state = StateSpaceMpcState::new(Vector1::zeros());
+        for chunk in values.chunks_exact(3) {
+            let estimate = Vector2::new(chunk[0], chunk[1]);
+            let step = controller.step(&mut state, &estimate, &[Vector1::new(chunk[2])], &[1.0, 1.0]);
+            prop_assert!(step.input.x.is_finite());
+            state.apply(&Vector1::new(chunk[0]));
+        }
+    }
+}
+
+#[test]
+fn it_arrives_and_the_preview_makes_it_start_early() {
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &[]).unwrap();
+    let run = |preview: usize| {
+        let mut state = StateSpaceMpcState::new(Vector1::zeros());
+        let (mut x, mut cost): (Vector2<f64>, f64) = (Vector2::zeros(), 0.0);
+        for k in 0..400_usize {
+            let reference = |sample: usize| Vector1::new(f64::from(sample >= 100));
+            let references: Vec<_> = (0..=preview).map(|ahead| reference(k + ahead)).collect();
+            let step = controller.step(&mut state, &x, &references, &[]);
+            cost += f64::powi(x.x - reference(k).x, 2);
+            x = advanced(x, step.input.x);
+        }
+        assert!((x.x - 1.0).abs() < 1e-3, "{x}");
+        cost
+    };
+    assert!(run(99) < 0.6 * run(0));
+}
+
+#[test]
+fn limits_hold_in_closed_loop() {
+    let limits = [
+        Limit::range(Quantity::Increment, 1, 0..MOVES),
+        Limit::range(Quantity::Input, 1, 0..MOVES),
+        Limit {
+            quantity: Quantity::State,
+            directions: dmatrix![0.0, 1.0; 0.0, -1.0],
+            samples: 1..60,
+            soft: true,
+        },
+    ];
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
+    let bounds = [0.2, 0.2, 1.0, 1.0, 1.5, 1.5];
+    let mut state = StateSpaceMpcState::new(Vector1::zeros());
+    let (mut x, mut u, mut active) = (Vector2::zeros(), 0.0_f64, 0);
+    for sample in 0..600 {
+        let step = controller.step(&mut state, &x, &[Vector1::new(10.0)], &bounds);
+        assert_eq!(step.status, Status::Optimal, "sample {sample}");
+        let next = step.input.x;
+        assert!((next - u).abs() <= 0.2 + 1e-8 && next.abs() <= 1.0 + 1e-8, "sample {sample}: {u} to {next}");
+        active += step.active;
+        (x, u) = (advanced(x, next), next);
+        assert!(x.y.abs() <= 1.5 + 1e-6, "sample {sample}: {} m/s", x.y);
+    }
+    assert!((x.x - 10.0).abs() < 1e-3 && active > 100, "{x}, {active}");
+}
+
+#[test]
+fn a_step_does_not_allocate() {
+    let limits = [Limit::range(Quantity::Input, 1, 0..MOVES)];
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
+    let mut state = StateSpaceMpcState::new(Vector1::zeros());
+    let allocations = allocation_counter::measure(|| {
+        let step = controller.step(&mut state, &Vector2::zeros(), &[Vector1::new(5.0)], &[0.1, 0.1]);
+        assert!(step.active > 0);
+    });
+    assert_eq!(allocations.count_total, 0);
+}
+
+#[test]
+fn wrong_designs_are_refused() {
+    let one = dmatrix![1.0];
+    let refused = |q: &DMatrix<f64>, s: &DMatrix<f64>, horizon, moves| {
+        StateSpaceMpcDesign::new(&plant(), q, s, horizon, moves).unwrap_err()
+    };
+    assert!(matches!(refused(&one, &-&one, 50, 5), DesignError::NotPositiveDefinite { name: "S" }));
+    assert!(matches!(refused(&-&one, &one, 50, 5), DesignError::NotPositiveSemidefinite { name: "Q", .. }));
+    assert!(matches!(refused(&one, &one, 5, 5), DesignError::HorizonTooShort { .. }));
+    assert!(matches!(refused(&one, &one, 5, 0), DesignError::HorizonTooShort { .. }));
+    // Without a weight on the outputs nothing is controlled.
+    assert!(matches!(refused(&(&one * 0.0), &one, 50, 5), DesignError::Unstable { .. }));
+    let small = StateSpaceMpc::<2, 1, 1, 25>::new(&design(), &[]).unwrap_err();
+    assert!(matches!(small, DesignError::Dimension { name: "H with slack", .. }), "{small}");
+}
