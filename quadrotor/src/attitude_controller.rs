@@ -1,7 +1,7 @@
 //! Attitude: from the attitude and body rates to torques.
 
 use lmpc::ControllerState;
-use nalgebra::{UnitQuaternion, Vector2, Vector3, Vector6};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::attitude_error;
@@ -52,10 +52,7 @@ impl AttitudeController {
         let to_body = attitude.inverse() * reference;
         let whole = attitude_error(reference, attitude);
         let error_rad = governed(design, limits, &whole);
-        // While a large error is closed at the governed rate, integrating it would only exceed that rate.
-        let lean_integrated = if whole.xy() == error_rad.xy() { whole.xy() } else { Vector2::zeros() };
-        let turn_integrated = if whole.z == error_rad.z { whole.z } else { 0.0 };
-        let integrated = Vector3::new(lean_integrated.x, lean_integrated.y, turn_integrated);
+        let integrated = integrable(&whole, &error_rad);
         let rate_error_rad_s = body_rate_rad_s - to_body * reference_rate_rad_s;
         let step = design.attitude.step_from(
             &mut self.lmpc,
@@ -91,6 +88,16 @@ fn governed(design: &CascadeDesign, limits: &Limits, error_rad: &Vector3<f64>) -
     let lean = leaning.seen_vector(&error_rad.xy());
     let turn = turning.seen_vector(&error_rad.fixed_rows::<1>(2).into_owned());
     Vector3::new(lean.x, lean.y, turn.x)
+}
+
+/// The error that is integrated: while a large error is closed at the governed rate, integrating it would
+/// only exceed that rate. It fades out as the governed error falls behind the whole one, and is gone at half.
+fn integrable(whole: &Vector3<f64>, governed: &Vector3<f64>) -> Vector3<f64> {
+    let share =
+        |governed: f64, whole: f64| if whole > 0.0 { (2.0 * governed / whole - 1.0).max(0.0) } else { 1.0 };
+    let lean = governed.xy() * share(governed.xy().norm(), whole.xy().norm());
+    let turn = governed.z * share(governed.z.abs(), whole.z.abs());
+    Vector3::new(lean.x, lean.y, turn)
 }
 
 /// φ, φ̇, θ, θ̇, ψ, ψ̇: the order of (22).
