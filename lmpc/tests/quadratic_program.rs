@@ -129,8 +129,11 @@ proptest! {
         let moved = |by: f64| Problem { bounds: problem.bounds.iter().map(|b| b + by).collect(), ..problem.clone() };
         match (solution.outcome, clarabel(&problem)) {
             (Outcome::Optimal, Some(x)) => {
+                // Ours is feasible to rounding. Where the interior-point method ends early, ours is the better.
                 let scale = 1.0 + problem.cost(&x).abs();
-                prop_assert!((problem.cost(&solution.x) - problem.cost(&x)).abs() < 1e-6 * scale);
+                let excess = problem.cost(&solution.x) - problem.cost(&x);
+                prop_assert!(problem.violation(&solution.x) < 1e-8 * (1.0 + solution.x.norm()));
+                prop_assert!(excess < 1e-6 * scale && excess > -1e-3 * scale, "{excess}");
             }
             (Outcome::Optimal, None) => prop_assert!(clarabel(&moved(1e-6)).is_some()),
             (Outcome::Infeasible, _) => prop_assert!(clarabel(&moved(-1e-6)).is_none()),
