@@ -49,15 +49,13 @@ impl AltitudeController {
             // Below the set-point (z down) it climbs.
             speed: if error > 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s },
         };
-        // Feed forward what is wanted at the end of the ramp, and what the rotors lag behind.
-        let ahead_s = period_s + configuration.airframe.rotor_time_constant_s;
         let delta = measured - self.lmpc.measured() - explained;
         let step = law.step_from(
             &mut self.lmpc,
             &measured,
             &delta,
             &governor.seen_vector(&Vector1::new(error)),
-            &reference.acceleration_after(ahead_s),
+            &reference.acceleration_ahead,
         );
         self.reference = *reference;
         let applied = step.input.x.clamp(range.0, range.1);

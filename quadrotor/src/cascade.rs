@@ -19,6 +19,9 @@ use crate::{
 /// the thrust is the weight: it pushes sideways or down, but leaves the rotors room for torques.
 const UPRIGHT: f64 = 0.3;
 
+/// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
+pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
+
 /// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots
 /// its command, by half in the worst of many steps tried.
 pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.6;
@@ -77,7 +80,7 @@ impl Cascade {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
-            jerk: setpoint.jerk_m_s3.xy(),
+            acceleration_ahead: setpoint.acceleration_ahead_m_s2.xy(),
         };
         let limits = &configuration.limits;
         let before = self.horizontal;
@@ -118,7 +121,7 @@ impl Cascade {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
-            jerk: axis(&setpoint.jerk_m_s3),
+            acceleration_ahead: axis(&setpoint.acceleration_ahead_m_s2),
         };
         let to = self.altitude.step(
             design,
@@ -200,21 +203,30 @@ fn believed_mass_kg(configuration: &Configuration) -> f64 {
     configuration.airframe.mass_kg * configuration.controllers.mass_factor
 }
 
+/// Smallest and largest thrust to ask for, N.
+fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
+    let limits = &configuration.limits;
+    let weight = believed_mass_kg(configuration) * GRAVITY_M_S2;
+    let (weakest, strongest) = configuration.airframe.thrust_range_n();
+    let least = (limits.thrust_min * weight).max(weakest);
+    (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
+}
+
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.
 fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
     let share = upright.max(UPRIGHT) / believed_mass_kg(configuration);
-    let limits = &configuration.limits;
-    (GRAVITY_M_S2 - limits.thrust_max_n * share, GRAVITY_M_S2 - limits.thrust_min_n * share)
+    let (least, most) = thrust_range_n(configuration);
+    (GRAVITY_M_S2 - most * share, GRAVITY_M_S2 - least * share)
 }
 
 /// F = m (g − G) of (7), divided by cos φ cos θ because a tilted thrust carries less.
 fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f64 {
-    let limits = &configuration.limits;
     if upright < UPRIGHT {
         return believed_mass_kg(configuration) * GRAVITY_M_S2;
     }
     let level = believed_mass_kg(configuration) * (GRAVITY_M_S2 - vertical_m_s2);
-    (level / upright).clamp(limits.thrust_min_n, limits.thrust_max_n)
+    let (least, most) = thrust_range_n(configuration);
+    (level / upright).clamp(least, most)
 }
 
 /// ω × Jω, N·m: what (3) takes from the torques, given back.

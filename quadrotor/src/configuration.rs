@@ -161,10 +161,11 @@ pub struct Limits {
     pub tilt_rate_rad_s: f64,
     /// Largest angular acceleration of the tilt command, rad/s².
     pub tilt_acceleration_rad_s2: f64,
-    /// Smallest thrust that the altitude controller asks for, N.
-    pub thrust_min_n: f64,
-    /// Largest thrust that the altitude controller asks for, N.
-    pub thrust_max_n: f64,
+    /// Smallest thrust that the altitude controller asks for, as a multiple of the weight.
+    pub thrust_min: f64,
+    /// Largest thrust that the altitude controller asks for, as a multiple of the weight; never more than
+    /// four fifths of what the rotors can do.
+    pub thrust_max: f64,
     /// Largest horizontal speed of shaped references, m/s.
     pub speed_horizontal_m_s: f64,
     /// Largest climb rate of shaped references, m/s.
@@ -193,7 +194,7 @@ pub struct Limits {
 /// | --- | --- | --- |
 /// | tilt | 0.6 rad | thrust to hold altitude grows by 21 % |
 /// | tilt command | 2 rad/s, 8 rad/s² | 0.85 N·m, nine tenths of the torque in hover |
-/// | thrust | 4.8 to 13.7 N | 0.7 and twice the weight: leaves the mixer room for torques at both ends |
+/// | thrust | 0.6 to 2 weights | leaves the mixer room for torques at both ends |
 /// | speed | 8, up 4, down 3 m/s | an inspection flight |
 /// | acceleration | 2.5 and 2 m/s² | a tilt of 0.25 rad, 0.31 while sinking: leaves the feedback room |
 /// | jerk | 4 m/s³ | a jump of the tilt rate by 0.4 rad/s is the kick that the torques just follow |
@@ -204,8 +205,8 @@ impl Default for Limits {
             tilt_rad: 0.6,
             tilt_rate_rad_s: 2.0,
             tilt_acceleration_rad_s2: 8.0,
-            thrust_min_n: 4.8,
-            thrust_max_n: 13.7,
+            thrust_min: 0.6,
+            thrust_max: 2.0,
             speed_horizontal_m_s: 8.0,
             speed_up_m_s: 4.0,
             speed_down_m_s: 3.0,

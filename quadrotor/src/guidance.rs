@@ -23,7 +23,10 @@ pub enum Guidance {
 /// State of a reference that is passed on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Direct {
-    latest: Setpoint,
+    latest: PositionReference,
+    /// Jerk of the trajectory, from its last two accelerations, NED, m/s³.
+    jerk_m_s3: Vector3<f64>,
+    time_us: u64,
     yaw_time_us: u64,
 }
 
@@ -44,15 +47,20 @@ impl Guidance {
         if configuration.reference.shaping {
             return Self::Shaped(Shaper::at_rest(position_m, yaw_rad, &configuration.limits, time_us));
         }
-        Self::Direct(Direct { latest: Setpoint::hold(position_m, yaw_rad), yaw_time_us: time_us })
+        Self::Direct(Direct {
+            latest: PositionReference::goal((*position_m).into(), yaw_rad),
+            jerk_m_s3: Vector3::zeros(),
+            time_us,
+            yaw_time_us: time_us,
+        })
     }
 
-    /// A sample of the position and altitude controllers' reference, `period_us` after the last.
-    pub fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64, period_us: u64) {
+    /// A sample of the reference of the position and altitude controllers.
+    pub fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         match self {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => shaper.update(reference, limits, time_us),
-            Self::Direct(direct) => direct.sample(reference, limits, period_us),
+            Self::Direct(direct) => direct.sample(reference, limits, time_us),
         }
     }
 
@@ -66,42 +74,54 @@ impl Guidance {
         if let Self::Direct(direct) = self {
             direct.sample_yaw(reference, limits, time_us);
         }
-        let PositionReference { yaw_rad, yaw_rate_rad_s, .. } = self.setpoint(time_us).reference;
+        let PositionReference { yaw_rad, yaw_rate_rad_s, .. } = self.reference(time_us);
         Heading { yaw_rad, yaw_rate_rad_s }
     }
 
-    /// The set-point at `time_us`.
-    pub fn setpoint(&self, time_us: u64) -> Setpoint {
+    /// What is tracked at `time_us`.
+    pub fn reference(&self, time_us: u64) -> PositionReference {
         match self {
             #[cfg(feature = "shaper")]
-            Self::Shaped(shaper) => shaper.setpoint(time_us),
+            Self::Shaped(shaper) => shaper.reference(time_us),
             Self::Direct(direct) => direct.latest,
         }
+    }
+
+    /// What is tracked at `time_us` by a command that takes effect `ahead_us` later.
+    pub fn setpoint(&self, time_us: u64, ahead_us: u64) -> Setpoint {
+        let acceleration_ahead_m_s2 = match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => shaper.reference(time_us + ahead_us).acceleration_m_s2,
+            Self::Direct(direct) => {
+                direct.latest.acceleration_m_s2 + direct.jerk_m_s3 * (ahead_us as f64 * 1e-6)
+            }
+        };
+        Setpoint { reference: self.reference(time_us), acceleration_ahead_m_s2 }
     }
 }
 
 impl Direct {
-    fn sample(&mut self, reference: &PositionReference, limits: &Limits, period_us: u64) {
-        // The jerk of a trajectory that is given by its acceleration; a jump of it is not motion.
-        let period_s = period_us as f64 * 1e-6;
-        let jerk = (reference.acceleration_m_s2 - self.latest.reference.acceleration_m_s2) / period_s;
-        let smooth =
-            jerk.xy().norm() <= limits.jerk_horizontal_m_s3 && jerk.z.abs() <= limits.jerk_vertical_m_s3;
-        let held = &self.latest.reference;
-        self.latest = Setpoint {
-            reference: PositionReference {
-                yaw_rad: held.yaw_rad,
-                yaw_rate_rad_s: held.yaw_rate_rad_s,
-                ..*reference
-            },
-            jerk_m_s3: if smooth { jerk } else { Vector3::zeros() },
-        };
+    fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
+        let change = reference.acceleration_m_s2 - self.latest.acceleration_m_s2;
+        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 * 1e-6;
+        // Position and altitude may sample at the same instant; the first of them has done it then.
+        if elapsed_s > 0.0 {
+            let jerk = change / elapsed_s;
+            // A jump of the acceleration is not motion.
+            let smooth =
+                jerk.xy().norm() <= limits.jerk_horizontal_m_s3 && jerk.z.abs() <= limits.jerk_vertical_m_s3;
+            self.jerk_m_s3 = if smooth { jerk } else { Vector3::zeros() };
+        }
+        let held = self.latest;
+        self.latest =
+            PositionReference { yaw_rad: held.yaw_rad, yaw_rate_rad_s: held.yaw_rate_rad_s, ..*reference };
+        self.time_us = time_us;
     }
 
     fn sample_yaw(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 * 1e-6;
         let most = limits.yaw_rate_rad_s * elapsed_s;
-        let held = &mut self.latest.reference;
+        let held = &mut self.latest;
         held.yaw_rad += wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
         held.yaw_rate_rad_s = reference.yaw_rate_rad_s;
         self.yaw_time_us = time_us;

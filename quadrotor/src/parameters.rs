@@ -247,7 +247,7 @@ pub static PARAMETERS: &[Parameter] = &[
         "controller.mass_factor",
         One,
         FIXED,
-        0.2..=5.0,
+        0.5..=1.5,
         controllers.mass_factor,
         "Mass in the controllers' model as a multiple of the true mass"
     ),
@@ -532,19 +532,19 @@ pub static PARAMETERS: &[Parameter] = &[
     ),
     real!(
         "limits.thrust.min",
-        Newton,
+        One,
         TUNABLE,
-        0.0..=1000.0,
-        limits.thrust_min_n,
-        "Smallest thrust that the altitude controller asks for"
+        0.0..=0.95,
+        limits.thrust_min,
+        "Smallest thrust that the altitude controller asks for, as a multiple of the weight"
     ),
     real!(
         "limits.thrust.max",
-        Newton,
+        One,
         TUNABLE,
-        0.1..=2000.0,
-        limits.thrust_max_n,
-        "Largest thrust that the altitude controller asks for"
+        1.05..=10.0,
+        limits.thrust_max,
+        "Largest thrust that the altitude controller asks for, as a multiple of the weight; never more than four fifths of what the rotors can do"
     ),
     real!(
         "limits.speed.horizontal",

@@ -55,8 +55,7 @@ impl PositionController {
             speed: limits.speed_horizontal_m_s,
         };
         let error = governor.seen_vector(&(position_m - reference.position));
-        // The command ramps up to the input until the next sample: feed forward what is wanted then.
-        let ahead = tilt_of(&reference.acceleration_after(period_s));
+        let ahead = tilt_of(&reference.acceleration_ahead);
         let delta = measured - self.lmpc.measured() - explained;
         let step = law.step_from(&mut self.lmpc, &measured, &delta, &error, &ahead);
         self.reference = *reference;

@@ -12,14 +12,14 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub velocity: SVector<f64, AXES>,
     /// Acceleration.
     pub acceleration: SVector<f64, AXES>,
-    /// Jerk.
-    pub jerk: SVector<f64, AXES>,
+    /// Acceleration when the command takes effect.
+    pub acceleration_ahead: SVector<f64, AXES>,
 }
 
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero = SVector::zeros();
-        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero }
+        Self { position: zero, velocity: zero, acceleration: zero, acceleration_ahead: zero }
     }
 }
 
@@ -36,10 +36,5 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
             let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);
             [t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0, t * (a + a_before) / 2.0]
         })
-    }
-
-    /// The acceleration `ahead_s` later.
-    pub fn acceleration_after(&self, ahead_s: f64) -> SVector<f64, AXES> {
-        self.acceleration + self.jerk * ahead_s
     }
 }

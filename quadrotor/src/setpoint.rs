@@ -10,16 +10,6 @@ use crate::PositionReference;
 pub struct Setpoint {
     /// Position, velocity, acceleration, heading and its rate.
     pub reference: PositionReference,
-    /// Jerk in NED, m/s³.
-    pub jerk_m_s3: Vector3<f64>,
-}
-
-impl Setpoint {
-    /// A place to stay at.
-    pub fn hold(position_m: &Vector3<f64>, yaw_rad: f64) -> Self {
-        Self {
-            reference: PositionReference::goal((*position_m).into(), yaw_rad),
-            jerk_m_s3: Vector3::zeros(),
-        }
-    }
+    /// Acceleration a little later, NED, m/s²: when the command that is computed now takes effect.
+    pub acceleration_ahead_m_s2: Vector3<f64>,
 }

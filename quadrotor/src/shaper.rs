@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
 use crate::motion_profile::{Motion, MotionProfile};
-use crate::setpoint::Setpoint;
 use crate::{Limits, PositionReference};
 
 /// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
@@ -19,12 +18,20 @@ const STRAIGHT: [f64; 2] = [0.98, 0.198];
 /// Both when the motion is not along that line: the largest square inside the circle.
 const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
 
+/// A goal that moves by less than this, m or rad, is followed as it is, without a new plan: the controllers
+/// handle steps of that size, and a goal that trembles does not make the profile tremble.
+const SMALL: f64 = 0.01;
+
 /// A plan from one state to the goal, as profiles over time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shaper {
     start_us: u64,
+    /// The goal that was planned for.
     goal: PositionReference,
     limits: Limits,
+    /// How far the present goal is from the planned one, m and rad.
+    offset_m: Vector3<f64>,
+    yaw_offset_rad: f64,
     /// Direction of the first horizontal axis, rad from north.
     bearing_rad: f64,
     /// Along the bearing, across it to the right, down.
@@ -40,6 +47,8 @@ impl Shaper {
             start_us: time_us,
             goal: PositionReference::goal((*position_m).into(), yaw_rad),
             limits: *limits,
+            offset_m: Vector3::zeros(),
+            yaw_offset_rad: 0.0,
             bearing_rad: 0.0,
             axes: [rest(position_m.x), rest(position_m.y), rest(position_m.z)],
             yaw: rest(yaw_rad),
@@ -47,7 +56,7 @@ impl Shaper {
     }
 
     /// The shaped reference at `time_us`.
-    pub fn setpoint(&self, time_us: u64) -> Setpoint {
+    pub fn reference(&self, time_us: u64) -> PositionReference {
         let time_s = self.elapsed_s(time_us);
         let motions = self.axes.map(|axis| axis.at(time_s));
         let yaw = self.yaw.at(time_s);
@@ -57,32 +66,43 @@ impl Shaper {
             let horizontal = turn * Vector2::new(along, across);
             Vector3::new(horizontal.x, horizontal.y, down)
         };
-        Setpoint {
-            reference: PositionReference {
-                position_m: world(|motion| motion.position),
-                velocity_m_s: world(|motion| motion.velocity),
-                acceleration_m_s2: world(|motion| motion.acceleration),
-                yaw_rad: yaw.position,
-                yaw_rate_rad_s: yaw.velocity,
-            },
-            jerk_m_s3: world(|motion| motion.jerk),
+        PositionReference {
+            position_m: world(|motion| motion.position) + self.offset_m,
+            velocity_m_s: world(|motion| motion.velocity),
+            acceleration_m_s2: world(|motion| motion.acceleration),
+            yaw_rad: yaw.position + self.yaw_offset_rad,
+            yaw_rate_rad_s: yaw.velocity,
         }
     }
 
     /// Plans anew if the goal or the limits have changed. A problem that has no solution leaves the old
     /// plan in force.
     pub fn update(&mut self, goal: &PositionReference, limits: &Limits, time_us: u64) {
-        if *goal == self.goal && *limits == self.limits {
+        let moved = goal.position_m - self.goal.position_m;
+        let turned = wrapped(goal.yaw_rad - self.goal.yaw_rad);
+        let same_motion =
+            goal.velocity_m_s == self.goal.velocity_m_s && goal.yaw_rate_rad_s == self.goal.yaw_rate_rad_s;
+        if same_motion && *limits == self.limits && moved.norm() <= SMALL && turned.abs() <= SMALL {
+            (self.offset_m, self.yaw_offset_rad) = (moved, turned);
             return;
         }
-        let now = self.setpoint(time_us).reference;
-        let yaw_now = self.yaw.at(self.elapsed_s(time_us));
+        let now = self.reference(time_us);
+        let yaw_now = Motion { position: now.yaw_rad, ..self.yaw.at(self.elapsed_s(time_us)) };
         let way = (goal.position_m - now.position_m).xy();
         let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
         let axes = plan_position(&now, goal, limits, bearing_rad);
         let yaw = plan_yaw(&yaw_now, goal, limits);
         if let (Some(axes), Some([yaw])) = (axes, yaw) {
-            *self = Self { start_us: time_us, goal: *goal, limits: *limits, bearing_rad, axes, yaw };
+            *self = Self {
+                start_us: time_us,
+                goal: *goal,
+                limits: *limits,
+                offset_m: Vector3::zeros(),
+                yaw_offset_rad: 0.0,
+                bearing_rad,
+                axes,
+                yaw,
+            };
         }
     }
 

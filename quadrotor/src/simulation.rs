@@ -151,7 +151,7 @@ impl Simulation {
         let rotation = plant.body.rotation();
         let (phi, theta, psi) = rotation.euler_angles();
         let wrench = plant.wrench(&self.configuration);
-        let setpoint = state.guidance.setpoint(state.time_us).reference;
+        let setpoint = state.guidance.reference(state.time_us);
         Outputs {
             time_us: state.time_us,
             position_m: plant.body.position_m,
@@ -203,12 +203,17 @@ impl Simulation {
         let (reference, limits, body) = (&inputs.reference, &configuration.limits, &state.plant.body);
         let position_us = controllers.position.sample_time_us;
         if ticks(time_us, position_us) {
-            state.guidance.sample(reference, limits, time_us, position_us);
-            let setpoint = state.guidance.setpoint(time_us);
+            state.guidance.sample(reference, limits, time_us);
+            // Commands ramp up to the input until the next sample.
+            let setpoint = state.guidance.setpoint(time_us, position_us);
             state.cascade.sample_position(configuration, design, body, &setpoint, time_us);
         }
-        if ticks(time_us, controllers.altitude.sample_time_us) {
-            let setpoint = state.guidance.setpoint(time_us);
+        let altitude_us = controllers.altitude.sample_time_us;
+        if ticks(time_us, altitude_us) {
+            state.guidance.sample(reference, limits, time_us);
+            // … and the rotors lag behind the thrust command.
+            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
+            let setpoint = state.guidance.setpoint(time_us, altitude_us + lag_us);
             state.cascade.sample_altitude(configuration, design, body, &setpoint, time_us);
         }
         if ticks(time_us, controllers.attitude.sample_time_us) {

@@ -1,6 +1,6 @@
 //! Checks on a configuration: every range, then what must fit together.
 
-use crate::cascade::COMMANDED_TILT_SHARE;
+use crate::cascade::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::{Configuration, ConfigurationError, GRAVITY_M_S2, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -17,18 +17,14 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
         ("airframe.rotor.speed_min", airframe.rotor_speed_min_rad_s),
         ("airframe.rotor.speed_max", airframe.rotor_speed_max_rad_s),
     )?;
-    below(("the weight in newton", airframe.weight_n()), ("the thrust of all rotors in newton", strongest))?;
+    let carried_kg = USABLE_THRUST_SHARE * strongest / GRAVITY_M_S2;
     below(
-        ("the thrust of four idle rotors in newton", weakest),
-        ("the weight in newton", airframe.weight_n()),
+        ("airframe.mass", airframe.mass_kg),
+        ("the mass in kg that four fifths of the rotors' thrust carry", carried_kg),
     )?;
     below(
-        ("limits.thrust.min", limits.thrust_min_n),
-        ("the weight that the controllers believe in, in newton", believed_weight_n(configuration)),
-    )?;
-    below(
-        ("the weight that the controllers believe in, in newton", believed_weight_n(configuration)),
-        ("limits.thrust.max", limits.thrust_max_n),
+        ("the mass in kg that four idle rotors carry", weakest / GRAVITY_M_S2),
+        ("airframe.mass", airframe.mass_kg),
     )?;
     below(
         ("limits.acceleration.horizontal", limits.acceleration_horizontal_m_s2),
@@ -67,11 +63,6 @@ pub(crate) fn only_tunables_differ(
         }
     }
     Ok(())
-}
-
-/// m g of the controllers' model, N.
-pub(crate) fn believed_weight_n(configuration: &Configuration) -> f64 {
-    configuration.airframe.weight_n() * configuration.controllers.mass_factor
 }
 
 fn below(

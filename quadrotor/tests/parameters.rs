@@ -88,9 +88,8 @@ fn values_out_of_range_are_refused_by_name_value_and_range() {
 fn values_that_contradict_one_another_are_refused() {
     for (name, value, culprit) in [
         ("airframe.rotor.speed_min", 460.0, "airframe.rotor.speed_min"),
-        ("airframe.mass", 5.0, "the weight in newton"),
-        ("limits.thrust.min", 8.0, "limits.thrust.min"),
-        ("limits.thrust.max", 6.0, "the weight that the controllers believe in, in newton"),
+        ("airframe.mass", 5.0, "airframe.mass"),
+        ("airframe.rotor.speed_min", 300.0, "the mass in kg that four idle rotors carry"),
         ("limits.acceleration.horizontal", 9.0, "limits.acceleration.horizontal"),
         ("controller.attitude.sample_time", 0.06, "controller.position.sample_time"),
     ] {

@@ -1,0 +1,267 @@
+//! `modelDescription.xml`: up to date, consistent in itself, and true of the library.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::common::description::{Variable, description, path};
+use crate::common::instance::Instance;
+use crate::common::library::OK;
+use crate::library;
+
+fn variables() -> impl Iterator<Item = &'static Variable> {
+    description().variables.iter()
+}
+
+fn indices(causality: &[&str]) -> Vec<usize> {
+    let places = (1..).zip(variables());
+    places.filter(|(_, v)| causality.contains(&v.causality.as_str())).map(|(index, _)| index).collect()
+}
+
+/// `cargo xtask model-description` rewrites it.
+#[test]
+fn file_in_the_repository_is_up_to_date() {
+    let path = path();
+    let text = std::fs::read_to_string(&path)
+        .unwrap_or_else(|error| panic!("{}: {error}; run: cargo xtask model-description", path.display()));
+    assert!(text == description().text, "{} is stale; run: cargo xtask model-description", path.display());
+}
+
+#[test]
+fn names_are_unique_and_structured() {
+    let names: BTreeSet<_> = variables().map(|v| v.name.as_str()).collect();
+    assert_eq!(names.len(), variables().count());
+    for name in names {
+        for part in name.split('.') {
+            let (stem, index) = part.split_once('[').unwrap_or((part, "1]"));
+            let mut letters = stem.chars();
+            assert!(letters.next().is_some_and(|first| first.is_ascii_alphabetic()), "{name}");
+            assert!(letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_'), "{name}");
+            assert!(index.strip_suffix(']').is_some_and(|index| index.parse::<u32>().is_ok()), "{name}");
+        }
+    }
+}
+
+/// The names that others rely on, from the issue.
+#[test]
+fn promised_variables_exist() {
+    let of = |causality: &str| -> BTreeSet<&str> {
+        variables().filter(|v| v.causality == causality).map(|v| v.name.as_str()).collect()
+    };
+    let expand = |names: &str| -> BTreeSet<String> {
+        names
+            .split_whitespace()
+            .flat_map(|name| match name.rsplit_once('.') {
+                Some((stem, ends)) if ends.contains('|') => {
+                    ends.split('|').map(|end| format!("{stem}.{end}")).collect()
+                }
+                _ => vec![name.to_owned()],
+            })
+            .collect()
+    };
+    let promised = [
+        (
+            "input",
+            "reference.position.x|y|z reference.velocity.x|y|z reference.acceleration.x|y|z reference.yaw \
+             disturbance.force.x|y|z disturbance.torque.x|y|z armed",
+        ),
+        (
+            "output",
+            "position.x|y|z velocity.x|y|z acceleration.x|y|z body_velocity.u|v|w attitude.phi|theta|psi \
+             attitude.q0|q1|q2|q3 body_rate.p|q|r thrust torque.phi|theta|psi rotor.speed[1]|speed[2]|speed[3]|speed[4] \
+             tilt_reference.phi|theta tracking_error.x|y|z",
+        ),
+        (
+            "parameter",
+            "airframe.mass airframe.arm_length airframe.inertia.x|y|z initial.position.x|y|z \
+             initial.attitude.phi|theta|psi reference.shaping",
+        ),
+    ];
+    for (causality, names) in promised {
+        let there = of(causality);
+        for name in expand(names) {
+            assert!(there.contains(name.as_str()), "no {causality} {name}");
+        }
+    }
+    assert_eq!(description().variable("armed").value_type, "Boolean");
+    assert_eq!(description().variable("reference.shaping").value_type, "Boolean");
+    assert_eq!(description().variable("reference.shaping").attribute("start"), Some("true"));
+}
+
+/// FMI 2.0.4, section 2.2.7: which combinations are legal, and who has a start value.
+#[test]
+fn attributes_are_a_legal_combination() {
+    for variable in variables() {
+        let initial = variable.initial.as_deref();
+        let combination = (variable.causality.as_str(), variable.variability.as_str(), initial);
+        let legal = [
+            ("input", "continuous", None),
+            ("input", "discrete", None),
+            ("output", "continuous", Some("calculated")),
+            ("parameter", "fixed", Some("exact")),
+            ("parameter", "tunable", Some("exact")),
+            ("calculatedParameter", "tunable", Some("calculated")),
+        ];
+        assert!(legal.contains(&combination), "{}: {combination:?}", variable.name);
+        let has_start = variable.attribute("start").is_some();
+        assert_eq!(has_start, ["input", "parameter"].contains(&combination.0), "{}", variable.name);
+        assert!(variable.value_type == "Real" || variable.variability != "continuous", "{}", variable.name);
+        assert!(!variable.description.is_empty(), "{}", variable.name);
+    }
+}
+
+#[test]
+fn start_values_lie_in_their_ranges() {
+    let mut numbers = 0;
+    for variable in variables().filter(|v| v.value_type != "Boolean") {
+        let Some(start) = variable.number("start") else { continue };
+        let [minimum, maximum] = ["min", "max"].map(|end| variable.number(end).expect("a range"));
+        assert!(minimum < maximum && (minimum..=maximum).contains(&start), "{}", variable.name);
+        numbers += 1;
+    }
+    assert!(numbers > 50);
+}
+
+#[test]
+fn start_values_are_those_of_a_fresh_instance() {
+    let mut instance = Instance::new(library());
+    assert_eq!(instance.enter_initialization_mode(), OK);
+    for variable in variables().filter(|v| v.attribute("start").is_some()) {
+        let start = variable.attribute("start").expect("filtered");
+        let name = variable.name.as_str();
+        match variable.value_type.as_str() {
+            "Real" => assert_eq!(instance.real(name), start.parse::<f64>().expect("a number"), "{name}"),
+            "Integer" => assert_eq!(instance.integer(name).to_string(), start, "{name}"),
+            _ => assert_eq!(instance.boolean(name).to_string(), start, "{name}"),
+        }
+    }
+}
+
+#[test]
+fn structure_lists_exactly_the_unknowns_in_order() {
+    let listed = |unknowns: &[(usize, Vec<usize>)]| -> Vec<usize> {
+        unknowns.iter().map(|(index, _)| *index).collect()
+    };
+    assert_eq!(listed(&description().outputs), indices(&["output"]));
+    assert_eq!(listed(&description().initial_unknowns), indices(&["output", "calculatedParameter"]));
+    let known = indices(&["input", "parameter"]);
+    for (index, dependencies) in description().outputs.iter().chain(&description().initial_unknowns) {
+        assert!(dependencies.is_sorted(), "{index}");
+        assert!(dependencies.iter().all(|dependency| known.contains(dependency)), "{index}");
+    }
+}
+
+/// Each input and parameter is changed alone, from several starting points; whatever then changes among
+/// the initial unknowns must be declared to depend on it.
+#[test]
+fn initial_dependencies_are_complete() {
+    let unknowns: Vec<_> = (description().initial_unknowns.iter())
+        .map(|(index, dependencies)| (&description().variables[index - 1], dependencies))
+        .collect();
+    let references: Vec<_> = unknowns.iter().map(|(unknown, _)| unknown.reference).collect();
+    let mut found = BTreeMap::<&str, usize>::new();
+    let tilted = [
+        ("initial.position.z", 0.0),
+        ("initial.velocity.x", 2.0),
+        ("initial.velocity.y", -1.0),
+        ("initial.attitude.phi", 0.4),
+        ("initial.attitude.theta", 0.3),
+        ("initial.attitude.psi", -1.0),
+        ("initial.body_rate.p", 0.2),
+        ("airframe.drag.x", 0.1),
+        ("airframe.drag.y", 0.1),
+        ("airframe.drag.z", 0.1),
+        ("wind.velocity.y", 3.0),
+    ];
+    for (start, switches) in
+        [(&[][..], [("environment.ground_plane", false)]), (&tilted, [("environment.ground_plane", true)])]
+    {
+        let prepared = || {
+            let mut instance = Instance::with_logging(library(), false);
+            assert_eq!(instance.set_real(start), OK);
+            assert_eq!(instance.set_boolean(&switches), OK);
+            assert_eq!(instance.enter_initialization_mode(), OK);
+            instance
+        };
+        let before = prepared().try_reals(&references).expect("valid values");
+        for (index, known) in (1..).zip(variables()).filter(|(_, v)| v.attribute("start").is_some()) {
+            let mut instance = prepared();
+            if !nudge(&mut instance, known) {
+                continue;
+            }
+            // Not every value fits to the others; those that do not say nothing.
+            let Ok(after) = instance.try_reals(&references) else { continue };
+            for (((unknown, dependencies), before), after) in unknowns.iter().zip(&before).zip(&after) {
+                if before.to_bits() != after.to_bits() {
+                    assert!(dependencies.contains(&index), "{} depends on {}", unknown.name, known.name);
+                    *found.entry(&unknown.name).or_default() += 1;
+                }
+            }
+        }
+    }
+    assert!(found.len() > 30, "the changes showed too little: {found:?}");
+}
+
+/// Changes a variable's value a little.
+fn nudge(instance: &mut Instance, variable: &Variable) -> bool {
+    let name = variable.name.as_str();
+    let status = match variable.value_type.as_str() {
+        "Real" => {
+            let value = instance.real(name);
+            let maximum = variable.number("max").expect("a range");
+            let more = value + 0.05 * value.abs().max(0.2);
+            instance.set_real(&[(name, if more <= maximum { more } else { value - 0.05 * value.abs() })])
+        }
+        "Integer" => {
+            let value = instance.integer(name);
+            instance.set_integer(&[(name, value + 1)])
+        }
+        _ => {
+            let value = instance.boolean(name);
+            instance.set_boolean(&[(name, !value)])
+        }
+    };
+    status == OK
+}
+
+/// Names in `declaredType`, `unit` and `displayUnit` are defined.
+#[test]
+fn units_and_types_are_defined() {
+    let document = roxmltree::Document::parse(&description().text).expect("well-formed XML");
+    let names = |tag: &str| -> BTreeSet<&str> {
+        document.descendants().filter(|n| n.has_tag_name(tag)).filter_map(|n| n.attribute("name")).collect()
+    };
+    let (units, types) = (names("Unit"), names("SimpleType"));
+    let display: BTreeSet<(&str, &str)> = (document.descendants().filter(|n| n.has_tag_name("DisplayUnit")))
+        .filter_map(|n| Some((n.parent()?.attribute("name")?, n.attribute("name")?)))
+        .collect();
+    let reals = document.descendants().filter(|n| n.has_tag_name("Real"));
+    for real in reals {
+        let unit = real.attribute("unit");
+        assert!(unit.is_none_or(|unit| units.contains(unit)), "{real:?}");
+        assert!(real.attribute("declaredType").is_none_or(|name| types.contains(name)), "{real:?}");
+        if let Some(preferred) = real.attribute("displayUnit") {
+            assert!(display.contains(&(unit.expect("a display unit needs a unit"), preferred)), "{real:?}");
+        }
+    }
+    for variable in variables().filter(|v| v.value_type == "Real") {
+        assert!(variable.attribute("declaredType").is_some(), "{}", variable.name);
+    }
+}
+
+#[test]
+fn head_is_what_importers_need() {
+    let document = roxmltree::Document::parse(&description().text).expect("well-formed XML");
+    let root = document.root_element();
+    let date = root.attribute("generationDateAndTime").expect("a date");
+    assert!(date.len() == 20 && date.ends_with('Z'), "{date}");
+    assert_eq!(root.attribute("fmiVersion"), Some("2.0"));
+    assert_eq!(root.attribute("modelName"), Some("LmpcQuadrotor"));
+    assert_eq!(root.attribute("variableNamingConvention"), Some("structured"));
+    let simulation = root.first_element_child().expect("a child");
+    assert!(simulation.has_tag_name("CoSimulation"));
+    assert_eq!(simulation.attribute("modelIdentifier"), Some("LmpcQuadrotor"));
+    let experiment = root.children().find(|n| n.has_tag_name("DefaultExperiment")).expect("an experiment");
+    let number = |name| experiment.attribute(name).expect("given").parse::<f64>().expect("a number");
+    // FMPy doubles the step until there are at most 1000 of them; a sample time must stay a multiple.
+    let steps = (number("stopTime") - number("startTime")) / number("stepSize");
+    assert!(steps <= 1000.0 && (0.05 / number("stepSize")).fract() == 0.0, "{steps} steps");
+}

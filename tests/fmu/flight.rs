@@ -1,0 +1,165 @@
+//! Flights: the default one, and that it is the engine's, bit for bit.
+
+use quadrotor::{Configuration, Inputs, Outputs, Simulation};
+
+use crate::common::description::description;
+use crate::common::instance::Instance;
+use crate::common::library::OK;
+use crate::library;
+
+/// The engine's outputs in the order of the description, by name.
+fn bits(outputs: &Outputs) -> Vec<u64> {
+    let o = outputs;
+    let vector = |vector: &[f64]| vector.to_vec();
+    let groups: [(&str, Vec<f64>); 16] = [
+        ("position.", vector(o.position_m.as_slice())),
+        ("velocity.", vector(o.velocity_m_s.as_slice())),
+        ("acceleration.", vector(o.acceleration_m_s2.as_slice())),
+        ("body_velocity.", vector(o.body_velocity_m_s.as_slice())),
+        ("attitude.", [o.attitude_rad.as_slice(), &o.quaternion].concat()),
+        ("body_rate.", vector(o.body_rate_rad_s.as_slice())),
+        ("thrust", vec![o.thrust_n]),
+        ("torque.", vector(o.torque_n_m.as_slice())),
+        ("rotor.", vector(&o.rotor_speed_rad_s)),
+        ("tilt_reference.", vector(&o.tilt_reference_rad)),
+        ("setpoint.position.", vector(o.setpoint.position_m.as_slice())),
+        ("setpoint.velocity.", vector(o.setpoint.velocity_m_s.as_slice())),
+        ("setpoint.acceleration.", vector(o.setpoint.acceleration_m_s2.as_slice())),
+        ("setpoint.yaw", vec![o.setpoint.yaw_rad]),
+        ("tracking_error.", vector(o.tracking_error_m.as_slice())),
+        ("yaw_error", vec![o.yaw_error_rad]),
+    ];
+    let mut bits = Vec::new();
+    let outputs = description().variables.iter().filter(|variable| variable.causality == "output");
+    let mut names = outputs.map(|variable| variable.name.as_str());
+    for (group, values) in &groups {
+        for value in values {
+            let name = names.next().expect("as many outputs as the engine has");
+            assert!(name.starts_with(group), "{name} is not in {group}");
+            bits.push(value.to_bits());
+        }
+    }
+    assert_eq!(names.next(), None);
+    bits
+}
+
+/// Nothing set: the paper's flight, to 5 m north, 5 m east and 10 m up.
+#[test]
+fn default_flight_arrives() {
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    assert_eq!(instance.reals(["position.x", "position.y", "position.z"]), [0.0; 3]);
+    instance.fly(0.0, 0.025, 800);
+    let [x, y, z] = instance.reals(["position.x", "position.y", "position.z"]);
+    assert!((x - 5.0).abs() < 1e-3 && (y - 5.0).abs() < 1e-3 && (z + 10.0).abs() < 1e-3, "{x} {y} {z}");
+    let speeds = instance.reals(["velocity.x", "velocity.y", "velocity.z"]);
+    assert!(speeds.iter().all(|speed| speed.abs() < 1e-3), "{speeds:?}");
+}
+
+#[test]
+fn default_flight_is_the_engines() {
+    let (configuration, inputs) = (Configuration::default(), Inputs::default());
+    let mut engine = Simulation::new(&configuration, &inputs).expect("the defaults are valid");
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    assert_eq!(instance.outputs(), bits(&engine.outputs()));
+    for i in 1..=2000_u32 {
+        assert_eq!(instance.do_step(f64::from(i - 1) * 0.007, 0.007), OK);
+        engine.advance_to(u64::from(i) * 7_000, &inputs).expect("it flies");
+        assert_eq!(instance.outputs(), bits(&engine.outputs()), "after step {i}");
+    }
+}
+
+/// With other parameters, every input in use and changing, and a retuning on the way.
+#[test]
+fn eventful_flight_is_the_engines() {
+    let mut configuration = Configuration::default();
+    configuration.airframe.mass_kg = 0.9;
+    configuration.airframe.drag_n_s_m = [0.1, 0.2, 0.3];
+    configuration.reference.shaping = false;
+    configuration.initial.position_m = [1.0, 2.0, -3.0];
+    configuration.initial.attitude_rad = [0.2, -0.1, 0.5];
+    configuration.controllers.position.terms = 7;
+    configuration.limits.thrust_max = 2.5;
+    let at = |time_s: f64| {
+        let mut inputs = Inputs::default();
+        inputs.reference.position_m = [2.0 * time_s.sin(), 2.0 * time_s.cos(), -4.0 - time_s].into();
+        inputs.reference.velocity_m_s = [2.0 * time_s.cos(), -2.0 * time_s.sin(), -1.0].into();
+        inputs.reference.acceleration_m_s2 = [-2.0 * time_s.sin(), -2.0 * time_s.cos(), 0.0].into();
+        inputs.reference.yaw_rad = 0.3 * time_s;
+        inputs.reference.yaw_rate_rad_s = 0.3;
+        inputs.disturbance.force_n = [0.3, -0.2, 0.1].into();
+        inputs.disturbance.torque_n_m = [0.01, -0.01, 0.005 * time_s].into();
+        inputs.disturbance.wind_m_s = [3.0, -1.0, 0.5 * time_s].into();
+        inputs.armed = time_s < 4.0;
+        inputs
+    };
+    let mut instance = Instance::new(library());
+    let parameters = [
+        ("airframe.mass", 0.9),
+        ("airframe.drag.x", 0.1),
+        ("airframe.drag.y", 0.2),
+        ("airframe.drag.z", 0.3),
+        ("initial.position.x", 1.0),
+        ("initial.position.y", 2.0),
+        ("initial.position.z", -3.0),
+        ("initial.attitude.phi", 0.2),
+        ("initial.attitude.theta", -0.1),
+        ("initial.attitude.psi", 0.5),
+        ("limits.thrust.max", 2.5),
+    ];
+    assert_eq!(instance.set_real(&parameters), OK);
+    assert_eq!(instance.set_integer(&[("controller.position.terms", 7)]), OK);
+    assert_eq!(instance.set_boolean(&[("reference.shaping", false)]), OK);
+    set(&mut instance, &at(0.0));
+    instance.initialize();
+    let mut engine = Simulation::new(&configuration, &at(0.0)).expect("a valid configuration");
+    for i in 0..250_u32 {
+        let time_s = f64::from(i) * 0.02;
+        let inputs = at(time_s);
+        set(&mut instance, &inputs);
+        if i == 100 {
+            configuration.controllers.altitude.increment_weight[0] = 2.0;
+            engine.reconfigure(&configuration).expect("a tunable weight");
+            assert_eq!(instance.set_real(&[("controller.altitude.increment_weight", 2.0)]), OK);
+        }
+        assert_eq!(instance.do_step(time_s, 0.02), OK, "{:?}", instance.log.take());
+        engine.advance_to(u64::from(i + 1) * 20_000, &inputs).expect("it flies");
+        assert_eq!(instance.outputs(), bits(&engine.outputs()), "after step {i}");
+    }
+}
+
+fn set(instance: &mut Instance, inputs: &Inputs) {
+    let groups = [
+        ("reference.position", inputs.reference.position_m),
+        ("reference.velocity", inputs.reference.velocity_m_s),
+        ("reference.acceleration", inputs.reference.acceleration_m_s2),
+        ("disturbance.force", inputs.disturbance.force_n),
+        ("disturbance.torque", inputs.disturbance.torque_n_m),
+        ("wind.velocity", inputs.disturbance.wind_m_s),
+    ];
+    for (group, vector) in groups {
+        let names = ["x", "y", "z"].map(|axis| format!("{group}.{axis}"));
+        let values: Vec<_> = names.iter().map(String::as_str).zip(vector.iter().copied()).collect();
+        assert_eq!(instance.set_real(&values), OK);
+    }
+    let reference = &inputs.reference;
+    let yaw = [("reference.yaw", reference.yaw_rad), ("reference.yaw_rate", reference.yaw_rate_rad_s)];
+    assert_eq!(instance.set_real(&yaw), OK);
+    assert_eq!(instance.set_boolean(&[("armed", inputs.armed)]), OK);
+}
+
+/// FMI 2.0 says that an output in `ModelStructure` without dependencies does not change when an input is
+/// set at a communication point.
+#[test]
+fn outputs_do_not_depend_on_inputs_at_a_communication_point() {
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    instance.fly(0.0, 0.35, 1);
+    let before = instance.outputs();
+    let reals = description().variables.iter().filter(|v| v.causality == "input" && v.value_type == "Real");
+    for variable in reals {
+        assert_eq!(instance.set_real(&[(&variable.name, 3.0)]), OK);
+    }
+    assert_eq!(instance.set_boolean(&[("armed", false)]), OK);
+    assert_eq!(instance.outputs(), before);
+    instance.fly(0.35, 0.05, 1);
+    assert_ne!(instance.outputs(), before);
+}

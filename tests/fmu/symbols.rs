@@ -1,0 +1,37 @@
+//! What the library exports.
+
+use std::collections::BTreeSet;
+use std::ffi::CStr;
+
+use crate::common::library::SYMBOLS;
+use crate::library;
+
+#[test]
+fn there_are_34_functions() {
+    assert_eq!(SYMBOLS.iter().collect::<BTreeSet<_>>().len(), 34);
+}
+
+/// Read from the file: the linker decides what is exported, and another one may decide otherwise.
+#[test]
+#[cfg(target_os = "linux")]
+fn exactly_the_functions_of_the_interface_are_exported() {
+    use object::{Object, ObjectSymbol};
+
+    let bytes = std::fs::read(crate::common::library::path()).expect("the library was built");
+    let file = object::File::parse(&*bytes).expect("it is an ELF file");
+    let exported: BTreeSet<&str> = file
+        .dynamic_symbols()
+        .filter(|symbol| symbol.is_definition())
+        .map(|symbol| symbol.name().expect("symbols have names"))
+        .collect();
+    assert_eq!(exported, SYMBOLS.iter().copied().collect());
+}
+
+#[test]
+fn version_and_platform() {
+    // SAFETY: both functions take nothing and return static strings.
+    unsafe {
+        assert_eq!(CStr::from_ptr((library().get_version)()), c"2.0");
+        assert_eq!(CStr::from_ptr((library().get_types_platform)()), c"default");
+    }
+}

@@ -1,0 +1,220 @@
+//! Getting and setting values: what is refused, and that nothing changes then.
+
+use crate::common::description::{Variable, description};
+use crate::common::instance::Instance;
+use crate::common::library::{ERROR, OK, Reference};
+use crate::library;
+
+fn settable() -> impl Iterator<Item = &'static Variable> {
+    description().variables.iter().filter(|v| v.causality == "input" || v.causality == "parameter")
+}
+
+/// All values that can be set, as bits.
+fn settings(instance: &mut Instance) -> Vec<u64> {
+    settable()
+        .map(|variable| match variable.value_type.as_str() {
+            "Real" => instance.real(&variable.name).to_bits(),
+            "Integer" => instance.integer(&variable.name) as u64,
+            _ => u64::from(instance.boolean(&variable.name)),
+        })
+        .collect()
+}
+
+#[test]
+fn what_is_set_is_read_back() {
+    let mut instance = Instance::new(library());
+    for variable in settable() {
+        let name = variable.name.as_str();
+        match variable.value_type.as_str() {
+            "Real" => {
+                let [minimum, maximum] = ["min", "max"].map(|end| variable.number(end).expect("a range"));
+                for value in [minimum, maximum, (minimum + maximum) / 2.0] {
+                    assert_eq!(instance.set_real(&[(name, value)]), OK);
+                }
+            }
+            "Integer" => assert_eq!(instance.set_integer(&[(name, 17)]), OK),
+            _ => assert_eq!(instance.set_boolean(&[(name, false)]), OK),
+        }
+    }
+    assert_eq!(instance.enter_initialization_mode(), OK);
+    for variable in settable() {
+        let name = variable.name.as_str();
+        match variable.value_type.as_str() {
+            "Real" => {
+                let [minimum, maximum] = ["min", "max"].map(|end| variable.number(end).expect("a range"));
+                let (expected, got) = ((minimum + maximum) / 2.0, instance.real(name));
+                // Sample times are kept in microseconds.
+                assert!((got - expected).abs() <= 1e-12 * expected.abs(), "{name}: {got}");
+            }
+            "Integer" => assert_eq!(instance.integer(name), 17, "{name}"),
+            _ => assert!(!instance.boolean(name), "{name}"),
+        }
+    }
+}
+
+/// In each state in which values can be set, for each number there is.
+#[test]
+fn values_out_of_range_are_refused_by_name() {
+    let check = |instance: &mut Instance, before: &[u64], all: bool| {
+        for variable in settable().filter(|v| all || v.causality == "input" || v.variability == "tunable") {
+            let name = variable.name.as_str();
+            match variable.value_type.as_str() {
+                "Real" => {
+                    let [minimum, maximum] = ["min", "max"].map(|end| variable.number(end).expect("a range"));
+                    let outside = [
+                        minimum - 1e-9 * minimum.abs().max(1.0),
+                        maximum + 1e-9 * maximum.abs().max(1.0),
+                        f64::NAN,
+                        f64::INFINITY,
+                        f64::NEG_INFINITY,
+                    ];
+                    for value in outside {
+                        assert_eq!(instance.set_real(&[(name, value)]), ERROR, "{name} = {value}");
+                        let text = instance.log.last().text;
+                        assert!(text.contains(&format!("{name} = {value:?} is outside [")), "{text}");
+                    }
+                }
+                "Integer" => {
+                    for value in [-1, 0, 1001, i32::MAX, i32::MIN] {
+                        assert_eq!(instance.set_integer(&[(name, value)]), ERROR, "{name} = {value}");
+                        assert!(instance.log.last().text.contains(name));
+                    }
+                }
+                _ => {}
+            }
+        }
+        if !before.is_empty() {
+            assert_eq!(settings(instance), before);
+        }
+    };
+    let mut instance = Instance::new(library());
+    check(&mut instance, &[], true);
+    assert_eq!(instance.enter_initialization_mode(), OK);
+    let before = settings(&mut instance);
+    check(&mut instance, &before, true);
+    assert_eq!(instance.exit_initialization_mode(), OK);
+    instance.fly(0.0, 0.1, 1);
+    let outputs = instance.outputs();
+    check(&mut instance, &before, false);
+    assert_eq!(instance.outputs(), outputs);
+    instance.fly(0.1, 0.1, 1);
+}
+
+/// One bad value among five, at any place: none is set.
+#[test]
+fn one_call_is_one_transaction() {
+    let good = [
+        ("reference.position.x", 1.0),
+        ("limits.jerk.vertical", 5.0),
+        ("reference.position.y", 2.0),
+        ("limits.speed.up", 1.5),
+        ("disturbance.force.z", 0.5),
+    ];
+    let bad =
+        [("disturbance.torque.x", f64::NAN), ("limits.tilt", 9.0), ("airframe.mass", 0.8), ("thrust", 1.0)];
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    let before = settings(&mut instance);
+    for place in 0..=good.len() {
+        for wrong in bad {
+            let mut values = good.to_vec();
+            values.insert(place, wrong);
+            assert_eq!(instance.set_real(&values), ERROR, "{wrong:?} at {place}");
+            assert!(instance.log.last().text.contains(wrong.0));
+            assert_eq!(settings(&mut instance), before, "{wrong:?} at {place}");
+        }
+    }
+    assert_eq!(instance.set_real(&good), OK);
+    assert_eq!(instance.reals(good.map(|(name, _)| name)), good.map(|(_, value)| value));
+}
+
+#[test]
+fn of_two_values_for_one_variable_the_last_counts() {
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    assert_eq!(instance.set_real(&[("reference.yaw", 1.0), ("reference.yaw", 2.0)]), OK);
+    assert_eq!(instance.real("reference.yaw"), 2.0);
+}
+
+#[test]
+fn unknown_references_and_wrong_types_are_refused() {
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    let before = settings(&mut instance);
+    let count = Reference::try_from(description().variables.len()).expect("a small number");
+    for reference in [count, count + 1, Reference::MAX] {
+        let status =
+            instance.set_real_references(&[description().reference("reference.yaw"), reference], &[1.0; 2]);
+        assert_eq!(status, ERROR);
+        assert!(instance.log.last().text.contains(&reference.to_string()));
+        assert_eq!(instance.try_reals(&[0, reference]), Err(ERROR));
+        assert!(instance.log.last().text.contains(&reference.to_string()));
+    }
+    let (c, l) = (instance.component, library());
+    for variable in &description().variables {
+        let reference = variable.reference;
+        let real = variable.value_type == "Real";
+        let text = |instance: &Instance| instance.log.last().text;
+        // SAFETY: the instance is alive and all pointers are valid.
+        unsafe {
+            if real {
+                assert_eq!((l.set_integer)(c, &reference, 1, &1), ERROR);
+                assert!(text(&instance).contains(&variable.name));
+                assert_eq!((l.get_boolean)(c, &reference, 1, &mut 0), ERROR);
+            } else {
+                assert_eq!((l.set_real)(c, &reference, 1, &1.0), ERROR);
+                assert!(text(&instance).contains(&variable.name));
+                assert_eq!((l.get_real)(c, &reference, 1, &mut 0.0), ERROR);
+            }
+            assert!(text(&instance).contains(&variable.name));
+            assert_eq!((l.get_string)(c, &reference, 1, &mut std::ptr::null()), ERROR);
+            assert_eq!((l.set_string)(c, &reference, 1, &c"text".as_ptr()), ERROR);
+        }
+    }
+    assert_eq!(settings(&mut instance), before);
+}
+
+/// A refused read writes nothing, also not the values before the bad one.
+#[test]
+fn refused_reading_writes_nothing() {
+    let instance = Instance::initialized(library(), &[], &[]);
+    let references = [description().reference("thrust"), Reference::MAX];
+    let mut values = [-7.0; 2];
+    // SAFETY: the instance is alive; both arrays have two elements.
+    let status =
+        unsafe { (library().get_real)(instance.component, references.as_ptr(), 2, values.as_mut_ptr()) };
+    assert_eq!((status, values), (ERROR, [-7.0; 2]));
+}
+
+#[test]
+fn what_is_not_settable_stays() {
+    let mut instance = Instance::new(library());
+    for variable in
+        description().variables.iter().filter(|v| !["input", "parameter"].contains(&&*v.causality))
+    {
+        assert_eq!(instance.set_real(&[(&variable.name, 0.5)]), ERROR, "{}", variable.name);
+        assert!(instance.log.last().text.contains(&variable.name));
+    }
+    instance.initialize();
+    for variable in settable().filter(|v| v.variability == "fixed") {
+        let name = variable.name.as_str();
+        let status = match variable.value_type.as_str() {
+            "Real" => instance.set_real(&[(name, variable.number("start").expect("a start value"))]),
+            "Integer" => instance.set_integer(&[(name, 5)]),
+            _ => instance.set_boolean(&[(name, true)]),
+        };
+        assert_eq!(status, ERROR, "{name} is fixed");
+        assert!(instance.log.last().text.contains(name));
+    }
+}
+
+/// C has no Booleans; anything but 0 is true.
+#[test]
+fn booleans_are_read_as_c_does() {
+    let mut instance = Instance::initialized(library(), &[], &[]);
+    for (value, expected) in [(0, false), (1, true), (0, false), (-1, true), (i32::MIN, true)] {
+        // SAFETY: the instance is alive and the pointers are valid.
+        let status = unsafe {
+            (library().set_boolean)(instance.component, &description().reference("armed"), 1, &value)
+        };
+        assert_eq!(status, OK);
+        assert_eq!(instance.boolean("armed"), expected);
+    }
+}

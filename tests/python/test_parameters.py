@@ -1,0 +1,169 @@
+"""Start values, tunable parameters and inputs."""
+
+import numpy as np
+import pytest
+from fmpy import extract, simulate_fmu
+from fmpy.fmi1 import FMICallException
+
+import flights
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("airframe.mass", 1.0),
+        ("airframe.inertia.x", 0.05),
+        ("airframe.rotor.time_constant", 0.05),
+        ("initial.position.x", -3.0),
+        ("initial.attitude.phi", 0.2),
+        ("controller.position.terms", 7),
+        ("controller.attitude.scale", 0.7),
+        ("controller.altitude.alpha", 1.0),
+        ("controller.position.increment_weight.theta", 1000.0),
+        ("limits.speed.horizontal", 1.0),
+        ("reference.shaping", False),
+        ("environment.ground_plane", True),
+    ],
+)
+def test_start_values_are_taken_and_matter(unzipped, model_description, name, value):
+    def flight(start_values):
+        return simulate_fmu(
+            unzipped, stop_time=3.0, output_interval=0.01, start_values=start_values, model_description=model_description
+        )
+
+    # Off the axis of symmetry, so that everything matters.
+    base = {"disturbance.torque.z": 0.01, "disturbance.force.z": 8.0, "disturbance.torque.x": 0.1}
+    changed = flight({**base, name: value})
+    assert np.isfinite(changed["position.z"]).all()
+    plain = flight(base)
+    assert any((changed[column] != plain[column]).any() for column in changed.dtype.names)
+
+
+@pytest.mark.parametrize(
+    "name, value",
+    [
+        ("airframe.mass", -1.0),
+        ("airframe.mass", float("nan")),
+        ("airframe.inertia.y", float("inf")),
+        ("controller.position.scale", 1.0),
+        ("controller.attitude.terms", 0),
+        ("limits.tilt", 10.0),
+        ("reference.position.x", float("nan")),
+    ],
+)
+def test_bad_values_are_refused_by_name_and_change_nothing(slave, name, value):
+    instance = slave()
+    instance.fmu.setupExperiment(startTime=0.0)
+    with pytest.raises(FMICallException):
+        instance.set({name: value})
+    assert any(name in message for _, _, message in instance.log), instance.log
+
+
+def test_simulation_with_a_bad_start_value_names_it(unzipped, model_description, capsys):
+    with pytest.raises(FMICallException):
+        simulate_fmu(
+            unzipped, stop_time=1.0, start_values={"airframe.mass": 1e9}, model_description=model_description
+        )
+    assert "airframe.mass" in capsys.readouterr().out
+
+
+def test_a_tunable_weight_redesigns_the_controller_in_flight(slave):
+    flown = slave({"reference.shaping": False})
+    flown.fly(0.0, 0.5, 0.01)
+    radius = flown.get("controller.position.spectral_radius")[0]
+    flown.set({"controller.position.increment_weight.theta": 5000.0, "controller.position.increment_weight.phi": 5000.0})
+    flown.fly(0.5, 1.0, 0.01)
+    slower = flown.get("controller.position.spectral_radius")[0]
+    # Dearer moves make a slower loop.
+    assert radius < slower < 1.0
+    assert np.isfinite(flown.fly(1.0, 20.0, 0.1)).all()
+
+
+def test_a_fixed_parameter_cannot_change_in_flight(slave):
+    flown = slave({"reference.shaping": False})
+    flown.fly(0.0, 0.5, 0.01)
+    with pytest.raises(FMICallException):
+        flown.set({"airframe.mass": 1.0})
+    assert any("airframe.mass" in message for _, _, message in flown.log), flown.log
+
+
+def test_an_input_step_takes_effect_when_it_happens(unzipped, model_description):
+    """A goal given at 1 s: nothing moves before. FMPy interpolates the constant parts of the table, so that
+    the goal wavers in its last bit; that must not be taken for a new goal."""
+    signals = np.array(
+        [(0.0, 0.0), (1.0, 0.0), (1.0, -3.0), (12.0, -3.0)],
+        dtype=[("time", float), ("reference.position.z", float)],
+    )
+    start = {"reference.position.x": 0.0, "reference.position.y": 0.0}
+    result = simulate_fmu(
+        unzipped,
+        stop_time=12.0,
+        output_interval=0.01,
+        start_values=start,
+        input=signals,
+        model_description=model_description,
+    )
+    before, after = result["time"] <= 1.0, result["time"] >= 9.0
+    assert np.abs(result["position.z"][before]).max() < 1e-9
+    np.testing.assert_allclose(result["position.z"][after], -3.0, atol=1e-4)
+
+
+@pytest.mark.parametrize("amplitude", [1e-15, 1e-9, 1e-6])
+def test_a_goal_that_wavers_a_little_is_held(unzipped, model_description, amplitude):
+    """A goal that comes from a measurement or an interpolation is never quite constant."""
+    times = flights.time_grid(20.0)
+    noise = np.random.default_rng(1).standard_normal((2, len(times)))
+    signals = np.zeros(
+        len(times), dtype=[("time", float), ("reference.position.x", float), ("reference.position.z", float)]
+    )
+    signals["time"] = times
+    signals["reference.position.x"] = 3.0 + amplitude * noise[0]
+    signals["reference.position.z"] = -10.0 + amplitude * noise[1]
+    result = simulate_fmu(
+        unzipped,
+        stop_time=20.0,
+        output_interval=flights.INTERVAL,
+        start_values={"reference.position.y": 0.0},
+        input=signals,
+        model_description=model_description,
+    )
+    late = result["time"] >= 14.0
+    np.testing.assert_allclose(result["position.x"][late], 3.0, atol=1e-3)
+    np.testing.assert_allclose(result["position.z"][late], -10.0, atol=1e-3)
+    assert np.abs(result["attitude.theta"][late]).max() < 1e-3
+
+
+def test_input_derivatives_bridge_long_communication_steps(unzipped, model_description):
+    """With derivatives the inputs go on between communication points instead of standing still."""
+    flight = flights.smooth(yaw=0.0)
+    # FMPy 0.3.32 hands over derivatives only if exactly nine continuous inputs are given.
+    names = [f"reference.{kind}.{axis}" for kind in ("position", "velocity", "acceleration") for axis in "xyz"]
+    signals = flight.signals(model_description)[["time", *names]].copy()
+
+    def largest_error(set_input_derivatives: bool) -> float:
+        result = simulate_fmu(
+            unzipped,
+            stop_time=flight.duration,
+            output_interval=0.2,
+            start_values=flight.start_values,
+            input=signals,
+            set_input_derivatives=set_input_derivatives,
+            model_description=model_description,
+        )
+        reference, _ = flight.reference(result["time"])
+        return max(np.abs(result[f"position.{axis}"] - reference[:, i]).max() for i, axis in enumerate("xyz"))
+
+    held, extrapolated = largest_error(False), largest_error(True)
+    assert extrapolated < 0.02
+    assert extrapolated < 0.2 * held
+
+
+def test_a_path_with_spaces_and_other_letters(fmu, tmp_path):
+    folder = tmp_path / "Über Flüge – летать 飛行"
+    folder.mkdir()
+    copy = folder / "Lmpc Quadrotor №1.fmu"
+    copy.write_bytes(fmu.read_bytes())
+    plain = simulate_fmu(str(fmu), stop_time=1.0)
+    assert (simulate_fmu(str(copy), stop_time=1.0) == plain).all()
+    # Extracted below such a path, the resource location is percent-encoded.
+    assert (simulate_fmu(extract(str(copy), unzipdir=str(folder / "ausgepackt ü")), stop_time=1.0) == plain).all()

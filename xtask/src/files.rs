@@ -1,0 +1,59 @@
+//! Reading and writing files, with the path in every error.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::failure::Failure;
+
+/// Reads a file.
+pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    fs::read(path).map_err(failure("read", path))
+}
+
+/// Reads a text file.
+pub fn read_text(path: &Path) -> Result<String, Failure> {
+    fs::read_to_string(path).map_err(failure("read", path))
+}
+
+/// Writes a file and the folders that it lies in. Whoever reads it meanwhile sees the old one or the new
+/// one, never a part.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".new");
+    let new = path.with_file_name(name);
+    fs::write(&new, bytes).map_err(failure("write", &new))?;
+    fs::rename(&new, path).map_err(failure("write", path))
+}
+
+/// Creates a folder with its parents.
+pub fn create_folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(failure("create", path))
+}
+
+/// Removes a folder with all that it holds, if it exists.
+pub fn remove_folder(path: &Path) -> Result<(), Failure> {
+    match fs::remove_dir_all(path) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => Err(failure("remove", path)(source)),
+        _ => Ok(()),
+    }
+}
+
+/// Names of the files in a folder, sorted.
+pub fn names_in(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = fs::read_dir(path).map_err(failure("list", path))?;
+    let mut paths = entries
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(failure("list", path))?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn failure(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Failure {
+    let path = path.to_owned();
+    move |source| Failure::File { action, path, source }
+}

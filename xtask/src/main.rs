@@ -1,0 +1,126 @@
+//! Build tooling, run as `cargo xtask`: bundles the FMU, writes modelDescription.xml, flies the demo and
+//! runs all tests.
+
+mod bundle;
+mod cargo;
+mod demo;
+mod failure;
+mod files;
+mod model_description;
+mod process;
+mod progress;
+mod python;
+mod test;
+mod workspace;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+use progress::Progress;
+use workspace::Workspace;
+
+/// Builds, demonstrates and tests the quadrotor FMU.
+///
+/// Needs a Rust toolchain; `demo` and `test` also need Python 3.10 or newer with venv and pip, in which
+/// they make their own environment under target/venv.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask", disable_help_subcommand = true)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Writes target/fmu/LmpcQuadrotor.fmu: library, description, documentation, icon and licences.
+    ///
+    /// The same sources and toolchain give the same bytes.
+    Fmu {
+        /// An FMU of the same sources, built on another platform, whose binaries are taken over; may be
+        /// given several times.
+        #[arg(long, value_name = "OTHER.fmu")]
+        merge: Vec<PathBuf>,
+    },
+    /// Rewrites modelDescription.xml at the root of the repository.
+    ///
+    /// A test fails as long as that file is not what the FMU's table of variables gives.
+    ModelDescription,
+    /// Flies the FMU in FMPy and writes tables and plots to target/demo.
+    ///
+    /// Builds the FMU and the Python environment first. Fails when a flight misses its goal.
+    Demo,
+    /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
+    ///
+    /// Plain `cargo test` runs the Rust part alone, without network or Python.
+    Test,
+}
+
+fn main() -> ExitCode {
+    let task = Arguments::parse().task;
+    match run(&task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: &Task) -> Result<(), Failure> {
+    let workspace = Workspace::find()?;
+    let progress = Progress::start();
+    match task {
+        Task::Fmu { merge } => bundle::make(&workspace, &progress, merge).map(|_| ()),
+        Task::ModelDescription => model_description::write(&workspace),
+        Task::Demo => demo::fly(&workspace, &progress),
+        Task::Test => test::run_all(&workspace, &progress),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::path::Path;
+
+    use clap::CommandFactory;
+
+    use super::{Workspace, files};
+
+    #[test]
+    fn arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+
+    /// The README's flight is the documentation example of `quadrotor`, which is compiled and run.
+    #[test]
+    fn rust_code_of_the_readme_is_a_documentation_test() {
+        let workspace = Workspace::find().expect("cargo knows the workspace");
+        let read = |path: &str| files::read_text(&workspace.root().join(path)).expect("is there");
+        let readme = read("README.md");
+        let (_, rest) = readme.split_once("```rust\n").expect("the README has Rust code");
+        let (code, _) = rest.split_once("```").expect("the code ends");
+        let documentation = read("quadrotor/src/lib.rs");
+        for line in code.lines().filter(|line| !line.is_empty()) {
+            assert!(documentation.contains(&format!("//! {line}\n")), "not in quadrotor/src/lib.rs: {line}");
+        }
+    }
+
+    /// Says what plain `cargo test` leaves out; directly, because output of passing tests is not shown.
+    #[test]
+    fn python_tests_are_left_to_cargo_xtask_test() {
+        let workspace = Workspace::find().expect("cargo knows the workspace");
+        let files = files::names_in(&workspace.python_tests()).expect("is there");
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let count = files.iter().filter(|path| name(path).starts_with("test_")).count();
+        assert!(count > 0, "the Python tests have moved");
+        if std::env::var_os(super::test::ALL_TESTS).is_none() {
+            let _ = writeln!(
+                std::io::stderr(),
+                "note: {count} files of tests in tests/python are left to `cargo xtask test`"
+            );
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! `cargo xtask model-description`.
+
+use crate::failure::Failure;
+use crate::files;
+use crate::workspace::Workspace;
+
+/// Rewrites modelDescription.xml at the root of the repository.
+pub fn write(workspace: &Workspace) -> Result<(), Failure> {
+    let path = workspace.model_description();
+    files::write(&path, fmu::description::model_description().as_bytes())?;
+    println!("{}", workspace.shown(&path));
+    Ok(())
+}

@@ -1,0 +1,137 @@
+//! `cargo xtask test`: every test there is.
+
+use std::io::{BufRead, BufReader};
+use std::ops::AddAssign;
+use std::process::Stdio;
+
+use roxmltree::Document;
+
+use crate::bundle;
+use crate::cargo::cargo;
+use crate::failure::Failure;
+use crate::files;
+use crate::process;
+use crate::progress::Progress;
+use crate::python;
+use crate::workspace::Workspace;
+
+/// Environment variable by which a test knows that the Python tests follow.
+pub const ALL_TESTS: &str = "LMPC_QUADROTOR_ALL_TESTS";
+
+/// Tests that ran.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Count {
+    passed: u32,
+    failed: u32,
+    skipped: u32,
+}
+
+impl AddAssign for Count {
+    fn add_assign(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.skipped += other.skipped;
+    }
+}
+
+/// Runs all tests, the Python ones also when Rust ones failed, and prints one line at the end.
+pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
+    // First: what is missing on the machine is said before the long build.
+    let python = python::environment(workspace, progress)?;
+    progress.step("Running the Rust tests");
+    let (mut count, rust_passed) = rust_tests(workspace)?;
+
+    let fmu = bundle::make(workspace, progress, &[])?;
+    progress.step("Running the Python tests");
+    let report = workspace.python_report();
+    let status = process::status(
+        python
+            .command()
+            .args(["-m", "pytest", "-p", "no:cacheprovider"])
+            .arg(workspace.python_tests())
+            .arg(format!("--junitxml={}", report.display()))
+            .current_dir(workspace.root())
+            .env("LMPC_QUADROTOR_FMU", &fmu),
+    )?;
+    count += python_count(&files::read_text(&report)?)?;
+
+    let mut failed = Vec::new();
+    if !rust_passed {
+        failed.push("Rust tests");
+    }
+    if !status.success() {
+        failed.push("Python tests");
+    }
+    let Count { passed, failed: count_failed, skipped } = count;
+    println!("total: {passed} passed, {count_failed} failed, {skipped} skipped");
+    if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }
+}
+
+/// Runs `cargo test` for the whole workspace, passing its output on while counting.
+fn rust_tests(workspace: &Workspace) -> Result<(Count, bool), Failure> {
+    let mut command = cargo();
+    command
+        .args(["test", "--workspace", "--no-fail-fast"])
+        .current_dir(workspace.root())
+        .env(ALL_TESTS, "1")
+        .stdout(Stdio::piped());
+    let mut child = command.spawn().map_err(|source| process::not_started(&command, source))?;
+    let mut count = Count::default();
+    if let Some(stdout) = child.stdout.take() {
+        for line in BufReader::new(stdout).lines().map_while(Result::ok) {
+            println!("{line}");
+            count += rust_count(&line);
+        }
+    }
+    let status = child.wait().map_err(|source| process::not_started(&command, source))?;
+    Ok((count, status.success()))
+}
+
+/// Reads `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
+fn rust_count(line: &str) -> Count {
+    let mut count = Count::default();
+    let Some(result) = line.strip_prefix("test result: ") else { return count };
+    for part in result.split(['.', ';']) {
+        let mut words = part.split_whitespace();
+        let Some(number) = words.next().and_then(|word| word.parse().ok()) else { continue };
+        match words.next() {
+            Some("passed") => count.passed = number,
+            Some("failed") => count.failed = number,
+            Some("ignored") => count.skipped = number,
+            _ => {}
+        }
+    }
+    count
+}
+
+/// Reads the attributes of `<testsuite>` in a JUnit report.
+fn python_count(report: &str) -> Result<Count, Failure> {
+    let unreadable = |detail: String| Failure::Answer { what: "pytest's report", detail };
+    let document = Document::parse(report).map_err(|error| unreadable(error.to_string()))?;
+    let suite = document
+        .descendants()
+        .find(|node| node.has_tag_name("testsuite"))
+        .ok_or_else(|| unreadable("it has no test suite".to_owned()))?;
+    let number = |name| suite.attribute(name).and_then(|text| text.parse::<u32>().ok()).unwrap_or(0);
+    let (failed, skipped) = (number("failures") + number("errors"), number("skipped"));
+    Ok(Count { passed: number("tests").saturating_sub(failed + skipped), failed, skipped })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Count, python_count, rust_count};
+
+    #[test]
+    fn reads_the_line_of_a_rust_suite() {
+        let line = "test result: FAILED. 12 passed; 2 failed; 1 ignored; 0 measured; 3 filtered out; finished in 0.10s";
+        assert_eq!(rust_count(line), Count { passed: 12, failed: 2, skipped: 1 });
+        assert_eq!(rust_count("test lmpc::works ... ok"), Count::default());
+    }
+
+    #[test]
+    fn reads_the_report_of_pytest() {
+        let report = r#"<?xml version="1.0"?><testsuites><testsuite name="pytest" errors="1" failures="2" skipped="3" tests="10"/></testsuites>"#;
+        assert_eq!(python_count(report).ok(), Some(Count { passed: 4, failed: 3, skipped: 3 }));
+        assert!(python_count("<testsuites/>").is_err());
+    }
+}

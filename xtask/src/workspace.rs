@@ -1,0 +1,70 @@
+//! Where things lie in the repository and below its target folder.
+
+use std::path::{Path, PathBuf};
+
+use crate::cargo;
+use crate::failure::Failure;
+
+/// The repository.
+pub struct Workspace {
+    root: PathBuf,
+    target: PathBuf,
+}
+
+impl Workspace {
+    /// Asks cargo, which knows of every way to move the target folder.
+    pub fn find() -> Result<Self, Failure> {
+        let metadata = cargo::metadata_without_dependencies()?;
+        Ok(Self { root: metadata.workspace_root, target: metadata.target_directory })
+    }
+
+    /// Root of the repository.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The description that the repository holds.
+    pub fn model_description(&self) -> PathBuf {
+        self.root.join("modelDescription.xml")
+    }
+
+    /// Template of the documentation, icon.
+    pub fn fmu_assets(&self) -> PathBuf {
+        self.root.join("fmu").join("assets")
+    }
+
+    /// Scripts and requirements of the demo.
+    pub fn python_sources(&self) -> PathBuf {
+        self.root.join("xtask").join("python")
+    }
+
+    /// Tests in Python.
+    pub fn python_tests(&self) -> PathBuf {
+        self.root.join("tests").join("python")
+    }
+
+    /// The FMU that is built.
+    pub fn fmu(&self) -> PathBuf {
+        self.target.join("fmu").join(format!("{}.fmu", fmu::MODEL_IDENTIFIER))
+    }
+
+    /// What the demo writes.
+    pub fn demo(&self) -> PathBuf {
+        self.target.join("demo")
+    }
+
+    /// The Python environment.
+    pub fn python_environment(&self) -> PathBuf {
+        self.target.join("venv")
+    }
+
+    /// Report of the Python tests.
+    pub fn python_report(&self) -> PathBuf {
+        self.target.join("python-tests.xml")
+    }
+
+    /// A path as a person at the root of the repository would write it.
+    pub fn shown(&self, path: &Path) -> String {
+        path.strip_prefix(&self.root).unwrap_or(path).display().to_string()
+    }
+}
