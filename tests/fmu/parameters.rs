@@ -82,7 +82,10 @@ fn refused_tuning_leaves_no_trace() {
                 let values = [("limits.acceleration.horizontal", 12.0), ("reference.position.x", 77.0)];
                 assert_eq!(instance.set_real(&values), ERROR);
                 assert!(instance.log.last().text.contains("limits.acceleration.horizontal"));
-                assert_eq!(instance.reals(["limits.acceleration.horizontal", "reference.position.x"]), starts);
+                assert_eq!(
+                    instance.reals(["limits.acceleration.horizontal", "reference.position.x"]),
+                    starts
+                );
             }
             assert_eq!(instance.do_step(f64::from(i) * 0.1, 0.1), OK);
         }
