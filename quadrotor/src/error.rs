@@ -47,6 +47,12 @@ pub enum ConfigurationError {
         /// Public name of the parameter.
         name: &'static str,
     },
+    /// A saved state that no flight with this configuration can have been in.
+    #[error("the saved state is none of this flight: {reason}")]
+    State {
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// A parameter that is fixed during the flight would change.
     #[error("{name} is fixed during the flight")]
     Fixed {

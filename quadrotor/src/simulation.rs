@@ -30,6 +30,25 @@ pub struct SimulationState {
     cascade: Cascade,
 }
 
+impl SimulationState {
+    /// Whether a flight can have been in this state: saved states may come from anywhere.
+    fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        // Nine thousand years: what is added to it below does not overflow.
+        const LATEST_US: u64 = u64::MAX / 64;
+        let wrong = |reason| Err(ConfigurationError::State { reason });
+        if self.time_us > LATEST_US || self.event_us > self.time_us {
+            return wrong("its last event lies in the future");
+        }
+        if self.time_us > next_event_us(configuration, self.event_us) {
+            return wrong("its last event is not the last");
+        }
+        if !self.plant.is_finite() {
+            return wrong("its plant is not finite");
+        }
+        Ok(())
+    }
+}
+
 /// A flight: configuration, controllers designed from it, and state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
@@ -64,11 +83,12 @@ impl Simulation {
     /// A flight that goes on from a saved state of a flight with the same configuration.
     ///
     /// # Errors
-    /// As [`Simulation::new`].
+    /// As [`Simulation::new`], and [`ConfigurationError::State`].
     pub fn from_state(
         configuration: &Configuration,
         state: SimulationState,
     ) -> Result<Self, ConfigurationError> {
+        state.check(configuration)?;
         let design = CascadeDesign::new(configuration)?;
         Ok(Self { configuration: *configuration, design, state })
     }

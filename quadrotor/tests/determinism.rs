@@ -129,3 +129,23 @@ fn a_flight_without_shaping_does_not_allocate() {
     });
     assert_eq!(allocations.count_total, 0);
 }
+
+/// Saved states may come from anywhere: bytes of the right form whose clocks contradict one another are refused.
+#[test]
+fn impossible_states_are_refused() {
+    let configuration = unshaped();
+    let good = flown_to(&configuration, &[1_000_500]);
+    let bytes = postcard::to_allocvec(good.state()).unwrap();
+    // Both clocks, 1 000 500 µs and 1 000 000 µs, stand first, as variable-length integers of three bytes.
+    assert_eq!(bytes[..6], [0xb4, 0x88, 0x3d, 0xc0, 0x84, 0x3d]);
+    let refused = |clocks: [u8; 6]| {
+        let mut forged = bytes.clone();
+        forged[..6].copy_from_slice(&clocks);
+        let state = postcard::from_bytes(&forged).unwrap();
+        matches!(Simulation::from_state(&configuration, state), Err(ConfigurationError::State { .. }))
+    };
+    assert!(!refused([0xb4, 0x88, 0x3d, 0xc0, 0x84, 0x3d]));
+    // The event after the present, then long before it.
+    assert!(refused([0xc0, 0x84, 0x3d, 0xb4, 0x88, 0x3d]));
+    assert!(refused([0xb4, 0x88, 0x3d, 0x80, 0x80, 0x01]));
+}
