@@ -7,6 +7,7 @@ mod demo;
 mod failure;
 mod files;
 mod model_description;
+mod paper;
 mod process;
 mod progress;
 mod python;
@@ -52,6 +53,12 @@ enum Task {
     ///
     /// Builds the FMU and the Python environment first. Fails when a flight misses its goal.
     Demo,
+    /// Computes the paper's tables and eigenvalues again: target/paper/report.html and results.json.
+    Paper {
+        /// Prints gains, eigenvalues and condition numbers of the discrete model in this file as JSON instead.
+        #[arg(long, value_name = "MODEL.toml")]
+        gain: Option<PathBuf>,
+    },
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
@@ -76,6 +83,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { merge } => bundle::make(&workspace, &progress, merge).map(|_| ()),
         Task::ModelDescription => model_description::write(&workspace),
         Task::Demo => demo::fly(&workspace, &progress),
+        Task::Paper { gain } => paper::run(&workspace, gain.as_deref()),
         Task::Test => test::run_all(&workspace, &progress),
     }
 }

@@ -53,6 +53,11 @@ impl Workspace {
         self.target.join("demo")
     }
 
+    /// The paper's results.
+    pub fn paper(&self) -> PathBuf {
+        self.target.join("paper")
+    }
+
     /// The Python environment.
     pub fn python_environment(&self) -> PathBuf {
         self.target.join("venv")

@@ -1,0 +1,22 @@
+//! The paper's results, computed again (Chipofya, Lee, Chong 2015).
+//!
+//! ```text
+//! tables ──────────┐
+//! eigenvalues ─────┼─► results (results.json) ─► report (report.html)
+//! design ◄─ model_file (--gain)
+//! ```
+
+mod design;
+mod eigenvalue_figure;
+mod eigenvalues;
+mod error;
+mod model_file;
+mod report;
+mod results;
+mod tables;
+
+pub use design::{DesignResult, design};
+pub use error::Error;
+pub use model_file::ModelFile;
+pub use report::report;
+pub use results::{Results, results};

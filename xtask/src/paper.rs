@@ -1,0 +1,20 @@
+//! `cargo xtask paper`.
+
+use std::path::Path;
+
+use crate::cargo::cargo;
+use crate::failure::Failure;
+use crate::process;
+use crate::workspace::Workspace;
+
+/// Computes the paper's results, or designs a controller for the model in a file.
+pub fn run(workspace: &Workspace, gain: Option<&Path>) -> Result<(), Failure> {
+    let mut command = cargo();
+    command.args(["run", "--quiet", "--package", "paper", "--"]);
+    match gain {
+        Some(model) => command.arg("--gain").arg(model),
+        None => command.arg("--out").arg(workspace.paper()),
+    };
+    let status = process::status(&mut command)?;
+    if status.success() { Ok(()) } else { Err(Failure::Ended { what: "the computation".to_owned(), status }) }
+}
