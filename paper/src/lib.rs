@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! tables ──────────┐
-//! eigenvalues ─────┼─► results (results.json) ─► report (report.html)
+//! eigenvalues ─────┤
+//! closed_loop ─────┼─► results (results.json) ─► report (report.html)
 //! design ◄─ model_file (--gain)
 //! ```
 
+mod closed_loop;
 mod design;
 mod eigenvalue_figure;
 mod eigenvalues;

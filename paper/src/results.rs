@@ -3,6 +3,7 @@
 use lmpc::DesignError;
 use serde::Serialize;
 
+use crate::closed_loop::{CostResult, closed_loop_cost};
 use crate::eigenvalues::{EigenvalueResult, figure4};
 use crate::tables::{ScaleRow, table2, table3};
 
@@ -15,6 +16,8 @@ pub struct Results {
     pub table3: Vec<ScaleRow>,
     /// Figure 4 for three controllers and N = 1 … 15, with gains and condition numbers.
     pub figure4: Vec<EigenvalueResult>,
+    /// Cost and time of constrained controllers on one step.
+    pub closed_loop_cost: Vec<CostResult>,
 }
 
 /// Computes all results.
@@ -22,5 +25,10 @@ pub struct Results {
 /// # Errors
 /// [`DesignError`] when a design that must exist does not.
 pub fn results() -> Result<Results, DesignError> {
-    Ok(Results { table2: table2()?, table3: table3()?, figure4: figure4()? })
+    Ok(Results {
+        table2: table2()?,
+        table3: table3()?,
+        figure4: figure4()?,
+        closed_loop_cost: closed_loop_cost()?,
+    })
 }

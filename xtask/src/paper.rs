@@ -7,10 +7,10 @@ use crate::failure::Failure;
 use crate::process;
 use crate::workspace::Workspace;
 
-/// Computes the paper's results, or designs a controller for the model in a file.
+/// Computes the paper's results in a release build, because it times the controllers; or designs a controller for the model in a file.
 pub fn run(workspace: &Workspace, gain: Option<&Path>) -> Result<(), Failure> {
     let mut command = cargo();
-    command.args(["run", "--quiet", "--package", "paper", "--"]);
+    command.args(["run", "--quiet", "--release", "--package", "paper", "--"]);
     match gain {
         Some(model) => command.arg("--gain").arg(model),
         None => command.arg("--out").arg(workspace.paper()),
