@@ -1,5 +1,6 @@
 //! A small dense strictly convex quadratic program, solved exactly by a dual active-set method.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, SMatrix, SVector};
@@ -20,7 +21,8 @@ const FEASIBILITY: f64 = 1e-10;
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadraticProgram<const N: usize> {
     /// L⁻¹: f in the coordinates of z.
-    inverse_factor: SMatrix<f64, N, N>,
+    /// Boxed, so that large programs can be moved and built on small stacks.
+    inverse_factor: Box<SMatrix<f64, N, N>>,
     /// Rows of G L⁻ᵀ, scaled to unit length.
     normals: Vec<SVector<f64, N>>,
     /// One over the length before scaling.
@@ -109,16 +111,18 @@ impl<const N: usize> QuadraticProgram<N> {
         validate::shape("H", h, (N, N))?;
         validate::shape("G", g, (g.nrows(), N))?;
         validate::positive_definite("H", h)?;
-        let h: SMatrix<f64, N, N> = SMatrix::from_fn(|row, column| h[(row, column)]);
-        let inverse_factor = h
-            .cholesky()
-            .and_then(|factor| factor.l().try_inverse())
+        let factor = h.clone().cholesky().ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
+        let inverse = factor
+            .l()
+            .solve_lower_triangular(&DMatrix::identity(N, N))
             .ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
+        let inverse_factor: Box<SMatrix<f64, N, N>> =
+            Box::new(SMatrix::from_fn(|row, column| inverse[(row, column)]));
 
         let (mut normals, mut scales) = (Vec::new(), Vec::new());
         for row in 0..g.nrows() {
             // (G L⁻ᵀ)ᵀ = L⁻¹ Gᵀ
-            let normal = inverse_factor * SVector::<f64, N>::from_fn(|column, _| g[(row, column)]);
+            let normal = inverse_factor.as_ref() * SVector::<f64, N>::from_fn(|column, _| g[(row, column)]);
             let length = normal.norm();
             // A row of zeros stays one: 0 ≤ h either holds or shows that there is no solution.
             let scale = if length > 0.0 { 1.0 / length } else { 1.0 };
@@ -158,7 +162,7 @@ impl<const N: usize> QuadraticProgram<N> {
         iteration_limit: u32,
     ) -> Solution<N> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
-        let z_0 = -(self.inverse_factor * f);
+        let z_0 = -(self.inverse_factor.as_ref() * f);
         let magnitude = z_0.amax();
         if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h(row).is_nan()) {
             *warm_start = WarmStart::default();
