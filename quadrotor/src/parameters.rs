@@ -78,552 +78,85 @@ const FIXED: bool = false;
 const TUNABLE: bool = true;
 
 /// All parameters, in the order in which they are documented.
+#[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static PARAMETERS: &[Parameter] = &[
     real!("airframe.mass", Kilogram, FIXED, 0.05..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
-    real!(
-        "airframe.arm_length",
-        Metre,
-        FIXED,
-        0.02..=5.0,
-        airframe.arm_length_m,
-        "Arm length l from the centre of mass to each rotor (Table 1)"
-    ),
-    real!(
-        "airframe.inertia.x",
-        KilogramSquareMetre,
-        FIXED,
-        1e-6..=100.0,
-        airframe.inertia_kg_m2[0],
-        "Moment of inertia J_x about the forward axis (Table 1)"
-    ),
-    real!(
-        "airframe.inertia.y",
-        KilogramSquareMetre,
-        FIXED,
-        1e-6..=100.0,
-        airframe.inertia_kg_m2[1],
-        "Moment of inertia J_y about the right axis (Table 1)"
-    ),
-    real!(
-        "airframe.inertia.z",
-        KilogramSquareMetre,
-        FIXED,
-        1e-6..=100.0,
-        airframe.inertia_kg_m2[2],
-        "Moment of inertia J_z about the down axis (Table 1)"
-    ),
-    real!(
-        "airframe.rotor.thrust_coefficient",
-        NewtonSecondSquared,
-        FIXED,
-        1e-9..=0.1,
-        airframe.thrust_coefficient_n_s2,
-        "k1 of (1): thrust of a rotor is k1 times its squared speed"
-    ),
-    real!(
-        "airframe.rotor.torque_coefficient",
-        NewtonMetreSecondSquared,
-        FIXED,
-        1e-11..=0.01,
-        airframe.torque_coefficient_n_m_s2,
-        "k2 of (1): drag torque of a rotor is k2 times its squared speed"
-    ),
-    real!(
-        "airframe.rotor.speed_min",
-        RadianPerSecond,
-        FIXED,
-        0.0..=5000.0,
-        airframe.rotor_speed_min_rad_s,
-        "Lowest rotor speed while armed"
-    ),
-    real!(
-        "airframe.rotor.speed_max",
-        RadianPerSecond,
-        FIXED,
-        1.0..=10000.0,
-        airframe.rotor_speed_max_rad_s,
-        "Highest rotor speed"
-    ),
-    real!(
-        "airframe.rotor.time_constant",
-        Second,
-        FIXED,
-        0.002..=1.0,
-        airframe.rotor_time_constant_s,
-        "Time constant of the first-order rotor lag"
-    ),
-    real!(
-        "airframe.drag.x",
-        NewtonSecondPerMetre,
-        FIXED,
-        0.0..=10.0,
-        airframe.drag_n_s_m[0],
-        "Linear drag along north"
-    ),
-    real!(
-        "airframe.drag.y",
-        NewtonSecondPerMetre,
-        FIXED,
-        0.0..=10.0,
-        airframe.drag_n_s_m[1],
-        "Linear drag along east"
-    ),
-    real!(
-        "airframe.drag.z",
-        NewtonSecondPerMetre,
-        FIXED,
-        0.0..=10.0,
-        airframe.drag_n_s_m[2],
-        "Linear drag along down"
-    ),
+    real!("airframe.arm_length", Metre, FIXED, 0.02..=5.0, airframe.arm_length_m, "Arm length l from the centre of mass to each rotor (Table 1)"),
+    real!("airframe.inertia.x", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[0], "Moment of inertia J_x about the forward axis (Table 1)"),
+    real!("airframe.inertia.y", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[1], "Moment of inertia J_y about the right axis (Table 1)"),
+    real!("airframe.inertia.z", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[2], "Moment of inertia J_z about the down axis (Table 1)"),
+    real!("airframe.rotor.thrust_coefficient", NewtonSecondSquared, FIXED, 1e-9..=0.1, airframe.thrust_coefficient_n_s2, "k1 of (1): thrust of a rotor is k1 times its squared speed"),
+    real!("airframe.rotor.torque_coefficient", NewtonMetreSecondSquared, FIXED, 1e-11..=0.01, airframe.torque_coefficient_n_m_s2, "k2 of (1): drag torque of a rotor is k2 times its squared speed"),
+    real!("airframe.rotor.speed_min", RadianPerSecond, FIXED, 0.0..=5000.0, airframe.rotor_speed_min_rad_s, "Lowest rotor speed while armed"),
+    real!("airframe.rotor.speed_max", RadianPerSecond, FIXED, 1.0..=10000.0, airframe.rotor_speed_max_rad_s, "Highest rotor speed"),
+    real!("airframe.rotor.time_constant", Second, FIXED, 0.002..=1.0, airframe.rotor_time_constant_s, "Time constant of the first-order rotor lag"),
+    real!("airframe.drag.x", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[0], "Linear drag along north"),
+    real!("airframe.drag.y", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[1], "Linear drag along east"),
+    real!("airframe.drag.z", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[2], "Linear drag along down"),
     boolean!("environment.ground_plane", environment.ground_plane, "Whether there is ground at z = 0"),
     real!("initial.position.x", Metre, FIXED, -1e6..=1e6, initial.position_m[0], "Initial position north"),
     real!("initial.position.y", Metre, FIXED, -1e6..=1e6, initial.position_m[1], "Initial position east"),
     real!("initial.position.z", Metre, FIXED, -1e6..=1e6, initial.position_m[2], "Initial position down"),
-    real!(
-        "initial.velocity.x",
-        MetrePerSecond,
-        FIXED,
-        -100.0..=100.0,
-        initial.velocity_m_s[0],
-        "Initial velocity north"
-    ),
-    real!(
-        "initial.velocity.y",
-        MetrePerSecond,
-        FIXED,
-        -100.0..=100.0,
-        initial.velocity_m_s[1],
-        "Initial velocity east"
-    ),
-    real!(
-        "initial.velocity.z",
-        MetrePerSecond,
-        FIXED,
-        -100.0..=100.0,
-        initial.velocity_m_s[2],
-        "Initial velocity down"
-    ),
+    real!("initial.velocity.x", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[0], "Initial velocity north"),
+    real!("initial.velocity.y", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[1], "Initial velocity east"),
+    real!("initial.velocity.z", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[2], "Initial velocity down"),
     real!("initial.attitude.phi", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[0], "Initial roll angle"),
-    real!(
-        "initial.attitude.theta",
-        Radian,
-        FIXED,
-        -6.3..=6.3,
-        initial.attitude_rad[1],
-        "Initial pitch angle"
-    ),
+    real!("initial.attitude.theta", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[1], "Initial pitch angle"),
     real!("initial.attitude.psi", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[2], "Initial heading"),
-    real!(
-        "initial.body_rate.p",
-        RadianPerSecond,
-        FIXED,
-        -50.0..=50.0,
-        initial.body_rate_rad_s[0],
-        "Initial roll rate"
-    ),
-    real!(
-        "initial.body_rate.q",
-        RadianPerSecond,
-        FIXED,
-        -50.0..=50.0,
-        initial.body_rate_rad_s[1],
-        "Initial pitch rate"
-    ),
-    real!(
-        "initial.body_rate.r",
-        RadianPerSecond,
-        FIXED,
-        -50.0..=50.0,
-        initial.body_rate_rad_s[2],
-        "Initial yaw rate"
-    ),
-    boolean!(
-        "reference.shaping",
-        reference.shaping,
-        "Whether the reference is a goal approached on a jerk-limited profile (true) or a trajectory point that goes straight to the controllers (false)"
-    ),
-    real!(
-        "controller.mass_factor",
-        One,
-        FIXED,
-        0.5..=1.5,
-        controllers.mass_factor,
-        "Mass in the controllers' model as a multiple of the true mass"
-    ),
+    real!("initial.body_rate.p", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[0], "Initial roll rate"),
+    real!("initial.body_rate.q", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[1], "Initial pitch rate"),
+    real!("initial.body_rate.r", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[2], "Initial yaw rate"),
+    boolean!("reference.shaping", reference.shaping, "Whether the reference is a goal approached on a jerk-limited profile (true) or a trajectory point that goes straight to the controllers (false)"),
+    real!("controller.mass_factor", One, FIXED, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
-    integer!(
-        "controller.altitude.terms",
-        1..=20,
-        controllers.altitude.terms,
-        "N: Laguerre terms of the altitude controller"
-    ),
-    real!(
-        "controller.altitude.scale",
-        One,
-        FIXED,
-        0.0..=0.99,
-        controllers.altitude.scale,
-        "a: Laguerre scaling factor of the altitude controller"
-    ),
-    integer!(
-        "controller.altitude.prediction_horizon",
-        1..=1000,
-        controllers.altitude.prediction_horizon,
-        "N_p: prediction horizon of the altitude controller, samples"
-    ),
-    real!(
-        "controller.altitude.alpha",
-        One,
-        FIXED,
-        1.0..=2.0,
-        controllers.altitude.alpha,
-        "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"
-    ),
-    real!(
-        "controller.altitude.lambda",
-        One,
-        FIXED,
-        0.5..=1.0,
-        controllers.altitude.lambda,
-        "lambda: degree of stability of the altitude controller"
-    ),
-    real!(
-        "controller.altitude.output_weight",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.altitude.output_weight[0],
-        "Q: weight of the altitude error"
-    ),
-    real!(
-        "controller.altitude.rate_weight",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.altitude.rate_weight[0],
-        "Q: weight of the increment of the vertical velocity"
-    ),
-    real!(
-        "controller.altitude.increment_weight",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.altitude.increment_weight[0],
-        "R: weight of the increment of the vertical acceleration G"
-    ),
+    integer!("controller.altitude.terms", 1..=20, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
+    real!("controller.altitude.scale", One, FIXED, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
+    integer!("controller.altitude.prediction_horizon", 1..=1000, controllers.altitude.prediction_horizon, "N_p: prediction horizon of the altitude controller, samples"),
+    real!("controller.altitude.alpha", One, FIXED, 1.0..=2.0, controllers.altitude.alpha, "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"),
+    real!("controller.altitude.lambda", One, FIXED, 0.5..=1.0, controllers.altitude.lambda, "lambda: degree of stability of the altitude controller"),
+    real!("controller.altitude.output_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.output_weight[0], "Q: weight of the altitude error"),
+    real!("controller.altitude.rate_weight", One, TUNABLE, 0.0..=1e9, controllers.altitude.rate_weight[0], "Q: weight of the increment of the vertical velocity"),
+    real!("controller.altitude.increment_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.increment_weight[0], "R: weight of the increment of the vertical acceleration G"),
     sample_time!("controller.position.sample_time", position, "Sample time of the position controller"),
-    integer!(
-        "controller.position.terms",
-        1..=20,
-        controllers.position.terms,
-        "N: Laguerre terms of the position controller, per input"
-    ),
-    real!(
-        "controller.position.scale",
-        One,
-        FIXED,
-        0.0..=0.99,
-        controllers.position.scale,
-        "a: Laguerre scaling factor of the position controller"
-    ),
-    integer!(
-        "controller.position.prediction_horizon",
-        1..=1000,
-        controllers.position.prediction_horizon,
-        "N_p: prediction horizon of the position controller, samples"
-    ),
-    real!(
-        "controller.position.alpha",
-        One,
-        FIXED,
-        1.0..=2.0,
-        controllers.position.alpha,
-        "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"
-    ),
-    real!(
-        "controller.position.lambda",
-        One,
-        FIXED,
-        0.5..=1.0,
-        controllers.position.lambda,
-        "lambda: degree of stability of the position controller"
-    ),
-    real!(
-        "controller.position.output_weight.x",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.position.output_weight[0],
-        "Q: weight of the error north"
-    ),
-    real!(
-        "controller.position.output_weight.y",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.position.output_weight[1],
-        "Q: weight of the error east"
-    ),
-    real!(
-        "controller.position.rate_weight.x",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.position.rate_weight[0],
-        "Q: weight of the increment of the velocity north"
-    ),
-    real!(
-        "controller.position.rate_weight.y",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.position.rate_weight[1],
-        "Q: weight of the increment of the velocity east"
-    ),
-    real!(
-        "controller.position.increment_weight.theta",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.position.increment_weight[0],
-        "R: weight of the increment of the pitch command, which moves north"
-    ),
-    real!(
-        "controller.position.increment_weight.phi",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.position.increment_weight[1],
-        "R: weight of the increment of the roll command, which moves east"
-    ),
+    integer!("controller.position.terms", 1..=20, controllers.position.terms, "N: Laguerre terms of the position controller, per input"),
+    real!("controller.position.scale", One, FIXED, 0.0..=0.99, controllers.position.scale, "a: Laguerre scaling factor of the position controller"),
+    integer!("controller.position.prediction_horizon", 1..=1000, controllers.position.prediction_horizon, "N_p: prediction horizon of the position controller, samples"),
+    real!("controller.position.alpha", One, FIXED, 1.0..=2.0, controllers.position.alpha, "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"),
+    real!("controller.position.lambda", One, FIXED, 0.5..=1.0, controllers.position.lambda, "lambda: degree of stability of the position controller"),
+    real!("controller.position.output_weight.x", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[0], "Q: weight of the error north"),
+    real!("controller.position.output_weight.y", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[1], "Q: weight of the error east"),
+    real!("controller.position.rate_weight.x", One, TUNABLE, 0.0..=1e9, controllers.position.rate_weight[0], "Q: weight of the increment of the velocity north"),
+    real!("controller.position.rate_weight.y", One, TUNABLE, 0.0..=1e9, controllers.position.rate_weight[1], "Q: weight of the increment of the velocity east"),
+    real!("controller.position.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[0], "R: weight of the increment of the pitch command, which moves north"),
+    real!("controller.position.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[1], "R: weight of the increment of the roll command, which moves east"),
     sample_time!("controller.attitude.sample_time", attitude, "Sample time of the attitude controller"),
-    integer!(
-        "controller.attitude.terms",
-        1..=20,
-        controllers.attitude.terms,
-        "N: Laguerre terms of the attitude controller, per input"
-    ),
-    real!(
-        "controller.attitude.scale",
-        One,
-        FIXED,
-        0.0..=0.99,
-        controllers.attitude.scale,
-        "a: Laguerre scaling factor of the attitude controller"
-    ),
-    integer!(
-        "controller.attitude.prediction_horizon",
-        1..=1000,
-        controllers.attitude.prediction_horizon,
-        "N_p: prediction horizon of the attitude controller, samples"
-    ),
-    real!(
-        "controller.attitude.alpha",
-        One,
-        FIXED,
-        1.0..=2.0,
-        controllers.attitude.alpha,
-        "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"
-    ),
-    real!(
-        "controller.attitude.lambda",
-        One,
-        FIXED,
-        0.5..=1.0,
-        controllers.attitude.lambda,
-        "lambda: degree of stability of the attitude controller"
-    ),
-    real!(
-        "controller.attitude.output_weight.phi",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.output_weight[0],
-        "Q: weight of the roll error"
-    ),
-    real!(
-        "controller.attitude.output_weight.theta",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.output_weight[1],
-        "Q: weight of the pitch error"
-    ),
-    real!(
-        "controller.attitude.output_weight.psi",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.output_weight[2],
-        "Q: weight of the heading error"
-    ),
-    real!(
-        "controller.attitude.rate_weight.phi",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.attitude.rate_weight[0],
-        "Q: weight of the increment of the roll rate"
-    ),
-    real!(
-        "controller.attitude.rate_weight.theta",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.attitude.rate_weight[1],
-        "Q: weight of the increment of the pitch rate"
-    ),
-    real!(
-        "controller.attitude.rate_weight.psi",
-        One,
-        TUNABLE,
-        0.0..=1e9,
-        controllers.attitude.rate_weight[2],
-        "Q: weight of the increment of the yaw rate"
-    ),
-    real!(
-        "controller.attitude.increment_weight.phi",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.increment_weight[0],
-        "R: weight of the increment of the roll torque"
-    ),
-    real!(
-        "controller.attitude.increment_weight.theta",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.increment_weight[1],
-        "R: weight of the increment of the pitch torque"
-    ),
-    real!(
-        "controller.attitude.increment_weight.psi",
-        One,
-        TUNABLE,
-        1e-9..=1e9,
-        controllers.attitude.increment_weight[2],
-        "R: weight of the increment of the yaw torque"
-    ),
-    real!(
-        "limits.tilt",
-        Radian,
-        TUNABLE,
-        0.05..=1.2,
-        limits.tilt_rad,
-        "Largest angle between the thrust axis and the vertical"
-    ),
-    real!(
-        "limits.tilt_rate",
-        RadianPerSecond,
-        TUNABLE,
-        0.05..=20.0,
-        limits.tilt_rate_rad_s,
-        "Largest rate of the tilt command"
-    ),
-    real!(
-        "limits.tilt_acceleration",
-        RadianPerSecondSquared,
-        TUNABLE,
-        0.1..=500.0,
-        limits.tilt_acceleration_rad_s2,
-        "Largest angular acceleration of the tilt command"
-    ),
-    real!(
-        "limits.thrust.min",
-        One,
-        TUNABLE,
-        0.0..=0.95,
-        limits.thrust_min,
-        "Smallest thrust that the altitude controller asks for, as a multiple of the weight"
-    ),
-    real!(
-        "limits.thrust.max",
-        One,
-        TUNABLE,
-        1.05..=10.0,
-        limits.thrust_max,
-        "Largest thrust that the altitude controller asks for, as a multiple of the weight; never more than four fifths of what the rotors can do"
-    ),
-    real!(
-        "limits.speed.horizontal",
-        MetrePerSecond,
-        TUNABLE,
-        0.1..=50.0,
-        limits.speed_horizontal_m_s,
-        "Largest horizontal speed of shaped references"
-    ),
-    real!(
-        "limits.speed.up",
-        MetrePerSecond,
-        TUNABLE,
-        0.1..=50.0,
-        limits.speed_up_m_s,
-        "Largest climb rate of shaped references"
-    ),
-    real!(
-        "limits.speed.down",
-        MetrePerSecond,
-        TUNABLE,
-        0.1..=50.0,
-        limits.speed_down_m_s,
-        "Largest sink rate of shaped references"
-    ),
-    real!(
-        "limits.acceleration.horizontal",
-        MetrePerSecondSquared,
-        TUNABLE,
-        0.1..=20.0,
-        limits.acceleration_horizontal_m_s2,
-        "Largest horizontal acceleration of shaped references"
-    ),
-    real!(
-        "limits.acceleration.vertical",
-        MetrePerSecondSquared,
-        TUNABLE,
-        0.1..=20.0,
-        limits.acceleration_vertical_m_s2,
-        "Largest vertical acceleration of shaped references"
-    ),
-    real!(
-        "limits.jerk.horizontal",
-        MetrePerSecondCubed,
-        TUNABLE,
-        0.1..=100.0,
-        limits.jerk_horizontal_m_s3,
-        "Largest horizontal jerk of shaped references"
-    ),
-    real!(
-        "limits.jerk.vertical",
-        MetrePerSecondCubed,
-        TUNABLE,
-        0.1..=100.0,
-        limits.jerk_vertical_m_s3,
-        "Largest vertical jerk of shaped references"
-    ),
-    real!(
-        "limits.yaw_rate",
-        RadianPerSecond,
-        TUNABLE,
-        0.01..=10.0,
-        limits.yaw_rate_rad_s,
-        "Largest rate of the heading reference"
-    ),
-    real!(
-        "limits.yaw_acceleration",
-        RadianPerSecondSquared,
-        TUNABLE,
-        0.01..=50.0,
-        limits.yaw_acceleration_rad_s2,
-        "Largest angular acceleration of the shaped heading reference"
-    ),
-    real!(
-        "limits.yaw_jerk",
-        RadianPerSecondCubed,
-        TUNABLE,
-        0.01..=500.0,
-        limits.yaw_jerk_rad_s3,
-        "Largest angular jerk of the shaped heading reference"
-    ),
+    integer!("controller.attitude.terms", 1..=20, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
+    real!("controller.attitude.scale", One, FIXED, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
+    integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller, samples"),
+    real!("controller.attitude.alpha", One, FIXED, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
+    real!("controller.attitude.lambda", One, FIXED, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
+    real!("controller.attitude.output_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[0], "Q: weight of the roll error"),
+    real!("controller.attitude.output_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[1], "Q: weight of the pitch error"),
+    real!("controller.attitude.output_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[2], "Q: weight of the heading error"),
+    real!("controller.attitude.rate_weight.phi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[0], "Q: weight of the increment of the roll rate"),
+    real!("controller.attitude.rate_weight.theta", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[1], "Q: weight of the increment of the pitch rate"),
+    real!("controller.attitude.rate_weight.psi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[2], "Q: weight of the increment of the yaw rate"),
+    real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque"),
+    real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque"),
+    real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque"),
+    real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical"),
+    real!("limits.tilt_rate", RadianPerSecond, TUNABLE, 0.05..=20.0, limits.tilt_rate_rad_s, "Largest rate of the tilt command"),
+    real!("limits.tilt_acceleration", RadianPerSecondSquared, TUNABLE, 0.1..=500.0, limits.tilt_acceleration_rad_s2, "Largest angular acceleration of the tilt command"),
+    real!("limits.thrust.min", One, TUNABLE, 0.0..=0.95, limits.thrust_min, "Smallest thrust that the altitude controller asks for, as a multiple of the weight"),
+    real!("limits.thrust.max", One, TUNABLE, 1.05..=10.0, limits.thrust_max, "Largest thrust that the altitude controller asks for, as a multiple of the weight; never more than four fifths of what the rotors can do"),
+    real!("limits.speed.horizontal", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_horizontal_m_s, "Largest horizontal speed of shaped references"),
+    real!("limits.speed.up", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_up_m_s, "Largest climb rate of shaped references"),
+    real!("limits.speed.down", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_down_m_s, "Largest sink rate of shaped references"),
+    real!("limits.acceleration.horizontal", MetrePerSecondSquared, TUNABLE, 0.1..=20.0, limits.acceleration_horizontal_m_s2, "Largest horizontal acceleration of shaped references"),
+    real!("limits.acceleration.vertical", MetrePerSecondSquared, TUNABLE, 0.1..=20.0, limits.acceleration_vertical_m_s2, "Largest vertical acceleration of shaped references"),
+    real!("limits.jerk.horizontal", MetrePerSecondCubed, TUNABLE, 0.1..=100.0, limits.jerk_horizontal_m_s3, "Largest horizontal jerk of shaped references"),
+    real!("limits.jerk.vertical", MetrePerSecondCubed, TUNABLE, 0.1..=100.0, limits.jerk_vertical_m_s3, "Largest vertical jerk of shaped references"),
+    real!("limits.yaw_rate", RadianPerSecond, TUNABLE, 0.01..=10.0, limits.yaw_rate_rad_s, "Largest rate of the heading reference"),
+    real!("limits.yaw_acceleration", RadianPerSecondSquared, TUNABLE, 0.01..=50.0, limits.yaw_acceleration_rad_s2, "Largest angular acceleration of the shaped heading reference"),
+    real!("limits.yaw_jerk", RadianPerSecondCubed, TUNABLE, 0.01..=500.0, limits.yaw_jerk_rad_s3, "Largest angular jerk of the shaped heading reference"),
 ];
