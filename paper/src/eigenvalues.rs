@@ -13,9 +13,32 @@ const ALPHA: f64 = 1.2;
 /// N_p; the paper gives none. Weighted by α the horizon has died out long before.
 const HORIZON: usize = 100;
 
-/// Eigenvalues of one design.
+/// Eigenvalues and conditioning of one design.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EigenvalueResult {
+    /// "altitude", "position" or "attitude".
+    pub controller: &'static str,
+    /// N.
+    pub n: usize,
+    /// α.
+    pub alpha: f64,
+    /// Closed-loop eigenvalues of the Laguerre MPC, \[real, imaginary\].
+    pub lmpc: Vec<[f64; 2]>,
+    /// Those of the regulator.
+    pub dlqr: Vec<[f64; 2]>,
+    /// Largest distance between partners.
+    pub max_distance: f64,
+    /// Largest magnitude of the first.
+    pub spectral_radius: f64,
+    /// Condition number of Ω.
+    pub condition_weighted: f64,
+    /// The same of the plain cost (48).
+    pub condition_unweighted: f64,
+}
+
+/// Gains of one design, with everything that they follow from.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GainResult {
     /// "altitude", "position" or "attitude".
     pub controller: &'static str,
     /// Sample time, s; the paper gives none.
@@ -32,9 +55,10 @@ pub struct EigenvalueResult {
     pub q: f64,
     /// Weight of the increments, R = r I; the paper gives none.
     pub r: f64,
-    /// The design.
-    #[serde(flatten)]
-    pub design: DesignResult,
+    /// Gain of the Laguerre MPC on \[Δx_m; y − r\], row by row.
+    pub k_lmpc: Vec<Vec<f64>>,
+    /// Gain of the regulator.
+    pub k_dlqr: Vec<Vec<f64>>,
 }
 
 /// The paper's three plants, by forward Euler.
@@ -48,9 +72,9 @@ fn plants() -> Result<[(&'static str, f64, StateSpace); 3], DesignError> {
     ])
 }
 
-/// All designs for N = 1 … 15; N = 5 is Figure 4.
-pub fn figure4() -> Result<Vec<EigenvalueResult>, DesignError> {
-    let mut results = Vec::new();
+/// Eigenvalues and gains of all designs for N = 1 … 15; N = 5 is Figure 4.
+pub fn eigenvalues_and_gains() -> Result<(Vec<EigenvalueResult>, Vec<GainResult>), DesignError> {
+    let (mut eigenvalues, mut gains) = (Vec::new(), Vec::new());
     for (controller, sample_time, plant) in plants()? {
         let model = Augmented::new(&plant);
         let (q, r) = (1.0, 1.0);
@@ -63,19 +87,21 @@ pub fn figure4() -> Result<Vec<EigenvalueResult>, DesignError> {
                 Err(DesignError::Unstable { .. }) => continue,
                 Err(error) => return Err(error),
             };
-            let alpha = ALPHA;
-            results.push(EigenvalueResult {
+            let (alpha, a, n_p) = (ALPHA, SCALE, HORIZON);
+            let DesignResult { k_lmpc, k_dlqr, lmpc, dlqr, .. } = design;
+            gains.push(GainResult { controller, sample_time, n, a, n_p, alpha, q, r, k_lmpc, k_dlqr });
+            eigenvalues.push(EigenvalueResult {
                 controller,
-                sample_time,
                 n,
-                a: SCALE,
-                n_p: HORIZON,
                 alpha,
-                q,
-                r,
-                design,
+                lmpc,
+                dlqr,
+                max_distance: design.max_distance,
+                spectral_radius: design.spectral_radius,
+                condition_weighted: design.condition_weighted,
+                condition_unweighted: design.condition_unweighted,
             });
         }
     }
-    Ok(results)
+    Ok((eigenvalues, gains))
 }
