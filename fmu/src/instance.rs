@@ -160,7 +160,7 @@ impl Instance {
             (None, simulation) => *simulation = None,
             // The controllers are the same: no need to design them again.
             (Some(flight), Some(simulation)) if simulation.configuration() == configuration => {
-                simulation.restore(flight);
+                simulation.restore(flight)?;
             }
             (Some(flight), simulation) => {
                 *simulation = Some(Box::new(Simulation::from_state(configuration, flight)?));

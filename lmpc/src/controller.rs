@@ -109,6 +109,14 @@ impl<const N: usize, const P: usize> ControllerState<N, P> {
         Some(input)
     }
 
+    /// Replaces v(k−1), for a plant whose input axes have turned since. A value that is not finite is ignored.
+    pub fn turn_feedback(&mut self, turned: impl Fn(&SVector<f64, P>) -> SVector<f64, P>) {
+        let feedback = turned(&self.feedback);
+        if finite(&feedback) {
+            self.feedback = feedback;
+        }
+    }
+
     /// v(k−1), the part of the applied input that feedback added.
     pub(crate) fn feedback(&self) -> SVector<f64, P> {
         self.feedback

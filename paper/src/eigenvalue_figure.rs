@@ -25,7 +25,7 @@ pub fn eigenvalue_figure(result: &EigenvalueResult) -> String {
         CENTRE - 5.0,
     );
     let at = |[re, im]: [f64; 2]| (CENTRE + RADIUS * re, CENTRE - RADIUS * im);
-    for &eigenvalue in &result.design.dlqr {
+    for &eigenvalue in &result.dlqr {
         let (x, y) = at(eigenvalue);
         // Writing to a string does not fail.
         let _ = write!(
@@ -34,7 +34,7 @@ pub fn eigenvalue_figure(result: &EigenvalueResult) -> String {
             x - 6.0
         );
     }
-    for &eigenvalue in &result.design.lmpc {
+    for &eigenvalue in &result.lmpc {
         let (x, y) = at(eigenvalue);
         let _ = write!(
             svg,

@@ -32,7 +32,7 @@ pub fn report(results: &Results) -> String {
             "<figure>{}<figcaption>{}: at most {:.1e} apart</figcaption></figure>",
             eigenvalue_figure(result),
             result.controller,
-            result.design.max_distance,
+            result.max_distance,
         );
     }
     page.push_str("</div>\n<h2>The same for N = 1 … 15</h2>\n");
@@ -88,16 +88,15 @@ fn sweep_table(page: &mut String, results: &Results) {
          <th>condition of Ω</th><th>… without weighting</th></tr>\n",
     );
     for result in &results.figure4 {
-        let design = &result.design;
         let _ = writeln!(
             page,
             "<tr><td>{}</td><td>{}</td><td>{:.4}</td><td>{:.1e}</td><td>{:.3}</td><td>{:.1e}</td></tr>",
             result.controller,
             result.n,
-            design.spectral_radius,
-            design.max_distance,
-            design.condition_weighted,
-            design.condition_unweighted,
+            result.spectral_radius,
+            result.max_distance,
+            result.condition_weighted,
+            result.condition_unweighted,
         );
     }
     page.push_str("</table>\n");

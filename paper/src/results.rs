@@ -4,7 +4,7 @@ use lmpc::DesignError;
 use serde::Serialize;
 
 use crate::closed_loop::{CostResult, closed_loop_cost};
-use crate::eigenvalues::{EigenvalueResult, figure4};
+use crate::eigenvalues::{EigenvalueResult, GainResult, eigenvalues_and_gains};
 use crate::tables::{ScaleRow, table2, table3};
 
 /// results.json. Fields are only ever added.
@@ -14,8 +14,10 @@ pub struct Results {
     pub table2: Vec<ScaleRow>,
     /// Table 3.
     pub table3: Vec<ScaleRow>,
-    /// Figure 4 for three controllers and N = 1 … 15, with gains and condition numbers.
+    /// Figure 4 for three controllers and N = 1 … 15, with condition numbers.
     pub figure4: Vec<EigenvalueResult>,
+    /// The gains of the same designs.
+    pub gains: Vec<GainResult>,
     /// Cost and time of constrained controllers on one step.
     pub closed_loop_cost: Vec<CostResult>,
 }
@@ -25,10 +27,12 @@ pub struct Results {
 /// # Errors
 /// [`DesignError`] when a design that must exist does not.
 pub fn results() -> Result<Results, DesignError> {
+    let (figure4, gains) = eigenvalues_and_gains()?;
     Ok(Results {
         table2: table2()?,
         table3: table3()?,
-        figure4: figure4()?,
+        figure4,
+        gains,
         closed_loop_cost: closed_loop_cost()?,
     })
 }

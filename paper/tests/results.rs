@@ -73,12 +73,12 @@ fn eigenvalues_coincide_with_the_regulators() {
             results.figure4.iter().find(|result| result.controller == controller && result.n == n).unwrap()
         };
         for result in results.figure4.iter().filter(|result| result.controller == controller) {
-            assert!(result.design.spectral_radius < 1.0);
-            assert!(result.design.lmpc.iter().all(|[re, im]| re.hypot(*im) < 1.0));
-            assert!(result.design.condition_weighted < 1e3, "{controller}, N = {}", result.n);
+            assert!(result.spectral_radius < 1.0);
+            assert!(result.lmpc.iter().all(|[re, im]| re.hypot(*im) < 1.0));
+            assert!(result.condition_weighted < 1e3, "{controller}, N = {}", result.n);
         }
-        assert!(of(5).design.max_distance < 0.02, "{controller}: {}", of(5).design.max_distance);
-        assert!(of(15).design.max_distance < 1e-4, "{controller}: {}", of(15).design.max_distance);
+        assert!(of(5).max_distance < 0.02, "{controller}: {}", of(5).max_distance);
+        assert!(of(15).max_distance < 1e-4, "{controller}: {}", of(15).max_distance);
     }
 }
 

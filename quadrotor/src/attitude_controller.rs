@@ -4,7 +4,7 @@ use lmpc::ControllerState;
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::attitude_error;
+use crate::attitude::{attitude_error, turned};
 use crate::governor::{Governor, proportional_rate};
 use crate::{CascadeDesign, Limits};
 
@@ -19,6 +19,7 @@ const BRAKING_SHARE: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AttitudeController {
     lmpc: ControllerState<6, 3>,
+    attitude: UnitQuaternion<f64>,
     /// The error that the controller saw last, rad.
     error_rad: Vector3<f64>,
     /// p, q, r less their references, rad/s.
@@ -30,9 +31,10 @@ pub struct AttitudeController {
 impl AttitudeController {
     /// Takes over a vehicle, as if it had been on its reference: the whole error and the whole rate count
     /// from the first sample on.
-    pub fn new() -> Self {
+    pub fn new(attitude: &UnitQuaternion<f64>) -> Self {
         Self {
             lmpc: ControllerState::new(Vector6::zeros(), Vector3::zeros(), Vector3::zeros()),
+            attitude: *attitude,
             error_rad: Vector3::zeros(),
             rate_error_rad_s: Vector3::zeros(),
             integral_n_m: Vector3::zeros(),
@@ -49,6 +51,7 @@ impl AttitudeController {
         (attitude, body_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
         (reference, reference_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
     ) -> Vector3<f64> {
+        self.turn_with_the_body(attitude);
         let to_body = attitude.inverse() * reference;
         let whole = attitude_error(reference, attitude);
         let error_rad = governed(design, limits, &whole);
@@ -65,6 +68,17 @@ impl AttitudeController {
         self.rate_error_rad_s = rate_error_rad_s;
         self.integral_n_m = step.integral;
         step.input
+    }
+
+    /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
+    /// spins about its thrust axis; an integral left behind in turning axes would push sideways.
+    fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
+        let spun_rad = turned(&self.attitude, attitude).z;
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, -spun_rad));
+        self.lmpc.turn_feedback(|torque| turn * torque);
+        self.error_rad = turn * self.error_rad;
+        self.rate_error_rad_s = turn * self.rate_error_rad_s;
+        self.attitude = *attitude;
     }
 
     /// Reports the torques, N·m, that the rotors were asked for.

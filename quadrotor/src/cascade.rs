@@ -46,7 +46,7 @@ impl Cascade {
         Self {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
-            attitude: AttitudeController::new(),
+            attitude: AttitudeController::new(&body.rotation()),
             horizontal: Ramp::still(time_us),
             vertical: Ramp::still(time_us),
             tilt_reference_rad: [0.0; 2],
@@ -158,13 +158,16 @@ impl Cascade {
             (&reference, &rate),
         );
         let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
+        // The rotors answer late; until then a spinning body has turned under the torque.
+        let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
+        let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
         let wanted = Wrench {
             thrust_n: thrust(configuration, vertical, upright(body)),
-            torque_n_m: torque + gyroscopic,
+            torque_n_m: lead * (torque + gyroscopic),
         };
         self.rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
         let made = wrench_of_rotors(&configuration.airframe, &self.rotor_command_rad_s);
-        self.attitude.apply(&(made.torque_n_m - gyroscopic));
+        self.attitude.apply(&(lead.inverse() * made.torque_n_m - gyroscopic));
     }
 
     /// φ, θ and the attitude whose thrust axis makes the accelerations wanted at `time_us`.
@@ -206,7 +209,7 @@ fn believed_mass_kg(configuration: &Configuration) -> f64 {
 /// Smallest and largest thrust to ask for, N.
 fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
     let limits = &configuration.limits;
-    let weight = believed_mass_kg(configuration) * GRAVITY_M_S2;
+    let weight = configuration.airframe.weight_n();
     let (weakest, strongest) = configuration.airframe.thrust_range_n();
     let least = (limits.thrust_min * weight).max(weakest);
     (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))

@@ -102,7 +102,11 @@ pub struct ControllerSettings<const P: usize> {
 /// | --- | --- | --- |
 /// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
 /// | N_p | 100 | the weighted horizon has died out long before (α^(−200) ≈ 1e-16) |
-/// | R | see the code | sets the bandwidths, see the cascade's documentation |
+/// | altitude R | 1 | closes at ω = (1/(ΔT √R))^(1/3) = 2.7 rad/s: a tenth of what rotor lag and sampling allow |
+/// | position R | 1200 | closes at (g/(ΔT √R))^(1/3) = 1.8 rad/s: a quarter of the attitude loop's bandwidth |
+/// | attitude R, roll and pitch | 12 | closes at (1/(J ΔT √R))^(1/3) = 6.5 rad/s: a fifth of the rotor lag's 33 rad/s |
+/// | attitude R, yaw | 300 | closes at 3 rad/s: yaw torque is a seventh of the others' |
+/// | attitude rate weight | 3, yaw 0 | damps roll and pitch against the rotor lag, which the model does not have |
 impl Default for Controllers {
     fn default() -> Self {
         let paper = |sample_time_us, weight| ControllerSettings {
@@ -148,7 +152,7 @@ impl<const P: usize> ControllerSettings<P> {
 
     /// ΔT, s.
     pub fn sample_time_s(&self) -> f64 {
-        self.sample_time_us as f64 * 1e-6
+        self.sample_time_us as f64 / 1e6
     }
 }
 

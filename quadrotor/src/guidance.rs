@@ -83,7 +83,7 @@ impl Guidance {
         match self {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => shaper.reference(time_us),
-            Self::Direct(direct) => direct.latest,
+            Self::Direct(direct) => direct.reference(time_us),
         }
     }
 
@@ -93,23 +93,40 @@ impl Guidance {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => shaper.reference(time_us + ahead_us).acceleration_m_s2,
             Self::Direct(direct) => {
-                direct.latest.acceleration_m_s2 + direct.jerk_m_s3 * (ahead_us as f64 * 1e-6)
+                direct.latest.acceleration_m_s2 + direct.jerk_m_s3 * (ahead_us as f64 / 1e6)
             }
         };
         Setpoint { reference: self.reference(time_us), acceleration_ahead_m_s2 }
     }
 }
 
+/// Multiple of the jerk limits beyond which a change of acceleration counts as a jump, not as motion.
+const JUMP: f64 = 10.0;
+
 impl Direct {
+    /// The latest reference, moved on by its derivatives since it was sampled.
+    fn reference(&self, time_us: u64) -> PositionReference {
+        let t = time_us.saturating_sub(self.time_us) as f64 / 1e6;
+        let yaw_t = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
+        let PositionReference { position_m: p, velocity_m_s: v, acceleration_m_s2: a, .. } = self.latest;
+        PositionReference {
+            position_m: p + (v + (a / 2.0 + self.jerk_m_s3 * (t / 6.0)) * t) * t,
+            velocity_m_s: v + (a + self.jerk_m_s3 * (t / 2.0)) * t,
+            acceleration_m_s2: a + self.jerk_m_s3 * t,
+            yaw_rad: self.latest.yaw_rad + self.latest.yaw_rate_rad_s * yaw_t,
+            yaw_rate_rad_s: self.latest.yaw_rate_rad_s,
+        }
+    }
+
     fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         let change = reference.acceleration_m_s2 - self.latest.acceleration_m_s2;
-        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 * 1e-6;
+        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
         // Position and altitude may sample at the same instant; the first of them has done it then.
         if elapsed_s > 0.0 {
             let jerk = change / elapsed_s;
             // A jump of the acceleration is not motion.
-            let smooth =
-                jerk.xy().norm() <= limits.jerk_horizontal_m_s3 && jerk.z.abs() <= limits.jerk_vertical_m_s3;
+            let smooth = jerk.xy().norm() <= JUMP * limits.jerk_horizontal_m_s3
+                && jerk.z.abs() <= JUMP * limits.jerk_vertical_m_s3;
             self.jerk_m_s3 = if smooth { jerk } else { Vector3::zeros() };
         }
         let held = self.latest;
@@ -119,11 +136,11 @@ impl Direct {
     }
 
     fn sample_yaw(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
-        let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 * 1e-6;
+        let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
         let most = limits.yaw_rate_rad_s * elapsed_s;
         let held = &mut self.latest;
         held.yaw_rad += wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
-        held.yaw_rate_rad_s = reference.yaw_rate_rad_s;
+        held.yaw_rate_rad_s = reference.yaw_rate_rad_s.clamp(-limits.yaw_rate_rad_s, limits.yaw_rate_rad_s);
         self.yaw_time_us = time_us;
     }
 }

@@ -44,7 +44,7 @@ impl<const AXES: usize> Ramp<AXES> {
         time_us: u64,
         period_us: u64,
     ) -> SVector<f64, AXES> {
-        let period_s = period_us as f64 * 1e-6;
+        let period_s = period_us as f64 / 1e6;
         let from = self.at(time_us, period_us);
         let way = goal - from;
         let distance = way.norm();

@@ -107,7 +107,7 @@ impl Shaper {
     }
 
     fn elapsed_s(&self, time_us: u64) -> f64 {
-        time_us.saturating_sub(self.start_us) as f64 * 1e-6
+        time_us.saturating_sub(self.start_us) as f64 / 1e6
     }
 }
 

@@ -109,8 +109,13 @@ impl Simulation {
     }
 
     /// Goes back, or on, to a saved state of this flight.
-    pub fn restore(&mut self, state: SimulationState) {
+    ///
+    /// # Errors
+    /// [`ConfigurationError::State`]; nothing has changed then.
+    pub fn restore(&mut self, state: SimulationState) -> Result<(), ConfigurationError> {
+        state.check(&self.configuration)?;
         self.state = state;
+        Ok(())
     }
 
     /// Time since the start, µs.
@@ -118,8 +123,7 @@ impl Simulation {
         self.state.time_us
     }
 
-    /// Changes tunable parameters during the flight and redesigns the controllers if their weights
-    /// changed. Incremental controllers go on from the input that they applied last, without a bump.
+    /// Changes tunable parameters during the flight and redesigns the controllers. Incremental controllers go on from the input that they applied last, without a bump.
     ///
     /// # Errors
     /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`Simulation::new`];
@@ -198,7 +202,7 @@ impl Simulation {
             return state.plant;
         }
         let command = if state.armed { state.cascade.rotor_command_rad_s() } else { [0.0; 4] };
-        let h_s = (time_us - state.event_us) as f64 * 1e-6;
+        let h_s = (time_us - state.event_us) as f64 / 1e6;
         state.plant.step(&self.configuration, &command, &state.disturbance, h_s)
     }
 

@@ -60,7 +60,7 @@ proptest! {
         resumed.advance_to(3_000_000, &eventful).unwrap();
         prop_assert_eq!(straight.state(), resumed.state());
         // And back again, in the same simulation.
-        straight.restore(postcard::from_bytes(&bytes).unwrap());
+        straight.restore(postcard::from_bytes(&bytes).unwrap()).unwrap();
         straight.advance_to(3_000_000, &eventful).unwrap();
         prop_assert_eq!(straight.state(), resumed.state());
     }

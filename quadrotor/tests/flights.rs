@@ -158,3 +158,54 @@ proptest! {
         prop_assert!(extremes.rotor_speed_rad_s[1] <= configuration.airframe.rotor_speed_max_rad_s + 1e-9);
     }
 }
+
+/// A circle flown from a trajectory with feed-forward, and what the outputs say of the error.
+#[test]
+fn circles_are_followed_and_their_error_is_told() {
+    for (radius_m, period_s, tangent) in
+        [(2.0, 6.0, false), (2.0, 4.8, false), (3.0, 9.0, true), (5.0, 12.0, false)]
+    {
+        let rate = std::f64::consts::TAU / period_s;
+        let signal = move |time_us: u64| {
+            let angle = rate * time_us as f64 / 1e6;
+            let (sine, cosine) = angle.sin_cos();
+            let mut inputs = goal([radius_m * sine, radius_m * (1.0 - cosine), -2.0], 0.0);
+            let reference = &mut inputs.reference;
+            reference.velocity_m_s = Vector3::new(cosine, sine, 0.0) * (radius_m * rate);
+            reference.acceleration_m_s2 = Vector3::new(-sine, cosine, 0.0) * (radius_m * rate * rate);
+            if tangent {
+                (reference.yaw_rad, reference.yaw_rate_rad_s) = (angle, rate);
+            }
+            inputs
+        };
+        let mut configuration = unshaped();
+        configuration.initial.position_m = [0.0, 0.0, -2.0];
+        configuration.initial.velocity_m_s = [radius_m * rate, 0.0, 0.0];
+        let (mut worst, mut untold, mut yaw) = (0.0_f64, 0.0_f64, 0.0_f64);
+        fly(&configuration, &signal, 40.0, |outputs| {
+            if outputs.time_us > 20_000_000 {
+                let reference = signal(outputs.time_us).reference;
+                let error = outputs.position_m - reference.position_m;
+                worst = worst.max(error.norm());
+                untold = untold.max((outputs.tracking_error_m - error).norm());
+                let off = outputs.attitude_rad.z - reference.yaw_rad;
+                yaw = yaw.max((off.sin()).atan2(off.cos()).abs());
+            }
+        });
+        assert!(worst < 0.015, "radius {radius_m}, period {period_s}: {worst} m");
+        assert!(untold < 0.002, "radius {radius_m}, period {period_s}: outputs are {untold} m off");
+        assert!(yaw < 0.03, "radius {radius_m}, period {period_s}: heading {yaw} rad off");
+    }
+}
+
+/// Half and half as much again of the mass that the controllers believe in.
+#[test]
+fn grossly_wrong_masses_still_hold_their_place() {
+    for mass_factor in [0.5, 1.5] {
+        let mut configuration = Configuration::default();
+        configuration.controllers.mass_factor = mass_factor;
+        let simulation = fly(&configuration, &goal([1.0, 1.0, -5.0], 0.0), 40.0, |_| {});
+        let left = distance(&simulation.outputs(), [1.0, 1.0, -5.0]);
+        assert!(left < 0.001, "mass factor {mass_factor}: {left} m");
+    }
+}

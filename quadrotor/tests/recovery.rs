@@ -66,3 +66,23 @@ proptest! {
         prop_assert!((end.position_m.z + 50.0).abs() < 0.05, "{end:?}");
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Spins and tumbles, with a goal that asks for tilt while they last, end at the goal.
+    #[test]
+    fn from_body_rates(p in -4.0..4.0, q in -4.0..4.0, r in -8.0..8.0) {
+        let mut configuration = Configuration::default();
+        configuration.initial.position_m = [0.0, 0.0, -150.0];
+        configuration.initial.body_rate_rad_s = [p, q, r];
+        let mut lowest_m = f64::NEG_INFINITY;
+        let end = fly(&configuration, &goal([5.0, 5.0, -150.0], 0.0), 60.0, |outputs| {
+            lowest_m = lowest_m.max(outputs.position_m.z);
+        })
+        .outputs();
+        prop_assert!(lowest_m < 0.0, "came down to {lowest_m} m");
+        prop_assert!(tilt_rad(&end) < 0.05, "{end:?}");
+        prop_assert!((end.position_m - nalgebra::Vector3::new(5.0, 5.0, -150.0)).norm() < 0.5, "{end:?}");
+    }
+}
