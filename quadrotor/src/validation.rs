@@ -33,6 +33,19 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
             GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad),
         ),
     )?;
+    // The roll and pitch torques in hover must be able to follow the tilt commands, at half their pace at least.
+    let [jx, jy, _] = airframe.inertia_kg_m2;
+    let strongest_n_m = airframe.arm_length_m * airframe.weight_n() / 2.0;
+    let followed = 2.0 * strongest_n_m / jx.max(jy);
+    if limits.tilt_acceleration_rad_s2 > followed {
+        return Err(ConfigurationError::Inconsistent {
+            name: "limits.tilt_acceleration",
+            value: limits.tilt_acceleration_rad_s2,
+            relation: "at most",
+            other: "twice the angular acceleration that the rotors give airframe.inertia in hover",
+            other_value: followed,
+        });
+    }
     let controllers = &configuration.controllers;
     for (name, outer) in [
         ("controller.position.sample_time", controllers.position.sample_time_s()),

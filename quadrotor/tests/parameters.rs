@@ -90,6 +90,7 @@ fn values_that_contradict_one_another_are_refused() {
         ("airframe.rotor.speed_min", 460.0, "airframe.rotor.speed_min"),
         ("airframe.mass", 5.0, "airframe.mass"),
         ("airframe.rotor.speed_min", 300.0, "the mass in kg that four idle rotors carry"),
+        ("airframe.inertia.x", 0.5, "limits.tilt_acceleration"),
         ("limits.acceleration.horizontal", 9.0, "limits.acceleration.horizontal"),
         ("controller.attitude.sample_time", 0.06, "controller.position.sample_time"),
     ] {
