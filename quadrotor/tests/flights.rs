@@ -122,7 +122,9 @@ fn a_goal_that_trembles_is_held() {
 /// Half and double the mass, other inertias and arms: the defaults of everything else still fly.
 #[test]
 fn other_airframes_fly_with_the_default_controllers() {
-    for (mass, inertia, arm) in [(0.35, 0.6, 1.0), (1.4, 1.5, 1.0), (1.0, 0.7, 0.7), (0.7, 1.3, 1.4), (0.7, 2.0, 1.0)] {
+    for (mass, inertia, arm) in
+        [(0.35, 0.6, 1.0), (1.4, 1.5, 1.0), (1.0, 0.7, 0.7), (0.7, 1.3, 1.4), (0.7, 2.0, 1.0)]
+    {
         for shaping in [false, true] {
             let mut configuration = Configuration::default();
             configuration.reference.shaping = shaping;
