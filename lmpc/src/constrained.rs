@@ -87,7 +87,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics or E is too small,
-    /// [`DesignError::NotFinite`], [`DesignError::NotPositiveDefinite`] (Ω).
+    /// [`DesignError::NotFinite`], [`DesignError::NotPositiveDefinite`] (Ω with slack).
     pub fn new(design: &LmpcDesign, limits: &[Limit]) -> Result<Self, DesignError> {
         let unconstrained = Controller::from_design(design, design.model().plant().c())?;
         let (omega, psi) = (design.prediction().omega(), design.prediction().psi());
@@ -100,16 +100,13 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         }
         let program = RelaxableProgram::new(omega, &g, &soft)?;
 
-        let eta_gain =
-            omega.clone().cholesky().ok_or(DesignError::NotPositiveDefinite { name: "Ω" })?.solve(psi);
-        let mut first = crate::laguerre::InputBasis::new(design.bases()).row();
-        first = first.resize(P, E, 0.0);
+        let first_move = design.first_move();
         Ok(Self {
             unconstrained,
             psi_state: SMatrix::from_fn(|i, j| if i < terms { psi[(i, j)] } else { 0.0 }),
             psi_output: SMatrix::from_fn(|i, j| if i < terms { psi[(i, N + j)] } else { 0.0 }),
-            first_move: SMatrix::from_fn(|i, j| first[(i, j)]),
-            rows: rows.iter().map(|row| KnownPart::new(row, &eta_gain)).collect(),
+            first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
+            rows: rows.iter().map(|row| KnownPart::new(row, design.coefficient_gain())).collect(),
             program,
             bounds: limits.iter().map(|limit| limit.directions.nrows()).sum(),
         })
@@ -176,9 +173,9 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
 }
 
 impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
-    fn new(row: &LimitRow, eta_gain: &DMatrix<f64>) -> Self {
+    fn new(row: &LimitRow, coefficient_gain: &DMatrix<f64>) -> Self {
         // At η = −Ω⁻¹Ψx the left-hand side is (augmented − g Ω⁻¹Ψ) x.
-        let unconstrained = &row.augmented - &row.eta * eta_gain;
+        let unconstrained = &row.augmented - &row.eta * coefficient_gain;
         Self {
             state: part(&row.augmented, 0),
             output: part(&row.augmented, N),

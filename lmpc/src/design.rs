@@ -17,6 +17,10 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct LmpcDesign {
     gain: DMatrix<f64>,
+    /// Ω⁻¹Ψ, ΣN×(n+q).
+    coefficient_gain: DMatrix<f64>,
+    /// L(0)ᵀ, p×ΣN.
+    first_move: DMatrix<f64>,
     prediction: Prediction,
     dlqr: Dlqr,
     closed_loop: DMatrix<f64>,
@@ -57,7 +61,9 @@ impl LmpcDesign {
             prediction.omega().clone().cholesky().ok_or_else(|| DesignError::IllConditioned {
                 condition: condition_number(prediction.omega()),
             })?;
-        let gain = InputBasis::new(bases).row() * factor.solve(prediction.psi());
+        let coefficient_gain = factor.solve(prediction.psi());
+        let first_move = InputBasis::new(bases).row();
+        let gain = &first_move * &coefficient_gain;
 
         let closed_loop = model.a() - model.b() * &gain;
         let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
@@ -67,6 +73,8 @@ impl LmpcDesign {
         }
         Ok(Self {
             gain,
+            coefficient_gain,
+            first_move,
             prediction,
             dlqr,
             closed_loop,
@@ -80,6 +88,16 @@ impl LmpcDesign {
     /// K, p×(n+q): Δu = −K \[Δx_m; y − r\].
     pub fn gain(&self) -> &DMatrix<f64> {
         &self.gain
+    }
+
+    /// Ω⁻¹Ψ: without constraints η = −Ω⁻¹Ψx (50).
+    pub(crate) fn coefficient_gain(&self) -> &DMatrix<f64> {
+        &self.coefficient_gain
+    }
+
+    /// L(0)ᵀ: Δu(k) = L(0)ᵀ η.
+    pub(crate) fn first_move(&self) -> &DMatrix<f64> {
+        &self.first_move
     }
 
     /// Ω and Ψ.
