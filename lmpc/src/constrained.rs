@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-use crate::limit::{LimitRow, limit_rows};
+use crate::laguerre_walk::LaguerreWalk;
+use crate::limit_row::{LimitRow, limit_rows};
 use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
 use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Solution, Status, Step};
 
@@ -92,11 +93,11 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         let unconstrained = Controller::from_design(design, design.model().plant().c())?;
         let (omega, psi) = (design.prediction().omega(), design.prediction().psi());
         let terms = omega.nrows();
-        let rows = limit_rows(design, limits)?;
+        let rows = limit_rows(limits, LaguerreWalk::new(design))?;
         let soft: Vec<bool> = rows.iter().map(|row| row.soft).collect();
         let mut g = DMatrix::zeros(rows.len(), terms);
         for (index, row) in rows.iter().enumerate() {
-            g.set_row(index, &row.eta);
+            g.set_row(index, &row.decision);
         }
         let program = RelaxableProgram::new(omega, &g, &soft)?;
 
@@ -174,16 +175,16 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
 
 impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
     fn new(row: &LimitRow, coefficient_gain: &DMatrix<f64>) -> Self {
-        // At η = −Ω⁻¹Ψx the left-hand side is (augmented − g Ω⁻¹Ψ) x.
-        let unconstrained = &row.augmented - &row.eta * coefficient_gain;
+        // At η = −Ω⁻¹Ψx the left-hand side is (known − g Ω⁻¹Ψ) x.
+        let unconstrained = row.known.columns(0, N + Q) - &row.decision * coefficient_gain;
         Self {
-            state: part(&row.augmented, 0),
-            output: part(&row.augmented, N),
+            state: part(&row.known, 0),
+            output: part(&row.known, N),
             unconstrained_state: part(&unconstrained, 0),
             unconstrained_output: part(&unconstrained, N),
-            input: part(&row.input, 0),
-            step: part(&row.step, 0),
-            measured: part(&row.measured, 0),
+            input: part(&row.known, N + Q),
+            step: part(&row.known, N + Q + P),
+            measured: part(&row.known, N + Q + 2 * P),
             bound: row.bound,
         }
     }

@@ -2,12 +2,14 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::limit_row::limit_rows;
+use crate::moves_walk::MovesWalk;
 use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
 use crate::validate::symmetrized;
-use crate::{DesignError, Limit, Quantity, StateSpace, Status, spectral_radius, validate};
+use crate::{DesignError, Limit, StateSpace, Status, spectral_radius, validate};
 
 /// Design of a state-space MPC.
 ///
@@ -208,10 +210,10 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceM
         validate::shape("B", plant.b(), (N, P))?;
         validate::shape("C", plant.c(), (Q, N))?;
         let unknowns = P * design.moves;
-        let rows = limit_rows(plant, design.moves, limits)?;
+        let rows = limit_rows(limits, MovesWalk::new(plant, design.moves))?;
         let mut g = DMatrix::zeros(rows.len(), unknowns);
         for (index, row) in rows.iter().enumerate() {
-            g.set_row(index, &row.moves.transpose());
+            g.set_row(index, &row.decision);
         }
         let soft: Vec<bool> = rows.iter().map(|row| row.soft).collect();
         let program = RelaxableProgram::new(&design.hessian, &g, &soft)?;
@@ -228,8 +230,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceM
             known: rows
                 .iter()
                 .map(|row| Known {
-                    state: SVector::from_fn(|i, _| row.state[i]),
-                    input: SVector::from_fn(|i, _| row.input[i]),
+                    state: SVector::from_fn(|i, _| row.known[i]),
+                    input: SVector::from_fn(|i, _| row.known[N + i]),
                     bound: row.bound,
                 })
                 .collect(),
@@ -266,59 +268,4 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceM
         state.applied = input;
         StateSpaceMpcStep { input, status, iterations: solution.iterations, active: solution.active }
     }
-}
-
-/// moves·ΔU ≤ upper − state·x − input·u₋₁.
-struct LimitRow {
-    moves: DVector<f64>,
-    state: DVector<f64>,
-    input: DVector<f64>,
-    soft: bool,
-    bound: usize,
-}
-
-/// All rows of some limits on the predicted inputs and states.
-fn limit_rows(plant: &StateSpace, moves: usize, limits: &[Limit]) -> Result<Vec<LimitRow>, DesignError> {
-    let (n, p) = (plant.states(), plant.inputs());
-    let mut rows = Vec::new();
-    let mut first_bound = 0;
-    for limit in limits {
-        let d = &limit.directions;
-        let columns = if limit.quantity == Quantity::State { n } else { p };
-        validate::shape("directions of a limit", d, (d.nrows(), columns))?;
-        let mut by_state = DMatrix::identity(n, n); // x(k+m) as a function of x(k),
-        let mut by_input = DMatrix::zeros(n, p); // of u(k−1)
-        let mut by_moves = DMatrix::zeros(n, p * moves); // and of the moves
-        let mut input_by_moves = DMatrix::zeros(p, p * moves); // u(k+m) − u(k−1)
-        for m in 0..limit.samples.end {
-            let mut increment = DMatrix::zeros(p, p * moves);
-            if m < moves {
-                increment.view_mut((0, m * p), (p, p)).fill_with_identity();
-            }
-            input_by_moves += &increment;
-            if limit.samples.contains(&m) {
-                let zero = |columns: usize| DMatrix::zeros(d.nrows(), columns);
-                let (of_moves, of_state, of_input) = match limit.quantity {
-                    Quantity::Increment => (d * &increment, zero(n), zero(p)),
-                    Quantity::Input => (d * &input_by_moves, zero(n), d.clone()),
-                    Quantity::State => (d * &by_moves, d * &by_state, d * &by_input),
-                };
-                for row in 0..d.nrows() {
-                    rows.push(LimitRow {
-                        moves: of_moves.row(row).transpose(),
-                        state: of_state.row(row).transpose(),
-                        input: of_input.row(row).transpose(),
-                        soft: limit.soft,
-                        bound: first_bound + row,
-                    });
-                }
-            }
-            // x(k+m+1) = A x(k+m) + B u(k+m)
-            by_state = plant.a() * by_state;
-            by_input = plant.a() * by_input + plant.b();
-            by_moves = plant.a() * by_moves + plant.b() * &input_by_moves;
-        }
-        first_bound += d.nrows();
-    }
-    Ok(rows)
 }

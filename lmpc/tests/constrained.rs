@@ -31,7 +31,7 @@ fn altitude(weighting: Weighting) -> ConstrainedController<2, 1, 1, 6> {
         Limit {
             quantity: Quantity::State,
             directions: dmatrix![0.0, 1.0; 0.0, -1.0],
-            samples: 1..30,
+            samples: (1..30).collect(),
             soft: true,
         },
     ];
@@ -195,7 +195,7 @@ proptest! {
         let design = design(&model, 4, 0.7, 1.0, weighting);
         let quantity = [Quantity::Increment, Quantity::Input, Quantity::State][kind];
         let directions = if kind == 2 { dmatrix![0.3, 1.0] } else { dmatrix![1.0] };
-        let limit = Limit { quantity, directions, samples: m..m + 1, soft: false };
+        let limit = Limit { quantity, directions, samples: vec![m], soft: false };
         let controller = ConstrainedController::<2, 1, 1, 5>::new(&design, &[limit]).unwrap();
 
         // The unconstrained prediction, sample by sample: Δu(k+i) = αⁱ L(i)ᵀ η with η = −Ω⁻¹Ψx.

@@ -109,7 +109,7 @@ fn limits_hold_in_closed_loop() {
         Limit {
             quantity: Quantity::State,
             directions: dmatrix![0.0, 1.0; 0.0, -1.0],
-            samples: 1..60,
+            samples: (1..60).collect(),
             soft: true,
         },
     ];
