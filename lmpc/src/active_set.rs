@@ -2,17 +2,20 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::dense::{dot, subtract_scaled};
+
 /// Below this share of a unit normal that is left after removing the active normals, it depends on them.
 const DEPENDENT: f64 = 1e-7;
 
 /// Active constraint normals v_j (unit vectors) as Q R, Q with orthonormal columns and R upper triangular,
-/// with their multipliers: at most N of them, no allocation.
+/// with their multipliers: of `unknowns` ≤ N elements and as many at most, no allocation.
 #[derive(Clone, Debug)]
 pub(crate) struct ActiveSet<const N: usize> {
     /// Constraint index of each column.
     constraints: [usize; N],
     multipliers: [f64; N],
     count: usize,
+    unknowns: usize,
     q: SMatrix<f64, N, N>,
     r: SMatrix<f64, N, N>,
 }
@@ -28,11 +31,12 @@ pub(crate) struct Split<const N: usize> {
 }
 
 impl<const N: usize> ActiveSet<N> {
-    pub(crate) fn empty() -> Self {
+    pub(crate) fn empty(unknowns: usize) -> Self {
         Self {
             constraints: [0; N],
             multipliers: [0.0; N],
             count: 0,
+            unknowns,
             q: SMatrix::zeros(),
             r: SMatrix::zeros(),
         }
@@ -52,17 +56,21 @@ impl<const N: usize> ActiveSet<N> {
 
     /// Splits a normal by Gram and Schmidt's method, twice, which is enough (Kahan).
     pub(crate) fn split(&self, normal: &SVector<f64, N>) -> Split<N> {
+        let n = self.unknowns;
         let mut within = SVector::zeros();
         let mut rest = *normal;
         for _ in 0..2 {
+            let rest = &mut rest.as_mut_slice()[..n];
             for j in 0..self.count {
-                let along = self.q.column(j).dot(&rest);
+                let q_j = self.q.column(j);
+                let q_j = &q_j.as_slice()[..n];
+                let along = dot(q_j, rest);
                 within[j] += along;
-                rest -= self.q.column(j) * along;
+                subtract_scaled(rest, q_j, along);
             }
         }
-        let mut rest_squared = rest.norm_squared();
-        if rest_squared <= DEPENDENT * DEPENDENT || self.count == N {
+        let mut rest_squared = dot(&rest.as_slice()[..n], &rest.as_slice()[..n]);
+        if rest_squared <= DEPENDENT * DEPENDENT || self.count == n {
             rest.fill(0.0);
             rest_squared = 0.0;
         }
@@ -110,7 +118,7 @@ impl<const N: usize> ActiveSet<N> {
                 self.r[(j, k)] = cosine * upper + sine * lower;
                 self.r[(j + 1, k)] = cosine * lower - sine * upper;
             }
-            for k in 0..N {
+            for k in 0..self.unknowns {
                 let (left, right) = (self.q[(k, j)], self.q[(k, j + 1)]);
                 self.q[(k, j)] = cosine * left + sine * right;
                 self.q[(k, j + 1)] = cosine * right - sine * left;

@@ -50,6 +50,7 @@ mod active_set;
 mod augmented;
 mod constrained;
 mod controller;
+mod dense;
 mod design;
 mod dlqr;
 mod eigenvalues;

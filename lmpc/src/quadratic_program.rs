@@ -7,12 +7,14 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::active_set::ActiveSet;
+use crate::dense::{dot, subtract_scaled};
 use crate::{DesignError, validate};
 
 /// How far beyond its bound a constraint counts as met, relative to the size of the numbers in it.
 const FEASIBILITY: f64 = 1e-10;
 
-/// min ½ xᵀHx + fᵀx subject to G x ≤ h, with N unknowns, H and G known at design time.
+/// min ½ xᵀHx + fᵀx subject to G x ≤ h, with at most N unknowns, H and G known at design time. Of vectors of
+/// N elements those beyond the unknowns are zero.
 ///
 /// The dual method of Goldfarb and Idnani (1983, Mathematical Programming 27) in the coordinates z = Lᵀx,
 /// H = L Lᵀ, in which the cost is the distance from the unconstrained optimum. It starts there, adds the
@@ -20,6 +22,7 @@ const FEASIBILITY: f64 = 1e-10;
 /// with the exact optimum or with a proof that there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadraticProgram<const N: usize> {
+    unknowns: usize,
     /// L⁻¹: f in the coordinates of z.
     /// Boxed, so that large programs can be moved and built on small stacks.
     inverse_factor: Box<SMatrix<f64, N, N>>,
@@ -102,34 +105,44 @@ mod indices {
 }
 
 impl<const N: usize> QuadraticProgram<N> {
-    /// For a positive definite H, N×N, and any number of constraint rows G, M×N.
+    /// For a positive definite H, n×n with n ≤ N, and any number of constraint rows G, M×n.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
+    /// [`DesignError::Dimension`] (N×N stands for what H may be at most), [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
     /// [`DesignError::NotPositiveDefinite`].
     pub fn new(h: &DMatrix<f64>, g: &DMatrix<f64>) -> Result<Self, DesignError> {
-        validate::shape("H", h, (N, N))?;
-        validate::shape("G", g, (g.nrows(), N))?;
+        let unknowns = h.nrows();
+        if unknowns > N {
+            return Err(DesignError::Dimension { name: "H", expected: (N, N), actual: h.shape() });
+        }
+        validate::shape("H", h, (unknowns, unknowns))?;
+        validate::shape("G", g, (g.nrows(), unknowns))?;
         validate::positive_definite("H", h)?;
         let factor = h.clone().cholesky().ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
         let inverse = factor
             .l()
-            .solve_lower_triangular(&DMatrix::identity(N, N))
+            .solve_lower_triangular(&DMatrix::identity(unknowns, unknowns))
             .ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
-        let inverse_factor: Box<SMatrix<f64, N, N>> =
-            Box::new(SMatrix::from_fn(|row, column| inverse[(row, column)]));
+        let mut inverse_factor: Box<SMatrix<f64, N, N>> = Box::new(SMatrix::zeros());
+        inverse_factor.view_mut((0, 0), (unknowns, unknowns)).copy_from(&inverse);
 
         let (mut normals, mut scales) = (Vec::new(), Vec::new());
         for row in 0..g.nrows() {
             // (G L⁻ᵀ)ᵀ = L⁻¹ Gᵀ
-            let normal = inverse_factor.as_ref() * SVector::<f64, N>::from_fn(|column, _| g[(row, column)]);
+            let mut normal = SVector::<f64, N>::zeros();
+            normal.rows_mut(0, unknowns).copy_from(&(&inverse * g.row(row).transpose()));
             let length = normal.norm();
             // A row of zeros stays one: 0 ≤ h either holds or shows that there is no solution.
             let scale = if length > 0.0 { 1.0 / length } else { 1.0 };
             normals.push(normal * scale);
             scales.push(scale);
         }
-        Ok(Self { inverse_factor, normals, scales })
+        Ok(Self { unknowns, inverse_factor, normals, scales })
+    }
+
+    /// Number of unknowns n.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
     }
 
     /// Number of constraints M.
@@ -162,14 +175,15 @@ impl<const N: usize> QuadraticProgram<N> {
         iteration_limit: u32,
     ) -> Solution<N> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
-        let z_0 = -(self.inverse_factor.as_ref() * f);
+        let z_0 = self.unconstrained(f);
         let magnitude = z_0.amax();
         if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h(row).is_nan()) {
             *warm_start = WarmStart::default();
-            return self.solution(&z_0, &ActiveSet::empty(), Outcome::NotFinite, 0);
+            return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
         }
 
-        let mut search = Search { program: self, h, z_0, z: z_0, active: ActiveSet::empty(), iterations: 0 };
+        let mut search =
+            Search { program: self, h, z_0, z: z_0, active: ActiveSet::empty(self.unknowns), iterations: 0 };
         search.resume(warm_start);
         let outcome = search.run(iteration_limit);
         if outcome == Outcome::Optimal {
@@ -180,6 +194,23 @@ impl<const N: usize> QuadraticProgram<N> {
         self.solution(&search.z, &search.active, outcome, search.iterations)
     }
 
+    /// −L⁻¹ f
+    fn unconstrained(&self, f: &SVector<f64, N>) -> SVector<f64, N> {
+        let n = self.unknowns;
+        let mut z = SVector::<f64, N>::zeros();
+        for column in 0..n {
+            // L⁻¹ is lower triangular.
+            let factor = self.inverse_factor.column(column);
+            subtract_scaled(&mut z.as_mut_slice()[column..n], &factor.as_slice()[column..n], f[column]);
+        }
+        z
+    }
+
+    /// v·z of a constraint's unit normal.
+    fn along(&self, constraint: usize, z: &SVector<f64, N>) -> f64 {
+        dot(&self.normals[constraint].as_slice()[..self.unknowns], &z.as_slice()[..self.unknowns])
+    }
+
     fn solution(
         &self,
         z: &SVector<f64, N>,
@@ -188,7 +219,13 @@ impl<const N: usize> QuadraticProgram<N> {
         iterations: u32,
     ) -> Solution<N> {
         // x = L⁻ᵀ z
-        let x = self.inverse_factor.tr_mul(z);
+        let mut x = SVector::<f64, N>::zeros();
+        for (column, value) in x.iter_mut().take(self.unknowns).enumerate() {
+            *value = dot(
+                &self.inverse_factor.column(column).as_slice()[column..self.unknowns],
+                &z.as_slice()[column..self.unknowns],
+            );
+        }
         let outcome = if x.iter().all(|value| value.is_finite()) { outcome } else { Outcome::NotFinite };
         // The normals were scaled to unit length, which scaled their multipliers the other way.
         let mut multipliers = SVector::zeros();
@@ -222,8 +259,8 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
         loop {
             let mut excess = SVector::zeros();
             for (j, &constraint) in self.active.constraints().iter().enumerate() {
-                let normal = &self.program.normals[constraint];
-                excess[j] = normal.dot(&self.z_0) - (self.h)(constraint) * self.program.scales[constraint];
+                let bound = (self.h)(constraint) * self.program.scales[constraint];
+                excess[j] = self.program.along(constraint, &self.z_0) - bound;
             }
             match self.active.solve_multipliers(&excess) {
                 Some(column) => self.active.remove(column),
@@ -255,7 +292,8 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
                 if t == f64::INFINITY {
                     return Outcome::Infeasible;
                 }
-                self.z -= split.rest * t;
+                let n = self.program.unknowns;
+                subtract_scaled(&mut self.z.as_mut_slice()[..n], &split.rest.as_slice()[..n], t);
                 self.active.sink(&sinking, t);
                 multiplier += t;
                 match leaving {
@@ -274,16 +312,18 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
 
     /// z = z₀ − Σ u_j v_j: where all gradients balance.
     fn point(&self) -> SVector<f64, N> {
+        let n = self.program.unknowns;
         let mut z = self.z_0;
         for (&constraint, &multiplier) in self.active.constraints().iter().zip(self.active.multipliers()) {
-            z -= self.program.normals[constraint] * multiplier;
+            let normal = &self.program.normals[constraint].as_slice()[..n];
+            subtract_scaled(&mut z.as_mut_slice()[..n], normal, multiplier);
         }
         z
     }
 
     /// h − v·z of one constraint, scaled; negative when violated.
     fn slack(&self, constraint: usize) -> f64 {
-        (self.h)(constraint) * self.program.scales[constraint] - self.program.normals[constraint].dot(&self.z)
+        (self.h)(constraint) * self.program.scales[constraint] - self.program.along(constraint, &self.z)
     }
 
     fn most_violated(&self) -> Option<usize> {
@@ -291,7 +331,7 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
         let magnitude = self.z.norm();
         for (constraint, scale) in self.program.scales.iter().enumerate() {
             let bound = (self.h)(constraint) * scale;
-            let slack = bound - self.program.normals[constraint].dot(&self.z);
+            let slack = bound - self.program.along(constraint, &self.z);
             let rounding = FEASIBILITY * (1.0 + magnitude + libm::fabs(bound));
             if slack < least && slack < -rounding && !self.active.contains(constraint) {
                 (worst, least) = (Some(constraint), slack);

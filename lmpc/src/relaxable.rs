@@ -37,18 +37,17 @@ impl<const E: usize> RelaxableProgram<E> {
             let actual = (unknowns + 1, unknowns + 1);
             return Err(DesignError::Dimension { name: "H with slack", expected: (E, E), actual });
         }
-        let mut extended_h = DMatrix::<f64>::identity(E, E);
-        extended_h.view_mut((0, 0), (unknowns, unknowns)).copy_from(h);
+        let mut extended_h = h.clone().resize(unknowns + 1, unknowns + 1, 0.0);
         extended_h[(unknowns, unknowns)] = SLACK_WEIGHT * h.amax();
 
-        let mut extended_g = DMatrix::zeros(g.nrows(), E);
+        let mut extended_g = DMatrix::zeros(g.nrows(), unknowns + 1);
         extended_g.view_mut((0, 0), g.shape()).copy_from(g);
         let strict = QuadraticProgram::new(&extended_h, &extended_g)?;
         for (row, soft) in soft.iter().enumerate() {
             extended_g[(row, unknowns)] = if *soft { -1.0 } else { -HARD_SHARE };
         }
         let relaxed = QuadraticProgram::new(&extended_h, &extended_g)?;
-        let size = u32::try_from(E + g.nrows()).unwrap_or(u32::MAX / 4);
+        let size = u32::try_from(unknowns + 1 + g.nrows()).unwrap_or(u32::MAX / 4);
         Ok(Self { strict, relaxed, iteration_limit: 4 * size })
     }
 

@@ -285,7 +285,7 @@ fn the_iteration_limit_is_kept_and_a_solution_does_not_allocate() {
 fn wrong_problems_are_refused() {
     let identity = DMatrix::identity(2, 2);
     assert!(matches!(
-        QuadraticProgram::<3>::new(&identity, &dmatrix![1.0, 0.0]),
+        QuadraticProgram::<1>::new(&identity, &dmatrix![1.0, 0.0]),
         Err(DesignError::Dimension { name: "H", .. })
     ));
     assert!(matches!(
@@ -296,4 +296,25 @@ fn wrong_problems_are_refused() {
         QuadraticProgram::<2>::new(&-identity, &dmatrix![1.0, 0.0]),
         Err(DesignError::NotPositiveDefinite { name: "H" })
     ));
+}
+
+/// Room for more unknowns than there are changes nothing.
+#[test]
+fn spare_room_changes_nothing() {
+    let h = dmatrix![2.0, 0.5, 0.0; 0.5, 1.0, 0.2; 0.0, 0.2, 3.0];
+    let g = DMatrix::from_fn(7, 3, |row, column| ((row * 5 + column * 3) as f64).sin());
+    let bounds = [0.3; 7];
+    let exact = QuadraticProgram::<3>::new(&h, &g).unwrap();
+    let roomy = QuadraticProgram::<9>::new(&h, &g).unwrap();
+    assert_eq!((exact.unknowns(), roomy.unknowns()), (3, 3));
+    let f = [4.0, -3.0, 2.0];
+    let small =
+        exact.solve(&SVector::<f64, 3>::from_column_slice(&f), &bounds, &mut WarmStart::default(), LIMIT);
+    let mut padded = SVector::<f64, 9>::zeros();
+    padded.rows_mut(0, 3).copy_from_slice(&f);
+    let large = roomy.solve(&padded, &bounds, &mut WarmStart::default(), LIMIT);
+    assert!(small.active > 0 && small.outcome == Outcome::Optimal);
+    assert_eq!(small.x.as_slice(), &large.x.as_slice()[..3]);
+    assert!(large.x.as_slice()[3..].iter().all(|value| *value == 0.0));
+    assert_eq!((small.active, small.iterations), (large.active, large.iterations));
 }
