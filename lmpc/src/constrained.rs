@@ -3,12 +3,11 @@
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
-use serde::{Deserialize, Serialize};
 
 use crate::laguerre_walk::LaguerreWalk;
 use crate::limit_row::{LimitRow, limit_rows};
 use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
-use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Solution, Status, Step};
+use crate::{ConstrainedState, ConstrainedStep, Controller, DesignError, Limit, LmpcDesign};
 
 /// Relative violation that rounding may leave.
 const ROUNDING: f64 = 1e-9;
@@ -57,32 +56,6 @@ struct Sample<const N: usize, const P: usize, const Q: usize> {
     measured: SVector<f64, N>,
 }
 
-/// What a [`ConstrainedController`] remembers: also the active set of its last solution.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ConstrainedState<const N: usize, const P: usize, const E: usize> {
-    /// As of the unconstrained controller.
-    pub controller: ControllerState<N, P>,
-    warm_start: RelaxableWarmStart<E>,
-}
-
-impl<const N: usize, const P: usize, const E: usize> ConstrainedState<N, P, E> {
-    /// Around the state of the unconstrained controller.
-    pub fn new(controller: ControllerState<N, P>) -> Self {
-        Self { controller, warm_start: RelaxableWarmStart::default() }
-    }
-}
-
-/// The outcome of a constrained step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConstrainedStep<const P: usize> {
-    /// The input and its status.
-    pub step: Step<P>,
-    /// Iterations of the solver; 0 when the unconstrained optimum or the last active set was right.
-    pub iterations: u32,
-    /// How many limits hold with equality.
-    pub active: usize,
-}
-
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> ConstrainedController<N, P, Q, E> {
     /// The controller of a design under some limits.
     ///
@@ -125,9 +98,9 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
 
     /// One sample, as [`Controller::step_from`], with the values of the bounds. Bounds that are missing are
     /// no limit.
-    pub fn step_from(
+    pub fn step_from<const W: usize>(
         &self,
-        state: &mut ConstrainedState<N, P, E>,
+        state: &mut ConstrainedState<N, P, W>,
         measured: &SVector<f64, N>,
         delta: &SVector<f64, N>,
         error: &SVector<f64, Q>,
@@ -150,26 +123,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         let f = self.psi_state * sample.delta + self.psi_output * sample.error;
         let bound = |row: usize| self.rows[row].room(&sample, upper);
         let (solution, status) = self.program.solve(&f, bound, &mut state.warm_start);
-        self.taken(state, &sample, input_reference, &solution, status)
-    }
-
-    fn taken(
-        &self,
-        state: &mut ConstrainedState<N, P, E>,
-        sample: &Sample<N, P, Q>,
-        input_reference: &SVector<f64, P>,
-        solution: &Solution<E>,
-        status: Status,
-    ) -> ConstrainedStep<P> {
-        let controller = &mut state.controller;
-        let usable = matches!(status, Status::Optimal | Status::Relaxed);
-        let increment = if usable { self.first_move * solution.x } else { SVector::zeros() };
-        let feedback = controller.feedback() + increment;
-        let step = match controller.accept(&sample.measured, &feedback, input_reference) {
-            Some(input) => Step { input, integral: SVector::zeros(), status },
-            None => Step { input: controller.applied(), integral: SVector::zeros(), status: Status::Held },
-        };
-        ConstrainedStep { step, iterations: solution.iterations, active: solution.active }
+        state.taken(measured, input_reference, self.first_move * solution.x, &solution, status)
     }
 }
 

@@ -5,17 +5,19 @@ use nalgebra::DMatrix;
 use crate::limit_row::{Affine, PredictionWalk};
 use crate::{Quantity, StateSpace};
 
-/// The predictions of a plant as functions of N_c moves Δu and of the known \[x(k); u(k−1)\].
+/// The predictions of a plant as functions of N_c moves Δv and of the known
+/// \[x(k); v(k−1) + d(k); u_r(k) + v(k−1); u_r(k) − u_r(k−1)\], where x is the deviation from a reference
+/// trajectory under u_r.
 #[derive(Clone, Debug)]
 pub(crate) struct MovesWalk<'a> {
     plant: &'a StateSpace,
     moves: usize,
     m: usize,
-    /// x(k+m) as a function of x(k), of u(k−1) and of the moves.
+    /// x(k+m) as a function of x(k), of v(k−1) + d(k) and of the moves.
     by_state: DMatrix<f64>,
     by_input: DMatrix<f64>,
     by_moves: DMatrix<f64>,
-    /// u(k+m) − u(k−1) as a function of the moves.
+    /// v(k+m) − v(k−1) as a function of the moves.
     input_by_moves: DMatrix<f64>,
 }
 
@@ -35,7 +37,7 @@ impl<'a> MovesWalk<'a> {
         walk
     }
 
-    /// Δu(k+m), 0 from m = N_c on.
+    /// Δv(k+m), 0 from m = N_c on.
     fn increment(&self) -> DMatrix<f64> {
         let p = self.plant.inputs();
         let mut increment = DMatrix::zeros(p, p * self.moves);
@@ -53,11 +55,17 @@ impl PredictionWalk for MovesWalk<'_> {
 
     fn predicted(&self, quantity: Quantity) -> Affine {
         let (n, p) = (self.plant.states(), self.plant.inputs());
-        let mut known = DMatrix::zeros(self.size(quantity), n + p);
+        let mut known = DMatrix::zeros(self.size(quantity), n + 3 * p);
         let decision = match quantity {
-            Quantity::Increment => self.increment(),
+            Quantity::Increment => {
+                // u(k) − u(k−1) has the step of the feed-forward too
+                if self.m == 0 {
+                    known.view_mut((0, n + 2 * p), (p, p)).fill_with_identity();
+                }
+                self.increment()
+            }
             Quantity::Input => {
-                known.view_mut((0, n), (p, p)).fill_with_identity();
+                known.view_mut((0, n + p), (p, p)).fill_with_identity();
                 self.input_by_moves.clone()
             }
             Quantity::State => {
@@ -70,7 +78,7 @@ impl PredictionWalk for MovesWalk<'_> {
     }
 
     fn advance(&mut self) {
-        // x(k+m+1) = A x(k+m) + B u(k+m)
+        // x(k+m+1) = A x(k+m) + B (v(k+m) + d)
         self.by_state = self.plant.a() * &self.by_state;
         self.by_input = self.plant.a() * &self.by_input + self.plant.b();
         self.by_moves = self.plant.a() * &self.by_moves + self.plant.b() * &self.input_by_moves;

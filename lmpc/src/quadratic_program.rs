@@ -60,7 +60,7 @@ pub struct Solution<const N: usize> {
     pub multipliers: SVector<f64, N>,
 }
 
-/// The constraints that were active in the last solution: where the next one starts.
+/// The constraints that were active in the last solution, as far as there is room: where the next one starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WarmStart<const N: usize> {
     #[serde(with = "indices")]
@@ -166,12 +166,12 @@ impl<const N: usize> QuadraticProgram<N> {
     }
 
     /// As [`QuadraticProgram::solve`], with the bound of each row from a function that is called a few times
-    /// per row.
-    pub(crate) fn solve_with(
+    /// per row, and with room for W constraints to be remembered.
+    pub(crate) fn solve_with<const W: usize>(
         &self,
         f: &SVector<f64, N>,
         h: impl Fn(usize) -> f64,
-        warm_start: &mut WarmStart<N>,
+        warm_start: &mut WarmStart<W>,
         iteration_limit: u32,
     ) -> Solution<N> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
@@ -248,7 +248,7 @@ struct Search<'a, const N: usize, H: Fn(usize) -> f64> {
 
 impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
     /// Starts from an earlier active set, without the constraints that would pull instead of push.
-    fn resume(&mut self, warm_start: &WarmStart<N>) {
+    fn resume<const W: usize>(&mut self, warm_start: &WarmStart<W>) {
         for constraint in warm_start.constraints() {
             let bounded = constraint < self.program.constraints() && (self.h)(constraint).is_finite();
             if bounded && !self.active.contains(constraint) {

@@ -52,11 +52,11 @@ impl<const E: usize> RelaxableProgram<E> {
     }
 
     /// Solves it for one f and one h, given row by row.
-    pub(crate) fn solve(
+    pub(crate) fn solve<const W: usize>(
         &self,
         f: &SVector<f64, E>,
         h: impl Fn(usize) -> f64,
-        warm_start: &mut RelaxableWarmStart<E>,
+        warm_start: &mut RelaxableWarmStart<W>,
     ) -> (Solution<E>, Status) {
         let strict = self.strict.solve_with(f, &h, &mut warm_start.strict, self.iteration_limit);
         if strict.outcome != Outcome::Infeasible {

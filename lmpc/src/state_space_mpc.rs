@@ -3,13 +3,14 @@
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, SMatrix, SVector};
-use serde::{Deserialize, Serialize};
 
-use crate::limit_row::limit_rows;
+use crate::limit_row::{PredictionWalk, limit_rows};
 use crate::moves_walk::MovesWalk;
-use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
+use crate::relaxable::RelaxableProgram;
 use crate::validate::symmetrized;
-use crate::{DesignError, Limit, StateSpace, Status, spectral_radius, validate};
+use crate::{
+    ConstrainedState, ConstrainedStep, DesignError, Limit, Quantity, StateSpace, spectral_radius, validate,
+};
 
 /// Design of a state-space MPC.
 ///
@@ -21,6 +22,8 @@ use crate::{DesignError, Limit, StateSpace, Status, spectral_radius, validate};
 /// J = ½ ‖Y − R‖²_Q + ½ ‖ΔU‖²_S = ½ ΔUᵀ H ΔU + ΔUᵀ (Φ T)ᵀ Q (F x̂ + Φ 1 u₋₁ − R) + const
 /// H = (Φ T)ᵀ Q (Φ T) + S
 /// ```
+///
+/// The cost ends with the horizon, as the paper's does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpaceMpcDesign {
     plant: StateSpace,
@@ -48,10 +51,29 @@ impl StateSpaceMpcDesign {
         horizon: usize,
         moves: usize,
     ) -> Result<Self, DesignError> {
-        let (p, q) = (plant.inputs(), plant.outputs());
+        let none = DMatrix::zeros(plant.states(), plant.states());
+        Self::with_damping(plant, output_weight, &none, move_weight, horizon, moves)
+    }
+
+    /// As [`StateSpaceMpcDesign::new`], with ½ ‖Δx(k+i)‖² in the weight W = `increment_weight` (n×n) added to
+    /// the cost for i = 1 … N: the weight that [`Weights`](crate::Weights) has on Δx_m.
+    ///
+    /// # Errors
+    /// Also [`DesignError::NotPositiveSemidefinite`] (W).
+    pub fn with_damping(
+        plant: &StateSpace,
+        output_weight: &DMatrix<f64>,
+        increment_weight: &DMatrix<f64>,
+        move_weight: &DMatrix<f64>,
+        horizon: usize,
+        moves: usize,
+    ) -> Result<Self, DesignError> {
+        let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
         validate::shape("Q", output_weight, (q, q))?;
+        validate::shape("W", increment_weight, (n, n))?;
         validate::shape("S", move_weight, (p, p))?;
         validate::positive_semidefinite("Q", output_weight)?;
+        validate::positive_semidefinite("W", increment_weight)?;
         validate::positive_definite("S", move_weight)?;
         if moves == 0 || horizon <= moves {
             return Err(DesignError::HorizonTooShort { horizon, terms: moves + 1 });
@@ -69,14 +91,15 @@ impl StateSpaceMpcDesign {
         let response = &phi * t;
         let q_all = repeated(output_weight, horizon);
         let gradient_reference = response.transpose() * q_all;
-        let hessian = symmetrized(&(&gradient_reference * response + repeated(move_weight, moves)));
+        let damping = Damping::new(plant, increment_weight, horizon, moves);
+        let hessian = &gradient_reference * response + damping.hessian + repeated(move_weight, moves);
         let design = Self {
             plant: plant.clone(),
             moves,
-            gradient_state: &gradient_reference * f,
-            gradient_input: &gradient_reference * phi * ones,
+            gradient_state: &gradient_reference * f + damping.gradient_state,
+            gradient_input: &gradient_reference * phi * ones + damping.gradient_input,
             gradient_reference,
-            hessian,
+            hessian: symmetrized(&hessian),
             spectral_radius: 0.0,
         };
         let spectral_radius = spectral_radius("the closed loop", &design.closed_loop()?)?;
@@ -124,6 +147,37 @@ impl StateSpaceMpcDesign {
     }
 }
 
+/// What Σ ½ ‖Δx(k+i)‖²_W adds to the quadratic form.
+struct Damping {
+    hessian: DMatrix<f64>,
+    gradient_state: DMatrix<f64>,
+    gradient_input: DMatrix<f64>,
+}
+
+impl Damping {
+    fn new(plant: &StateSpace, weight: &DMatrix<f64>, horizon: usize, moves: usize) -> Self {
+        let (n, p) = (plant.states(), plant.inputs());
+        let mut walk = MovesWalk::new(plant, moves);
+        let mut damping = Self {
+            hessian: DMatrix::zeros(p * moves, p * moves),
+            gradient_state: DMatrix::zeros(p * moves, n),
+            gradient_input: DMatrix::zeros(p * moves, p),
+        };
+        let mut before = walk.predicted(Quantity::State);
+        for _ in 0..horizon {
+            walk.advance();
+            let now = walk.predicted(Quantity::State);
+            let (by_moves, known) = (&now.decision - before.decision, &now.known - before.known);
+            let weighted = by_moves.transpose() * weight;
+            damping.hessian += &weighted * by_moves;
+            damping.gradient_state += &weighted * known.columns(0, n);
+            damping.gradient_input += &weighted * known.columns(n, p);
+            before = now;
+        }
+        damping
+    }
+}
+
 /// F and Φ of (33) with D = 0: Y = \[y(k) … y(k+N−1)\] from x(k) and U = \[u(k) … u(k+N−1)\].
 fn condensed(plant: &StateSpace, horizon: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
@@ -157,46 +211,32 @@ pub struct StateSpaceMpc<const N: usize, const P: usize, const Q: usize, const E
     known: Vec<Known<N, P>>,
 }
 
-/// What of a limit is known before the moves are chosen: state·x + input·u₋₁.
+/// What of a limit is known before the moves are chosen.
 #[derive(Clone, Debug, PartialEq)]
 struct Known<const N: usize, const P: usize> {
     state: SVector<f64, N>,
+    driving: SVector<f64, P>,
     input: SVector<f64, P>,
+    step: SVector<f64, P>,
     bound: usize,
 }
 
-/// What a [`StateSpaceMpc`] remembers: the input that was applied last, and its last active set.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StateSpaceMpcState<const P: usize, const E: usize> {
-    applied: SVector<f64, P>,
-    warm_start: RelaxableWarmStart<E>,
-}
-
-impl<const P: usize, const E: usize> StateSpaceMpcState<P, E> {
-    /// Takes over at this input.
-    pub fn new(applied: SVector<f64, P>) -> Self {
-        Self { applied, warm_start: RelaxableWarmStart::default() }
-    }
-
-    /// Reports the input that was applied in truth. A value that is not finite is ignored.
-    pub fn apply(&mut self, applied: &SVector<f64, P>) {
-        if applied.iter().all(|value| value.is_finite()) {
-            self.applied = *applied;
-        }
-    }
-}
-
-/// The outcome of a step of a [`StateSpaceMpc`].
+/// What a [`StateSpaceMpc`] is told at one sample. Without a reference trajectory: state = x̂(k), and the rest zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StateSpaceMpcStep<const P: usize> {
-    /// u(k).
-    pub input: SVector<f64, P>,
-    /// How it was found.
-    pub status: Status,
-    /// Iterations of the solver.
-    pub iterations: u32,
-    /// How many limits hold with equality.
-    pub active: usize,
+pub struct StateSpaceMpcSample<const N: usize, const P: usize> {
+    /// x̂(k) − x_r(k), measured or predicted.
+    pub state: SVector<f64, N>,
+    /// u_r(k), the input that keeps the plant on the reference trajectory.
+    pub input_reference: SVector<f64, P>,
+    /// d̂(k): a disturbance that acts on the plant as if it were added to the input, taken to last.
+    pub disturbance: SVector<f64, P>,
+}
+
+impl<const N: usize, const P: usize> StateSpaceMpcSample<N, P> {
+    /// A state, with neither a reference trajectory nor a disturbance.
+    pub fn of_state(state: SVector<f64, N>) -> Self {
+        Self { state, input_reference: SVector::zeros(), disturbance: SVector::zeros() }
+    }
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceMpc<N, P, Q, E> {
@@ -231,41 +271,47 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceM
                 .iter()
                 .map(|row| Known {
                     state: SVector::from_fn(|i, _| row.known[i]),
-                    input: SVector::from_fn(|i, _| row.known[N + i]),
+                    driving: SVector::from_fn(|i, _| row.known[N + i]),
+                    input: SVector::from_fn(|i, _| row.known[N + P + i]),
+                    step: SVector::from_fn(|i, _| row.known[N + 2 * P + i]),
                     bound: row.bound,
                 })
                 .collect(),
         })
     }
 
-    /// One sample: u(k) from the state, measured or predicted, and the references r(k), r(k+1), …, of which
-    /// the last one stands for all that are missing. `upper` holds one value per direction of each limit.
-    pub fn step(
+    /// One sample: u(k) from the state and the references r(k), r(k+1), … of the outputs, of which the last one
+    /// stands for all that are missing. `upper` holds one value per direction of each limit; limits of the state
+    /// bound its deviation from the reference trajectory.
+    pub fn step<const W: usize>(
         &self,
-        state: &mut StateSpaceMpcState<P, E>,
-        estimate: &SVector<f64, N>,
+        state: &mut ConstrainedState<N, P, W>,
+        sample: &StateSpaceMpcSample<N, P>,
         references: &[SVector<f64, Q>],
         upper: &[f64],
-    ) -> StateSpaceMpcStep<P> {
-        let mut f = self.gradient_state * estimate + self.gradient_input * state.applied;
-        for (sample, gradient) in self.gradient_reference.iter().enumerate() {
-            if let Some(reference) = references.get(sample).or(references.last()) {
+    ) -> ConstrainedStep<P> {
+        let feedback = state.controller.feedback();
+        let driving = feedback + sample.disturbance;
+        let input = sample.input_reference + feedback;
+        let reference_step = sample.input_reference - state.controller.input_reference();
+
+        let mut f = self.gradient_state * sample.state + self.gradient_input * driving;
+        for (index, gradient) in self.gradient_reference.iter().enumerate() {
+            if let Some(reference) = references.get(index).or(references.last()) {
                 f -= gradient * reference;
             }
         }
-        let applied = state.applied;
         let bound = |row: usize| {
             let known = &self.known[row];
             let upper = upper.get(known.bound).copied().unwrap_or(f64::INFINITY);
-            upper - known.state.dot(estimate) - known.input.dot(&applied)
+            upper
+                - known.state.dot(&sample.state)
+                - known.driving.dot(&driving)
+                - known.input.dot(&input)
+                - known.step.dot(&reference_step)
         };
         let (solution, status) = self.program.solve(&f, bound, &mut state.warm_start);
-        let usable = matches!(status, Status::Optimal | Status::Relaxed);
-        let increment = SVector::from_fn(|i, _| if usable { solution.x[i] } else { 0.0 });
-        let input = state.applied + increment;
-        let finite = input.iter().all(|value| value.is_finite());
-        let (input, status) = if finite { (input, status) } else { (state.applied, Status::Held) };
-        state.applied = input;
-        StateSpaceMpcStep { input, status, iterations: solution.iterations, active: solution.active }
+        let first_move = SVector::from_fn(|i, _| solution.x[i]);
+        state.taken(&sample.state, &sample.input_reference, first_move, &solution, status)
     }
 }

@@ -102,7 +102,8 @@ fn a_speed_beyond_its_limit_is_relaxed_and_brought_back() {
     let controller = altitude(Weighting::Terminal { lambda: 1.0 });
     let mut x = Vector2::new(0.0, 4.0);
     let mut previous = Vector2::new(-4.0 * TIME, 4.0);
-    let mut state = ConstrainedState::new(ControllerState::new(previous, Vector1::zeros(), Vector1::zeros()));
+    let mut state =
+        ConstrainedState::<_, _, 6>::new(ControllerState::new(previous, Vector1::zeros(), Vector1::zeros()));
     let (mut u, mut relaxed) = (0.0_f64, 0);
     for _ in 0..800 {
         let error = Vector1::new(x.x - 10.0);
@@ -144,8 +145,11 @@ fn closed_loop_cost<const E: usize>(
     controller: &ConstrainedController<4, 2, 2, E>,
     goal: Vector2<f64>,
 ) -> f64 {
-    let mut state =
-        ConstrainedState::new(ControllerState::new(Vector4::zeros(), Vector2::zeros(), Vector2::zeros()));
+    let mut state = ConstrainedState::<_, _, 11>::new(ControllerState::new(
+        Vector4::zeros(),
+        Vector2::zeros(),
+        Vector2::zeros(),
+    ));
     let (mut x, mut previous, mut u, mut cost) = (Vector4::zeros(), Vector4::zeros(), Vector2::zeros(), 0.0);
     for sample in 0..600 {
         let error = Vector2::new(x[0], x[2]) - goal;
@@ -219,7 +223,7 @@ proptest! {
 
         let run = |bound: f64| {
             let start = ControllerState::new(Vector2::new(z - dz, v - dv), Vector1::new(u), Vector1::zeros());
-            let mut state = ConstrainedState::new(start);
+            let mut state = ConstrainedState::<_, _, 6>::new(start);
             let (measured, delta) = (Vector2::new(z, v), Vector2::new(dz, dv));
             controller.step_from(&mut state, &measured, &delta, &Vector1::new(z), &Vector1::zeros(), &[bound])
         };
@@ -251,8 +255,11 @@ proptest! {
 #[test]
 fn a_step_does_not_allocate() {
     let controller = position::<11>(5, 0.8);
-    let mut state =
-        ConstrainedState::new(ControllerState::new(Vector4::zeros(), Vector2::zeros(), Vector2::zeros()));
+    let mut state = ConstrainedState::<_, _, 11>::new(ControllerState::new(
+        Vector4::zeros(),
+        Vector2::zeros(),
+        Vector2::zeros(),
+    ));
     let bounds = position_bounds();
     let allocations = allocation_counter::measure(|| {
         let error = Vector2::new(-5.0, -5.0);

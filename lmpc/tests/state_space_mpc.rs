@@ -1,8 +1,8 @@
 //! State-space MPC against simulated predictions, LMPC with unit pulses, and its own limits.
 
 use lmpc::{
-    DesignError, Discretization, Limit, Quantity, StateSpace, StateSpaceMpc, StateSpaceMpcDesign,
-    StateSpaceMpcState, Status,
+    ConstrainedState, ControllerState, DesignError, Discretization, Limit, Quantity, StateSpace,
+    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, Status,
 };
 use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix};
 use proptest::prelude::*;
@@ -19,6 +19,10 @@ fn plant() -> StateSpace {
 
 fn design() -> StateSpaceMpcDesign {
     StateSpaceMpcDesign::new(&plant(), &dmatrix![1.0], &dmatrix![1.0], 100, MOVES).unwrap()
+}
+
+fn applying(u: f64) -> ConstrainedState<2, 1, 26> {
+    ConstrainedState::new(ControllerState::new(Vector2::zeros(), Vector1::new(u), Vector1::zeros()))
 }
 
 fn advanced(x: Vector2<f64>, u: f64) -> Vector2<f64> {
@@ -61,9 +65,51 @@ proptest! {
         let best = -hessian.lu().solve(&gradient).unwrap();
 
         let references: Vec<Vector1<f64>> = r.iter().map(|&value| Vector1::new(value)).collect();
-        let mut state = StateSpaceMpcState::new(Vector1::new(u));
-        let step = controller.step(&mut state, &Vector2::new(z, v), &references, &[]);
-        prop_assert!((step.input.x - u - best[0]).abs() < 1e-7 * (1.0 + best[0].abs()));
+        let mut state = applying(u);
+        let step = controller.step(&mut state, &StateSpaceMpcSample::of_state(Vector2::new(z, v)), &references, &[]);
+        prop_assert!((step.step.input.x - u - best[0]).abs() < 1e-7 * (1.0 + best[0].abs()));
+    }
+
+    /// … also with a disturbance that acts like an input, and a weight on the increments of the velocity.
+    #[test]
+    fn the_first_move_minimises_the_simulated_cost_with_damping_and_disturbance(
+        z in -3.0..3.0, v in -1.0..1.0, u in -1.0..1.0, d in -1.0..1.0,
+    ) {
+        const N: usize = 40;
+        const N_C: usize = 4;
+        let (q, w, s) = (3.0, 5.0, 0.02);
+        let design = StateSpaceMpcDesign::with_damping(
+            &plant(), &dmatrix![q], &dmatrix![0.0, 0.0; 0.0, w], &dmatrix![s], N, N_C,
+        );
+        let controller = StateSpaceMpc::<2, 1, 1, 5>::new(&design.unwrap(), &[]).unwrap();
+        let cost = |moves: &DVector<f64>| {
+            let (mut x, mut input, mut cost): (Vector2<f64>, f64, f64) = (Vector2::new(z, v), u, 0.0);
+            for n in 0..N {
+                cost += 0.5 * q * f64::powi(x.x, 2);
+                if n < N_C {
+                    input += moves[n];
+                    cost += 0.5 * s * moves[n].powi(2);
+                }
+                let next = advanced(x, input + d);
+                cost += 0.5 * w * f64::powi(next.y - x.y, 2);
+                x = next;
+            }
+            cost
+        };
+        let unit = |i: usize| DVector::from_fn(N_C, |k, _| f64::from(k == i));
+        let zero = DVector::zeros(N_C);
+        let gradient = DVector::from_fn(N_C, |i, _| (cost(&unit(i)) - cost(&-unit(i))) / 2.0);
+        let hessian = DMatrix::from_fn(N_C, N_C, |i, j| {
+            cost(&(unit(i) + unit(j))) - cost(&unit(i)) - cost(&unit(j)) + cost(&zero)
+        });
+        let best = -hessian.lu().solve(&gradient).unwrap();
+
+        let sample = StateSpaceMpcSample {
+            disturbance: Vector1::new(d),
+            ..StateSpaceMpcSample::of_state(Vector2::new(z, v))
+        };
+        let step = controller.step(&mut applying(u), &sample, &[], &[]);
+        prop_assert!((step.step.input.x - u - best[0]).abs() < 1e-6 * (1.0 + best[0].abs()));
     }
 
     #[test]
@@ -72,12 +118,12 @@ proptest! {
     ) {
         let limits = [Limit::range(Quantity::Input, 1, 0..10)];
         let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
-        let mut state = StateSpaceMpcState::new(Vector1::zeros());
+        let mut state = applying(0.0);
         for chunk in values.chunks_exact(3) {
-            let estimate = Vector2::new(chunk[0], chunk[1]);
+            let estimate = StateSpaceMpcSample::of_state(Vector2::new(chunk[0], chunk[1]));
             let step = controller.step(&mut state, &estimate, &[Vector1::new(chunk[2])], &[1.0, 1.0]);
-            prop_assert!(step.input.x.is_finite());
-            state.apply(&Vector1::new(chunk[0]));
+            prop_assert!(step.step.input.x.is_finite());
+            state.controller.apply(&Vector1::new(chunk[0]));
         }
     }
 }
@@ -86,19 +132,54 @@ proptest! {
 fn it_arrives_and_the_preview_makes_it_start_early() {
     let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &[]).unwrap();
     let run = |preview: usize| {
-        let mut state = StateSpaceMpcState::new(Vector1::zeros());
+        let mut state = applying(0.0);
         let (mut x, mut cost): (Vector2<f64>, f64) = (Vector2::zeros(), 0.0);
         for k in 0..400_usize {
             let reference = |sample: usize| Vector1::new(f64::from(sample >= 100));
             let references: Vec<_> = (0..=preview).map(|ahead| reference(k + ahead)).collect();
-            let step = controller.step(&mut state, &x, &references, &[]);
+            let step = controller.step(&mut state, &StateSpaceMpcSample::of_state(x), &references, &[]);
             cost += f64::powi(x.x - reference(k).x, 2);
-            x = advanced(x, step.input.x);
+            x = advanced(x, step.step.input.x);
         }
         assert!((x.x - 1.0).abs() < 1e-3, "{x}");
         cost
     };
     assert!(run(99) < 0.6 * run(0));
+}
+
+/// A wind that the controller is told of leaves no error, whatever its integral would have had to find.
+#[test]
+fn a_known_disturbance_leaves_no_error() {
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &[]).unwrap();
+    let wind = Vector1::new(-0.7);
+    let mut state = applying(0.0);
+    let mut x = Vector2::zeros();
+    for _ in 0..600 {
+        let sample = StateSpaceMpcSample { disturbance: wind, ..StateSpaceMpcSample::of_state(x) };
+        let step = controller.step(&mut state, &sample, &[Vector1::new(1.0)], &[]);
+        x = advanced(x, step.step.input.x + wind.x);
+    }
+    assert!((x.x - 1.0).abs() < 1e-6, "{x}");
+}
+
+/// Limits bound the whole input and its whole change, feed-forward included.
+#[test]
+fn feed_forward_counts_towards_the_limits() {
+    let limits = [Limit::range(Quantity::Increment, 1, 0..5), Limit::range(Quantity::Input, 1, 0..5)];
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
+    let bounds = [0.5, 0.5, 2.0, 2.0];
+    let far = StateSpaceMpcSample::of_state(Vector2::new(-100.0, 0.0));
+    let with =
+        |input_reference: f64| StateSpaceMpcSample { input_reference: Vector1::new(input_reference), ..far };
+    let mut state = applying(0.0);
+    // The feed-forward steps by 0.3; feedback may add 0.2 …
+    let step = controller.step(&mut state, &with(0.3), &[], &bounds);
+    assert!((step.step.input.x - 0.5).abs() < 1e-9, "{step:?}");
+    // … and the sum ends at its limit.
+    for _ in 0..10 {
+        controller.step(&mut state, &with(0.3), &[], &bounds);
+    }
+    assert!((state.controller.applied().x - 2.0).abs() < 1e-9);
 }
 
 #[test]
@@ -115,12 +196,13 @@ fn limits_hold_in_closed_loop() {
     ];
     let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
     let bounds = [0.2, 0.2, 1.0, 1.0, 1.5, 1.5];
-    let mut state = StateSpaceMpcState::new(Vector1::zeros());
+    let mut state = applying(0.0);
     let (mut x, mut u, mut active) = (Vector2::zeros(), 0.0_f64, 0);
     for sample in 0..600 {
-        let step = controller.step(&mut state, &x, &[Vector1::new(10.0)], &bounds);
-        assert_eq!(step.status, Status::Optimal, "sample {sample}");
-        let next = step.input.x;
+        let step =
+            controller.step(&mut state, &StateSpaceMpcSample::of_state(x), &[Vector1::new(10.0)], &bounds);
+        assert_eq!(step.step.status, Status::Optimal, "sample {sample}");
+        let next = step.step.input.x;
         assert!((next - u).abs() <= 0.2 + 1e-8 && next.abs() <= 1.0 + 1e-8, "sample {sample}: {u} to {next}");
         active += step.active;
         (x, u) = (advanced(x, next), next);
@@ -133,9 +215,14 @@ fn limits_hold_in_closed_loop() {
 fn a_step_does_not_allocate() {
     let limits = [Limit::range(Quantity::Input, 1, 0..MOVES)];
     let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
-    let mut state = StateSpaceMpcState::new(Vector1::zeros());
+    let mut state = applying(0.0);
     let allocations = allocation_counter::measure(|| {
-        let step = controller.step(&mut state, &Vector2::zeros(), &[Vector1::new(5.0)], &[0.1, 0.1]);
+        let step = controller.step(
+            &mut state,
+            &StateSpaceMpcSample::of_state(Vector2::zeros()),
+            &[Vector1::new(5.0)],
+            &[0.1, 0.1],
+        );
         assert!(step.active > 0);
     });
     assert_eq!(allocations.count_total, 0);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use lmpc::{
     Augmented, ConstrainedController, ConstrainedState, ControllerState, DesignError, Discretization,
-    LaguerreBasis, Limit, LmpcDesign, Quantity, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcState,
+    LaguerreBasis, Limit, LmpcDesign, Quantity, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample,
     Weighting, Weights,
 };
 use nalgebra::{DMatrix, Vector2, Vector4};
@@ -137,10 +137,15 @@ fn state_space<const E: usize>(moves: usize) -> Result<Controller, DesignError> 
     let design = StateSpaceMpcDesign::new(&plant, &identity, &(&identity * WEIGHT), HORIZON, moves)?;
     let controller = StateSpaceMpc::<4, 2, 2, E>::new(&design, &limits(LIMITED))?;
     let bounds = bounds();
-    let mut state = StateSpaceMpcState::<2, E>::new(Vector2::zeros());
+    let mut state = ConstrainedState::<4, 2, E>::new(ControllerState::new(
+        Vector4::zeros(),
+        Vector2::zeros(),
+        Vector2::zeros(),
+    ));
     Ok(Box::new(move |x, _| {
-        let step = controller.step(&mut state, x, &[GOAL.into()], &bounds);
-        (step.input, step.iterations)
+        let sample = StateSpaceMpcSample::of_state(*x);
+        let step = controller.step(&mut state, &sample, &[GOAL.into()], &bounds);
+        (step.step.input, step.iterations)
     }))
 }
 
