@@ -3,7 +3,7 @@
 use crate::variables::{Value, with_references};
 
 /// Version of the serialized state, part of the identity.
-pub(crate) const STATE_FORMAT: u32 = 1;
+pub(crate) const STATE_FORMAT: u32 = 2;
 
 /// 128 bits that follow from the table of variables and the version, so that a description or a saved
 /// state of another build of the model is recognised.
@@ -22,6 +22,10 @@ pub(crate) fn identity() -> u128 {
         hash.text(variable.variability());
         hash.text(&variable.value_type().to_string());
         hash.text(variable.quantity().map_or("", |quantity| quantity.quantity_type().name));
+        for (name, description) in variable.choice().map_or(&[][..], |choice| choice.items) {
+            hash.text(name);
+            hash.text(description);
+        }
         let (minimum, maximum) = variable.range();
         for value in [minimum, maximum, variable.start()] {
             hash.value(value);

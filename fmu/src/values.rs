@@ -101,7 +101,7 @@ impl Instance {
             Role::Input(input) => input.get(&self.settings.inputs),
             Role::Parameter(parameter) => get_parameter(parameter, &self.settings.configuration),
             Role::CalculatedParameter(calculated) => Value::Real((calculated.get)(self.design()?)),
-            Role::Output(output) => Value::Real((output.get)(self.outputs()?)),
+            Role::Output(output) => output.get(self.outputs()?),
         })
     }
 }
@@ -159,7 +159,7 @@ fn check_derivative(derivative: &InputDerivative) -> Result<(), CallError> {
 fn typed(reference: ValueReference, asked: Type) -> Result<&'static Variable, CallError> {
     let variable = variable(reference).ok_or(CallError::UnknownReference { reference })?;
     let declared = variable.value_type();
-    if declared == asked {
+    if declared.of_functions() == asked {
         Ok(variable)
     } else {
         Err(CallError::WrongType { name: variable.name, reference, declared, asked })

@@ -118,7 +118,7 @@ impl<const N: usize, const P: usize> ControllerState<N, P> {
     }
 
     /// v(k−1), the part of the applied input that feedback added.
-    pub(crate) fn feedback(&self) -> SVector<f64, P> {
+    pub fn feedback(&self) -> SVector<f64, P> {
         self.feedback
     }
 

@@ -90,5 +90,5 @@ pub use quadratic_program::{Outcome, QuadraticProgram, Solution, WarmStart};
 pub use reachability::{uncontrollable_eigenvalues, unobservable_eigenvalues};
 pub use riccati::{riccati_residual, solve_riccati};
 pub use state_space::{Discretization, StateSpace};
-pub use state_space_mpc::{StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample};
+pub use state_space_mpc::{StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, StateSpaceMpcWeights};
 pub use weighting::{Weighting, Weights};

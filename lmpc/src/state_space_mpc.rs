@@ -23,7 +23,7 @@ use crate::{
 /// H = (Φ T)ᵀ Q (Φ T) + S
 /// ```
 ///
-/// The cost ends with the horizon, as the paper's does.
+/// The paper's cost ends with the horizon; [`StateSpaceMpcWeights`] can add what the state at its end costs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpaceMpcDesign {
     plant: StateSpace,
@@ -36,14 +36,43 @@ pub struct StateSpaceMpcDesign {
     spectral_radius: f64,
 }
 
+/// Weights of a state-space MPC.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateSpaceMpcWeights {
+    /// Q of (34) on y − r, q×q.
+    pub output: DMatrix<f64>,
+    /// S of (34) on the moves, p×p.
+    pub moves: DMatrix<f64>,
+    /// W on the increments of the state, n×n: ½ ‖Δx(k+i)‖²_W is added for i = 1 … N.
+    pub increment: DMatrix<f64>,
+    /// P on \[Δx; y − r\] at sample k + N, (n+q)×(n+q), instead of W; the
+    /// [cost of the regulator](crate::Dlqr::cost) makes the finite horizon cost what the infinite one costs.
+    pub terminal: Option<DMatrix<f64>>,
+}
+
+impl StateSpaceMpcWeights {
+    fn check(&self, plant: &StateSpace) -> Result<(), DesignError> {
+        let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
+        validate::shape("Q", &self.output, (q, q))?;
+        validate::shape("S", &self.moves, (p, p))?;
+        validate::shape("W", &self.increment, (n, n))?;
+        validate::positive_semidefinite("Q", &self.output)?;
+        validate::positive_semidefinite("W", &self.increment)?;
+        validate::positive_definite("S", &self.moves)?;
+        if let Some(terminal) = &self.terminal {
+            validate::shape("P", terminal, (n + q, n + q))?;
+            validate::positive_semidefinite("P", terminal)?;
+        }
+        Ok(())
+    }
+}
+
 impl StateSpaceMpcDesign {
-    /// For a plant, the weights Q on the outputs (q×q) and S on the moves (p×p), a prediction horizon of N =
-    /// `horizon` samples and a control horizon of N_c = `moves`.
+    /// For a plant, the weights Q on the outputs (q×q) and S on the moves (p×p) as in (34), a prediction horizon
+    /// of N = `horizon` samples and a control horizon of N_c = `moves`.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
-    /// (Q), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::HorizonTooShort`] unless
-    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable.
+    /// As [`StateSpaceMpcDesign::with_weights`].
     pub fn new(
         plant: &StateSpace,
         output_weight: &DMatrix<f64>,
@@ -51,30 +80,29 @@ impl StateSpaceMpcDesign {
         horizon: usize,
         moves: usize,
     ) -> Result<Self, DesignError> {
-        let none = DMatrix::zeros(plant.states(), plant.states());
-        Self::with_damping(plant, output_weight, &none, move_weight, horizon, moves)
+        let weights = StateSpaceMpcWeights {
+            output: output_weight.clone(),
+            moves: move_weight.clone(),
+            increment: DMatrix::zeros(plant.states(), plant.states()),
+            terminal: None,
+        };
+        Self::with_weights(plant, &weights, horizon, moves)
     }
 
-    /// As [`StateSpaceMpcDesign::new`], with ½ ‖Δx(k+i)‖² in the weight W = `increment_weight` (n×n) added to
-    /// the cost for i = 1 … N: the weight that [`Weights`](crate::Weights) has on Δx_m.
+    /// As [`StateSpaceMpcDesign::new`] with the weights that a Laguerre MPC can have.
     ///
     /// # Errors
-    /// Also [`DesignError::NotPositiveSemidefinite`] (W).
-    pub fn with_damping(
+    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
+    /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::HorizonTooShort`] unless
+    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable.
+    pub fn with_weights(
         plant: &StateSpace,
-        output_weight: &DMatrix<f64>,
-        increment_weight: &DMatrix<f64>,
-        move_weight: &DMatrix<f64>,
+        weights: &StateSpaceMpcWeights,
         horizon: usize,
         moves: usize,
     ) -> Result<Self, DesignError> {
-        let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
-        validate::shape("Q", output_weight, (q, q))?;
-        validate::shape("W", increment_weight, (n, n))?;
-        validate::shape("S", move_weight, (p, p))?;
-        validate::positive_semidefinite("Q", output_weight)?;
-        validate::positive_semidefinite("W", increment_weight)?;
-        validate::positive_definite("S", move_weight)?;
+        weights.check(plant)?;
+        let (p, q) = (plant.inputs(), plant.outputs());
         if moves == 0 || horizon <= moves {
             return Err(DesignError::HorizonTooShort { horizon, terms: moves + 1 });
         }
@@ -89,15 +117,20 @@ impl StateSpaceMpcDesign {
             }
         }
         let response = &phi * t;
-        let q_all = repeated(output_weight, horizon);
-        let gradient_reference = response.transpose() * q_all;
-        let damping = Damping::new(plant, increment_weight, horizon, moves);
-        let hessian = &gradient_reference * response + damping.hessian + repeated(move_weight, moves);
+        let q_all = repeated(&weights.output, horizon);
+        let mut gradient_reference = response.transpose() * q_all;
+        let more = FurtherCost::new(plant, weights, horizon, moves);
+        let hessian = &gradient_reference * response + more.hessian + repeated(&weights.moves, moves);
+        let gradient_state = &gradient_reference * f + more.gradient_state;
+        let gradient_input = &gradient_reference * phi * ones + more.gradient_input;
+        // The last reference is that at the end of the horizon, too.
+        let mut last = gradient_reference.columns_mut(q * (horizon - 1), q);
+        last += more.gradient_last_reference;
         let design = Self {
             plant: plant.clone(),
             moves,
-            gradient_state: &gradient_reference * f + damping.gradient_state,
-            gradient_input: &gradient_reference * phi * ones + damping.gradient_input,
+            gradient_state,
+            gradient_input,
             gradient_reference,
             hessian: symmetrized(&hessian),
             spectral_radius: 0.0,
@@ -147,34 +180,58 @@ impl StateSpaceMpcDesign {
     }
 }
 
-/// What Σ ½ ‖Δx(k+i)‖²_W adds to the quadratic form.
-struct Damping {
+/// What ½ Σ ‖Δx(k+i)‖²_W and the weight of the state at the end add to the quadratic form.
+struct FurtherCost {
     hessian: DMatrix<f64>,
     gradient_state: DMatrix<f64>,
     gradient_input: DMatrix<f64>,
+    gradient_last_reference: DMatrix<f64>,
 }
 
-impl Damping {
-    fn new(plant: &StateSpace, weight: &DMatrix<f64>, horizon: usize, moves: usize) -> Self {
-        let (n, p) = (plant.states(), plant.inputs());
+impl FurtherCost {
+    fn new(plant: &StateSpace, weights: &StateSpaceMpcWeights, horizon: usize, moves: usize) -> Self {
+        let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
         let mut walk = MovesWalk::new(plant, moves);
-        let mut damping = Self {
+        let mut cost = Self {
             hessian: DMatrix::zeros(p * moves, p * moves),
             gradient_state: DMatrix::zeros(p * moves, n),
             gradient_input: DMatrix::zeros(p * moves, p),
+            gradient_last_reference: DMatrix::zeros(p * moves, q),
         };
         let mut before = walk.predicted(Quantity::State);
-        for _ in 0..horizon {
+        for i in 1..=horizon {
             walk.advance();
             let now = walk.predicted(Quantity::State);
-            let (by_moves, known) = (&now.decision - before.decision, &now.known - before.known);
-            let weighted = by_moves.transpose() * weight;
-            damping.hessian += &weighted * by_moves;
-            damping.gradient_state += &weighted * known.columns(0, n);
-            damping.gradient_input += &weighted * known.columns(n, p);
+            let (by_moves, known) = (&now.decision - &before.decision, &now.known - &before.known);
+            match weights.terminal.as_ref().filter(|_| i == horizon) {
+                None => {
+                    cost.add(&by_moves, &known, &weights.increment);
+                }
+                // ½ ‖[Δx(k+N); y(k+N) − r]‖²_P
+                Some(terminal) => {
+                    let stacked = |above: &DMatrix<f64>, x: &DMatrix<f64>| {
+                        let mut stacked = above.clone().resize_vertically(n + q, 0.0);
+                        stacked.rows_mut(n, q).copy_from(&(plant.c() * x));
+                        stacked
+                    };
+                    let by_moves = stacked(&by_moves, &now.decision);
+                    let weighted = cost.add(&by_moves, &stacked(&known, &now.known), terminal);
+                    cost.gradient_last_reference += weighted.columns(n, q);
+                }
+            }
             before = now;
         }
-        damping
+        cost
+    }
+
+    /// ½ ‖`by_moves` ΔU + `known`‖² in a weight; returns `by_moves`ᵀ times the weight.
+    fn add(&mut self, by_moves: &DMatrix<f64>, known: &DMatrix<f64>, weight: &DMatrix<f64>) -> DMatrix<f64> {
+        let (n, p) = (self.gradient_state.ncols(), self.gradient_input.ncols());
+        let weighted = by_moves.transpose() * weight;
+        self.hessian += &weighted * by_moves;
+        self.gradient_state += &weighted * known.columns(0, n);
+        self.gradient_input += &weighted * known.columns(n, p);
+        weighted
     }
 }
 

@@ -1,10 +1,11 @@
 //! State-space MPC against simulated predictions, LMPC with unit pulses, and its own limits.
 
 use lmpc::{
-    ConstrainedState, ControllerState, DesignError, Discretization, Limit, Quantity, StateSpace,
-    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, Status,
+    Augmented, ConstrainedState, ControllerState, DesignError, Discretization, Dlqr, Limit, Quantity,
+    StateSpace, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, StateSpaceMpcWeights, Status,
+    Weights,
 };
-use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix};
+use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix, dvector};
 use proptest::prelude::*;
 
 mod common;
@@ -78,9 +79,13 @@ proptest! {
         const N: usize = 40;
         const N_C: usize = 4;
         let (q, w, s) = (3.0, 5.0, 0.02);
-        let design = StateSpaceMpcDesign::with_damping(
-            &plant(), &dmatrix![q], &dmatrix![0.0, 0.0; 0.0, w], &dmatrix![s], N, N_C,
-        );
+        let weights = StateSpaceMpcWeights {
+            output: dmatrix![q],
+            moves: dmatrix![s],
+            increment: dmatrix![0.0, 0.0; 0.0, w],
+            terminal: None,
+        };
+        let design = StateSpaceMpcDesign::with_weights(&plant(), &weights, N, N_C);
         let controller = StateSpaceMpc::<2, 1, 1, 5>::new(&design.unwrap(), &[]).unwrap();
         let cost = |moves: &DVector<f64>| {
             let (mut x, mut input, mut cost): (Vector2<f64>, f64, f64) = (Vector2::new(z, v), u, 0.0);
@@ -145,6 +150,37 @@ fn it_arrives_and_the_preview_makes_it_start_early() {
         cost
     };
     assert!(run(99) < 0.6 * run(0));
+}
+
+/// With the regulator's cost as terminal weight and moves on all samples but the last the law is all but the regulator's.
+#[test]
+fn with_the_terminal_weight_many_moves_are_the_regulator() {
+    let model = Augmented::new(&plant());
+    let weights = Weights::output(&model, 1.0, 1.0).unwrap();
+    let dlqr = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0).unwrap();
+    let weights = StateSpaceMpcWeights {
+        output: dmatrix![1.0],
+        moves: dmatrix![1.0],
+        increment: DMatrix::zeros(2, 2),
+        terminal: Some(dlqr.cost().clone()),
+    };
+    let design = StateSpaceMpcDesign::with_weights(&plant(), &weights, 26, 25).unwrap();
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design, &[]).unwrap();
+    // x, and where it came from under the old input: [Δx; y − r]
+    for (x, u) in
+        [(Vector2::new(2.0, -0.5), 0.0), (Vector2::new(-1.0, 0.7), 0.4), (Vector2::new(1.0, 0.0), -0.3)]
+    {
+        let before = Vector2::new(x.x - TIME * (x.y - TIME * u) - TIME * TIME / 2.0 * u, x.y - TIME * u);
+        let delta = x - before;
+        let regulated = u - (dlqr.gain() * dvector![delta.x, delta.y, x.x - 1.0])[0];
+        let sample = StateSpaceMpcSample::of_state(x);
+        let step = controller.step(&mut applying(u), &sample, &[Vector1::new(1.0)], &[]);
+        assert!(
+            (step.step.input.x - regulated).abs() < 2e-3 * regulated.abs(),
+            "{} beside {regulated}",
+            step.step.input.x
+        );
+    }
 }
 
 /// A wind that the controller is told of leaves no error, whatever its integral would have had to find.

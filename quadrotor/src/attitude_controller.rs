@@ -1,15 +1,33 @@
 //! Attitude: from the attitude and body rates to torques.
 
-use lmpc::ControllerState;
+use lmpc::{ConstrainedState, ControllerState};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
+use crate::activity::ControllerActivity;
 use crate::attitude::{attitude_error, turned};
+use crate::cascade::believed_inertia;
+use crate::cascade_design::ATTITUDE_UNKNOWNS;
 use crate::governor::{Governor, proportional_rate};
-use crate::{CascadeDesign, Limits};
+use crate::tracking_law::TrackingSample;
+use crate::{CascadeDesign, Configuration, Limits};
 
 /// Share of the torque-limited angular acceleration that braking a large rotation counts on.
 const BRAKING_SHARE: f64 = 0.5;
+
+/// Time over which steps of the reference's rate are spread, s: those of the position controller.
+const SMOOTHING_S: f64 = 0.05;
+
+/// What is known of the vehicle's rotation, measured or estimated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VehicleRotation {
+    /// FRD into NED.
+    pub(crate) attitude: UnitQuaternion<f64>,
+    /// p, q, r, rad/s.
+    pub(crate) body_rate_rad_s: Vector3<f64>,
+    /// Estimated torque that the rotors do not explain, N·m.
+    pub(crate) disturbance_n_m: Vector3<f64>,
+}
 
 /// State of the attitude controller.
 ///
@@ -18,7 +36,7 @@ const BRAKING_SHARE: f64 = 0.5;
 /// attitude reference moves continuously.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AttitudeController {
-    lmpc: ControllerState<6, 3>,
+    controller: ConstrainedState<6, 3, ATTITUDE_UNKNOWNS>,
     attitude: UnitQuaternion<f64>,
     /// The error that the controller saw last, rad.
     error_rad: Vector3<f64>,
@@ -26,48 +44,82 @@ pub struct AttitudeController {
     rate_error_rad_s: Vector3<f64>,
     /// Integral action of the last step, N·m.
     integral_n_m: Vector3<f64>,
+    reference: ReferenceRotation,
+}
+
+/// The motion of the attitude reference, in its own axes.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+struct ReferenceRotation {
+    rate_rad_s: Vector3<f64>,
+    /// Smoothed: the rate itself moves in steps.
+    acceleration_rad_s2: Vector3<f64>,
+}
+
+impl ReferenceRotation {
+    fn go_on(&mut self, rate_rad_s: &Vector3<f64>, sample_time_s: f64) {
+        let acceleration = (rate_rad_s - self.rate_rad_s) / sample_time_s;
+        let share = (sample_time_s / SMOOTHING_S).min(1.0);
+        self.acceleration_rad_s2 += (acceleration - self.acceleration_rad_s2) * share;
+        self.rate_rad_s = *rate_rad_s;
+    }
 }
 
 impl AttitudeController {
     /// Takes over a vehicle, as if it had been on its reference: the whole error and the whole rate count
     /// from the first sample on.
     pub fn new(attitude: &UnitQuaternion<f64>) -> Self {
+        let start = ControllerState::new(Vector6::zeros(), Vector3::zeros(), Vector3::zeros());
         Self {
-            lmpc: ControllerState::new(Vector6::zeros(), Vector3::zeros(), Vector3::zeros()),
+            controller: ConstrainedState::new(start),
             attitude: *attitude,
             error_rad: Vector3::zeros(),
             rate_error_rad_s: Vector3::zeros(),
             integral_n_m: Vector3::zeros(),
+            reference: ReferenceRotation::default(),
         }
     }
 
-    /// One sample: torques in FRD, N·m, without the gyroscopic ones, from attitude and body rates, rad/s,
-    /// and their references, the rate in the axes of the reference. Report what the rotors were asked
-    /// for in the end with [`AttitudeController::apply`].
-    pub fn step(
+    /// One sample: torques in FRD, N·m, without the gyroscopic ones, and how they were found, from attitude,
+    /// body rates, rad/s, and the estimated disturbing torque, N·m, and from the references, the rate in the
+    /// axes of the reference. `bounds` are those of the rotors' thrusts. Report what the rotors were asked for
+    /// in the end with [`AttitudeController::apply`].
+    pub(crate) fn step(
         &mut self,
+        configuration: &Configuration,
         design: &CascadeDesign,
-        limits: &Limits,
-        (attitude, body_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
+        seen: &VehicleRotation,
         (reference, reference_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
-    ) -> Vector3<f64> {
+        bounds: &[f64],
+    ) -> (Vector3<f64>, ControllerActivity) {
+        let attitude = &seen.attitude;
         self.turn_with_the_body(attitude);
         let to_body = attitude.inverse() * reference;
         let whole = attitude_error(reference, attitude);
-        let error_rad = governed(design, limits, &whole);
+        let error_rad = governed(design, &configuration.limits, &whole);
         let integrated = integrable(&whole, &error_rad);
-        let rate_error_rad_s = body_rate_rad_s - to_body * reference_rate_rad_s;
-        let step = design.attitude.step_from(
-            &mut self.lmpc,
-            &interleaved(&error_rad, &rate_error_rad_s),
-            &interleaved(&(error_rad - self.error_rad), &(rate_error_rad_s - self.rate_error_rad_s)),
-            &integrated,
-            &Vector3::zeros(),
-        );
+        let rate_error_rad_s = seen.body_rate_rad_s - to_body * reference_rate_rad_s;
+        self.reference.go_on(reference_rate_rad_s, configuration.controllers.attitude.sample_time_s());
+        let law = &design.attitude;
+        // A step of the reference's rate is motion of the error, which moves an incremental law at once.
+        let input_reference = if law.is_incremental() {
+            Vector3::zeros()
+        } else {
+            (to_body * self.reference.acceleration_rad_s2).component_mul(&believed_inertia(configuration))
+        };
+        // An incremental law sees in y − r only what may be integrated; the proportional part is in the motion.
+        let error = if law.is_incremental() { &integrated } else { &error_rad };
+        let sample = TrackingSample {
+            measured: interleaved(&error_rad, &rate_error_rad_s),
+            delta: interleaved(&(error_rad - self.error_rad), &(rate_error_rad_s - self.rate_error_rad_s)),
+            deviation: interleaved(error, &rate_error_rad_s),
+            input_reference,
+            disturbance: seen.disturbance_n_m,
+        };
+        let step = law.step(&mut self.controller, &sample, bounds);
         self.error_rad = error_rad;
         self.rate_error_rad_s = rate_error_rad_s;
-        self.integral_n_m = step.integral;
-        step.input
+        self.integral_n_m = step.step.integral;
+        (step.step.input, ControllerActivity::from(&step))
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -75,27 +127,32 @@ impl AttitudeController {
     fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
         let spun_rad = turned(&self.attitude, attitude).z;
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, -spun_rad));
-        self.lmpc.turn_feedback(|torque| turn * torque);
+        self.controller.controller.turn_feedback(|torque| turn * torque);
         self.error_rad = turn * self.error_rad;
         self.rate_error_rad_s = turn * self.rate_error_rad_s;
         self.attitude = *attitude;
     }
 
     /// Reports the torques, N·m, that the rotors were asked for.
-    pub fn apply(&mut self, torque_n_m: &Vector3<f64>) {
-        self.lmpc.apply_holding_integral(torque_n_m, &self.integral_n_m);
+    pub(crate) fn apply(&mut self, design: &CascadeDesign, torque_n_m: &Vector3<f64>) {
+        let controller = &mut self.controller.controller;
+        if design.attitude.is_incremental() {
+            controller.apply_holding_integral(torque_n_m, &self.integral_n_m);
+        } else {
+            controller.apply(torque_n_m);
+        }
     }
 }
 
 /// The error that the controller may see: leaning as one vector, the heading for itself.
 fn governed(design: &CascadeDesign, limits: &Limits, error_rad: &Vector3<f64>) -> Vector3<f64> {
     let leaning = Governor {
-        rate: proportional_rate(&design.attitude, 0).min(proportional_rate(&design.attitude, 1)),
+        rate: proportional_rate(&design.attitude_gains, 0).min(proportional_rate(&design.attitude_gains, 1)),
         deceleration: BRAKING_SHARE * limits.tilt_acceleration_rad_s2,
         speed: limits.tilt_rate_rad_s,
     };
     let turning = Governor {
-        rate: proportional_rate(&design.attitude, 2),
+        rate: proportional_rate(&design.attitude_gains, 2),
         deceleration: limits.yaw_acceleration_rad_s2,
         speed: limits.yaw_rate_rad_s,
     };

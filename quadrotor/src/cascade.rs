@@ -3,10 +3,14 @@
 use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::activity::Activity;
 use crate::altitude_controller::AltitudeController;
 use crate::attitude::{tilt_angles, turned};
 use crate::attitude_controller::AttitudeController;
+use crate::controller_limits::{attitude_bounds, largest_tilt};
+use crate::estimator::Command;
 use crate::guidance::Heading;
+use crate::observer::Observation;
 use crate::position_controller::PositionController;
 use crate::ramp::Ramp;
 use crate::reference_motion::ReferenceMotion;
@@ -38,6 +42,7 @@ pub struct Cascade {
     vertical: Ramp<1>,
     tilt_reference_rad: [f64; 2],
     rotor_command_rad_s: [f64; 4],
+    activity: Activity,
 }
 
 impl Cascade {
@@ -51,7 +56,13 @@ impl Cascade {
             vertical: Ramp::still(time_us),
             tilt_reference_rad: [0.0; 2],
             rotor_command_rad_s,
+            activity: Activity::default(),
         }
+    }
+
+    /// How the controllers came to their last inputs.
+    pub fn activity(&self) -> Activity {
+        self.activity
     }
 
     /// φ, θ asked of the attitude controller, rad.
@@ -64,12 +75,23 @@ impl Cascade {
         self.rotor_command_rad_s
     }
 
+    /// What is commanded at `time_us`.
+    pub(crate) fn command(&self, configuration: &Configuration, time_us: u64) -> Command {
+        let controllers = &configuration.controllers;
+        let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
+        let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us);
+        Command {
+            acceleration_m_s2: Vector3::new(horizontal.x, horizontal.y, vertical.x),
+            rotor_speed_rad_s: self.rotor_command_rad_s,
+        }
+    }
+
     /// A sample of the position controller.
-    pub fn sample_position(
+    pub(crate) fn sample_position(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        body: &RigidBody,
+        seen: &Observation,
         setpoint: &Setpoint,
         time_us: u64,
     ) {
@@ -84,13 +106,9 @@ impl Cascade {
         };
         let limits = &configuration.limits;
         let before = self.horizontal;
-        let to = self.position.step(
-            design,
-            &configuration.controllers.position,
-            limits,
-            (body.position_m.xy(), body.velocity_m_s.xy()),
-            &motion,
-            |wanted| {
+        let tilt = largest_tilt(COMMANDED_TILT_SHARE * limits.tilt_rad, vertical);
+        let (to, activity) =
+            self.position.step(configuration, design, &seen.horizontal(), &motion, tilt, |wanted| {
                 // ẍ = −g θ: what bounds the rate of the tilt bounds the rate of the acceleration.
                 let paced = before.towards(
                     within_tilt(wanted, vertical, limits.tilt_rad),
@@ -100,17 +118,17 @@ impl Cascade {
                     period_us,
                 );
                 within_tilt(paced, vertical, limits.tilt_rad)
-            },
-        );
+            });
         self.horizontal.go_to(to, time_us, period_us);
+        self.activity.position = activity;
     }
 
     /// A sample of the altitude controller.
-    pub fn sample_altitude(
+    pub(crate) fn sample_altitude(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        body: &RigidBody,
+        seen: &Observation,
         setpoint: &Setpoint,
         time_us: u64,
     ) {
@@ -123,22 +141,18 @@ impl Cascade {
             acceleration: axis(&reference.acceleration_m_s2),
             acceleration_ahead: axis(&setpoint.acceleration_ahead_m_s2),
         };
-        let to = self.altitude.step(
-            design,
-            configuration,
-            [body.position_m.z, body.velocity_m_s.z],
-            &motion,
-            vertical_range(configuration, upright(body)),
-        );
+        let range = vertical_range(configuration, upright(&seen.body));
+        let (to, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
         self.vertical.go_to(Vector1::new(to), time_us, period_us);
+        self.activity.altitude = activity;
     }
 
     /// A sample of the attitude controller: from the accelerations wanted to rotor speeds.
-    pub fn sample_attitude(
+    pub(crate) fn sample_attitude(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        body: &RigidBody,
+        seen: &Observation,
         heading: &Heading,
         time_us: u64,
     ) {
@@ -151,23 +165,25 @@ impl Cascade {
         let rate = turned(&reference, &next) / period_s;
 
         let vertical = self.vertical.at(time_us, configuration.controllers.altitude.sample_time_us).x;
-        let torque = self.attitude.step(
-            design,
-            &configuration.limits,
-            (&body.rotation(), &body.body_rate_rad_s),
-            (&reference, &rate),
-        );
+        let body = &seen.body;
+        let thrust_n = thrust(configuration, vertical, upright(body));
         let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
+        let (torque, activity) = self.attitude.step(
+            configuration,
+            design,
+            &seen.rotation(),
+            (&reference, &rate),
+            &attitude_bounds(&configuration.airframe, thrust_n, &gyroscopic),
+        );
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
-        let wanted = Wrench {
-            thrust_n: thrust(configuration, vertical, upright(body)),
-            torque_n_m: lead * (torque + gyroscopic),
-        };
+        let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
         self.rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
         let made = wrench_of_rotors(&configuration.airframe, &self.rotor_command_rad_s);
-        self.attitude.apply(&(lead.inverse() * made.torque_n_m - gyroscopic));
+        self.activity.attitude = activity;
+        self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
+        self.attitude.apply(design, &(lead.inverse() * made.torque_n_m - gyroscopic));
     }
 
     /// φ, θ and the attitude whose thrust axis makes the accelerations wanted at `time_us`.
@@ -234,6 +250,10 @@ fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f6
 
 /// ω × Jω, N·m: what (3) takes from the torques, given back.
 fn gyroscopic_torque(configuration: &Configuration, body_rate_rad_s: &Vector3<f64>) -> Vector3<f64> {
-    let inertia = Vector3::from(configuration.airframe.inertia_kg_m2) * configuration.controllers.mass_factor;
-    body_rate_rad_s.cross(&inertia.component_mul(body_rate_rad_s))
+    body_rate_rad_s.cross(&believed_inertia(configuration).component_mul(body_rate_rad_s))
+}
+
+/// Moments of inertia that the controllers believe in, kg·m².
+pub(crate) fn believed_inertia(configuration: &Configuration) -> Vector3<f64> {
+    Vector3::from(configuration.airframe.inertia_kg_m2) * configuration.controllers.mass_factor
 }

@@ -1,14 +1,29 @@
 //! The three controllers of the cascade, designed from a configuration.
 
+use alloc::vec::Vec;
+
 use lmpc::{
-    Augmented, Controller, DesignError, Discretization, LaguerreBasis, LmpcDesign, StateSpace, Weighting,
-    Weights, spectral_radius,
+    Augmented, Controller, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateSpace,
+    Weighting, Weights, spectral_radius,
 };
 use nalgebra::{DMatrix, DVector};
 
+use crate::controller_limits::{altitude_limits, attitude_limits, position_limits};
+use crate::estimator::EstimatorDesign;
 use crate::linear_models::{altitude_model, attitude_model, position_model};
+use crate::tracking_law::TrackingLaw;
 use crate::validation::validate;
-use crate::{Configuration, ConfigurationError, ControllerSettings};
+use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
+
+/// Terms or moves per input that the larger programs have room for.
+const LARGE: usize = 30;
+/// Laguerre terms per input that the smaller programs have room for.
+const SMALL: usize = 7;
+
+/// Unknowns of the larger programs, slack included.
+pub(crate) const ALTITUDE_UNKNOWNS: usize = LARGE + 1;
+pub(crate) const POSITION_UNKNOWNS: usize = 2 * LARGE + 1;
+pub(crate) const ATTITUDE_UNKNOWNS: usize = 3 * LARGE + 1;
 
 /// The figures of one finished design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +43,14 @@ pub struct DesignReport {
 /// the paper's forward Euler would leave a bias of T²/2 times the acceleration of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CascadeDesign {
-    pub(crate) altitude: Controller<2, 1, 1>,
-    pub(crate) position: Controller<4, 2, 2>,
-    pub(crate) attitude: Controller<6, 3, 3>,
+    pub(crate) altitude: TrackingLaw<2, 1, { SMALL + 1 }, ALTITUDE_UNKNOWNS>,
+    pub(crate) position: TrackingLaw<4, 2, { 2 * SMALL + 1 }, POSITION_UNKNOWNS>,
+    pub(crate) attitude: TrackingLaw<6, 3, { 3 * SMALL + 1 }, ATTITUDE_UNKNOWNS>,
+    /// Of the Laguerre designs without limits: how fast the loops close.
+    pub(crate) altitude_gains: Controller<2, 1, 1>,
+    pub(crate) position_gains: Controller<4, 2, 2>,
+    pub(crate) attitude_gains: Controller<6, 3, 3>,
+    pub(crate) estimator: EstimatorDesign,
     reports: [DesignReport; 3],
 }
 
@@ -45,18 +65,31 @@ impl CascadeDesign {
         // The controllers see the body that they believe in: inertia grows with mass.
         let inertia = configuration.airframe.inertia_kg_m2.map(|j| j * settings.mass_factor);
         let hold = Discretization::ZeroOrderHold;
-        let (altitude, altitude_report) =
-            designed("altitude", &settings.altitude, |sample_time| altitude_model(sample_time, hold))?;
-        let (position, position_report) =
-            designed("position", &settings.position, |sample_time| position_model(sample_time, hold))?;
-        let (attitude, attitude_report) = designed("attitude", &settings.attitude, |sample_time| {
+        let kind = settings.kind;
+        let altitude = designed("altitude", kind, &settings.altitude, &altitude_limits(), |sample_time| {
+            altitude_model(sample_time, hold)
+        })?;
+        let position = designed("position", kind, &settings.position, &position_limits(), |sample_time| {
+            position_model(sample_time, hold)
+        })?;
+        // Laguerre MPC goes by the motion of the attitude error, as the regulator does, and leaves the limits of the
+        // torques to the mixer: increments from a torque that was cut off would lose the damping that it had
+        // asked for, because the rotors answer late, which the model does not know.
+        let limits = if kind == ControllerKind::StateSpaceMpc { attitude_limits() } else { Vec::new() };
+        let attitude = designed("attitude", kind, &settings.attitude, &limits, |sample_time| {
             attitude_model(&inertia, sample_time, hold)
         })?;
+        let estimator = EstimatorDesign::new(configuration)
+            .map_err(|source| ConfigurationError::Design { controller: "estimator of the", source })?;
         Ok(Self {
-            altitude,
-            position,
-            attitude,
-            reports: [altitude_report, position_report, attitude_report],
+            altitude: altitude.law,
+            position: position.law,
+            attitude: attitude.law,
+            altitude_gains: altitude.gains,
+            position_gains: position.gains,
+            attitude_gains: attitude.gains,
+            estimator,
+            reports: [altitude.report, position.report, attitude.report],
         })
     }
 
@@ -67,19 +100,35 @@ impl CascadeDesign {
     }
 }
 
-fn designed<const N: usize, const P: usize>(
-    name: &'static str,
-    settings: &ControllerSettings<P>,
-    model: impl Fn(f64) -> Result<StateSpace, DesignError>,
-) -> Result<(Controller<N, P, P>, DesignReport), ConfigurationError> {
-    design(settings, model).map_err(|source| ConfigurationError::Design { controller: name, source })
+/// One finished controller.
+struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> {
+    law: TrackingLaw<N, P, S, L>,
+    gains: Controller<N, P, P>,
+    report: DesignReport,
 }
 
-fn design<const N: usize, const P: usize>(
+fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
+    name: &'static str,
+    kind: ControllerKind,
     settings: &ControllerSettings<P>,
+    limits: &[Limit],
     model: impl Fn(f64) -> Result<StateSpace, DesignError>,
-) -> Result<(Controller<N, P, P>, DesignReport), DesignError> {
-    let plant = model(settings.sample_time_s())?;
+) -> Result<Designed<N, P, S, L>, ConfigurationError> {
+    let finished = || {
+        let design = laguerre_design(settings, model(settings.sample_time_s())?)?;
+        Ok(Designed {
+            law: TrackingLaw::new(kind, settings, &design, limits)?,
+            gains: Controller::from_design(&design, design.model().plant().c())?,
+            report: report(&design)?,
+        })
+    };
+    finished().map_err(|source| ConfigurationError::Design { controller: name, source })
+}
+
+fn laguerre_design<const P: usize>(
+    settings: &ControllerSettings<P>,
+    plant: StateSpace,
+) -> Result<LmpcDesign, DesignError> {
     let augmented = Augmented::new(&plant);
 
     // Q = diag(0, w_rate, …, w_output, …) on [Δx_m; y − r], x_m = [y₁ ẏ₁ y₂ ẏ₂ …]; R = diag(w_increment)
@@ -98,14 +147,15 @@ fn design<const N: usize, const P: usize>(
     } else {
         Weighting::Terminal { lambda: settings.lambda }
     };
-    let design =
-        LmpcDesign::new(&augmented, &weights, &bases, settings.prediction_horizon as usize, weighting)?;
+    LmpcDesign::new(&augmented, &weights, &bases, settings.prediction_horizon as usize, weighting)
+}
 
+fn report(design: &LmpcDesign) -> Result<DesignReport, DesignError> {
+    let augmented = design.model();
     let regulated = augmented.a() - augmented.b() * design.dlqr().gain();
-    let report = DesignReport {
+    Ok(DesignReport {
         spectral_radius: design.spectral_radius(),
         eigenvalue_difference_to_dlqr: design.spectral_radius() - spectral_radius("A − BK", &regulated)?,
         condition_number: design.condition_number(),
-    };
-    Ok((Controller::from_design(&design, plant.c())?, report))
+    })
 }

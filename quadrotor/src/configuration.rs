@@ -18,6 +18,8 @@ pub struct Configuration {
     pub initial: InitialState,
     /// The three controllers.
     pub controllers: Controllers,
+    /// What the controllers see of the vehicle.
+    pub sensors: Sensors,
     /// What the controllers and the shaper keep within.
     pub limits: Limits,
     /// Whether references pass through the jerk-limited shaper.
@@ -58,9 +60,46 @@ impl Default for ReferenceSettings {
     }
 }
 
+/// What the controllers see of the vehicle: the true state unless there is noise. All noise is white and
+/// Gaussian, and drawn anew for each sample of a controller.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Sensors {
+    /// Off: position, velocity, attitude and body rates are measured. On: position and attitude only, and a
+    /// stationary Kalman predictor (26) estimates the rest.
+    pub output_feedback: bool,
+    /// Standard deviation of the position, per axis, m.
+    pub position_noise_m: f64,
+    /// Standard deviation of the velocity, per axis, m/s.
+    pub velocity_noise_m_s: f64,
+    /// Standard deviation of the attitude, per body axis, rad.
+    pub attitude_noise_rad: f64,
+    /// Standard deviation of the body rates, rad/s.
+    pub body_rate_noise_rad_s: f64,
+    /// Selects one of 2³² sequences of noise.
+    pub seed: u32,
+}
+
+/// Which controller flies. All are designed on the same models with the same weights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum ControllerKind {
+    /// Laguerre MPC under limits (35)–(57).
+    #[default]
+    Lmpc,
+    /// State-space MPC under the same limits (24)–(34), told of the disturbance that a Kalman predictor finds.
+    StateSpaceMpc,
+    /// The linear-quadratic regulator with integral action (54). It knows no limits: what exceeds them is cut
+    /// off, and large errors are shortened to what the vehicle can brake.
+    Dlqr,
+}
+
 /// The cascade: position → tilt, altitude → thrust, attitude → torques (Figure 2).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controllers {
+    /// Which controller flies.
+    pub kind: ControllerKind,
+    /// Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can
+    /// brake from the speed that it calls for. Without it large steps overshoot as the weights have it.
+    pub governor: bool,
     /// Mass that the controllers believe in, as a multiple of the true one: a way to fly with a wrong
     /// model.
     pub mass_factor: f64,
@@ -72,7 +111,7 @@ pub struct Controllers {
     pub attitude: ControllerSettings<3>,
 }
 
-/// One Laguerre MPC with P inputs and P outputs.
+/// One controller with P inputs and P outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ControllerSettings<const P: usize> {
     /// ΔT, µs.
@@ -83,6 +122,8 @@ pub struct ControllerSettings<const P: usize> {
     pub scale: f64,
     /// N_p, prediction horizon in samples.
     pub prediction_horizon: u32,
+    /// N_c, moves per input of the state-space MPC.
+    pub control_horizon: u32,
     /// α > 1: exponential data weighting with transformed weights; α = 1: the Riccati solution as
     /// terminal weight.
     pub alpha: f64,
@@ -96,12 +137,14 @@ pub struct ControllerSettings<const P: usize> {
     pub increment_weight: SVector<f64, P>,
 }
 
-/// The paper's N = 5, a = 0.8187, α = 1.2 and Q = CᵀC, and our choice of what it leaves out:
+/// The paper's N = 5, N_c = 25 and Q = CᵀC, and our choice of what it leaves out:
 ///
 /// | setting | default | reason |
 /// | --- | --- | --- |
 /// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
-/// | N_p | 100 | the weighted horizon has died out long before (α^(−200) ≈ 1e-16) |
+/// | α | 1, the Riccati solution as terminal weight | α = 1.2 discounts the future, which costs once limits are active |
+/// | a | 0.7 altitude, 0.86 position and attitude | with N_p, least closed-loop cost on steps that saturate: within 1 % of the optimum at N = 5, 0.3 % at N = 7 |
+/// | N_p | 60 altitude and attitude, 150 position | the same |
 /// | altitude R | 1 | closes at ω = (1/(ΔT √R))^(1/3) = 2.7 rad/s: a tenth of what rotor lag and sampling allow |
 /// | position R | 1200 | closes at (g/(ΔT √R))^(1/3) = 1.8 rad/s: a quarter of the attitude loop's bandwidth |
 /// | attitude R, roll and pitch | 12 | closes at (1/(J ΔT √R))^(1/3) = 6.5 rad/s: a fifth of the rotor lag's 33 rad/s |
@@ -109,22 +152,27 @@ pub struct ControllerSettings<const P: usize> {
 /// | attitude rate weight | 3, yaw 0 | damps roll and pitch against the rotor lag, which the model does not have |
 impl Default for Controllers {
     fn default() -> Self {
-        let paper = |sample_time_us, weight| ControllerSettings {
-            sample_time_us,
+        let altitude = ControllerSettings {
+            sample_time_us: 50_000,
             terms: 5,
-            scale: 0.8187,
-            prediction_horizon: 100,
-            alpha: 1.2,
+            scale: 0.7,
+            prediction_horizon: 60,
+            control_horizon: 25,
+            alpha: 1.0,
             lambda: 1.0,
             output_weight: SVector::from([1.0]),
             rate_weight: SVector::from([0.0]),
-            increment_weight: SVector::from([weight]),
+            increment_weight: SVector::from([1.0]),
         };
+        let position = ControllerSettings { scale: 0.86, prediction_horizon: 150, ..altitude };
+        let attitude = ControllerSettings { sample_time_us: 10_000, scale: 0.86, ..altitude };
         Self {
+            kind: ControllerKind::default(),
+            governor: true,
             mass_factor: 1.0,
-            altitude: paper(50_000, 1.0),
-            position: paper(50_000, 1200.0).with_weights([1.0; 2], [0.0; 2], [1200.0; 2]),
-            attitude: paper(10_000, 1.0).with_weights([1.0; 3], [3.0, 3.0, 0.0], [12.0, 12.0, 300.0]),
+            altitude,
+            position: position.with_weights([1.0; 2], [0.0; 2], [1200.0; 2]),
+            attitude: attitude.with_weights([1.0; 3], [3.0, 3.0, 0.0], [12.0, 12.0, 300.0]),
         }
     }
 }
@@ -142,6 +190,7 @@ impl<const P: usize> ControllerSettings<P> {
             terms: self.terms,
             scale: self.scale,
             prediction_horizon: self.prediction_horizon,
+            control_horizon: self.control_horizon,
             alpha: self.alpha,
             lambda: self.lambda,
             output_weight: SVector::from(output),

@@ -139,8 +139,12 @@ impl Direct {
         let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
         let most = limits.yaw_rate_rad_s * elapsed_s;
         let held = &mut self.latest;
-        held.yaw_rad += wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
-        held.yaw_rate_rad_s = reference.yaw_rate_rad_s.clamp(-limits.yaw_rate_rad_s, limits.yaw_rate_rad_s);
+        let turned = wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
+        held.yaw_rad += turned;
+        // A heading that moves has a rate, also when none was given.
+        let given = reference.yaw_rate_rad_s;
+        let rate = if given == 0.0 && elapsed_s > 0.0 { turned / elapsed_s } else { given };
+        held.yaw_rate_rad_s = rate.clamp(-limits.yaw_rate_rad_s, limits.yaw_rate_rad_s);
         self.yaw_time_us = time_us;
     }
 }

@@ -30,6 +30,9 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+extern crate alloc;
+
+mod activity;
 mod airframe;
 mod altitude_controller;
 mod attitude;
@@ -37,15 +40,19 @@ mod attitude_controller;
 mod cascade;
 mod cascade_design;
 mod configuration;
+mod controller_limits;
 mod error;
+mod estimator;
 mod governor;
 mod ground;
 mod guidance;
 mod inputs;
+pub mod limited_samples;
 mod linear_models;
 mod mixer;
 #[cfg(feature = "shaper")]
 mod motion_profile;
+mod observer;
 mod outputs;
 mod parameter;
 mod parameters;
@@ -55,23 +62,31 @@ mod ramp;
 mod reference_motion;
 mod rigid_body;
 mod schedule;
+mod sensors;
 mod setpoint;
 #[cfg(feature = "shaper")]
 mod shaper;
 mod simulation;
+mod tracking_law;
 mod validation;
+mod vehicle_motion;
 
+pub use activity::{Activity, ControllerActivity};
 pub use airframe::{Airframe, GRAVITY_M_S2};
 pub use cascade_design::{CascadeDesign, DesignReport};
 pub use configuration::{
-    Configuration, ControllerSettings, Controllers, Environment, InitialState, Limits, ReferenceSettings,
+    Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
+    ReferenceSettings, Sensors,
 };
 pub use error::{ConfigurationError, SimulationError};
 pub use inputs::{Disturbance, InputSignal, Inputs, PositionReference};
+/// How a controller found its last input.
+pub use lmpc::Status as ControllerStatus;
+
 pub use linear_models::{altitude_model, attitude_model, position_model};
 pub use mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
 pub use outputs::Outputs;
-pub use parameter::{Access, Parameter, Unit};
+pub use parameter::{Access, Choice, Parameter, Unit};
 pub use parameters::PARAMETERS;
 pub use plant::Plant;
 pub use rigid_body::{External, RigidBody};

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::PositionReference;
+use crate::{Activity, PositionReference};
 
 /// The observable state at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,4 +37,6 @@ pub struct Outputs {
     pub tracking_error_m: Vector3<f64>,
     /// Heading minus that reference, within ±π, rad.
     pub yaw_error_rad: f64,
+    /// How the controllers came to their last inputs.
+    pub activity: Activity,
 }

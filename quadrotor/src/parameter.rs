@@ -81,6 +81,15 @@ pub enum Access {
         /// Writes it, unchecked.
         set: fn(&mut Configuration, i32),
     },
+    /// One of some named items, counted from 1.
+    Enumeration {
+        /// What is chosen.
+        choice: &'static Choice,
+        /// Reads it.
+        get: fn(&Configuration) -> i32,
+        /// Writes it; what is no item changes nothing.
+        set: fn(&mut Configuration, i32),
+    },
     /// A switch.
     Boolean {
         /// Reads it.
@@ -90,12 +99,24 @@ pub enum Access {
     },
 }
 
+/// The items of an enumeration, the first of which counts 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Name of the enumeration.
+    pub name: &'static str,
+    /// What it is, for a person.
+    pub description: &'static str,
+    /// Name and description of each item.
+    pub items: &'static [(&'static str, &'static str)],
+}
+
 impl Access {
     /// Whether both configurations have the same value here.
     pub(crate) fn same(&self, one: &Configuration, other: &Configuration) -> bool {
         match *self {
             Self::Real { get, .. } => get(one) == get(other),
             Self::Integer { get, .. } => get(one) == get(other),
+            Self::Enumeration { get, .. } => get(one) == get(other),
             Self::Boolean { get, .. } => get(one) == get(other),
         }
     }
@@ -112,7 +133,8 @@ impl Parameter {
             Access::Integer { minimum, maximum, get, .. } => {
                 (f64::from(get(configuration)), f64::from(minimum), f64::from(maximum))
             }
-            Access::Boolean { .. } => return Ok(()),
+            // Only items can be stored.
+            Access::Enumeration { .. } | Access::Boolean { .. } => return Ok(()),
         };
         // NaN is in no range.
         if (minimum..=maximum).contains(&value) {

@@ -1,7 +1,8 @@
 //! Every number of a [`Configuration`](crate::Configuration) by its public name: the one source of names,
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
-use crate::parameter::{Access, Parameter, Unit};
+use crate::ControllerKind;
+use crate::parameter::{Access, Choice, Parameter, Unit};
 
 /// A real parameter: name, unit, variability, range, place and description.
 macro_rules! real {
@@ -74,6 +75,20 @@ macro_rules! sample_time {
     };
 }
 
+/// What `controller.kind` chooses from.
+const CONTROLLER_KINDS: [ControllerKind; 3] =
+    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
+
+static CONTROLLER_KIND: Choice = Choice {
+    name: "ControllerKind",
+    description: "Which controller flies",
+    items: &[
+        ("lmpc", "Laguerre MPC under limits"),
+        ("ssmpc", "State-space MPC under the same limits, with a Kalman predictor"),
+        ("dlqr", "Linear-quadratic regulator with integral action"),
+    ],
+};
+
 const FIXED: bool = false;
 const TUNABLE: bool = true;
 
@@ -107,11 +122,28 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("initial.body_rate.q", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[1], "Initial pitch rate"),
     real!("initial.body_rate.r", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[2], "Initial yaw rate"),
     boolean!("reference.shaping", reference.shaping, "Whether the reference is a goal approached on a jerk-limited profile (true) or a trajectory point that goes straight to the controllers (false)"),
+    Parameter {
+        name: "controller.kind",
+        description: "Which controller flies: all are designed on the same models with the same weights",
+        unit: Unit::One,
+        tunable: FIXED,
+        access: Access::Enumeration {
+            choice: &CONTROLLER_KIND,
+            get: |configuration| (1..).zip(CONTROLLER_KINDS).find(|(_, kind)| *kind == configuration.controllers.kind).map_or(1, |(item, _)| item),
+            set: |configuration, value| {
+                if let Some((_, kind)) = (1..).zip(CONTROLLER_KINDS).find(|(item, _)| *item == value) {
+                    configuration.controllers.kind = kind;
+                }
+            },
+        },
+    },
+    boolean!("controller.governor", controllers.governor, "Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can brake from the speed that it calls for"),
     real!("controller.mass_factor", One, FIXED, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
     integer!("controller.altitude.terms", 1..=20, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
     real!("controller.altitude.scale", One, FIXED, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
     integer!("controller.altitude.prediction_horizon", 1..=1000, controllers.altitude.prediction_horizon, "N_p: prediction horizon of the altitude controller, samples"),
+    integer!("controller.altitude.control_horizon", 1..=30, controllers.altitude.control_horizon, "N_c: moves of the state-space MPC of the altitude controller"),
     real!("controller.altitude.alpha", One, FIXED, 1.0..=2.0, controllers.altitude.alpha, "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"),
     real!("controller.altitude.lambda", One, FIXED, 0.5..=1.0, controllers.altitude.lambda, "lambda: degree of stability of the altitude controller"),
     real!("controller.altitude.output_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.output_weight[0], "Q: weight of the altitude error"),
@@ -121,6 +153,7 @@ pub static PARAMETERS: &[Parameter] = &[
     integer!("controller.position.terms", 1..=20, controllers.position.terms, "N: Laguerre terms of the position controller, per input"),
     real!("controller.position.scale", One, FIXED, 0.0..=0.99, controllers.position.scale, "a: Laguerre scaling factor of the position controller"),
     integer!("controller.position.prediction_horizon", 1..=1000, controllers.position.prediction_horizon, "N_p: prediction horizon of the position controller, samples"),
+    integer!("controller.position.control_horizon", 1..=30, controllers.position.control_horizon, "N_c: moves of the state-space MPC of the position controller, per input"),
     real!("controller.position.alpha", One, FIXED, 1.0..=2.0, controllers.position.alpha, "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"),
     real!("controller.position.lambda", One, FIXED, 0.5..=1.0, controllers.position.lambda, "lambda: degree of stability of the position controller"),
     real!("controller.position.output_weight.x", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[0], "Q: weight of the error north"),
@@ -133,6 +166,7 @@ pub static PARAMETERS: &[Parameter] = &[
     integer!("controller.attitude.terms", 1..=20, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
     real!("controller.attitude.scale", One, FIXED, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
     integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller, samples"),
+    integer!("controller.attitude.control_horizon", 1..=30, controllers.attitude.control_horizon, "N_c: moves of the state-space MPC of the attitude controller, per input"),
     real!("controller.attitude.alpha", One, FIXED, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
     real!("controller.attitude.lambda", One, FIXED, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
     real!("controller.attitude.output_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[0], "Q: weight of the roll error"),
@@ -159,4 +193,10 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("limits.yaw_rate", RadianPerSecond, TUNABLE, 0.01..=10.0, limits.yaw_rate_rad_s, "Largest rate of the heading reference, with and without shaping"),
     real!("limits.yaw_acceleration", RadianPerSecondSquared, TUNABLE, 0.01..=50.0, limits.yaw_acceleration_rad_s2, "Largest angular acceleration of the shaped heading reference"),
     real!("limits.yaw_jerk", RadianPerSecondCubed, TUNABLE, 0.01..=500.0, limits.yaw_jerk_rad_s3, "Largest angular jerk of the shaped heading reference"),
+    boolean!("sensor.output_feedback", sensors.output_feedback, "Whether position and attitude only are measured and a Kalman predictor estimates the rest (true), or the whole state is measured (false)"),
+    real!("sensor.position_noise", Metre, TUNABLE, 0.0..=10.0, sensors.position_noise_m, "Standard deviation of the measured position, per axis"),
+    real!("sensor.velocity_noise", MetrePerSecond, TUNABLE, 0.0..=10.0, sensors.velocity_noise_m_s, "Standard deviation of the measured velocity, per axis"),
+    real!("sensor.attitude_noise", Radian, TUNABLE, 0.0..=0.5, sensors.attitude_noise_rad, "Standard deviation of the measured attitude, per body axis"),
+    real!("sensor.body_rate_noise", RadianPerSecond, TUNABLE, 0.0..=10.0, sensors.body_rate_noise_rad_s, "Standard deviation of the measured body rates"),
+    integer!("sensor.seed", 0..=2147483647, sensors.seed, "Selects the sequence of measurement noise"),
 ];

@@ -1,12 +1,17 @@
 //! Position: from x, y and their rates to tilt commands.
 
-use lmpc::ControllerState;
+use lmpc::{ConstrainedState, ControllerState};
 use nalgebra::{Vector2, Vector4};
 use serde::{Deserialize, Serialize};
 
+use crate::activity::ControllerActivity;
+use crate::cascade_design::POSITION_UNKNOWNS;
+use crate::controller_limits::position_bounds;
 use crate::governor::{Governor, integral_rate};
 use crate::reference_motion::ReferenceMotion;
-use crate::{CascadeDesign, ControllerSettings, GRAVITY_M_S2, Limits};
+use crate::tracking_law::TrackingSample;
+use crate::vehicle_motion::VehicleMotion;
+use crate::{CascadeDesign, Configuration, GRAVITY_M_S2};
 
 /// Share of the acceleration limit that braking before a distant set-point counts on. The loop's own
 /// response to the governed error needs the rest.
@@ -19,7 +24,7 @@ const BRAKING_SHARE: f64 = 0.25;
 /// a direction of the thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
-    lmpc: ControllerState<4, 2>,
+    controller: ConstrainedState<4, 2, POSITION_UNKNOWNS>,
     reference: ReferenceMotion<2>,
 }
 
@@ -27,41 +32,52 @@ impl PositionController {
     /// Takes over a vehicle at x, y, m, as if it had been at rest there.
     pub fn new(position_m: Vector2<f64>) -> Self {
         let measured = Vector4::new(position_m.x, 0.0, position_m.y, 0.0);
-        Self {
-            lmpc: ControllerState::new(measured, Vector2::zeros(), Vector2::zeros()),
-            reference: ReferenceMotion::default(),
-        }
+        let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
+        Self { controller: ConstrainedState::new(start), reference: ReferenceMotion::default() }
     }
 
-    /// One sample: horizontal acceleration in NED, m/s², from position, m, and velocity, m/s. `limited`
-    /// brings an acceleration within what the vehicle can do.
-    pub fn step(
+    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `tilt` is the largest |a|/g,
+    /// and `limited` brings an acceleration within what the vehicle can do.
+    pub(crate) fn step(
         &mut self,
+        configuration: &Configuration,
         design: &CascadeDesign,
-        settings: &ControllerSettings<2>,
-        limits: &Limits,
-        (position_m, velocity_m_s): (Vector2<f64>, Vector2<f64>),
+        seen: &VehicleMotion<2>,
         reference: &ReferenceMotion<2>,
+        tilt: f64,
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
-    ) -> Vector2<f64> {
+    ) -> (Vector2<f64>, ControllerActivity) {
         let law = &design.position;
-        let period_s = settings.sample_time_s();
-        let measured = interleaved(&position_m, &velocity_m_s);
+        let limits = &configuration.limits;
+        let period_s = configuration.controllers.position.sample_time_s();
+        let measured = interleaved(&seen.position_m, &seen.velocity_m_s);
         let [x, y] = reference.increments_since(&self.reference, period_s);
         let explained = Vector4::new(x[0], x[1], y[0], y[1]);
-        let governor = Governor {
-            rate: integral_rate(law, 0, period_s).min(integral_rate(law, 1, period_s)),
-            deceleration: BRAKING_SHARE * limits.acceleration_horizontal_m_s2,
-            speed: limits.speed_horizontal_m_s,
+        let mut error = seen.position_m - reference.position;
+        if configuration.controllers.governor {
+            let linear = &design.position_gains;
+            let governor = Governor {
+                rate: integral_rate(linear, 0, period_s).min(integral_rate(linear, 1, period_s)),
+                deceleration: BRAKING_SHARE * limits.acceleration_horizontal_m_s2,
+                speed: limits.speed_horizontal_m_s,
+            };
+            error = governor.seen_vector(&error);
+        }
+        let sample = TrackingSample {
+            measured,
+            delta: measured - self.controller.controller.measured() - explained,
+            deviation: interleaved(&error, &(seen.velocity_m_s - reference.velocity)),
+            input_reference: tilt_of(&reference.acceleration_ahead),
+            disturbance: tilt_of(&seen.disturbance_m_s2),
         };
-        let error = governor.seen_vector(&(position_m - reference.position));
-        let ahead = tilt_of(&reference.acceleration_ahead);
-        let delta = measured - self.lmpc.measured() - explained;
-        let step = law.step_from(&mut self.lmpc, &measured, &delta, &error, &ahead);
+        let moving = if law.bounds_deviations() { reference.velocity } else { Vector2::zeros() };
+        let bounds = position_bounds(limits, tilt, period_s, &reference.velocity, &moving);
+        let step = law.step(&mut self.controller, &sample, &bounds);
         self.reference = *reference;
-        let applied = limited(acceleration_of(&step.input));
-        self.lmpc.apply(&tilt_of(&applied));
-        applied
+        let wanted = acceleration_of(&step.step.input);
+        let applied = limited(wanted);
+        self.controller.controller.apply(&tilt_of(&applied));
+        (applied, ControllerActivity::of(&step, &wanted, &applied))
     }
 }
 

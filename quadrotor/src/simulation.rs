@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::wrapped;
 use crate::cascade::Cascade;
 use crate::guidance::Guidance;
+use crate::observer::Observer;
 use crate::plant::Plant;
 use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
@@ -27,6 +28,7 @@ pub struct SimulationState {
     disturbance: Disturbance,
     armed: bool,
     guidance: Guidance,
+    observer: Observer,
     cascade: Cascade,
 }
 
@@ -66,6 +68,7 @@ impl Simulation {
     pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
         let design = CascadeDesign::new(configuration)?;
         let plant = Plant::new(configuration, inputs.armed);
+        let observer = Observer::new(configuration, &plant, 0, None);
         let (guidance, cascade) = engaged(configuration, &plant, 0);
         let state = SimulationState {
             time_us: 0,
@@ -75,6 +78,7 @@ impl Simulation {
             disturbance: inputs.disturbance,
             armed: inputs.armed,
             guidance,
+            observer,
             cascade,
         };
         Ok(Self { configuration: *configuration, design, state })
@@ -192,6 +196,7 @@ impl Simulation {
             setpoint,
             tracking_error_m: plant.body.position_m - setpoint.position_m,
             yaw_error_rad: wrapped(psi - setpoint.yaw_rad),
+            activity: state.cascade.activity(),
         }
     }
 
@@ -216,6 +221,7 @@ impl Simulation {
         state.disturbance = inputs.disturbance;
         if inputs.armed && !state.armed {
             (state.guidance, state.cascade) = engaged(configuration, &state.plant, time_us);
+            state.observer = Observer::new(configuration, &state.plant, time_us, Some(&state.observer));
         }
         state.armed = inputs.armed;
         state.sampled = true;
@@ -224,25 +230,32 @@ impl Simulation {
         }
 
         let controllers = &configuration.controllers;
-        let (reference, limits, body) = (&inputs.reference, &configuration.limits, &state.plant.body);
+        let (reference, limits) = (&inputs.reference, &configuration.limits);
         let position_us = controllers.position.sample_time_us;
+        let altitude_us = controllers.altitude.sample_time_us;
+        let attitude_us = controllers.attitude.sample_time_us;
+        if ![position_us, altitude_us, attitude_us].iter().any(|period_us| ticks(time_us, *period_us)) {
+            return Ok(());
+        }
+        let seen = state.observer.observe(configuration, &state.plant, time_us);
         if ticks(time_us, position_us) {
             state.guidance.sample(reference, limits, time_us);
             // Commands ramp up to the input until the next sample.
             let setpoint = state.guidance.setpoint(time_us, position_us);
-            state.cascade.sample_position(configuration, design, body, &setpoint, time_us);
+            state.cascade.sample_position(configuration, design, &seen, &setpoint, time_us);
         }
-        let altitude_us = controllers.altitude.sample_time_us;
         if ticks(time_us, altitude_us) {
             state.guidance.sample(reference, limits, time_us);
             // … and the rotors lag behind the thrust command.
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
             let setpoint = state.guidance.setpoint(time_us, altitude_us + lag_us);
-            state.cascade.sample_altitude(configuration, design, body, &setpoint, time_us);
+            state.cascade.sample_altitude(configuration, design, &seen, &setpoint, time_us);
         }
-        if ticks(time_us, controllers.attitude.sample_time_us) {
+        if ticks(time_us, attitude_us) {
             let heading = state.guidance.sample_heading(reference, limits, time_us);
-            state.cascade.sample_attitude(configuration, design, body, &heading, time_us);
+            state.cascade.sample_attitude(configuration, design, &seen, &heading, time_us);
+            let command = state.cascade.command(configuration, time_us);
+            state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
         }
         Ok(())
     }

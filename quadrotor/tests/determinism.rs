@@ -1,7 +1,10 @@
 //! The same flight however it is split, saved or observed.
 
 use proptest::prelude::*;
-use quadrotor::{Configuration, ConfigurationError, InputSignal, Inputs, Simulation, SimulationError};
+use quadrotor::{
+    Configuration, ConfigurationError, ControllerKind, InputSignal, Inputs, Sensors, Simulation,
+    SimulationError,
+};
 
 mod common;
 use common::{GOAL_M, goal, smooth_flight, unshaped};
@@ -12,6 +15,21 @@ fn eventful(time_us: u64) -> Inputs {
     inputs.disturbance.force_n.x = (time_us as f64 * 3e-6).sin();
     inputs.disturbance.torque_n_m.y = 0.01 * (time_us as f64 * 5e-6).cos();
     inputs
+}
+
+/// Any kind of controller on noisy outputs alone: active sets, estimates and noise are part of the state.
+fn noisy(kind: usize) -> Configuration {
+    let mut configuration = Configuration::default();
+    configuration.controllers.kind =
+        [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr][kind];
+    configuration.sensors = Sensors {
+        output_feedback: true,
+        position_noise_m: 0.03,
+        attitude_noise_rad: 0.005,
+        seed: 3,
+        ..Sensors::default()
+    };
+    configuration
 }
 
 fn flown_to(configuration: &Configuration, times_us: &[u64]) -> Simulation {
@@ -27,9 +45,9 @@ proptest! {
 
     #[test]
     fn any_split_of_the_time_axis_gives_the_same_flight(
-        mut times in prop::collection::vec(0u64..3_000_000, 0..200), shaping in any::<bool>(),
+        mut times in prop::collection::vec(0u64..3_000_000, 0..200), shaping in any::<bool>(), kind in 0..3_usize,
     ) {
-        let mut configuration = Configuration::default();
+        let mut configuration = noisy(kind);
         configuration.reference.shaping = shaping;
         times.sort_unstable();
         times.push(3_000_000);
@@ -51,8 +69,8 @@ proptest! {
     }
 
     #[test]
-    fn saved_and_restored_in_the_middle_is_the_same_flight(middle in 1u64..2_999_999) {
-        let configuration = unshaped();
+    fn saved_and_restored_in_the_middle_is_the_same_flight(middle in 1u64..2_999_999, kind in 0..3_usize) {
+        let configuration = Configuration { reference: unshaped().reference, ..noisy(kind) };
         let mut straight = flown_to(&configuration, &[middle]);
         let bytes = postcard::to_allocvec(straight.state()).unwrap();
         straight.advance_to(3_000_000, &eventful).unwrap();

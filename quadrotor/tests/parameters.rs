@@ -10,6 +10,7 @@ fn set(configuration: &mut Configuration, name: &str, value: f64) {
     match find(name).access {
         Access::Real { set, .. } => set(configuration, value),
         Access::Integer { set, .. } => set(configuration, value as i32),
+        Access::Enumeration { set, .. } => set(configuration, value as i32),
         Access::Boolean { set, .. } => set(configuration, value != 0.0),
     }
 }
@@ -28,6 +29,7 @@ fn each_parameter_reads_what_was_written_to_it_alone() {
     let read = |parameter: &Parameter, configuration: &Configuration| match parameter.access {
         Access::Real { get, .. } => get(configuration),
         Access::Integer { get, .. } => f64::from(get(configuration)),
+        Access::Enumeration { get, .. } => f64::from(get(configuration)),
         Access::Boolean { get, .. } => f64::from(get(configuration)),
     };
     let default = Configuration::default();
@@ -42,6 +44,7 @@ fn each_parameter_reads_what_was_written_to_it_alone() {
                 }
             }
             Access::Integer { minimum, .. } => f64::from(minimum),
+            Access::Enumeration { choice, .. } => choice.items.len() as f64,
             Access::Boolean { .. } => 1.0 - read(parameter, &default),
         };
         set(&mut changed, parameter.name, value);

@@ -77,7 +77,7 @@ proptest! {
         configuration.initial.position_m = [0.0, 0.0, -150.0];
         configuration.initial.body_rate_rad_s = [p, q, r];
         let mut lowest_m = f64::NEG_INFINITY;
-        let end = fly(&configuration, &goal([5.0, 5.0, -150.0], 0.0), 60.0, |outputs| {
+        let end = fly(&configuration, &goal([5.0, 5.0, -150.0], 0.0), 80.0, |outputs| {
             lowest_m = lowest_m.max(outputs.position_m.z);
         })
         .outputs();

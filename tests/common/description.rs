@@ -14,7 +14,7 @@ pub struct Variable {
     pub causality: String,
     pub variability: String,
     pub initial: Option<String>,
-    /// `Real`, `Integer`, `Boolean`
+    /// `Real`, `Integer`, `Enumeration`, `Boolean`
     pub value_type: String,
     /// Attributes of the element of that name.
     pub attributes: Vec<(String, String)>,
@@ -92,10 +92,9 @@ impl Description {
         self.variable(name).reference
     }
 
-    /// Value references of all outputs.
-    pub fn outputs(&self) -> Vec<Reference> {
-        let outputs = self.variables.iter().filter(|variable| variable.causality == "output");
-        outputs.map(|variable| variable.reference).collect()
+    /// All outputs.
+    pub fn outputs(&self) -> impl Iterator<Item = &Variable> {
+        self.variables.iter().filter(|variable| variable.causality == "output")
     }
 }
 

@@ -266,9 +266,12 @@ impl<'l> Instance<'l> {
 
     /// All outputs as bits, so that equal means equal.
     pub fn outputs(&mut self) -> Vec<u64> {
-        let references = description().outputs();
+        let of_type = |real: bool| description().outputs().filter(move |v| (v.value_type == "Real") == real);
+        let references: Vec<_> = of_type(true).map(|variable| variable.reference).collect();
         let values = self.try_reals(&references).unwrap_or_else(|_| panic!("{:?}", self.log.take()));
-        values.into_iter().map(f64::to_bits).collect()
+        let mut bits: Vec<u64> = values.into_iter().map(f64::to_bits).collect();
+        bits.extend(of_type(false).map(|variable| self.integer(&variable.name) as u64));
+        bits
     }
 
     pub fn get_state(&mut self) -> State {

@@ -1,13 +1,13 @@
 //! Flights: the default one, and that it is the engine's, bit for bit.
 
-use quadrotor::{Configuration, Inputs, Outputs, Simulation};
+use quadrotor::{Configuration, ControllerKind, ControllerStatus, Inputs, Outputs, Sensors, Simulation};
 
 use crate::common::description::description;
 use crate::common::instance::Instance;
 use crate::common::library::OK;
 use crate::library;
 
-/// The engine's outputs in the order of the description, by name.
+/// The engine's outputs in the order of the description, by name; reals before all others.
 fn bits(outputs: &Outputs) -> Vec<u64> {
     let o = outputs;
     let vector = |vector: &[f64]| vector.to_vec();
@@ -39,8 +39,65 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
             bits.push(value.to_bits());
         }
     }
+    let activity = &o.activity;
+    for (controller, activity) in
+        [("altitude", activity.altitude), ("position", activity.position), ("attitude", activity.attitude)]
+    {
+        let status = match activity.status {
+            ControllerStatus::Optimal => 1,
+            ControllerStatus::Relaxed => 2,
+            ControllerStatus::IterationLimit => 3,
+            ControllerStatus::Held => 4,
+        };
+        let figures = [
+            ("status", status),
+            ("active_constraints", activity.active.into()),
+            ("iterations", activity.iterations.into()),
+        ];
+        for (figure, value) in figures {
+            assert_eq!(names.next(), Some(format!("controller.{controller}.{figure}").as_str()));
+            bits.push(value);
+        }
+    }
     assert_eq!(names.next(), None);
     bits
+}
+
+/// Each kind of controller, on noisy outputs alone, is the engine's too.
+#[test]
+fn every_kind_of_controller_is_the_engines() {
+    let kinds = [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
+    for (number, kind) in (1..).zip(kinds) {
+        let mut configuration = Configuration::default();
+        configuration.controllers.kind = kind;
+        configuration.controllers.governor = false;
+        configuration.reference.shaping = false;
+        configuration.sensors = Sensors {
+            output_feedback: true,
+            position_noise_m: 0.02,
+            attitude_noise_rad: 0.004,
+            seed: 9,
+            ..Sensors::default()
+        };
+        let mut instance = Instance::new(library());
+        let noise = [("sensor.position_noise", 0.02), ("sensor.attitude_noise", 0.004)];
+        assert_eq!(instance.set_real(&noise), OK);
+        assert_eq!(instance.set_integer(&[("controller.kind", number), ("sensor.seed", 9)]), OK);
+        let switches =
+            [("controller.governor", false), ("reference.shaping", false), ("sensor.output_feedback", true)];
+        assert_eq!(instance.set_boolean(&switches), OK);
+        instance.initialize();
+        let inputs = Inputs::default();
+        let mut engine = Simulation::new(&configuration, &inputs).expect("a valid configuration");
+        let mut limited = 0;
+        for i in 0..200_u32 {
+            instance.fly(f64::from(i) * 0.02, 0.02, 1);
+            engine.advance_to(u64::from(i + 1) * 20_000, &inputs).expect("it flies");
+            assert_eq!(instance.outputs(), bits(&engine.outputs()), "{kind:?} after step {i}");
+            limited += instance.integer("controller.position.active_constraints");
+        }
+        assert!(limited > 0, "{kind:?}: no limit was met");
+    }
 }
 
 /// Nothing set: the paper's flight, to 5 m north, 5 m east and 10 m up.

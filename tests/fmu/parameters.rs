@@ -42,12 +42,19 @@ fn calculated_parameters_follow_at_once() {
     assert_eq!(instance.reals(RADII), first);
 }
 
-/// The paper's Figure 4: with exponential weighting the eigenvalues are those of DLQR, and Ω is well
+/// The paper's Figure 4: with its N = 5, a = 0.8187 and α = 1.2 the eigenvalues are those of DLQR, and Ω is well
 /// conditioned.
 #[test]
 fn designs_are_those_of_the_regulator() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
-    for controller in ["altitude", "position", "attitude"] {
+    const CONTROLLERS: [&str; 3] = ["altitude", "position", "attitude"];
+    let mut instance = Instance::new(library());
+    for controller in CONTROLLERS {
+        let set = |name: &str| format!("controller.{controller}.{name}");
+        assert_eq!(instance.set_real(&[(&set("alpha"), 1.2), (&set("scale"), 0.8187)]), OK);
+        assert_eq!(instance.set_integer(&[(&set("prediction_horizon"), 100)]), OK);
+    }
+    instance.initialize();
+    for controller in CONTROLLERS {
         let difference = instance.real(&format!("controller.{controller}.eigenvalue_difference_to_dlqr"));
         let condition = instance.real(&format!("controller.{controller}.condition_number"));
         assert!(difference.abs() < 1e-2, "{controller}: {difference}");

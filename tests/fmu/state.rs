@@ -6,10 +6,21 @@ use crate::common::instance::Instance;
 use crate::common::library::{ERROR, OK};
 use crate::library;
 
-/// An instance in the middle of an eventful flight, at 2.03 s, with a derivative waiting.
+/// An instance in the middle of an eventful flight, at 2.03 s, with a derivative waiting: warm starts, an estimate
+/// and the place in the sequence of noise are part of its state.
 fn midway() -> Instance<'static> {
-    let start = [("disturbance.force.x", 0.5), ("airframe.drag.x", 0.1), ("wind.velocity.x", 4.0)];
-    let mut instance = Instance::initialized(library(), &start, &[]);
+    let start = [
+        ("disturbance.force.x", 0.5),
+        ("airframe.drag.x", 0.1),
+        ("wind.velocity.x", 4.0),
+        ("sensor.position_noise", 0.02),
+        ("sensor.attitude_noise", 0.005),
+    ];
+    let mut instance = Instance::new(library());
+    assert_eq!(instance.set_real(&start), OK);
+    assert_eq!(instance.set_integer(&[("controller.kind", 2), ("sensor.seed", 5)]), OK);
+    assert_eq!(instance.set_boolean(&[("sensor.output_feedback", true), ("reference.shaping", false)]), OK);
+    instance.initialize();
     instance.fly(0.0, 0.203, 10);
     assert_eq!(instance.set_real(&[("reference.position.y", 1.0), ("limits.tilt", 0.45)]), OK);
     assert_eq!(instance.set_input_derivatives(&[("reference.position.y", 1, 0.5)]), OK);

@@ -14,7 +14,7 @@ fn settings(instance: &mut Instance) -> Vec<u64> {
     settable()
         .map(|variable| match variable.value_type.as_str() {
             "Real" => instance.real(&variable.name).to_bits(),
-            "Integer" => instance.integer(&variable.name) as u64,
+            "Integer" | "Enumeration" => instance.integer(&variable.name) as u64,
             _ => u64::from(instance.boolean(&variable.name)),
         })
         .collect()
@@ -33,6 +33,7 @@ fn what_is_set_is_read_back() {
                 }
             }
             "Integer" => assert_eq!(instance.set_integer(&[(name, 17)]), OK),
+            "Enumeration" => assert_eq!(instance.set_integer(&[(name, 2)]), OK),
             _ => assert_eq!(instance.set_boolean(&[(name, false)]), OK),
         }
     }
@@ -47,6 +48,7 @@ fn what_is_set_is_read_back() {
                 assert!((got - expected).abs() <= 1e-12 * expected.abs(), "{name}: {got}");
             }
             "Integer" => assert_eq!(instance.integer(name), 17, "{name}"),
+            "Enumeration" => assert_eq!(instance.integer(name), 2, "{name}"),
             _ => assert!(!instance.boolean(name), "{name}"),
         }
     }
@@ -74,8 +76,13 @@ fn values_out_of_range_are_refused_by_name() {
                         assert!(text.contains(&format!("{name} = {value:?} is outside [")), "{text}");
                     }
                 }
-                "Integer" => {
-                    for value in [-1, 0, 1001, i32::MAX, i32::MIN] {
+                "Integer" | "Enumeration" => {
+                    let [minimum, maximum] =
+                        ["min", "max"].map(|end| variable.number(end).expect("a range") as i32);
+                    for value in [minimum - 1, maximum.saturating_add(1), i32::MAX, i32::MIN] {
+                        if value == maximum {
+                            continue;
+                        }
                         assert_eq!(instance.set_integer(&[(name, value)]), ERROR, "{name} = {value}");
                         assert!(instance.log.last().text.contains(name));
                     }
@@ -198,6 +205,7 @@ fn what_is_not_settable_stays() {
         let status = match variable.value_type.as_str() {
             "Real" => instance.set_real(&[(name, variable.number("start").expect("a start value"))]),
             "Integer" => instance.set_integer(&[(name, 5)]),
+            "Enumeration" => instance.set_integer(&[(name, 1)]),
             _ => instance.set_boolean(&[(name, true)]),
         };
         assert_eq!(status, ERROR, "{name} is fixed");

@@ -1,10 +1,12 @@
-//! Units and simple types.
+//! Units and simple types of quantities and enumerations.
 
 use std::f64::consts::PI;
 use std::io;
 
+use quadrotor::Choice;
+
 use super::Xml;
-use crate::variables::Quantity;
+use crate::variables::{Quantity, VARIABLES, Variable};
 
 /// A unit: its name, its exponents of SI base units, and units that a person may prefer, with how many of
 /// them make one.
@@ -41,7 +43,8 @@ pub(super) fn write(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("UnitDefinitions")
         .write_inner_content(|xml| UNITS.iter().try_for_each(|u| u.write(xml)))?;
     xml.create_element("TypeDefinitions").write_inner_content(|xml| {
-        Quantity::ALL.iter().try_for_each(|quantity| simple_type(xml, *quantity))
+        Quantity::ALL.iter().try_for_each(|quantity| simple_type(xml, *quantity))?;
+        choices().into_iter().try_for_each(|choice| enumeration(xml, choice))
     })?;
     Ok(())
 }
@@ -73,6 +76,34 @@ fn simple_type(xml: &mut Xml, quantity: Quantity) -> io::Result<()> {
             real = real.with_attribute(("displayUnit", unit));
         }
         real.write_empty()?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+/// Everything that is chosen from, once each.
+fn choices() -> Vec<&'static Choice> {
+    let mut choices: Vec<&Choice> = VARIABLES.iter().filter_map(Variable::choice).collect();
+    choices.sort_by_key(|choice| choice.name);
+    choices.dedup_by_key(|choice| choice.name);
+    choices
+}
+
+fn enumeration(xml: &mut Xml, choice: &Choice) -> io::Result<()> {
+    let names = [("name", choice.name), ("description", choice.description)];
+    xml.create_element("SimpleType").with_attributes(names).write_inner_content(|xml| {
+        xml.create_element("Enumeration").write_inner_content(|xml| {
+            for (value, (name, description)) in (1..).zip(choice.items) {
+                xml.create_element("Item")
+                    .with_attributes([
+                        ("name", *name),
+                        ("value", i32::to_string(&value).as_str()),
+                        ("description", *description),
+                    ])
+                    .write_empty()?;
+            }
+            Ok(())
+        })?;
         Ok(())
     })?;
     Ok(())

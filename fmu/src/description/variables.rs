@@ -46,6 +46,7 @@ fn value_element(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
         attributes.extend(definition.unit.map(|unit| ("unit", unit.to_owned())));
         attributes.extend(definition.display_unit.map(|unit| ("displayUnit", unit.to_owned())));
     }
+    attributes.extend(variable.choice().map(|choice| ("declaredType", choice.name.to_owned())));
     let (minimum, maximum) = variable.range();
     attributes.extend(minimum.map(|value| ("min", text(value))));
     attributes.extend(maximum.map(|value| ("max", text(value))));

@@ -9,7 +9,7 @@ mod variable;
 use quadrotor::PARAMETERS;
 
 pub use quantity::{Quantity, QuantityType};
-pub use variable::{CalculatedParameter, Input, Output, Role, Type, Value, Variable};
+pub use variable::{CalculatedParameter, Input, Output, Role, Signal, Type, Value, Variable};
 pub(crate) use variable::{get_parameter, set_parameter};
 
 use calculated::CALCULATED;

@@ -4,12 +4,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use quadrotor::Outputs;
+use quadrotor::{Choice, ControllerActivity, ControllerStatus as Status, Outputs};
 
 use super::Quantity::{
     Acceleration, Angle, AngularVelocity, Force, Number, Position, RotorSpeed, Torque, Velocity,
 };
-use super::{Output, Quantity, Role, Variable};
+use super::{Output, Quantity, Role, Signal, Variable};
 
 const fn output(
     name: &'static str,
@@ -18,22 +18,55 @@ const fn output(
     get: fn(&Outputs) -> f64,
     description: &'static str,
 ) -> Variable {
-    let (minimum, maximum) = (None, None);
-    let output = Output { quantity, minimum, maximum, initially_depends_on, get };
-    Variable { name, description, role: Role::Output(output) }
+    let signal = Signal::Real { quantity, minimum: None, maximum: None, get };
+    Variable { name, description, role: Role::Output(Output { initially_depends_on, signal }) }
+}
+
+/// A figure of a controller's last step: known from its first sample on.
+const fn figure(name: &'static str, signal: Signal, description: &'static str) -> Variable {
+    Variable { name, description, role: Role::Output(Output { initially_depends_on: NOTHING, signal }) }
+}
+
+const fn count(name: &'static str, get: fn(&Outputs) -> u32, description: &'static str) -> Variable {
+    figure(name, Signal::Count { get }, description)
+}
+
+const fn status(name: &'static str, get: fn(&Outputs) -> i32, description: &'static str) -> Variable {
+    figure(name, Signal::Enumeration { choice: &STATUS, get }, description)
+}
+
+/// What `controller.….status` chooses from.
+static STATUS: Choice = Choice {
+    name: "ControllerStatus",
+    description: "How a controller found its last input",
+    items: &[
+        ("optimal", "Least cost within all limits"),
+        ("relaxed", "No input keeps all limits: least cost and violation together"),
+        ("iteration_limit", "The solver ran out of iterations: the last input is held"),
+        ("held", "Something was not finite: the last input is held"),
+    ],
+};
+
+fn number(activity: &ControllerActivity) -> i32 {
+    match activity.status {
+        Status::Optimal => 1,
+        Status::Relaxed => 2,
+        Status::IterationLimit => 3,
+        Status::Held => 4,
+    }
 }
 
 impl Variable {
     const fn within(mut self, minimum: f64, maximum: f64) -> Self {
-        if let Role::Output(output) = &mut self.role {
-            output.maximum = Some(maximum);
+        if let Role::Output(Output { signal: Signal::Real { maximum: most, .. }, .. }) = &mut self.role {
+            *most = Some(maximum);
         }
         self.at_least(minimum)
     }
 
     const fn at_least(mut self, minimum: f64) -> Self {
-        if let Role::Output(output) = &mut self.role {
-            output.minimum = Some(minimum);
+        if let Role::Output(Output { signal: Signal::Real { minimum: least, .. }, .. }) = &mut self.role {
+            *least = Some(minimum);
         }
         self
     }
@@ -50,7 +83,7 @@ const ACCELERATION: &[&str] =
 const TILT_REFERENCE: &[&str] = NOTHING;
 
 #[rustfmt::skip]
-pub(super) const OUTPUTS: [Variable; 46] = [
+pub(super) const OUTPUTS: [Variable; 55] = [
     output("position.x", Position, &["initial.position.x"], |outputs| outputs.position_m.x, "Position north"),
     output("position.y", Position, &["initial.position.y"], |outputs| outputs.position_m.y, "Position east"),
     output("position.z", Position, &["initial.position.z"], |outputs| outputs.position_m.z, "Position down"),
@@ -97,4 +130,13 @@ pub(super) const OUTPUTS: [Variable; 46] = [
     output("tracking_error.y", Position, &["initial.position.y"], |outputs| outputs.tracking_error_m.y, "Position minus set-point east"),
     output("tracking_error.z", Position, &["initial.position.z"], |outputs| outputs.tracking_error_m.z, "Position minus set-point down"),
     output("yaw_error", Angle, ATTITUDE, |outputs| outputs.yaw_error_rad, "Heading minus set-point, the short way round").within(-PI, PI),
+    status("controller.altitude.status", |outputs| number(&outputs.activity.altitude), "How the altitude controller found its last input"),
+    count("controller.altitude.active_constraints", |outputs| outputs.activity.altitude.active, "Limits that held with equality in the last step of the altitude controller, or cut its input off"),
+    count("controller.altitude.iterations", |outputs| outputs.activity.altitude.iterations, "Iterations of the solver in the last step of the altitude controller"),
+    status("controller.position.status", |outputs| number(&outputs.activity.position), "How the position controller found its last input"),
+    count("controller.position.active_constraints", |outputs| outputs.activity.position.active, "Limits that held with equality in the last step of the position controller, or cut its input off"),
+    count("controller.position.iterations", |outputs| outputs.activity.position.iterations, "Iterations of the solver in the last step of the position controller"),
+    status("controller.attitude.status", |outputs| number(&outputs.activity.attitude), "How the attitude controller found its last input"),
+    count("controller.attitude.active_constraints", |outputs| outputs.activity.attitude.active, "Limits that held with equality in the last step of the attitude controller, or cut its input off"),
+    count("controller.attitude.iterations", |outputs| outputs.activity.attitude.iterations, "Iterations of the solver in the last step of the attitude controller"),
 ];

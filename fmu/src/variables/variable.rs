@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use quadrotor::{Access, CascadeDesign, Configuration, Inputs, Outputs, Parameter};
+use quadrotor::{Access, CascadeDesign, Choice, Configuration, Inputs, Outputs, Parameter};
 
 use super::Quantity;
 
@@ -13,8 +13,17 @@ pub enum Type {
     Real,
     /// `Integer`
     Integer,
+    /// `Enumeration`, which the interface reads and writes as `Integer`
+    Enumeration,
     /// `Boolean`
     Boolean,
+}
+
+impl Type {
+    /// The type by which the functions of the interface know it.
+    pub fn of_functions(self) -> Self {
+        if self == Self::Enumeration { Self::Integer } else { self }
+    }
 }
 
 impl fmt::Display for Type {
@@ -22,6 +31,7 @@ impl fmt::Display for Type {
         formatter.write_str(match self {
             Self::Real => "Real",
             Self::Integer => "Integer",
+            Self::Enumeration => "Enumeration",
             Self::Boolean => "Boolean",
         })
     }
@@ -32,7 +42,7 @@ impl fmt::Display for Type {
 pub enum Value {
     /// Of a `Real` variable.
     Real(f64),
-    /// Of an `Integer` variable.
+    /// Of an `Integer` or `Enumeration` variable.
     Integer(i32),
     /// Of a `Boolean` variable.
     Boolean(bool),
@@ -87,19 +97,41 @@ pub enum Input {
     },
 }
 
-/// A real output.
+/// An output.
 #[derive(Clone, Copy, Debug)]
 pub struct Output {
-    /// Its quantity.
-    pub quantity: Quantity,
-    /// Smallest value, if it has one.
-    pub minimum: Option<f64>,
-    /// Largest value, if it has one.
-    pub maximum: Option<f64>,
     /// Names, or beginnings of names, of the inputs and parameters that its initial value depends on.
     pub initially_depends_on: &'static [&'static str],
-    /// Reads it.
-    pub get: fn(&Outputs) -> f64,
+    /// Type, range and place.
+    pub signal: Signal,
+}
+
+/// Type, range and place of an output.
+#[derive(Clone, Copy, Debug)]
+pub enum Signal {
+    /// A real signal.
+    Real {
+        /// Its quantity.
+        quantity: Quantity,
+        /// Smallest value, if it has one.
+        minimum: Option<f64>,
+        /// Largest value, if it has one.
+        maximum: Option<f64>,
+        /// Reads it.
+        get: fn(&Outputs) -> f64,
+    },
+    /// A count, 0 or more.
+    Count {
+        /// Reads it.
+        get: fn(&Outputs) -> u32,
+    },
+    /// One of some named items, counted from 1.
+    Enumeration {
+        /// The items.
+        choice: &'static Choice,
+        /// Reads it.
+        get: fn(&Outputs) -> i32,
+    },
 }
 
 /// A figure of a controller's design.
@@ -117,7 +149,10 @@ impl Variable {
         match self.role {
             Role::Input(Input::Boolean { .. }) => Type::Boolean,
             Role::Parameter(Parameter { access: Access::Boolean { .. }, .. }) => Type::Boolean,
-            Role::Parameter(Parameter { access: Access::Integer { .. }, .. }) => Type::Integer,
+            Role::Parameter(Parameter { access: Access::Integer { .. }, .. })
+            | Role::Output(Output { signal: Signal::Count { .. }, .. }) => Type::Integer,
+            Role::Parameter(Parameter { access: Access::Enumeration { .. }, .. })
+            | Role::Output(Output { signal: Signal::Enumeration { .. }, .. }) => Type::Enumeration,
             _ => Type::Real,
         }
     }
@@ -126,12 +161,21 @@ impl Variable {
     pub fn quantity(&self) -> Option<Quantity> {
         match self.role {
             Role::Input(Input::Real { quantity, .. }) => Some(quantity),
-            Role::Output(output) => Some(output.quantity),
+            Role::Output(Output { signal: Signal::Real { quantity, .. }, .. }) => Some(quantity),
             Role::Parameter(Parameter { name, unit, access: Access::Real { .. }, .. }) => {
                 Some(Quantity::of_parameter(name, *unit))
             }
             Role::CalculatedParameter(_) => Some(Quantity::Number),
-            Role::Input(Input::Boolean { .. }) | Role::Parameter(_) => None,
+            Role::Input(Input::Boolean { .. }) | Role::Output(_) | Role::Parameter(_) => None,
+        }
+    }
+
+    /// What it is chosen from, if it is an `Enumeration`.
+    pub fn choice(&self) -> Option<&'static Choice> {
+        match self.role {
+            Role::Parameter(Parameter { access: Access::Enumeration { choice, .. }, .. }) => Some(*choice),
+            Role::Output(Output { signal: Signal::Enumeration { choice, .. }, .. }) => Some(choice),
+            _ => None,
         }
     }
 
@@ -148,8 +192,10 @@ impl Variable {
     /// Attribute `variability` of the description.
     pub fn variability(&self) -> &'static str {
         match self.role {
-            Role::Input(Input::Real { .. }) | Role::Output(_) => "continuous",
-            Role::Input(Input::Boolean { .. }) => "discrete",
+            Role::Input(Input::Real { .. }) | Role::Output(Output { signal: Signal::Real { .. }, .. }) => {
+                "continuous"
+            }
+            Role::Input(Input::Boolean { .. }) | Role::Output(_) => "discrete",
             Role::Parameter(parameter) if !parameter.tunable => "fixed",
             // They follow from tunable weights.
             Role::Parameter(_) | Role::CalculatedParameter(_) => "tunable",
@@ -162,7 +208,11 @@ impl Variable {
             Role::Input(Input::Real { minimum, maximum, .. }) => {
                 (Some(Value::Real(minimum)), Some(Value::Real(maximum)))
             }
-            Role::Output(output) => (output.minimum.map(Value::Real), output.maximum.map(Value::Real)),
+            Role::Output(Output { signal, .. }) => match signal {
+                Signal::Real { minimum, maximum, .. } => (minimum.map(Value::Real), maximum.map(Value::Real)),
+                Signal::Count { .. } => (Some(Value::Integer(0)), None),
+                Signal::Enumeration { choice, .. } => items(choice),
+            },
             Role::Parameter(parameter) => match parameter.access {
                 Access::Real { minimum, maximum, .. } => {
                     (Some(Value::Real(minimum)), Some(Value::Real(maximum)))
@@ -170,6 +220,7 @@ impl Variable {
                 Access::Integer { minimum, maximum, .. } => {
                     (Some(Value::Integer(minimum)), Some(Value::Integer(maximum)))
                 }
+                Access::Enumeration { choice, .. } => items(choice),
                 Access::Boolean { .. } => (None, None),
             },
             Role::Input(Input::Boolean { .. }) | Role::CalculatedParameter(_) => (None, None),
@@ -191,6 +242,22 @@ impl Variable {
             Role::Output(output) => Some(output.initially_depends_on),
             Role::CalculatedParameter(calculated) => Some(calculated.depends_on),
             _ => None,
+        }
+    }
+}
+
+/// The smallest and the largest number of an item.
+fn items(choice: &Choice) -> (Option<Value>, Option<Value>) {
+    (Some(Value::Integer(1)), i32::try_from(choice.items.len()).ok().map(Value::Integer))
+}
+
+impl Output {
+    /// Its value.
+    pub(crate) fn get(&self, outputs: &Outputs) -> Value {
+        match self.signal {
+            Signal::Real { get, .. } => Value::Real(get(outputs)),
+            Signal::Count { get } => Value::Integer(i32::try_from(get(outputs)).unwrap_or(i32::MAX)),
+            Signal::Enumeration { get, .. } => Value::Integer(get(outputs)),
         }
     }
 }
@@ -218,7 +285,7 @@ impl Input {
 pub(crate) fn get_parameter(parameter: &Parameter, configuration: &Configuration) -> Value {
     match parameter.access {
         Access::Real { get, .. } => Value::Real(get(configuration)),
-        Access::Integer { get, .. } => Value::Integer(get(configuration)),
+        Access::Integer { get, .. } | Access::Enumeration { get, .. } => Value::Integer(get(configuration)),
         Access::Boolean { get, .. } => Value::Boolean(get(configuration)),
     }
 }
@@ -227,7 +294,9 @@ pub(crate) fn get_parameter(parameter: &Parameter, configuration: &Configuration
 pub(crate) fn set_parameter(parameter: &Parameter, configuration: &mut Configuration, value: Value) {
     match (parameter.access, value) {
         (Access::Real { set, .. }, Value::Real(value)) => set(configuration, value),
-        (Access::Integer { set, .. }, Value::Integer(value)) => set(configuration, value),
+        (Access::Integer { set, .. } | Access::Enumeration { set, .. }, Value::Integer(value)) => {
+            set(configuration, value);
+        }
         (Access::Boolean { set, .. }, Value::Boolean(value)) => set(configuration, value),
         _ => {}
     }

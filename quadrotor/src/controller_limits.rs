@@ -1,0 +1,123 @@
+//! What the predictive controllers keep within, as [`Limit`]s and their values at a sample.
+
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+use lmpc::{Limit, Quantity};
+use nalgebra::{DMatrix, Vector2, Vector3};
+
+use crate::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
+use crate::{Airframe, GRAVITY_M_S2, Limits};
+
+/// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
+const TILT_SIDES: usize = 16;
+/// Sides of the polygon for the rate of the tilt.
+const RATE_SIDES: usize = 8;
+/// Sides of the polygon for the speed.
+const SPEED_SIDES: usize = 16;
+/// By how much the speed of the reference may be exceeded to catch up with it, m/s.
+const CATCHING_UP_M_S: f64 = 0.5;
+
+/// Number of bounds of the position controller.
+pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
+/// Number of bounds of the altitude controller.
+pub(crate) const ALTITUDE_BOUNDS: usize = 4;
+/// Number of bounds of the attitude controller.
+pub(crate) const ATTITUDE_BOUNDS: usize = 6;
+
+/// The future samples of states: the first one is a sample later than that of the input.
+fn after(samples: &[usize]) -> impl Iterator<Item = usize> {
+    samples.iter().map(|m| m + 1)
+}
+
+/// Tilt and its increments in all directions alike, and, softly, the horizontal speed.
+pub(crate) fn position_limits() -> Vec<Limit> {
+    let tilt = Limit::polygon(Quantity::Input, TILT_SIDES, POSITION.iter().copied());
+    let increment = Limit::polygon(Quantity::Increment, RATE_SIDES, POSITION.iter().copied());
+    let polygon = Limit::polygon(Quantity::State, SPEED_SIDES, after(POSITION));
+    // States x, ẋ, y, ẏ.
+    let mut directions = DMatrix::zeros(SPEED_SIDES, 4);
+    directions.set_column(1, &polygon.directions.column(0));
+    directions.set_column(3, &polygon.directions.column(1));
+    [tilt, increment, Limit { directions, ..polygon }.soft()].into()
+}
+
+/// Values of [`position_limits`]: the largest tilt as |a|/g, its largest increment, and the speed that is
+/// left in each direction beside `moving_m_s`.
+pub(crate) fn position_bounds(
+    limits: &Limits,
+    tilt: f64,
+    sample_time_s: f64,
+    reference_velocity_m_s: &Vector2<f64>,
+    moving_m_s: &Vector2<f64>,
+) -> [f64; POSITION_BOUNDS] {
+    let inside = |sides: usize| libm::cos(PI / sides as f64);
+    let increment = limits.tilt_rate_rad_s * sample_time_s;
+    let speed = (limits.speed_horizontal_m_s * inside(SPEED_SIDES))
+        .max(reference_velocity_m_s.norm() + CATCHING_UP_M_S);
+    core::array::from_fn(|bound| match bound {
+        ..TILT_SIDES => tilt * inside(TILT_SIDES),
+        _ if bound < TILT_SIDES + RATE_SIDES => increment * inside(RATE_SIDES),
+        _ => {
+            let side = bound - TILT_SIDES - RATE_SIDES;
+            let angle = 2.0 * PI * side as f64 / SPEED_SIDES as f64;
+            let along = Vector2::new(libm::cos(angle), libm::sin(angle)).dot(moving_m_s);
+            speed - along
+        }
+    })
+}
+
+/// The vertical acceleration and, softly, the vertical speed.
+pub(crate) fn altitude_limits() -> Vec<Limit> {
+    let acceleration = Limit::range(Quantity::Input, 1, ALTITUDE.iter().copied());
+    // States z, ż.
+    let directions = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -1.0]);
+    let speed =
+        Limit { quantity: Quantity::State, directions, samples: after(ALTITUDE).collect(), soft: true };
+    [acceleration, speed].into()
+}
+
+/// Values of [`altitude_limits`]: G within `range`, and the speeds down and up that are left beside
+/// `moving_m_s`.
+pub(crate) fn altitude_bounds(
+    limits: &Limits,
+    range: (f64, f64),
+    reference_rate_m_s: f64,
+    moving_m_s: f64,
+) -> [f64; ALTITUDE_BOUNDS] {
+    let down = limits.speed_down_m_s.max(reference_rate_m_s + CATCHING_UP_M_S);
+    let up = limits.speed_up_m_s.max(CATCHING_UP_M_S - reference_rate_m_s);
+    [range.1, -range.0, down - moving_m_s, up + moving_m_s]
+}
+
+/// Each torque.
+pub(crate) fn attitude_limits() -> Vec<Limit> {
+    [Limit::range(Quantity::Input, 3, ATTITUDE.iter().copied())].into()
+}
+
+/// Values of [`attitude_limits`]: what the rotors can do about each axis alone when they make the thrust
+/// `thrust_n`, beside the torque `other_n_m` that they make anyway.
+///
+/// Each axis for itself: what the mixer does when they add up (roll and pitch first) no convex limit tells.
+pub(crate) fn attitude_bounds(
+    airframe: &Airframe,
+    thrust_n: f64,
+    other_n_m: &Vector3<f64>,
+) -> [f64; ATTITUDE_BOUNDS] {
+    let (weakest, strongest) = airframe.thrust_range_n();
+    let mean = thrust_n.clamp(weakest, strongest);
+    // By how much each rotor may differ from the mean.
+    let room = (mean - weakest).min(strongest - mean) / 4.0;
+    let tilting = 2.0 * airframe.arm_length_m * room;
+    let turning = 4.0 * airframe.torque_coefficient_n_m_s2 / airframe.thrust_coefficient_n_s2 * room;
+    let most = [tilting, tilting, turning];
+    core::array::from_fn(|bound| {
+        let axis = bound % 3;
+        if bound < 3 { most[axis] - other_n_m[axis] } else { most[axis] + other_n_m[axis] }
+    })
+}
+
+/// The largest tilt as |a|/g when the thrust axis may lean by `tilt_rad` under the vertical acceleration G.
+pub(crate) fn largest_tilt(tilt_rad: f64, vertical_m_s2: f64) -> f64 {
+    libm::tan(tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0) / GRAVITY_M_S2
+}

@@ -1,0 +1,208 @@
+//! The stationary Kalman predictor (26) of the vehicle's motion, from position and attitude.
+
+use lmpc::{DesignError, KalmanDesign, KalmanPredictor, NoiseCovariance, StateSpace};
+use nalgebra::{DMatrix, UnitQuaternion, Vector1, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::turned;
+use crate::{Configuration, GRAVITY_M_S2, RigidBody, Wrench, wrench_of_rotors};
+
+/// Smallest standard deviations that the design counts with, m and rad: without noise the predictor would
+/// follow each rounding.
+const SMALLEST_NOISE: (f64, f64) = (1e-3, 1e-3);
+/// Standard deviation of the acceleration that the model misses from sample to sample, m/s² and rad/s².
+const MODEL_NOISE: (f64, f64) = (0.3, 3.0);
+/// How fast disturbances wander, m/s² and rad/s² per √s.
+const WANDERING: (f64, f64) = (0.3, 3.0);
+
+/// Time over which the vehicle's falling short of its commands is averaged, s.
+const SHORTFALL_S: f64 = 0.3;
+
+/// What was commanded for the time until the next sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Command {
+    /// Acceleration, NED, m/s².
+    pub(crate) acceleration_m_s2: Vector3<f64>,
+    /// Speeds of the rotors, rad/s.
+    pub(crate) rotor_speed_rad_s: [f64; 4],
+}
+
+/// One axis: position or angle, its rate, and the acceleration that the model does not explain.
+type Axis = KalmanPredictor<3, 1, 1>;
+
+/// The predictors of one axis of translation and of one of rotation, at the attitude controller's sample
+/// time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EstimatorDesign {
+    translation: Axis,
+    rotation: Axis,
+    sample_time_s: f64,
+}
+
+/// The estimate of the vehicle's motion at the next sample of the attitude controller.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimator {
+    body: RigidBody,
+    /// Acceleration that thrust and gravity do not explain, NED, m/s².
+    disturbance_m_s2: Vector3<f64>,
+    /// Angular acceleration that the torques do not explain, FRD, rad/s².
+    disturbance_rad_s2: Vector3<f64>,
+    /// The commanded vertical acceleration as the rotors answer it, m/s² down.
+    answer_z_m_s2: f64,
+    /// By how much the modelled acceleration differs from that, smoothed, NED, m/s².
+    shortfall_m_s2: Vector3<f64>,
+    /// Speeds of the rotors by their model, rad/s.
+    rotor_speed_rad_s: [f64; 4],
+    time_us: u64,
+}
+
+impl EstimatorDesign {
+    /// For the noise and the sample time of a configuration.
+    ///
+    /// # Errors
+    /// Those of [`KalmanDesign::new`].
+    pub(crate) fn new(configuration: &Configuration) -> Result<Self, DesignError> {
+        let sensors = &configuration.sensors;
+        let sample_time_s = configuration.controllers.attitude.sample_time_s();
+        Ok(Self {
+            translation: axis(
+                sample_time_s,
+                sensors.position_noise_m.max(SMALLEST_NOISE.0),
+                MODEL_NOISE.0,
+                WANDERING.0,
+            )?,
+            rotation: axis(
+                sample_time_s,
+                sensors.attitude_noise_rad.max(SMALLEST_NOISE.1),
+                MODEL_NOISE.1,
+                WANDERING.1,
+            )?,
+            sample_time_s,
+        })
+    }
+}
+
+/// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring p.
+fn axis(t: f64, noise: f64, model_noise: f64, wandering: f64) -> Result<Axis, DesignError> {
+    let half = t * t / 2.0;
+    let a = DMatrix::from_row_slice(3, 3, &[1.0, t, half, 0.0, 1.0, t, 0.0, 0.0, 1.0]);
+    let b = DMatrix::from_column_slice(3, 1, &[half, t, 0.0]);
+    // w = [T²/2; T; 0] a + [0; 0; √T] b
+    let missed = &b * model_noise;
+    let plant = StateSpace::new(a, b, DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 0.0]))?;
+    let mut w = &missed * missed.transpose();
+    w[(2, 2)] = wandering * wandering * t;
+    let covariance = NoiseCovariance::uncorrelated(w, DMatrix::from_element(1, 1, noise * noise));
+    KalmanPredictor::new(&plant, &KalmanDesign::new(&plant, &covariance)?)
+}
+
+impl Estimator {
+    /// Takes over a vehicle that was measured, as if it had been at rest there.
+    pub(crate) fn new(measured: &RigidBody, rotor_speed_rad_s: [f64; 4], time_us: u64) -> Self {
+        Self {
+            body: RigidBody {
+                velocity_m_s: Vector3::zeros(),
+                body_rate_rad_s: Vector3::zeros(),
+                ..*measured
+            },
+            disturbance_m_s2: Vector3::zeros(),
+            disturbance_rad_s2: Vector3::zeros(),
+            answer_z_m_s2: 0.0,
+            shortfall_m_s2: Vector3::zeros(),
+            rotor_speed_rad_s,
+            time_us,
+        }
+    }
+
+    /// The motion predicted for `time_us`, a fraction of a sample away at most.
+    pub(crate) fn body_at(&self, time_us: u64) -> RigidBody {
+        let elapsed_s = (time_us as f64 - self.time_us as f64) / 1e6;
+        if elapsed_s == 0.0 {
+            return self.body;
+        }
+        let turn = UnitQuaternion::from_scaled_axis(self.body.body_rate_rad_s * elapsed_s);
+        RigidBody {
+            position_m: self.body.position_m + self.body.velocity_m_s * elapsed_s,
+            attitude: (self.body.rotation() * turn).into_inner(),
+            ..self.body
+        }
+    }
+
+    /// Acceleration beside the commanded one, NED, m/s²: what thrust and gravity do not explain, and what the
+    /// vehicle falls short of its commands in the long run.
+    pub(crate) fn disturbance_m_s2(&self) -> Vector3<f64> {
+        self.disturbance_m_s2 + self.shortfall_m_s2
+    }
+
+    /// Angular acceleration that the torques do not explain, FRD, rad/s².
+    pub(crate) fn disturbance_rad_s2(&self) -> Vector3<f64> {
+        self.disturbance_rad_s2
+    }
+
+    /// On to the next sample: from what was measured at this one and what is commanded until then.
+    pub(crate) fn predict(
+        &mut self,
+        configuration: &Configuration,
+        design: &EstimatorDesign,
+        measured: &RigidBody,
+        command: &Command,
+        (time_us, period_us): (u64, u64),
+    ) {
+        let believed = configuration.controllers.mass_factor;
+        let airframe = &configuration.airframe;
+        let before = self.rotor_speed_rad_s;
+        let command_rad_s = &command.rotor_speed_rad_s;
+        // ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ)
+        let kept = libm::exp(-design.sample_time_s / airframe.rotor_time_constant_s);
+        self.rotor_speed_rad_s = core::array::from_fn(|rotor| {
+            command_rad_s[rotor] + (before[rotor] - command_rad_s[rotor]) * kept
+        });
+        let wrench =
+            mean(&wrench_of_rotors(airframe, &before), &wrench_of_rotors(airframe, &self.rotor_speed_rad_s));
+        let rotation = self.body.rotation();
+
+        // v̇ = g e₃ − R e₃ F/m
+        let thrust = rotation * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
+        let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
+        // The attitude is led by the rate of its reference; the thrust answers as late as the rotors do.
+        let vertical = command.acceleration_m_s2.z;
+        self.answer_z_m_s2 = vertical + (self.answer_z_m_s2 - vertical) * kept;
+        let answer =
+            Vector3::new(command.acceleration_m_s2.x, command.acceleration_m_s2.y, self.answer_z_m_s2);
+        let share = 1.0 - libm::exp(-design.sample_time_s / SHORTFALL_S);
+        self.shortfall_m_s2 += (acceleration - answer - self.shortfall_m_s2) * share;
+        // ω̇ = J⁻¹ (τ − ω × Jω)
+        let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
+        let rate = self.body.body_rate_rad_s;
+        let torque = wrench.torque_n_m - rate.cross(&inertia.component_mul(&rate));
+        let angular = torque.component_div(&inertia);
+
+        let mut angle = Vector3::zeros();
+        let apart = turned(&rotation, &measured.rotation());
+        for i in 0..3 {
+            let estimate = [self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]];
+            let next = design.translation.predict(
+                &estimate.into(),
+                &Vector1::new(acceleration[i]),
+                &Vector1::new(measured.position_m[i]),
+            );
+            (self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]) =
+                (next[0], next[1], next[2]);
+            // The angle from the attitude estimated for now.
+            let estimate = [0.0, rate[i], self.disturbance_rad_s2[i]];
+            let next =
+                design.rotation.predict(&estimate.into(), &Vector1::new(angular[i]), &Vector1::new(apart[i]));
+            (angle[i], self.body.body_rate_rad_s[i], self.disturbance_rad_s2[i]) =
+                (next[0], next[1], next[2]);
+        }
+        self.body.attitude = (rotation * UnitQuaternion::from_scaled_axis(angle)).into_inner();
+        self.time_us = time_us + period_us;
+    }
+}
+
+fn mean(one: &Wrench, other: &Wrench) -> Wrench {
+    Wrench {
+        thrust_n: (one.thrust_n + other.thrust_n) / 2.0,
+        torque_n_m: (one.torque_n_m + other.torque_n_m) / 2.0,
+    }
+}

@@ -1,0 +1,127 @@
+//! Measurements of the vehicle, with noise.
+
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::SeedableRng;
+use nalgebra::{UnitQuaternion, Vector3};
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+use crate::RigidBody;
+use crate::configuration::Sensors;
+
+/// Words of the generator's stream that belong to one reading: far more than its twelve numbers take.
+const WORDS_PER_READING: u128 = 1 << 10;
+
+/// State of the noise: how many readings have been taken. Each has its own place in the generator's stream, so
+/// that this is all there is to save.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct NoiseState {
+    readings: u64,
+}
+
+impl NoiseState {
+    /// What the sensors say of the body's motion. Without noise it is the motion itself.
+    pub(crate) fn read(&mut self, sensors: &Sensors, body: &RigidBody) -> RigidBody {
+        let reading = self.readings;
+        self.readings = self.readings.wrapping_add(1);
+        if sensors.is_exact() {
+            return *body;
+        }
+        let mut generator = ChaCha8Rng::seed_from_u64(u64::from(sensors.seed));
+        generator.set_word_pos(u128::from(reading) * WORDS_PER_READING);
+        let mut noise = |deviation: f64| {
+            Vector3::from_fn(|_, _| {
+                let sample: f64 = StandardNormal.sample(&mut generator);
+                deviation * sample
+            })
+        };
+        let position = noise(sensors.position_noise_m);
+        let velocity = noise(sensors.velocity_noise_m_s);
+        let turned = UnitQuaternion::from_scaled_axis(noise(sensors.attitude_noise_rad));
+        RigidBody {
+            position_m: body.position_m + position,
+            velocity_m_s: body.velocity_m_s + velocity,
+            attitude: (body.rotation() * turned).into_inner(),
+            body_rate_rad_s: body.body_rate_rad_s + noise(sensors.body_rate_noise_rad_s),
+        }
+    }
+}
+
+impl Sensors {
+    /// Whether nothing is added to the truth.
+    fn is_exact(&self) -> bool {
+        [self.position_noise_m, self.velocity_noise_m_s, self.attitude_noise_rad, self.body_rate_noise_rad_s]
+            == [0.0; 4]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::vec::Vec;
+
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::NoiseState;
+    use crate::{RigidBody, Sensors};
+
+    fn at_rest() -> RigidBody {
+        RigidBody {
+            position_m: Vector3::new(1.0, 2.0, 3.0),
+            velocity_m_s: Vector3::zeros(),
+            attitude: UnitQuaternion::from_euler_angles(0.1, -0.2, 2.0).into_inner(),
+            body_rate_rad_s: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn without_noise_the_truth_is_read() {
+        assert_eq!(NoiseState::default().read(&Sensors::default(), &at_rest()), at_rest());
+    }
+
+    /// Mean, deviation and correlation from reading to reading of every channel, within five standard errors.
+    #[test]
+    fn noise_is_white_and_as_wide_as_asked() {
+        const READINGS: usize = 20_000;
+        let sensors = Sensors {
+            position_noise_m: 0.5,
+            velocity_noise_m_s: 0.2,
+            attitude_noise_rad: 0.02,
+            body_rate_noise_rad_s: 0.1,
+            seed: 11,
+            ..Sensors::default()
+        };
+        let (body, mut state) = (at_rest(), NoiseState::default());
+        let readings: Vec<[f64; 12]> = (0..READINGS)
+            .map(|_| {
+                let read = state.read(&sensors, &body);
+                let turned = (body.rotation().inverse() * read.rotation()).scaled_axis();
+                let parts = [
+                    (read.position_m - body.position_m) / sensors.position_noise_m,
+                    read.velocity_m_s / sensors.velocity_noise_m_s,
+                    turned / sensors.attitude_noise_rad,
+                    read.body_rate_rad_s / sensors.body_rate_noise_rad_s,
+                ];
+                core::array::from_fn(|channel| parts[channel / 3][channel % 3])
+            })
+            .collect();
+        let count = READINGS as f64;
+        let bound = 5.0 / count.sqrt();
+        for channel in 0..12 {
+            let mean = readings.iter().map(|reading| reading[channel]).sum::<f64>() / count;
+            let variance = readings.iter().map(|reading| reading[channel].powi(2)).sum::<f64>() / count;
+            let shifted =
+                readings.windows(2).map(|pair| pair[0][channel] * pair[1][channel]).sum::<f64>() / count;
+            assert!(mean.abs() < bound, "channel {channel}: mean {mean}");
+            assert!(
+                (variance - 1.0).abs() < bound * 2.0_f64.sqrt(),
+                "channel {channel}: variance {variance}"
+            );
+            assert!(shifted.abs() < bound, "channel {channel}: correlation {shifted}");
+        }
+        for (one, other) in [(0, 1), (0, 3), (6, 9), (2, 8)] {
+            let together = readings.iter().map(|reading| reading[one] * reading[other]).sum::<f64>() / count;
+            assert!(together.abs() < bound, "channels {one} and {other}: correlation {together}");
+        }
+    }
+}
