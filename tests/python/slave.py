@@ -63,14 +63,27 @@ class Slave:
 
     def set(self, values: dict) -> None:
         """Sets variables, one call each."""
-        setters = {"Real": self.fmu.setReal, "Integer": self.fmu.setInteger, "Boolean": self.fmu.setBoolean}
+        setters = {
+            "Real": self.fmu.setReal,
+            "Integer": self.fmu.setInteger,
+            "Enumeration": self.fmu.setInteger,
+            "Boolean": self.fmu.setBoolean,
+        }
         for name, value in values.items():
             variable = self.variables[name]
             setters[variable.type]([variable.valueReference], [value])
 
     def get(self, *names: str) -> np.ndarray:
-        """Reads real variables."""
-        return np.array(self.fmu.getReal([self.variables[name].valueReference for name in names]))
+        """Reads numbers: real ones in one call, whole ones each for itself."""
+        variables = [self.variables[name] for name in names]
+        real = [variable.valueReference for variable in variables if variable.type == "Real"]
+        reals = iter(self.fmu.getReal(real) if real else [])
+        return np.array(
+            [
+                next(reals) if variable.type == "Real" else self.fmu.getInteger([variable.valueReference])[0]
+                for variable in variables
+            ]
+        )
 
     def snapshot(self) -> np.ndarray:
         """All outputs."""

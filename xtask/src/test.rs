@@ -51,7 +51,8 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
             .arg(workspace.python_tests())
             .arg(format!("--junitxml={}", report.display()))
             .current_dir(workspace.root())
-            .env("LMPC_QUADROTOR_FMU", &fmu),
+            .env("LMPC_QUADROTOR_FMU", &fmu)
+            .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples()),
     )?;
     count += python_count(&files::read_text(&report)?)?;
 

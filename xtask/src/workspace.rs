@@ -58,6 +58,11 @@ impl Workspace {
         self.target.join("paper")
     }
 
+    /// The examples that `cargo test` builds.
+    pub fn examples(&self) -> PathBuf {
+        self.target.join("debug").join("examples")
+    }
+
     /// The Python environment.
     pub fn python_environment(&self) -> PathBuf {
         self.target.join("venv")

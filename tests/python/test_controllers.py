@@ -1,0 +1,86 @@
+"""The kinds of controllers, measurement noise, and what the outputs tell of limits, through FMPy."""
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+
+import flights
+
+KINDS = {"lmpc": 1, "ssmpc": 2, "dlqr": 3}
+LOOPS = ("altitude", "position", "attitude")
+
+
+def fly(unzipped, model_description, stop_time: float = 20.0, **start_values) -> np.ndarray:
+    return simulate_fmu(
+        unzipped,
+        stop_time=stop_time,
+        output_interval=0.05,
+        start_values={name.replace("__", "."): value for name, value in start_values.items()},
+        model_description=model_description,
+    )
+
+
+def test_the_description_names_the_kinds_and_the_outcomes(model_description):
+    variables = {variable.name: variable for variable in model_description.modelVariables}
+    kind = variables["controller.kind"]
+    assert kind.type == "Enumeration" and kind.start == "1" and kind.variability == "fixed"
+    assert [(item.name, int(item.value)) for item in kind.declaredType.items] == list(KINDS.items())
+    for loop in LOOPS:
+        status = variables[f"controller.{loop}.status"]
+        assert [item.name for item in status.declaredType.items] == ["optimal", "relaxed", "iteration_limit", "held"]
+        for figure in ("active_constraints", "iterations"):
+            assert variables[f"controller.{loop}.{figure}"].type == "Integer"
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("shaping", [True, False], ids=["shaped", "raw"])
+def test_every_kind_flies_to_the_goal(unzipped, model_description, kind, shaping):
+    result = fly(unzipped, model_description, controller__kind=kind, reference__shaping=shaping)
+    for axis, goal in zip("xyz", flights.GOAL):
+        assert result[f"position.{axis}"][-1] == pytest.approx(goal, abs=1e-3)
+        beyond = (result[f"position.{axis}"] / goal).max() - 1.0
+        assert beyond < (0.01 if shaping else 0.2)
+    for loop in LOOPS:
+        assert set(np.unique(result[f"controller.{loop}.status"])) <= {1, 2}
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+def test_limits_bind_on_a_raw_step_and_not_in_hover(unzipped, model_description, kind):
+    result = fly(
+        unzipped, model_description, controller__kind=kind, controller__governor=False, reference__shaping=False,
+        reference__position__x=3.0, reference__position__y=0.0, reference__position__z=-8.0,
+    )  # fmt: skip
+    for loop in LOOPS:
+        active = result[f"controller.{loop}.active_constraints"]
+        assert active.max() > 0 and (loop == "attitude" or active[-1] == 0)
+    assert (result["controller.position.iterations"].max() > 0) == (kind != KINDS["dlqr"])
+
+
+@pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+@pytest.mark.parametrize("output_feedback", [False, True], ids=["full state", "outputs"])
+def test_noise_is_lived_with(unzipped, model_description, kind, output_feedback):
+    result = fly(
+        unzipped, model_description, 40.0, controller__kind=kind, sensor__output_feedback=output_feedback,
+        sensor__position_noise=0.02, sensor__attitude_noise=0.003, sensor__velocity_noise=0.0 if output_feedback else 0.02,
+        sensor__seed=7,
+    )  # fmt: skip
+    late = result["time"] > 15.0
+    for axis, goal in zip("xyz", flights.GOAL):
+        error = result[f"position.{axis}"][late] - goal
+        assert 1e-4 < np.sqrt(np.mean(error**2)) < 0.1
+
+
+def test_noise_is_repeatable_and_depends_on_the_seed(unzipped, model_description):
+    def noisy(seed: int) -> np.ndarray:
+        return fly(unzipped, model_description, 3.0, sensor__position_noise=0.05, sensor__seed=seed)["position.x"]
+
+    assert (noisy(1) == noisy(1)).all()
+    assert (noisy(1) != noisy(2)).any()
+
+
+@pytest.mark.parametrize("kind", [-1, 0, 4])
+def test_an_unknown_kind_is_refused_by_name(slave, kind):
+    instance = slave()
+    with pytest.raises(Exception, match="fmi2SetInteger"):
+        instance.set({"controller.kind": kind})
+    assert any("controller.kind" in text for _, _, text in instance.log)
