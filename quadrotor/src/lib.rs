@@ -5,9 +5,11 @@
 //!  goal or   (shaper)    position 20 Hz → tilt θ, φ         (1)               rotor lag,   │
 //!  trajectory            altitude 20 Hz → thrust F                            rigid body,  │
 //!                        attitude 100 Hz → torques τ                          RK4 1 kHz    │
-//!                            ▲───────────────────────────────────────────────────────────┘
+//!                            ▲                                                             │
+//!                            └── Observer: noise, and a Kalman predictor ◄─────────────────┘
 //! ```
 //!
+//! Each controller is a [`ControllerKind`]: Laguerre MPC, state-space MPC or DLQR on the same models and weights.
 //! World frame NED, body frame FRD, SI units, angles in rad; altitude is −z. [`Simulation`] runs all of it
 //! as a deterministic discrete-event simulation over integer microseconds; [`PARAMETERS`] names every
 //! setting.
