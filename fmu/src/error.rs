@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use crate::lifecycle::State;
 use crate::types::{Status, StatusKind, ValueReference};
-use crate::variables::Type;
+use crate::variables::{Type, Value};
 
 /// Why a call was not carried out. Unless it says otherwise, nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -26,8 +26,8 @@ pub(crate) enum CallError {
     NotSettable { name: &'static str, causality: &'static str },
     #[error("{name} is fixed and cannot be set after initialization mode")]
     Fixed { name: &'static str },
-    #[error("{name} = {value:?} is outside [{minimum:?}, {maximum:?}]")]
-    OutOfRange { name: &'static str, value: f64, minimum: f64, maximum: f64 },
+    #[error("{name} = {value} is outside [{minimum}, {maximum}]")]
+    OutOfRange { name: &'static str, value: Value, minimum: Value, maximum: Value },
     #[error("{name} has no derivatives: it is not a continuous Real input")]
     NotContinuousInput { name: &'static str },
     #[error("{name}: derivatives of order {order} are not supported, only 1 to {maximum}")]

@@ -114,12 +114,9 @@ impl Variable {
             Value::Integer(value) => Some(f64::from(value)),
             Value::Boolean(_) => None,
         };
-        let (minimum, maximum) = self.range();
-        let (Some(minimum), Some(maximum)) = (minimum.and_then(number), maximum.and_then(number)) else {
-            return Ok(());
-        };
-        match number(value) {
-            Some(value) if !(minimum..=maximum).contains(&value) => {
+        let (Some(minimum), Some(maximum)) = self.range() else { return Ok(()) };
+        match (number(value), number(minimum), number(maximum)) {
+            (Some(given), Some(least), Some(most)) if !(least..=most).contains(&given) => {
                 Err(CallError::OutOfRange { name: self.name, value, minimum, maximum })
             }
             _ => Ok(()),

@@ -87,13 +87,17 @@ impl LaguerreBasis {
     }
 
     /// Σ L_i(k) L_j(k)ᵀ over all k ≥ 0, N_i×N_j: the identity when both are the same basis.
-    pub fn gram(&self, other: &Self) -> DMatrix<f64> {
+    ///
+    /// # Errors
+    /// [`DesignError::NotFinite`] when rounding keeps the sum from converging.
+    pub fn gram(&self, other: &Self) -> Result<DMatrix<f64>, DesignError> {
         if self == other {
-            return DMatrix::identity(self.terms(), self.terms());
+            return Ok(DMatrix::identity(self.terms(), self.terms()));
         }
         let first = &self.initial * other.initial.transpose();
         // Both A_l have all their eigenvalues at a < 1, so the sum converges.
-        solve_stein(&self.a_l, &other.a_l, &first).unwrap_or(first)
+        solve_stein(&self.a_l, &other.a_l, &first)
+            .ok_or(DesignError::NotFinite { name: "the sum of products of two Laguerre bases" })
     }
 }
 

@@ -46,7 +46,7 @@ impl Prediction {
         let terms = input_basis.terms();
         let mut phi_t = DMatrix::zeros(states, terms);
         let mut a_m = DMatrix::identity(states, states);
-        let mut omega = if terminal.is_none() { moves_cost(bases, r) } else { DMatrix::zeros(terms, terms) };
+        let mut omega = if terminal.is_none() { moves_cost(bases, r)? } else { DMatrix::zeros(terms, terms) };
         let mut psi = DMatrix::zeros(terms, states);
         for m in 1..=horizon {
             let l_t = input_basis.row();
@@ -91,7 +91,7 @@ fn check_horizon(inputs: usize, bases: &[LaguerreBasis], horizon: usize) -> Resu
 }
 
 /// R_L = Σ L(m) R L(m)ᵀ over all m ≥ 0: block (i, j) is R_ij Σ L_i(m) L_j(m)ᵀ.
-fn moves_cost(bases: &[LaguerreBasis], r: &DMatrix<f64>) -> DMatrix<f64> {
+fn moves_cost(bases: &[LaguerreBasis], r: &DMatrix<f64>) -> Result<DMatrix<f64>, DesignError> {
     let terms = bases.iter().map(LaguerreBasis::terms).sum();
     let mut cost = DMatrix::zeros(terms, terms);
     let mut row = 0;
@@ -99,12 +99,12 @@ fn moves_cost(bases: &[LaguerreBasis], r: &DMatrix<f64>) -> DMatrix<f64> {
         let mut column = 0;
         for (j, basis_j) in bases.iter().enumerate() {
             if r[(i, j)] != 0.0 {
-                let block = basis_i.gram(basis_j) * r[(i, j)];
+                let block = basis_i.gram(basis_j)? * r[(i, j)];
                 cost.view_mut((row, column), block.shape()).copy_from(&block);
             }
             column += basis_j.terms();
         }
         row += basis_i.terms();
     }
-    cost
+    Ok(cost)
 }

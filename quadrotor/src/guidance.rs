@@ -121,7 +121,7 @@ impl Direct {
     fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         let change = reference.acceleration_m_s2 - self.latest.acceleration_m_s2;
         let elapsed_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
-        // Position and altitude may sample at the same instant; the first of them has done it then.
+        // A reference that has just been taken over has no motion yet.
         if elapsed_s > 0.0 {
             let jerk = change / elapsed_s;
             // A jump of the acceleration is not motion.

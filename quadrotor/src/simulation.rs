@@ -238,14 +238,15 @@ impl Simulation {
             return Ok(());
         }
         let seen = state.observer.observe(configuration, &state.plant, time_us);
-        if ticks(time_us, position_us) {
+        if ticks(time_us, position_us) || ticks(time_us, altitude_us) {
             state.guidance.sample(reference, limits, time_us);
+        }
+        if ticks(time_us, position_us) {
             // Commands ramp up to the input until the next sample.
             let setpoint = state.guidance.setpoint(time_us, position_us);
             state.cascade.sample_position(configuration, design, &seen, &setpoint, time_us);
         }
         if ticks(time_us, altitude_us) {
-            state.guidance.sample(reference, limits, time_us);
             // … and the rotors lag behind the thrust command.
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
             let setpoint = state.guidance.setpoint(time_us, altitude_us + lag_us);

@@ -84,7 +84,11 @@ fn values_out_of_range_are_refused_by_name() {
                             continue;
                         }
                         assert_eq!(instance.set_integer(&[(name, value)]), ERROR, "{name} = {value}");
-                        assert!(instance.log.last().text.contains(name));
+                        let text = instance.log.last().text;
+                        assert!(
+                            text.contains(&format!("{name} = {value} is outside [{minimum}, {maximum}]")),
+                            "{text}"
+                        );
                     }
                 }
                 _ => {}

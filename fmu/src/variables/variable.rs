@@ -48,6 +48,17 @@ pub enum Value {
     Boolean(bool),
 }
 
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            // The shortest digits that read back as the same number, with a point.
+            Self::Real(value) => write!(formatter, "{value:?}"),
+            Self::Integer(value) => write!(formatter, "{value}"),
+            Self::Boolean(value) => write!(formatter, "{value}"),
+        }
+    }
+}
+
 /// One variable: everything that the library and its description say about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Variable {
