@@ -1,5 +1,6 @@
 //! One control step of the position controller under 40 limit rows: unconstrained, at a limit with the last
-//! active set still right, at a limit from scratch, and the same program in an interior-point solver.
+//! active set still right, at a limit from scratch, and the same program in an interior-point solver; one of
+//! the attitude controller under 180 rows.
 
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -11,7 +12,7 @@ use lmpc::{
     Augmented, ConstrainedController, ConstrainedState, ControllerState, Discretization, LaguerreBasis,
     Limit, LmpcDesign, QuadraticProgram, Quantity, StateSpace, WarmStart, Weighting, Weights,
 };
-use nalgebra::{DMatrix, SVector, Vector2, Vector4, dmatrix};
+use nalgebra::{DMatrix, SVector, Vector2, Vector3, Vector4, Vector6, dmatrix};
 
 /// Laguerre terms per input.
 const TERMS: usize = 5;
@@ -65,6 +66,50 @@ fn steps(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// The attitude controller with amplitude and increment limits of three torques over 15 samples: 180 rows.
+fn attitude_steps(criterion: &mut Criterion) {
+    let double = |gain: f64| dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, gain];
+    let (mut a, mut b, mut c) = (DMatrix::zeros(6, 6), DMatrix::zeros(6, 3), DMatrix::zeros(3, 6));
+    for (axis, inertia_kg_m2) in [0.1063, 0.1063, 0.2122].into_iter().enumerate() {
+        let chain = double(1.0 / inertia_kg_m2);
+        a.view_mut((2 * axis, 2 * axis), (2, 2)).copy_from(&chain.columns(0, 2));
+        b.view_mut((2 * axis, axis), (2, 1)).copy_from(&chain.columns(2, 1));
+        c[(axis, 2 * axis)] = 1.0;
+    }
+    let plant =
+        StateSpace::from_continuous(&a, &b, &c, 0.01, Discretization::ZeroOrderHold).expect("a plant");
+    let model = Augmented::new(&plant);
+    let weights = Weights::output(&model, 1.0, 12.0).expect("weights");
+    let bases = vec![LaguerreBasis::new(TERMS, 0.86).expect("a basis"); 3];
+    let design = LmpcDesign::new(&model, &weights, &bases, 60, Weighting::Terminal { lambda: 1.0 });
+    let limits = [Limit::range(Quantity::Input, 3, 0..15), Limit::range(Quantity::Increment, 3, 0..15)];
+    let controller =
+        ConstrainedController::<6, 3, 3, { 3 * TERMS + 1 }>::new(&design.expect("a design"), &limits)
+            .expect("limits");
+    let bounds = [0.9, 0.9, 0.145, 0.9, 0.9, 0.145, 0.2, 0.2, 0.05, 0.2, 0.2, 0.05];
+    let zero = Vector6::zeros();
+    let start = ConstrainedState::<6, 3, { 3 * TERMS + 1 }>::new(ControllerState::new(
+        zero,
+        Vector3::zeros(),
+        Vector3::zeros(),
+    ));
+    let step = |state: &mut ConstrainedState<6, 3, { 3 * TERMS + 1 }>, error: &Vector3<f64>| {
+        controller.step_from(state, &zero, &zero, error, &Vector3::zeros(), &bounds)
+    };
+    let far = Vector3::new(1.0, -0.7, 0.5);
+    let mut warm = start;
+    assert!(step(&mut warm, &far).active > 3);
+    warm.controller = start.controller;
+    let mut group = criterion.benchmark_group("attitude step, 180 rows");
+    group.bench_function("at its limits, warm", |bencher| {
+        bencher.iter(|| step(&mut { warm }, black_box(&far)))
+    });
+    group.bench_function("at its limits, cold", |bencher| {
+        bencher.iter(|| step(&mut { start }, black_box(&far)))
+    });
+    group.finish();
+}
+
 /// The same random program of this size in both solvers.
 fn solvers(criterion: &mut Criterion) {
     let design = design();
@@ -96,5 +141,5 @@ fn solvers(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, steps, solvers);
+criterion_group!(benches, steps, attitude_steps, solvers);
 criterion_main!(benches);
