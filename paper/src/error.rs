@@ -23,6 +23,14 @@ pub enum Error {
         /// What is wrong.
         reason: String,
     },
+    /// The judge of our solver has no answer.
+    #[error("no optimum of the {problem}: {reason}")]
+    Solver {
+        /// The step.
+        problem: String,
+        /// What the solver says.
+        reason: String,
+    },
     /// A controller cannot be designed.
     #[error("the design is refused: {0}")]
     Design(#[from] lmpc::DesignError),

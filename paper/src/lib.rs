@@ -7,18 +7,21 @@
 //! design ◄─ model_file (--gain)
 //! ```
 
-mod closed_loop;
+mod constrained_step;
 mod design;
 mod eigenvalue_figure;
 mod eigenvalues;
 mod error;
 mod model_file;
+mod progress;
 mod report;
 mod results;
 mod tables;
 
+pub use constrained_step::*;
 pub use design::{DesignResult, design};
 pub use error::Error;
 pub use model_file::ModelFile;
+pub use progress::Progress;
 pub use report::report;
 pub use results::{Results, results};

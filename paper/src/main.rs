@@ -43,7 +43,7 @@ fn print_gain(path: &Path) -> Result<(), Error> {
 }
 
 fn write_results(out: &Path) -> Result<(), Error> {
-    let results = results()?;
+    let results = results(&paper::Progress::hidden())?;
     let write = |name: &str, text: &str| {
         let path = out.join(name);
         fs::write(&path, text).map_err(|source| Error::File { path: path.clone(), source })?;

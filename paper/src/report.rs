@@ -57,10 +57,10 @@ fn cost_table(page: &mut String, results: &Results) {
             "<tr><td>{}</td><td>{}</td><td>{:+.2} %</td><td>{:.1}</td><td>{:.1}</td><td>{}</td></tr>",
             result.controller,
             result.n,
-            100.0 * (result.ratio_to_optimum - 1.0),
-            result.median_us,
-            result.p99_us,
-            result.worst_iterations,
+            100.0 * (result.ratio_to_optimum.unwrap_or(f64::NAN) - 1.0),
+            result.median_us.unwrap_or(f64::NAN),
+            result.p99_us.unwrap_or(f64::NAN),
+            result.worst_iterations.unwrap_or(0),
         );
     }
     page.push_str("</table>\n");

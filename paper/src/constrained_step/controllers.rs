@@ -1,0 +1,125 @@
+//! The controllers that fly a step on one axis.
+
+use lmpc::{
+    Augmented, ConstrainedController, ConstrainedState, ConstrainedStep, ControllerState, DesignError, Dlqr,
+    LaguerreBasis, LmpcDesign, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, Weighting,
+};
+use nalgebra::{Vector1, Vector2, dmatrix};
+
+use super::axis::Axis;
+
+/// What a controller sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// y and ẏ.
+    pub state: [f64; 2],
+    /// Their increments since the last sample.
+    pub delta: [f64; 2],
+    /// r.
+    pub goal: f64,
+}
+
+/// What it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// u(k).
+    pub input: f64,
+    /// Iterations of the solver.
+    pub iterations: u32,
+    /// Whether limits were active.
+    pub limited: bool,
+}
+
+/// A controller with what it remembers.
+pub type Controller = Box<dyn FnMut(&Sample) -> Move + Send>;
+
+/// Samples that limits are placed on.
+pub type Placing<'a> = &'a [usize];
+
+/// Laguerre MPC of an axis, with E ≥ N + 1.
+///
+/// # Errors
+/// As [`LmpcDesign::new`] and [`ConstrainedController::new`].
+pub fn laguerre<const E: usize>(
+    axis: &Axis,
+    terms: usize,
+    scale: f64,
+    weighting: Weighting,
+    placing: Placing<'_>,
+) -> Result<Controller, DesignError> {
+    let model = Augmented::new(&axis.model()?);
+    let weights = axis.weights(&model)?;
+    let design =
+        LmpcDesign::new(&model, &weights, &[LaguerreBasis::new(terms, scale)?], axis.horizon, weighting)?;
+    // A Laguerre function moves for ever, pulses (a = 0) do not.
+    let moves = if scale == 0.0 { terms } else { usize::MAX };
+    let (limits, bounds) = axis.limits(placing, moves);
+    let controller = ConstrainedController::<2, 1, 1, E>::new(&design, &limits)?;
+    let mut state = at_rest::<E>();
+    Ok(Box::new(move |sample| {
+        let error = Vector1::new(sample.state[0] - sample.goal);
+        let (measured, delta) = (sample.state.into(), sample.delta.into());
+        moved(&controller.step_from(&mut state, &measured, &delta, &error, &Vector1::zeros(), &bounds))
+    }))
+}
+
+/// State-space MPC of an axis with one unknown per move, over N_p = `horizon` samples, with E ≥ N_c + 1.
+///
+/// # Errors
+/// As [`StateSpaceMpcDesign::with_damping`] and [`StateSpaceMpc::new`].
+pub fn state_space<const E: usize>(
+    axis: &Axis,
+    moves: usize,
+    horizon: usize,
+    placing: Placing<'_>,
+) -> Result<Controller, DesignError> {
+    let design = state_space_design(axis, moves, horizon)?;
+    let (limits, bounds) = axis.limits(placing, moves);
+    let controller = StateSpaceMpc::<2, 1, 1, E>::new(&design, &limits)?;
+    let mut state = at_rest::<E>();
+    Ok(Box::new(move |sample| {
+        // The goal as the origin: nothing to preview, which would cost time for the same move.
+        let [y, rate] = sample.state;
+        let now = StateSpaceMpcSample::of_state(Vector2::new(y - sample.goal, rate));
+        moved(&controller.step(&mut state, &now, &[], &bounds))
+    }))
+}
+
+/// Its design.
+pub(crate) fn state_space_design(
+    axis: &Axis,
+    moves: usize,
+    horizon: usize,
+) -> Result<StateSpaceMpcDesign, DesignError> {
+    let (output, increment) = (dmatrix![axis.output_weight], dmatrix![axis.increment_weight]);
+    let damping = dmatrix![0.0, 0.0; 0.0, axis.rate_weight];
+    StateSpaceMpcDesign::with_damping(&axis.model()?, &output, &damping, &increment, horizon, moves)
+}
+
+/// The regulator (54), α = 1, with its moves and inputs clipped to the limits; it knows none of the rate.
+///
+/// # Errors
+/// As [`Dlqr::new`].
+pub fn clipped_regulator(axis: &Axis) -> Result<Controller, DesignError> {
+    let model = Augmented::new(&axis.model()?);
+    let weights = axis.weights(&model)?;
+    let gain = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0)?.gain().clone();
+    let (range, increment) = (axis.input, axis.increment);
+    let mut input = 0.0;
+    Ok(Box::new(move |sample| {
+        let state = [sample.delta[0], sample.delta[1], sample.state[0] - sample.goal];
+        let wanted: f64 = -gain.iter().zip(state).map(|(gain, state)| gain * state).sum::<f64>();
+        let before = input;
+        input = (before + wanted.clamp(-increment, increment)).clamp(range[0], range[1]);
+        Move { input, iterations: 0, limited: input != before + wanted }
+    }))
+}
+
+fn at_rest<const E: usize>() -> ConstrainedState<2, 1, E> {
+    ConstrainedState::new(ControllerState::new(Vector2::zeros(), Vector1::zeros(), Vector1::zeros()))
+}
+
+fn moved(step: &ConstrainedStep<1>) -> Move {
+    let limited = step.iterations > 0 || step.active > 0;
+    Move { input: step.step.input.x, iterations: step.iterations, limited }
+}
