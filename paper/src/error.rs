@@ -31,6 +31,14 @@ pub enum Error {
         /// What the solver says.
         reason: String,
     },
+    /// A figure cannot be drawn.
+    #[error("{name}: {reason}")]
+    Picture {
+        /// Its name.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// A controller cannot be designed.
     #[error("the design is refused: {0}")]
     Design(#[from] lmpc::DesignError),

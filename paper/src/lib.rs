@@ -9,19 +9,20 @@
 
 mod constrained_step;
 mod design;
-mod eigenvalue_figure;
 mod eigenvalues;
 mod error;
+mod figures;
 mod model_file;
 mod progress;
 mod report;
 mod results;
 mod tables;
 
-pub use constrained_step::*;
+pub use constrained_step::{CostResult, ExcessCost, TradeOff};
 pub use design::{DesignResult, design};
 pub use error::Error;
+pub use figures::{Figure, png};
 pub use model_file::ModelFile;
 pub use progress::Progress;
-pub use report::report;
-pub use results::{Results, results};
+pub use report::{Page, report};
+pub use results::{Results, parts, results};

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use paper::{Error, ModelFile, report, results};
+use paper::{Error, ModelFile, Progress, parts, png, report, results};
+use rayon::prelude::*;
 
 /// Computes the paper's tables and eigenvalues again, or designs a controller for any model.
 #[derive(Parser)]
@@ -15,7 +16,7 @@ struct Arguments {
     /// else.
     #[arg(long, value_name = "MODEL.toml")]
     gain: Option<PathBuf>,
-    /// Folder for report.html and results.json.
+    /// Folder for report.html, results.json and PNG copies of the figures.
     #[arg(long, value_name = "FOLDER", default_value = "target/paper")]
     out: PathBuf,
 }
@@ -43,16 +44,29 @@ fn print_gain(path: &Path) -> Result<(), Error> {
 }
 
 fn write_results(out: &Path) -> Result<(), Error> {
-    let results = results(&paper::Progress::hidden())?;
-    let write = |name: &str, text: &str| {
+    let progress = Progress::shown(parts());
+    let results = results(&progress)?;
+    progress.stage("figures");
+    let page = report(&results);
+    let figures = page.all_figures();
+    let pictures = figures
+        .par_iter()
+        .map(|figure| Ok((format!("{}.png", figure.name), png(&figure.name, &figure.svg)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    progress.finish();
+
+    let write = |name: &str, bytes: &[u8]| {
         let path = out.join(name);
-        fs::write(&path, text).map_err(|source| Error::File { path: path.clone(), source })?;
+        fs::write(&path, bytes).map_err(|source| Error::File { path: path.clone(), source })?;
         println!("{}", path.display());
         Ok(())
     };
     fs::create_dir_all(out).map_err(|source| Error::File { path: out.to_owned(), source })?;
-    write("results.json", &json(&results))?;
-    write("report.html", &report(&results))
+    for (name, picture) in &pictures {
+        write(name, picture)?;
+    }
+    write("results.json", json(&results).as_bytes())?;
+    write("report.html", page.html().as_bytes())
 }
 
 fn json(value: &impl serde::Serialize) -> String {

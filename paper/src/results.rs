@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use crate::constrained_step::{CostResult, TradeOff, closed_loop_cost, trade_off};
+use crate::constrained_step::{
+    CostResult, TradeOff, closed_loop_cost, closed_loop_cost_parts, trade_off, trade_off_parts,
+};
 use crate::eigenvalues::{EigenvalueResult, GainResult, eigenvalues_and_gains};
 use crate::error::Error;
 use crate::progress::Progress;
@@ -19,7 +21,7 @@ pub struct Results {
     pub figure4: Vec<EigenvalueResult>,
     /// The gains of the same designs.
     pub gains: Vec<GainResult>,
-    /// Cost and time of constrained controllers on one step.
+    /// Cost and time of controllers on steps under limits.
     pub closed_loop_cost: Vec<CostResult>,
     /// What N, a, α and the placing of limits cost.
     pub trade_off: TradeOff,
@@ -28,15 +30,18 @@ pub struct Results {
 /// Computes all results.
 ///
 /// # Errors
-/// [`DesignError`] when a design that must exist does not.
+/// [`Error::Design`] when a design that must exist does not, [`Error::Solver`].
 pub fn results(progress: &Progress) -> Result<Results, Error> {
+    progress.stage("eigenvalues");
     let (figure4, gains) = eigenvalues_and_gains()?;
-    Ok(Results {
-        table2: table2()?,
-        table3: table3()?,
-        figure4,
-        gains,
-        closed_loop_cost: closed_loop_cost(progress)?,
-        trade_off: trade_off(progress)?,
-    })
+    progress.stage("steps under limits, timed on one core");
+    let closed_loop_cost = closed_loop_cost(progress)?;
+    progress.stage("trade-off");
+    let trade_off = trade_off(progress)?;
+    Ok(Results { table2: table2()?, table3: table3()?, figure4, gains, closed_loop_cost, trade_off })
+}
+
+/// How often [`results`] reports progress.
+pub fn parts() -> u64 {
+    closed_loop_cost_parts() + trade_off_parts()
 }

@@ -16,9 +16,7 @@ mod trade_off;
 mod two_axes;
 
 pub use axis::Axis;
-pub use clarabel_moves::ClarabelMoves;
-pub use controllers::{Controller, Placing, laguerre, state_space};
-pub use cost::{CostResult, closed_loop_cost};
-pub use flight::{Flown, fly};
-pub use optimum::optimum;
-pub use trade_off::{ExcessCost, TradeOff, trade_off};
+pub use cost::{CostResult, closed_loop_cost, closed_loop_cost_parts};
+pub use trade_off::{
+    ALPHAS, ExcessCost, LAST, PLACED_TERMS, SCALES, TERMS, TradeOff, trade_off, trade_off_parts,
+};

@@ -1,0 +1,7 @@
+//! What the paper leaves open or misprints, and where its method loses.
+
+use super::Page;
+
+pub fn section(page: &mut Page) {
+    page.heading("What the paper does not fix, and our choice");
+}

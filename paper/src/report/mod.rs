@@ -1,0 +1,30 @@
+//! The results as one self-contained page.
+//!
+//! Each section is a file; `page` is what they write to.
+
+mod claim;
+mod cost_figures;
+mod gaps;
+mod page;
+mod published;
+mod trade_off_figures;
+
+pub use page::Page;
+
+use crate::results::Results;
+
+/// report.html and its figures.
+pub fn report(results: &Results) -> Page {
+    let mut page = Page::new("The paper, computed again");
+    page.paragraph(
+        "M. Chipofya, D. J. Lee, K. T. Chong: <i>Trajectory Tracking and Stabilization of a Quadrotor Using Model \
+         Predictive Control of Laguerre Functions</i>, Abstract and Applied Analysis, 2015. Everything below is computed \
+         by this program in one run; <code>results.json</code> beside this page has the numbers. Times are of this run \
+         on this machine, everything else is the same on every machine.",
+    );
+    published::tables(&mut page, results);
+    published::eigenvalues(&mut page, results);
+    claim::section(&mut page, results);
+    gaps::section(&mut page);
+    page
+}
