@@ -2,7 +2,7 @@
 
 use lmpc::{Augmented, DesignError, Discretization, Limit, Quantity, StateSpace, Weights};
 use nalgebra::{DMatrix, dmatrix, dvector};
-use quadrotor::{Airframe, ControllerSettings, Controllers, GRAVITY_M_S2, Limits};
+use quadrotor::{Airframe, ControllerSettings, Controllers, GRAVITY_M_S2, Limits, limited_samples};
 
 /// Share of the tilt limit that the cascade commands: a raw step overshoots the command.
 const COMMANDED_TILT_SHARE: f64 = 0.6;
@@ -40,13 +40,6 @@ pub struct Axis {
     pub steps: &'static [f64],
 }
 
-const POSITION: [usize; 15] = [0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48, 64, 85];
-const ALTITUDE: [usize; 30] = [
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
-    29,
-];
-const ATTITUDE: [usize; 22] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 16, 20, 24, 28, 32, 36, 40, 44, 48, 52, 56];
-
 const NONE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Axis {
@@ -71,7 +64,7 @@ impl Axis {
             input: [-tilt, tilt],
             increment: limits.tilt_rate_rad_s * settings.sample_time_s(),
             rate: [-speed, speed],
-            limited: &POSITION,
+            limited: limited_samples::POSITION,
             steps: &[1.0, 5.0, 20.0],
             ..Self::of("position", "m", GRAVITY_M_S2, settings, 0)
         }
@@ -82,7 +75,7 @@ impl Axis {
         Self {
             input: [GRAVITY_M_S2 * (1.0 - limits.thrust_max), GRAVITY_M_S2 * (1.0 - limits.thrust_min)],
             rate: [-limits.speed_up_m_s, limits.speed_down_m_s],
-            limited: &ALTITUDE,
+            limited: limited_samples::ALTITUDE,
             steps: &[-1.0, -5.0, -20.0, 1.0, 5.0, 20.0],
             ..Self::of("altitude", "m", 1.0, &controllers.altitude, 0)
         }
@@ -90,10 +83,10 @@ impl Axis {
 
     /// (17).
     fn roll(controllers: &Controllers, airframe: &Airframe) -> Self {
-        let torque = 0.9;
+        let torque = 2.0 * airframe.arm_length_m * rotor_room_n(airframe);
         Self {
             input: [-torque, torque],
-            limited: &ATTITUDE,
+            limited: limited_samples::ATTITUDE,
             steps: &[0.3, 1.0],
             ..Self::of("roll", "rad", airframe.inertia_kg_m2[0].recip(), &controllers.attitude, 0)
         }
@@ -101,10 +94,11 @@ impl Axis {
 
     /// (21), with τ_ψ.
     fn yaw(controllers: &Controllers, airframe: &Airframe) -> Self {
-        let torque = 0.145;
+        let lever_m = airframe.torque_coefficient_n_m_s2 / airframe.thrust_coefficient_n_s2;
+        let torque = 4.0 * lever_m * rotor_room_n(airframe);
         Self {
             input: [-torque, torque],
-            limited: &ATTITUDE,
+            limited: limited_samples::ATTITUDE,
             steps: &[0.3, 1.0],
             ..Self::of("yaw", "rad", airframe.inertia_kg_m2[2].recip(), &controllers.attitude, 2)
         }
@@ -128,8 +122,8 @@ impl Axis {
             input: NONE,
             increment: f64::INFINITY,
             rate: NONE,
-            horizon: if name == "position" { 150 } else { 60 },
-            scale: if name == "altitude" { 0.7 } else { 0.86 },
+            horizon: settings.prediction_horizon as usize,
+            scale: settings.scale,
             limited: &[],
             steps: &[],
         }
@@ -182,4 +176,9 @@ impl Axis {
         };
         format!("{} step of {} {}{direction}", self.name, step.abs(), self.unit)
     }
+}
+
+/// By how much the thrust of each rotor can differ from that in hover without changing the sum, N.
+fn rotor_room_n(airframe: &Airframe) -> f64 {
+    (airframe.weight_n() - airframe.thrust_range_n().0) / 4.0
 }

@@ -7,10 +7,11 @@ use clarabel::solver::{
 use nalgebra::{DMatrix, DVector};
 
 use super::axis::Axis;
-use super::controllers::{Controller, Move, Placing, Sample};
+use super::controllers::{Controller, Move, Placing, Sample, regulator};
 use crate::error::Error;
 
-/// min Σ q (y − r)² + q_rate Δẏ² over N_p samples + R Δu² over N_c, in ΔU, under the limits.
+/// min Σ q (y − r)² + q_rate Δẏ² over N_p samples + R Δu² over N_c + the regulator's cost of the state at the end, in
+/// ΔU, under the limits.
 ///
 /// Everything known is linear in w = \[y − r; ẏ; u(k−1)\].
 pub struct ClarabelMoves {
@@ -53,12 +54,12 @@ impl Rows {
 }
 
 impl ClarabelMoves {
-    /// The program of an axis with `moves` unknowns over N_p = `horizon` samples, with limits on some.
+    /// The program of an axis with `moves` unknowns and limits on some samples.
     ///
     /// # Errors
-    /// [`Error::Solver`] when Clarabel refuses it.
-    pub fn new(axis: &Axis, moves: usize, horizon: usize, placing: Placing<'_>) -> Result<Self, Error> {
-        let (hessian, gradient, rows) = condensed(axis, moves, horizon, placing);
+    /// [`Error::Solver`] when Clarabel refuses it, [`Error::Design`] without a regulator.
+    pub fn new(axis: &Axis, moves: usize, placing: Placing<'_>) -> Result<Self, Error> {
+        let (hessian, gradient, rows) = condensed(axis, moves, regulator(axis)?.cost(), placing);
         let failed = |reason: String| Error::Solver { problem: axis.name.to_owned(), reason };
         // Without presolve, gradient and bounds can be exchanged in place: no sample pays for a set-up.
         let settings = DefaultSettingsBuilder::default()
@@ -101,11 +102,11 @@ impl ClarabelMoves {
     }
 }
 
-/// H, the gradient over w, and the limits.
+/// H, the gradient over w, and the limits. `end` weights \[Δy, Δẏ, y − r\] at the end of the horizon.
 fn condensed(
     axis: &Axis,
     moves: usize,
-    horizon: usize,
+    end: &DMatrix<f64>,
     placing: Placing<'_>,
 ) -> (DMatrix<f64>, DMatrix<f64>, Rows) {
     let unit = |index: usize| Predicted {
@@ -115,29 +116,39 @@ fn condensed(
     let time = axis.sample_time_s;
     let (mut error, mut rate, mut input) = (unit(0), unit(1), unit(2));
     let (mut hessian, mut gradient) = (DMatrix::zeros(moves, moves), DMatrix::zeros(moves, 3));
-    let mut charge = |value: &Predicted, weight: f64| {
-        hessian += 2.0 * weight * &value.moves * value.moves.transpose();
-        gradient += 2.0 * weight * &value.moves * value.known.transpose();
+    let mut charge = |one: &Predicted, other: &Predicted, weight: f64| {
+        hessian += 2.0 * weight * &one.moves * other.moves.transpose();
+        gradient += 2.0 * weight * &one.moves * other.known.transpose();
     };
     let mut rows = Rows::default();
-    for sample in 0..horizon {
-        charge(&error, axis.output_weight);
+    for sample in 0..axis.horizon {
+        charge(&error, &error, axis.output_weight);
         if sample < moves {
             let mut increment = Predicted { moves: DVector::zeros(moves), known: DVector::zeros(3) };
             increment.moves[sample] = 1.0;
-            charge(&increment, axis.increment_weight);
+            charge(&increment, &increment, axis.increment_weight);
             input = input.plus(&increment, 1.0);
             if placing.contains(&sample) {
                 rows.add(&increment, [-axis.increment, axis.increment]);
             }
         }
         let acceleration = input.plus(&input, axis.gain - 1.0);
-        charge(&acceleration, axis.rate_weight * time * time);
+        let before = [error.clone(), rate.clone()];
         error = error.plus(&rate, time).plus(&acceleration, time * time / 2.0);
         rate = rate.plus(&acceleration, time);
         if placing.contains(&sample) {
             rows.add(&input, axis.input);
             rows.add(&rate, axis.rate);
+        }
+        if sample + 1 < axis.horizon {
+            charge(&acceleration, &acceleration, axis.rate_weight * time * time);
+        } else {
+            let last = [error.plus(&before[0], -1.0), rate.plus(&before[1], -1.0), error.clone()];
+            for (i, one) in last.iter().enumerate() {
+                for (j, other) in last.iter().enumerate() {
+                    charge(one, other, end[(i, j)]);
+                }
+            }
         }
     }
     (hessian, gradient, rows)
@@ -150,7 +161,7 @@ fn sparse(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::controllers::state_space_design;
+    use super::super::controllers::{End, regulator, state_space_design};
     use super::{Axis, condensed};
 
     /// Two condensations by different authors' hands: powers of A in one, a walk over samples in the other.
@@ -158,8 +169,8 @@ mod tests {
     fn it_is_the_program_of_the_state_space_design() {
         for axis in Axis::all() {
             for moves in [1, 7, 25] {
-                let ours = state_space_design(&axis, moves, 250).unwrap();
-                let (hessian, ..) = condensed(&axis, moves, 250, axis.limited);
+                let ours = state_space_design(&axis, moves, End::Riccati).unwrap();
+                let (hessian, ..) = condensed(&axis, moves, regulator(&axis).unwrap().cost(), axis.limited);
                 let difference = (hessian / 2.0 - ours.hessian()).amax() / ours.hessian().amax();
                 assert!(difference < 1e-10, "{}, {moves} moves: {difference}", axis.name);
             }

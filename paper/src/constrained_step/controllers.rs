@@ -2,7 +2,8 @@
 
 use lmpc::{
     Augmented, ConstrainedController, ConstrainedState, ConstrainedStep, ControllerState, DesignError, Dlqr,
-    LaguerreBasis, LmpcDesign, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, Weighting,
+    LaguerreBasis, LmpcDesign, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, StateSpaceMpcWeights,
+    Weighting,
 };
 use nalgebra::{Vector1, Vector2, dmatrix};
 
@@ -63,17 +64,26 @@ pub fn laguerre<const E: usize>(
     }))
 }
 
-/// State-space MPC of an axis with one unknown per move, over N_p = `horizon` samples, with E ≥ N_c + 1.
+/// What a state-space MPC counts at the end of its horizon.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Nothing, as in (34).
+    Nothing,
+    /// What the regulator would still cost.
+    Riccati,
+}
+
+/// State-space MPC of an axis with one unknown per move, with E ≥ N_c + 1.
 ///
 /// # Errors
-/// As [`StateSpaceMpcDesign::with_damping`] and [`StateSpaceMpc::new`].
+/// As [`StateSpaceMpcDesign::with_weights`] and [`StateSpaceMpc::new`].
 pub fn state_space<const E: usize>(
     axis: &Axis,
     moves: usize,
-    horizon: usize,
+    end: End,
     placing: Placing<'_>,
 ) -> Result<Controller, DesignError> {
-    let design = state_space_design(axis, moves, horizon)?;
+    let design = state_space_design(axis, moves, end)?;
     let (limits, bounds) = axis.limits(placing, moves);
     let controller = StateSpaceMpc::<2, 1, 1, E>::new(&design, &limits)?;
     let mut state = at_rest::<E>();
@@ -86,24 +96,35 @@ pub fn state_space<const E: usize>(
 }
 
 /// Its design.
-pub(crate) fn state_space_design(
-    axis: &Axis,
-    moves: usize,
-    horizon: usize,
-) -> Result<StateSpaceMpcDesign, DesignError> {
-    let (output, increment) = (dmatrix![axis.output_weight], dmatrix![axis.increment_weight]);
-    let damping = dmatrix![0.0, 0.0; 0.0, axis.rate_weight];
-    StateSpaceMpcDesign::with_damping(&axis.model()?, &output, &damping, &increment, horizon, moves)
+pub fn state_space_design(axis: &Axis, moves: usize, end: End) -> Result<StateSpaceMpcDesign, DesignError> {
+    let weights = StateSpaceMpcWeights {
+        output: dmatrix![axis.output_weight],
+        moves: dmatrix![axis.increment_weight],
+        increment: dmatrix![0.0, 0.0; 0.0, axis.rate_weight],
+        terminal: match end {
+            End::Nothing => None,
+            End::Riccati => Some(regulator(axis)?.cost().clone()),
+        },
+    };
+    StateSpaceMpcDesign::with_weights(&axis.model()?, &weights, axis.horizon, moves)
 }
 
-/// The regulator (54), α = 1, with its moves and inputs clipped to the limits; it knows none of the rate.
+/// The regulator of the axis (54), α = 1.
+///
+/// # Errors
+/// As [`Dlqr::new`].
+pub fn regulator(axis: &Axis) -> Result<Dlqr, DesignError> {
+    let model = Augmented::new(&axis.model()?);
+    let weights = axis.weights(&model)?;
+    Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0)
+}
+
+/// The regulator with its moves and inputs clipped to the limits; it knows none of the rate.
 ///
 /// # Errors
 /// As [`Dlqr::new`].
 pub fn clipped_regulator(axis: &Axis) -> Result<Controller, DesignError> {
-    let model = Augmented::new(&axis.model()?);
-    let weights = axis.weights(&model)?;
-    let gain = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0)?.gain().clone();
+    let gain = regulator(axis)?.gain().clone();
     let (range, increment) = (axis.input, axis.increment);
     let mut input = 0.0;
     Ok(Box::new(move |sample| {

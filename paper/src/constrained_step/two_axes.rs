@@ -39,7 +39,7 @@ pub fn two_axes() -> Result<Vec<CostResult>, Error> {
     let optimum =
         fly(&axis, laguerre::<{ 2 * FREE_MOVES + 1 }>(&axis, FREE_MOVES, 0.0, terminal, &all)?).cost;
     let name = |n: usize| format!("LMPC, N = {n}, a = {}, terminal weight", axis.scale);
-    let moves = |n: usize| format!("SS-MPC, N_c = {n}, N_p = {}", axis.horizon);
+    let moves = |n: usize| format!("SS-MPC, N_c = {n}");
     let (scale, placing) = (axis.scale, axis.limited);
     let entries = [
         entry(name(1), 1, laguerre::<3>(&axis, 1, scale, terminal, placing))?,

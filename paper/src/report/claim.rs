@@ -48,7 +48,7 @@ fn problems(costs: &[CostResult]) -> Vec<&str> {
 }
 
 /// Columns of the tables: a name, and what the controller's name begins and ends with.
-const COLUMNS: [(&str, &str, &str); 10] = [
+const COLUMNS: [(&str, &str, &str); 12] = [
     ("LMPC N = 1", "LMPC, N = 1,", "terminal weight"),
     ("N = 3", "LMPC, N = 3,", "terminal weight"),
     ("N = 5", "LMPC, N = 5,", "terminal weight"),
@@ -56,26 +56,22 @@ const COLUMNS: [(&str, &str, &str); 10] = [
     ("N = 9", "LMPC, N = 9,", "terminal weight"),
     ("α = 1.2, N = 5", "LMPC, N = 5,", "α = 1.2"),
     ("α = 1.2, N = 9", "LMPC, N = 9,", "α = 1.2"),
-    ("SS-MPC, 25 moves", "SS-MPC, N_c = 25,", ""),
-    ("SS-MPC, 50 moves", "SS-MPC, N_c = 50,", ""),
+    ("SS-MPC, 25 moves", "SS-MPC, N_c = 25", "25"),
+    ("50 moves", "SS-MPC, N_c = 50", "50"),
+    ("SS-MPC with terminal weight, 25 moves", "SS-MPC, N_c = 25,", "weight"),
+    ("50 moves", "SS-MPC, N_c = 50,", "weight"),
     ("DLQR, clipped", "DLQR", ""),
 ];
 
-/// The result of a column; of several horizons the one that was not refused.
+/// The result of a column.
 fn of<'a>(
     costs: &'a [CostResult],
     problem: &str,
     (_, start, end): (&str, &str, &str),
 ) -> Option<&'a CostResult> {
-    let matching = |cost: &&CostResult| {
-        cost.problem == problem
-            && cost.controller.starts_with(start)
-            && cost.controller.ends_with(end)
-            && !cost.controller.contains("Clarabel")
-    };
-    let mut found: Vec<&CostResult> = costs.iter().filter(matching).collect();
-    found.sort_by_key(|cost| cost.cost.is_none());
-    found.first().copied()
+    costs.iter().find(|cost| {
+        cost.problem == problem && cost.controller.starts_with(start) && cost.controller.ends_with(end)
+    })
 }
 
 fn excess_table(page: &mut Page, costs: &[CostResult]) {

@@ -10,12 +10,13 @@ const SHOWN: [&str; 4] =
 const LEAST_PERCENT: f64 = 1e-3;
 
 /// A family of controllers: its name, colour, and what their names begin and end with.
-type Family = (&'static str, &'static str, &'static str, &'static str);
+type Family = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
-const FAMILIES: [Family; 3] = [
-    ("LMPC, N = 1, 3, 5, 7, 9", COLOURS[0], "LMPC", "terminal weight"),
-    ("LMPC with α = 1.2, N = 5, 9", COLOURS[2], "LMPC", "α = 1.2"),
-    ("SS-MPC, 25 and 50 moves", COLOURS[1], "SS-MPC", ""),
+const FAMILIES: [Family; 4] = [
+    ("LMPC, N = 1, 3, 5, 7, 9", COLOURS[0], "LMPC", &["terminal weight"]),
+    ("LMPC with α = 1.2, N = 5, 9", COLOURS[2], "LMPC", &["α = 1.2"]),
+    ("SS-MPC, 25 and 50 moves", COLOURS[1], "SS-MPC", &["25", "50"]),
+    ("SS-MPC with terminal weight, 25 and 50 moves", COLOURS[3], "SS-MPC", &["terminal weight"]),
 ];
 
 /// Cost above the optimum over the time of a sample at a limit.
@@ -27,7 +28,7 @@ pub fn cost_and_time(costs: &[CostResult]) -> Figure {
                 let points = costs
                     .iter()
                     .filter(|cost| cost.problem == *problem && cost.controller.starts_with(start))
-                    .filter(|cost| cost.controller.ends_with(end) && !cost.controller.contains("Clarabel"))
+                    .filter(|cost| end.iter().any(|end| cost.controller.ends_with(end)))
                     .filter_map(|cost| {
                         let time = cost.p99_us?;
                         let percent = 100.0 * (cost.ratio_to_optimum? - 1.0);
