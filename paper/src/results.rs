@@ -7,6 +7,7 @@ use crate::constrained_step::{
 };
 use crate::eigenvalues::{EigenvalueResult, GainResult, eigenvalues_and_gains};
 use crate::error::Error;
+use crate::flights::{FlightResult, flights, flights_parts};
 use crate::progress::Progress;
 use crate::tables::{ScaleRow, table2, table3};
 
@@ -25,6 +26,8 @@ pub struct Results {
     pub closed_loop_cost: Vec<CostResult>,
     /// What N, a, α and the placing of limits cost.
     pub trade_off: TradeOff,
+    /// Flights on the nonlinear plant: Figures 5–13, and N = 1 … 15.
+    pub flights: Vec<FlightResult>,
 }
 
 /// Computes all results.
@@ -38,10 +41,12 @@ pub fn results(progress: &Progress) -> Result<Results, Error> {
     let closed_loop_cost = closed_loop_cost(progress)?;
     progress.stage("trade-off");
     let trade_off = trade_off(progress)?;
-    Ok(Results { table2: table2()?, table3: table3()?, figure4, gains, closed_loop_cost, trade_off })
+    progress.stage("flights");
+    let flights = flights(progress);
+    Ok(Results { table2: table2()?, table3: table3()?, figure4, gains, closed_loop_cost, trade_off, flights })
 }
 
 /// How often [`results`] reports progress.
 pub fn parts() -> u64 {
-    closed_loop_cost_parts() + trade_off_parts()
+    closed_loop_cost_parts() + trade_off_parts() + flights_parts()
 }
