@@ -87,6 +87,16 @@ pub enum DesignError {
         /// Number of terms of the longest basis.
         terms: usize,
     },
+    /// A state-space MPC's moves end before its horizon does.
+    #[error(
+        "control horizon N_c = {moves} must be at least 1 and below the prediction horizon N_p = {horizon}"
+    )]
+    MovesBeyondHorizon {
+        /// Given prediction horizon, samples.
+        horizon: usize,
+        /// Given control horizon, samples.
+        moves: usize,
+    },
     /// The exponential weight must be at least 1.
     #[error("exponential weight α = {value} is outside [1, ∞)")]
     Alpha {
@@ -127,7 +137,7 @@ pub enum DesignError {
     },
     /// The quadratic form Ω cannot be factored.
     #[error(
-        "Ω is not positive definite in floating point (condition number {condition:e}); use exponential weighting"
+        "Ω is not positive definite in floating point (condition number {condition:e}); use fewer terms, a smaller scale, a longer horizon, or exponential weighting (alpha > 1)"
     )]
     IllConditioned {
         /// Condition number of Ω.

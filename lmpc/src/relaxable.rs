@@ -59,7 +59,8 @@ impl<const E: usize> RelaxableProgram<E> {
         warm_start: &mut RelaxableWarmStart<W>,
     ) -> (Solution<E>, Status) {
         let strict = self.strict.solve_with(f, &h, &mut warm_start.strict, self.iteration_limit);
-        if strict.outcome != Outcome::Infeasible {
+        // What the strict program cannot settle in time the relaxed one may.
+        if !matches!(strict.outcome, Outcome::Infeasible | Outcome::IterationLimit) {
             return (strict, status_of(strict.outcome, Status::Optimal));
         }
         let relaxed = self.relaxed.solve_with(f, &h, &mut warm_start.relaxed, self.iteration_limit);

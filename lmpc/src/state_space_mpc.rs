@@ -93,7 +93,7 @@ impl StateSpaceMpcDesign {
     ///
     /// # Errors
     /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
-    /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::HorizonTooShort`] unless
+    /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::MovesBeyondHorizon`] unless
     /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable.
     pub fn with_weights(
         plant: &StateSpace,
@@ -104,7 +104,7 @@ impl StateSpaceMpcDesign {
         weights.check(plant)?;
         let (p, q) = (plant.inputs(), plant.outputs());
         if moves == 0 || horizon <= moves {
-            return Err(DesignError::HorizonTooShort { horizon, terms: moves + 1 });
+            return Err(DesignError::MovesBeyondHorizon { horizon, moves });
         }
         let (f, phi) = condensed(plant, horizon);
         // T: u at sample i is u₋₁ plus the moves up to i

@@ -272,8 +272,8 @@ fn wrong_designs_are_refused() {
     };
     assert!(matches!(refused(&one, &-&one, 50, 5), DesignError::NotPositiveDefinite { name: "S" }));
     assert!(matches!(refused(&-&one, &one, 50, 5), DesignError::NotPositiveSemidefinite { name: "Q", .. }));
-    assert!(matches!(refused(&one, &one, 5, 5), DesignError::HorizonTooShort { .. }));
-    assert!(matches!(refused(&one, &one, 5, 0), DesignError::HorizonTooShort { .. }));
+    assert!(matches!(refused(&one, &one, 5, 5), DesignError::MovesBeyondHorizon { moves: 5, .. }));
+    assert!(matches!(refused(&one, &one, 5, 0), DesignError::MovesBeyondHorizon { moves: 0, .. }));
     // Without a weight on the outputs nothing is controlled.
     assert!(matches!(refused(&(&one * 0.0), &one, 50, 5), DesignError::Unstable { .. }));
     let small = StateSpaceMpc::<2, 1, 1, 25>::new(&design(), &[]).unwrap_err();

@@ -16,7 +16,8 @@ use crate::ramp::Ramp;
 use crate::reference_motion::ReferenceMotion;
 use crate::setpoint::Setpoint;
 use crate::{
-    CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench, wrench_of_rotors,
+    AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench,
+    wrench_of_rotors,
 };
 
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
@@ -81,7 +82,7 @@ impl Cascade {
         let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
         let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us);
         Command {
-            acceleration_m_s2: Vector3::new(horizontal.x, horizontal.y, vertical.x),
+            acceleration_m_s2: Some(Vector3::new(horizontal.x, horizontal.y, vertical.x)),
             rotor_speed_rad_s: self.rotor_command_rad_s,
         }
     }
@@ -158,21 +159,54 @@ impl Cascade {
     ) {
         let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
-        let (tilt, reference) = self.attitude_reference(configuration, heading.yaw_rad, time_us);
+        let controllers = &configuration.controllers;
+        let (position_us, altitude_us) =
+            (controllers.position.sample_time_us, controllers.altitude.sample_time_us);
+        let now = (self.horizontal.at(time_us, position_us), self.vertical.at(time_us, altitude_us).x);
+        let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, now);
         self.tilt_reference_rad = tilt;
         let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
-        let (_, next) = self.attitude_reference(configuration, next_yaw_rad, time_us + period_us);
+        let next_us = time_us + period_us;
+        let ahead =
+            (self.horizontal.ahead(next_us, position_us), self.vertical.ahead(next_us, altitude_us).x);
+        let (_, next) = attitude_reference(configuration, next_yaw_rad, ahead);
         let rate = turned(&reference, &next) / period_s;
 
-        let vertical = self.vertical.at(time_us, configuration.controllers.altitude.sample_time_us).x;
+        let thrust_n = thrust(configuration, now.1, upright(&seen.body));
+        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n);
+    }
+
+    /// A sample of the attitude controller alone, for an attitude and a thrust from outside.
+    pub(crate) fn sample_attitude_target(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        seen: &Observation,
+        target: &AttitudeTarget,
+    ) {
+        let (phi, theta, _) = target.attitude.euler_angles();
+        self.tilt_reference_rad = [phi, theta];
+        let reference = (&target.attitude, &target.body_rate_rad_s);
+        self.command_rotors(configuration, design, seen, reference, target.thrust_n);
+    }
+
+    /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N.
+    fn command_rotors(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        seen: &Observation,
+        reference: (&UnitQuaternion<f64>, &Vector3<f64>),
+        thrust_n: f64,
+    ) {
+        let period_s = configuration.controllers.attitude.sample_time_s();
         let body = &seen.body;
-        let thrust_n = thrust(configuration, vertical, upright(body));
         let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
         let (torque, activity) = self.attitude.step(
             configuration,
             design,
             &seen.rotation(),
-            (&reference, &rate),
+            reference,
             &attitude_bounds(&configuration.airframe, thrust_n, &gyroscopic),
         );
         // The rotors answer late; until then a spinning body has turned under the torque.
@@ -185,23 +219,19 @@ impl Cascade {
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
         self.attitude.apply(design, &(lead.inverse() * made.torque_n_m - gyroscopic));
     }
+}
 
-    /// φ, θ and the attitude whose thrust axis makes the accelerations wanted at `time_us`.
-    fn attitude_reference(
-        &self,
-        configuration: &Configuration,
-        yaw_rad: f64,
-        time_us: u64,
-    ) -> ([f64; 2], UnitQuaternion<f64>) {
-        let controllers = &configuration.controllers;
-        let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
-        let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us).x;
-        // m a = m g e₃ − F b₃: the thrust axis points along g e₃ − a
-        let horizontal = within_tilt(horizontal, vertical, configuration.limits.tilt_rad);
-        let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - vertical);
-        let (phi, theta) = tilt_angles(&axis, yaw_rad);
-        ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
-    }
+/// φ, θ and the attitude whose thrust axis makes the accelerations wanted, horizontal and vertical, m/s².
+fn attitude_reference(
+    configuration: &Configuration,
+    yaw_rad: f64,
+    (horizontal, vertical): (Vector2<f64>, f64),
+) -> ([f64; 2], UnitQuaternion<f64>) {
+    // m a = m g e₃ − F b₃: the thrust axis points along g e₃ − a
+    let horizontal = within_tilt(horizontal, vertical, configuration.limits.tilt_rad);
+    let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - vertical);
+    let (phi, theta) = tilt_angles(&axis, yaw_rad);
+    ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
 }
 
 /// Cosine of the tilt: the down component of the body's down axis.

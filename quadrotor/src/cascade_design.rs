@@ -46,7 +46,7 @@ pub struct CascadeDesign {
     pub(crate) altitude: TrackingLaw<2, 1, { SMALL + 1 }, ALTITUDE_UNKNOWNS>,
     pub(crate) position: TrackingLaw<4, 2, { 2 * SMALL + 1 }, POSITION_UNKNOWNS>,
     pub(crate) attitude: TrackingLaw<6, 3, { 3 * SMALL + 1 }, ATTITUDE_UNKNOWNS>,
-    /// Of the Laguerre designs without limits: how fast the loops close.
+    /// Without limits: how fast the loops close.
     pub(crate) altitude_gains: Controller<2, 1, 1>,
     pub(crate) position_gains: Controller<4, 2, 2>,
     pub(crate) attitude_gains: Controller<6, 3, 3>,
@@ -66,16 +66,28 @@ impl CascadeDesign {
         let inertia = configuration.airframe.inertia_kg_m2.map(|j| j * settings.mass_factor);
         let hold = Discretization::ZeroOrderHold;
         let kind = settings.kind;
-        let altitude = designed("altitude", kind, &settings.altitude, &altitude_limits(), |sample_time| {
-            altitude_model(sample_time, hold)
-        })?;
-        let position = designed("position", kind, &settings.position, &position_limits(), |sample_time| {
-            position_model(sample_time, hold)
-        })?;
+        let altitude = designed(
+            "altitude",
+            kind,
+            &settings.altitude,
+            &altitude_limits(&settings.altitude),
+            |sample_time| altitude_model(sample_time, hold),
+        )?;
+        let position = designed(
+            "position",
+            kind,
+            &settings.position,
+            &position_limits(&settings.position),
+            |sample_time| position_model(sample_time, hold),
+        )?;
         // Laguerre MPC goes by the motion of the attitude error, as the regulator does, and leaves the limits of the
         // torques to the mixer: increments from a torque that was cut off would lose the damping that it had
         // asked for, because the rotors answer late, which the model does not know.
-        let limits = if kind == ControllerKind::StateSpaceMpc { attitude_limits() } else { Vec::new() };
+        let limits = if kind == ControllerKind::StateSpaceMpc {
+            attitude_limits(&settings.attitude)
+        } else {
+            Vec::new()
+        };
         let attitude = designed("attitude", kind, &settings.attitude, &limits, |sample_time| {
             attitude_model(&inertia, sample_time, hold)
         })?;
@@ -116,9 +128,15 @@ fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
 ) -> Result<Designed<N, P, S, L>, ConfigurationError> {
     let finished = || {
         let design = laguerre_design(settings, model(settings.sample_time_s())?)?;
+        let output = design.model().plant().c();
         Ok(Designed {
             law: TrackingLaw::new(kind, settings, &design, limits)?,
-            gains: Controller::from_design(&design, design.model().plant().c())?,
+            gains: match kind {
+                ControllerKind::Lmpc => Controller::from_design(&design, output)?,
+                ControllerKind::StateSpaceMpc | ControllerKind::Dlqr => {
+                    Controller::new(design.dlqr().gain(), output)?
+                }
+            },
             report: report(&design)?,
         })
     };

@@ -7,7 +7,7 @@ use lmpc::{Limit, Quantity};
 use nalgebra::{DMatrix, Vector2, Vector3};
 
 use crate::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
-use crate::{Airframe, GRAVITY_M_S2, Limits};
+use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits};
 
 /// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
 const TILT_SIDES: usize = 16;
@@ -15,8 +15,8 @@ const TILT_SIDES: usize = 16;
 const RATE_SIDES: usize = 8;
 /// Sides of the polygon for the speed.
 const SPEED_SIDES: usize = 16;
-/// By how much the speed of the reference may be exceeded to catch up with it, m/s.
-const CATCHING_UP_M_S: f64 = 0.5;
+/// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
+const CATCHING_UP: f64 = 0.1;
 
 /// Number of bounds of the position controller.
 pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
@@ -25,16 +25,29 @@ pub(crate) const ALTITUDE_BOUNDS: usize = 4;
 /// Number of bounds of the attitude controller.
 pub(crate) const ATTITUDE_BOUNDS: usize = 6;
 
+/// Growth of predicted moves up to which limits are placed on them.
+const GROWTH: f64 = 10.0;
+
+/// The samples on which limits of a controller are placed: within its horizon, and before α^m L(m) grows. With
+/// α a > 1 the moves that exponential weighting predicts grow without bound, and so would the limits' rows.
+fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
+    let growing = settings.alpha * settings.scale;
+    let kept =
+        |m: &usize| *m < settings.prediction_horizon as usize && libm::pow(growing, *m as f64) <= GROWTH;
+    samples.iter().copied().filter(kept).collect()
+}
+
 /// The future samples of states: the first one is a sample later than that of the input.
 fn after(samples: &[usize]) -> impl Iterator<Item = usize> {
     samples.iter().map(|m| m + 1)
 }
 
 /// Tilt and its increments in all directions alike, and, softly, the horizontal speed.
-pub(crate) fn position_limits() -> Vec<Limit> {
-    let tilt = Limit::polygon(Quantity::Input, TILT_SIDES, POSITION.iter().copied());
-    let increment = Limit::polygon(Quantity::Increment, RATE_SIDES, POSITION.iter().copied());
-    let polygon = Limit::polygon(Quantity::State, SPEED_SIDES, after(POSITION));
+pub(crate) fn position_limits(settings: &ControllerSettings<2>) -> Vec<Limit> {
+    let samples = placed(settings, POSITION);
+    let tilt = Limit::polygon(Quantity::Input, TILT_SIDES, samples.iter().copied());
+    let increment = Limit::polygon(Quantity::Increment, RATE_SIDES, samples.iter().copied());
+    let polygon = Limit::polygon(Quantity::State, SPEED_SIDES, after(&samples));
     // States x, ẋ, y, ẏ.
     let mut directions = DMatrix::zeros(SPEED_SIDES, 4);
     directions.set_column(1, &polygon.directions.column(0));
@@ -54,7 +67,7 @@ pub(crate) fn position_bounds(
     let inside = |sides: usize| libm::cos(PI / sides as f64);
     let increment = limits.tilt_rate_rad_s * sample_time_s;
     let speed = (limits.speed_horizontal_m_s * inside(SPEED_SIDES))
-        .max(reference_velocity_m_s.norm() + CATCHING_UP_M_S);
+        .max(reference_velocity_m_s.norm() + CATCHING_UP * limits.speed_horizontal_m_s);
     core::array::from_fn(|bound| match bound {
         ..TILT_SIDES => tilt * inside(TILT_SIDES),
         _ if bound < TILT_SIDES + RATE_SIDES => increment * inside(RATE_SIDES),
@@ -68,12 +81,13 @@ pub(crate) fn position_bounds(
 }
 
 /// The vertical acceleration and, softly, the vertical speed.
-pub(crate) fn altitude_limits() -> Vec<Limit> {
-    let acceleration = Limit::range(Quantity::Input, 1, ALTITUDE.iter().copied());
+pub(crate) fn altitude_limits(settings: &ControllerSettings<1>) -> Vec<Limit> {
+    let samples = placed(settings, ALTITUDE);
+    let acceleration = Limit::range(Quantity::Input, 1, samples.iter().copied());
     // States z, ż.
     let directions = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -1.0]);
     let speed =
-        Limit { quantity: Quantity::State, directions, samples: after(ALTITUDE).collect(), soft: true };
+        Limit { quantity: Quantity::State, directions, samples: after(&samples).collect(), soft: true };
     [acceleration, speed].into()
 }
 
@@ -85,14 +99,14 @@ pub(crate) fn altitude_bounds(
     reference_rate_m_s: f64,
     moving_m_s: f64,
 ) -> [f64; ALTITUDE_BOUNDS] {
-    let down = limits.speed_down_m_s.max(reference_rate_m_s + CATCHING_UP_M_S);
-    let up = limits.speed_up_m_s.max(CATCHING_UP_M_S - reference_rate_m_s);
+    let down = limits.speed_down_m_s.max(reference_rate_m_s + CATCHING_UP * limits.speed_down_m_s);
+    let up = limits.speed_up_m_s.max(CATCHING_UP * limits.speed_up_m_s - reference_rate_m_s);
     [range.1, -range.0, down - moving_m_s, up + moving_m_s]
 }
 
 /// Each torque.
-pub(crate) fn attitude_limits() -> Vec<Limit> {
-    [Limit::range(Quantity::Input, 3, ATTITUDE.iter().copied())].into()
+pub(crate) fn attitude_limits(settings: &ControllerSettings<3>) -> Vec<Limit> {
+    [Limit::range(Quantity::Input, 3, placed(settings, ATTITUDE))].into()
 }
 
 /// Values of [`attitude_limits`]: what the rotors can do about each axis alone when they make the thrust

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, UnitQuaternion, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::turned;
-use crate::{Configuration, GRAVITY_M_S2, RigidBody, Wrench, wrench_of_rotors};
+use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// Smallest standard deviations that the design counts with, m and rad: without noise the predictor would
 /// follow each rounding.
@@ -21,8 +21,8 @@ const SHORTFALL_S: f64 = 0.3;
 /// What was commanded for the time until the next sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Command {
-    /// Acceleration, NED, m/s².
-    pub(crate) acceleration_m_s2: Vector3<f64>,
+    /// Acceleration, NED, m/s², unless an attitude was commanded instead.
+    pub(crate) acceleration_m_s2: Option<Vector3<f64>>,
     /// Speeds of the rotors, rad/s.
     pub(crate) rotor_speed_rad_s: [f64; 4],
 }
@@ -97,14 +97,17 @@ fn axis(t: f64, noise: f64, model_noise: f64, wandering: f64) -> Result<Axis, De
 }
 
 impl Estimator {
-    /// Takes over a vehicle that was measured, as if it had been at rest there.
-    pub(crate) fn new(measured: &RigidBody, rotor_speed_rad_s: [f64; 4], time_us: u64) -> Self {
+    /// Takes over a vehicle that was measured: at rest there, unless the measurement contains its motion.
+    pub(crate) fn new(
+        sensors: &Sensors,
+        measured: &RigidBody,
+        rotor_speed_rad_s: [f64; 4],
+        time_us: u64,
+    ) -> Self {
+        let at_rest =
+            RigidBody { velocity_m_s: Vector3::zeros(), body_rate_rad_s: Vector3::zeros(), ..*measured };
         Self {
-            body: RigidBody {
-                velocity_m_s: Vector3::zeros(),
-                body_rate_rad_s: Vector3::zeros(),
-                ..*measured
-            },
+            body: if sensors.output_feedback { at_rest } else { *measured },
             disturbance_m_s2: Vector3::zeros(),
             disturbance_rad_s2: Vector3::zeros(),
             answer_z_m_s2: 0.0,
@@ -165,10 +168,9 @@ impl Estimator {
         let thrust = rotation * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
         let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
         // The attitude is led by the rate of its reference; the thrust answers as late as the rotors do.
-        let vertical = command.acceleration_m_s2.z;
-        self.answer_z_m_s2 = vertical + (self.answer_z_m_s2 - vertical) * kept;
-        let answer =
-            Vector3::new(command.acceleration_m_s2.x, command.acceleration_m_s2.y, self.answer_z_m_s2);
+        let commanded = command.acceleration_m_s2.unwrap_or(acceleration);
+        self.answer_z_m_s2 = commanded.z + (self.answer_z_m_s2 - commanded.z) * kept;
+        let answer = Vector3::new(commanded.x, commanded.y, self.answer_z_m_s2);
         let share = 1.0 - libm::exp(-design.sample_time_s / SHORTFALL_S);
         self.shortfall_m_s2 += (acceleration - answer - self.shortfall_m_s2) * share;
         // ω̇ = J⁻¹ (τ − ω × Jω)

@@ -55,6 +55,16 @@ impl Guidance {
         })
     }
 
+    /// The other kind of reference, as the configuration now has it, that goes on from where this one is.
+    pub fn switched(&self, configuration: &Configuration, time_us: u64) -> Self {
+        let now = self.reference(time_us);
+        #[cfg(feature = "shaper")]
+        if configuration.reference.shaping {
+            return Self::Shaped(Shaper::moving(&now, &configuration.limits, time_us));
+        }
+        Self::Direct(Direct { latest: now, jerk_m_s3: Vector3::zeros(), time_us, yaw_time_us: time_us })
+    }
+
     /// A sample of the reference of the position and altitude controllers.
     pub fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         match self {

@@ -39,6 +39,7 @@ mod airframe;
 mod altitude_controller;
 mod attitude;
 mod attitude_controller;
+mod attitude_target;
 mod cascade;
 mod cascade_design;
 mod configuration;
@@ -75,6 +76,7 @@ mod vehicle_motion;
 
 pub use activity::{Activity, ControllerActivity};
 pub use airframe::{Airframe, GRAVITY_M_S2};
+pub use attitude_target::AttitudeTarget;
 pub use cascade_design::{CascadeDesign, DesignReport};
 pub use configuration::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,

@@ -9,7 +9,7 @@ pub static ALTITUDE: &[usize] = &[
     29,
 ];
 
-/// Of the position controller: sixteen of 4.3 s, each gap a third longer than the one before.
+/// Of the position controller: fifteen of 4.3 s, each gap a third longer than the one before.
 pub static POSITION: &[usize] = &[0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48, 64, 85];
 
 /// Of the attitude controller: 0.1 s, and every fourth sample of 0.6 s.

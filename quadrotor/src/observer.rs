@@ -40,7 +40,10 @@ impl Observer {
     ) -> Self {
         let mut noise = before.map_or_else(NoiseState::default, |observer| observer.noise);
         let measured = noise.read(&configuration.sensors, &plant.body);
-        Self { noise, estimator: Estimator::new(&measured, plant.rotor_speed_rad_s, time_us) }
+        Self {
+            noise,
+            estimator: Estimator::new(&configuration.sensors, &measured, plant.rotor_speed_rad_s, time_us),
+        }
     }
 
     /// A reading of the sensors.

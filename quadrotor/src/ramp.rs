@@ -29,6 +29,12 @@ impl<const AXES: usize> Ramp<AXES> {
         self.from + (self.to - self.from) * share.min(1.0)
     }
 
+    /// As [`Ramp::at`], for a time before the next value is known: beyond the newest one it goes on evenly.
+    pub fn ahead(&self, time_us: u64, period_us: u64) -> SVector<f64, AXES> {
+        let share = time_us.saturating_sub(self.start_us) as f64 / period_us as f64;
+        self.from + (self.to - self.from) * share.min(2.0)
+    }
+
     /// From where it is now to `to`, one sample later.
     pub fn go_to(&mut self, to: SVector<f64, AXES>, time_us: u64, period_us: u64) {
         *self = Self { from: self.at(time_us, period_us), to, start_us: time_us };

@@ -55,6 +55,34 @@ impl Shaper {
         }
     }
 
+    /// A shaper that takes over a moving reference and brings it to rest.
+    pub fn moving(reference: &PositionReference, limits: &Limits, time_us: u64) -> Self {
+        let at_rest = Self::at_rest(&reference.position_m, reference.yaw_rad, limits, time_us);
+        let motion = |axis: usize| {
+            MotionProfile::constant(Motion {
+                position: reference.position_m[axis],
+                velocity: reference.velocity_m_s[axis],
+                acceleration: reference.acceleration_m_s2[axis],
+                jerk: 0.0,
+            })
+        };
+        let yaw = Motion { velocity: reference.yaw_rate_rad_s, ..Motion::at(reference.yaw_rad) };
+        let mut shaper = Self {
+            axes: [motion(0), motion(1), motion(2)],
+            yaw: MotionProfile::constant(yaw),
+            // None that can be asked for: the update below always plans.
+            goal: PositionReference { yaw_rate_rad_s: f64::NAN, ..at_rest.goal },
+            ..at_rest
+        };
+        shaper.update(
+            &PositionReference::goal(reference.position_m.into(), reference.yaw_rad),
+            limits,
+            time_us,
+        );
+        // Without a plan the motion would go on for ever.
+        if shaper.goal.yaw_rate_rad_s.is_nan() { at_rest } else { shaper }
+    }
+
     /// The shaped reference at `time_us`.
     pub fn reference(&self, time_us: u64) -> PositionReference {
         let time_s = self.elapsed_s(time_us);

@@ -5,14 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
 use crate::cascade::Cascade;
+use crate::estimator::Command;
 use crate::guidance::Guidance;
 use crate::observer::Observer;
 use crate::plant::Plant;
 use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
 use crate::{
-    CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs, Outputs,
-    SimulationError,
+    AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
+    Outputs, SimulationError,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -30,6 +31,10 @@ pub struct SimulationState {
     guidance: Guidance,
     observer: Observer,
     cascade: Cascade,
+    /// Flown instead of the reference while there is one.
+    attitude_target: Option<AttitudeTarget>,
+    /// Whether reference and controllers take over the vehicle anew at the next sample.
+    engage: bool,
 }
 
 impl SimulationState {
@@ -46,6 +51,9 @@ impl SimulationState {
         }
         if !self.plant.is_finite() {
             return wrong("its plant is not finite");
+        }
+        if !self.attitude_target.is_none_or(|target| target.is_finite()) {
+            return wrong("its attitude target is not finite");
         }
         Ok(())
     }
@@ -80,6 +88,8 @@ impl Simulation {
             guidance,
             observer,
             cascade,
+            attitude_target: None,
+            engage: false,
         };
         Ok(Self { configuration: *configuration, design, state })
     }
@@ -136,6 +146,39 @@ impl Simulation {
         only_tunables_differ(&self.configuration, configuration)?;
         self.design = CascadeDesign::new(configuration)?;
         self.configuration = *configuration;
+        Ok(())
+    }
+
+    /// Switches the shaper on or off during the flight. The reference goes on from where it is and as it moves.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Unavailable`] in a build without the shaper; nothing has changed then.
+    pub fn set_shaping(&mut self, shaping: bool) -> Result<(), ConfigurationError> {
+        if shaping == self.configuration.reference.shaping {
+            return Ok(());
+        }
+        if shaping && !cfg!(feature = "shaper") {
+            return Err(ConfigurationError::Unavailable { name: "reference.shaping" });
+        }
+        self.configuration.reference.shaping = shaping;
+        self.state.guidance = self.state.guidance.switched(&self.configuration, self.state.time_us);
+        Ok(())
+    }
+
+    /// Flies an attitude and a thrust instead of the reference of the inputs, until it is given `None`:
+    /// then the position and altitude controllers take over the vehicle where it is.
+    ///
+    /// # Errors
+    /// [`SimulationError::InputNotFinite`]; nothing has changed then.
+    pub fn set_attitude_target(&mut self, target: Option<AttitudeTarget>) -> Result<(), SimulationError> {
+        if target.is_some_and(|target| !target.is_finite()) {
+            return Err(SimulationError::InputNotFinite {
+                name: "attitude_target",
+                time_us: self.state.time_us,
+            });
+        }
+        self.state.engage |= self.state.attitude_target.is_some() && target.is_none();
+        self.state.attitude_target = target;
         Ok(())
     }
 
@@ -219,16 +262,18 @@ impl Simulation {
         inputs.check(time_us)?;
 
         state.disturbance = inputs.disturbance;
-        if inputs.armed && !state.armed {
+        if inputs.armed && (!state.armed || state.engage) {
             (state.guidance, state.cascade) = engaged(configuration, &state.plant, time_us);
+        }
+        if inputs.armed && !state.armed {
             state.observer = Observer::new(configuration, &state.plant, time_us, Some(&state.observer));
         }
+        state.engage &= !inputs.armed;
         state.armed = inputs.armed;
         state.sampled = true;
         if !state.armed {
             return Ok(());
         }
-
         let controllers = &configuration.controllers;
         let (reference, limits) = (&inputs.reference, &configuration.limits);
         let position_us = controllers.position.sample_time_us;
@@ -238,6 +283,15 @@ impl Simulation {
             return Ok(());
         }
         let seen = state.observer.observe(configuration, &state.plant, time_us);
+        if let Some(target) = &state.attitude_target {
+            if ticks(time_us, attitude_us) {
+                state.cascade.sample_attitude_target(configuration, design, &seen, target);
+                let rotor_speed_rad_s = state.cascade.rotor_command_rad_s();
+                let command = Command { acceleration_m_s2: None, rotor_speed_rad_s };
+                state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
+            }
+            return Ok(());
+        }
         if ticks(time_us, position_us) || ticks(time_us, altitude_us) {
             state.guidance.sample(reference, limits, time_us);
         }

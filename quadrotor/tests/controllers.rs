@@ -182,3 +182,51 @@ fn large_programs_fly_too() {
         assert!(distance(&end.outputs(), [20.0, 3.0, -5.0]) < 0.001, "{kind:?}");
     }
 }
+
+/// A vehicle that is on a moving reference when the flight begins stays there.
+#[test]
+fn predictive_controllers_take_over_in_motion() {
+    for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc] {
+        let line = |time_us: u64| {
+            let mut inputs = goal([4e-6 * time_us as f64, 0.0, -5.0], 0.0);
+            inputs.reference.velocity_m_s.x = 4.0;
+            inputs
+        };
+        let mut configuration = of_kind(kind, unshaped());
+        configuration.initial.position_m = [0.0, 0.0, -5.0];
+        configuration.initial.velocity_m_s = [4.0, 0.0, 0.0];
+        let mut worst = 0.0_f64;
+        fly(&configuration, &line, 10.0, |outputs| worst = worst.max(outputs.tracking_error_m.norm()));
+        assert!(worst < 1e-3, "{kind:?}: {worst} m");
+    }
+}
+
+/// Sample times that beat against one another leave no ripple.
+#[test]
+fn sample_times_need_not_divide_one_another() {
+    for kind in KINDS {
+        for position_us in [11_000, 13_000, 33_333] {
+            let mut configuration = of_kind(kind, Configuration::default());
+            configuration.controllers.position.sample_time_us = position_us;
+            let end = fly(&configuration, &goal(GOAL_M, 0.0), 25.0, |_| {});
+            let left = distance(&end.outputs(), GOAL_M);
+            assert!(left < 0.001, "{kind:?}, {position_us} µs: {left} m");
+        }
+    }
+}
+
+/// Exponential weights under which the predicted moves grow keep their limits close by, and fly.
+#[test]
+fn strong_exponential_weights_fly_too() {
+    for alpha in [1.2, 1.35, 1.5, 2.0] {
+        let mut configuration = unshaped();
+        configuration.controllers.position.alpha = alpha;
+        configuration.initial.velocity_m_s = [-5.0, 0.0, 0.0];
+        let mut unsolved = 0;
+        let end = fly(&configuration, &goal(GOAL_M, 0.0), 30.0, |outputs| {
+            unsolved += u32::from(outputs.activity.position.status == Status::IterationLimit);
+        });
+        assert!(distance(&end.outputs(), GOAL_M) < 0.001, "α = {alpha}");
+        assert_eq!(unsolved, 0, "α = {alpha}");
+    }
+}
