@@ -8,25 +8,25 @@ use crate::{DesignError, Outcome, QuadraticProgram, Solution, Status, WarmStart}
 /// Weight of the slack against the largest element of H: constraints give way when they must, not to save
 /// cost.
 const SLACK_WEIGHT: f64 = 1e4;
-/// Share of the slack that hard constraints get in a relaxed problem.
-const HARD_SHARE: f64 = 1e-3;
 
 /// min ½ xᵀHx + fᵀx subject to G x ≤ h; where no x meets that, subject to G x ≤ h + s σ with a common slack
-/// σ that is charged quadratically, s = 1 for soft rows and a thousandth for hard ones.
+/// σ that is charged quadratically: s = 1 for soft rows and 0 for hard ones first and, where no x meets that
+/// either, s = 1 for all.
 ///
 /// E must hold the unknowns and the slack; what it has beyond stays zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RelaxableProgram<const E: usize> {
-    strict: QuadraticProgram<E>,
-    relaxed: QuadraticProgram<E>,
+    /// With no slack, with slack for soft rows, with slack for all.
+    stages: [QuadraticProgram<E>; STAGES],
     iteration_limit: u32,
 }
 
-/// The last active sets, strict and relaxed.
+const STAGES: usize = 3;
+
+/// The last active sets of the three stages.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct RelaxableWarmStart<const E: usize> {
-    strict: WarmStart<E>,
-    relaxed: WarmStart<E>,
+pub(crate) struct RelaxableWarmStart<const W: usize> {
+    stages: [WarmStart<W>; STAGES],
 }
 
 impl<const E: usize> RelaxableProgram<E> {
@@ -39,16 +39,19 @@ impl<const E: usize> RelaxableProgram<E> {
         }
         let mut extended_h = h.clone().resize(unknowns + 1, unknowns + 1, 0.0);
         extended_h[(unknowns, unknowns)] = SLACK_WEIGHT * h.amax();
-
-        let mut extended_g = DMatrix::zeros(g.nrows(), unknowns + 1);
-        extended_g.view_mut((0, 0), g.shape()).copy_from(g);
-        let strict = QuadraticProgram::new(&extended_h, &extended_g)?;
-        for (row, soft) in soft.iter().enumerate() {
-            extended_g[(row, unknowns)] = if *soft { -1.0 } else { -HARD_SHARE };
-        }
-        let relaxed = QuadraticProgram::new(&extended_h, &extended_g)?;
+        let stage = |gives_way: &dyn Fn(usize) -> bool| {
+            let mut extended_g = g.clone().resize_horizontally(unknowns + 1, 0.0);
+            for row in (0..g.nrows()).filter(|row| gives_way(*row)) {
+                extended_g[(row, unknowns)] = -1.0;
+            }
+            QuadraticProgram::new(&extended_h, &extended_g)
+        };
+        let is_soft = |row: usize| soft.get(row).copied().unwrap_or(false);
         let size = u32::try_from(unknowns + 1 + g.nrows()).unwrap_or(u32::MAX / 4);
-        Ok(Self { strict, relaxed, iteration_limit: 4 * size })
+        Ok(Self {
+            stages: [stage(&|_| false)?, stage(&is_soft)?, stage(&|_| true)?],
+            iteration_limit: 4 * size,
+        })
     }
 
     /// Solves it for one f and one h, given row by row.
@@ -58,21 +61,28 @@ impl<const E: usize> RelaxableProgram<E> {
         h: impl Fn(usize) -> f64,
         warm_start: &mut RelaxableWarmStart<W>,
     ) -> (Solution<E>, Status) {
-        let strict = self.strict.solve_with(f, &h, &mut warm_start.strict, self.iteration_limit);
-        // What the strict program cannot settle in time the relaxed one may.
-        if !matches!(strict.outcome, Outcome::Infeasible | Outcome::IterationLimit) {
-            return (strict, status_of(strict.outcome, Status::Optimal));
+        let [strict, further @ ..] = &self.stages;
+        let [warm, further_warm @ ..] = &mut warm_start.stages;
+        let mut solution = strict.solve_with(f, &h, warm, self.iteration_limit);
+        let mut solved = Status::Optimal;
+        for (program, warm) in further.iter().zip(further_warm) {
+            // What one stage cannot settle in time the next may.
+            if matches!(solution.outcome, Outcome::Optimal | Outcome::NotFinite) {
+                break;
+            }
+            let iterations = solution.iterations;
+            solution = program.solve_with(f, &h, warm, self.iteration_limit);
+            solution.iterations += iterations;
+            solved = Status::Relaxed;
         }
-        let relaxed = self.relaxed.solve_with(f, &h, &mut warm_start.relaxed, self.iteration_limit);
-        let iterations = strict.iterations + relaxed.iterations;
-        (Solution { iterations, ..relaxed }, status_of(relaxed.outcome, Status::Relaxed))
+        (solution, status_of(solution.outcome, solved))
     }
 }
 
 fn status_of(outcome: Outcome, solved: Status) -> Status {
     match outcome {
         Outcome::Optimal => solved,
-        // Relaxed constraints can always be met; in floating point they may come out as if not.
+        // With slack for all rows they can always be met; in floating point they may come out as if not.
         Outcome::IterationLimit | Outcome::Infeasible => Status::IterationLimit,
         Outcome::NotFinite => Status::Held,
     }
