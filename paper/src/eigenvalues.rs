@@ -2,6 +2,7 @@
 
 use lmpc::{Augmented, DesignError, Discretization, LaguerreBasis, StateSpace, Weighting, Weights};
 use quadrotor::{Airframe, altitude_model, attitude_model, position_model};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::design::{DesignResult, design};
@@ -14,7 +15,7 @@ const ALPHA: f64 = 1.2;
 const HORIZON: usize = 100;
 
 /// Eigenvalues and conditioning of one design.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct EigenvalueResult {
     /// "altitude", "position" or "attitude".
     pub controller: &'static str,
@@ -37,7 +38,7 @@ pub struct EigenvalueResult {
 }
 
 /// Gains of one design, with everything that they follow from.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct GainResult {
     /// "altitude", "position" or "attitude".
     pub controller: &'static str,

@@ -17,6 +17,7 @@ mod model_file;
 mod progress;
 mod report;
 mod results;
+mod robustness;
 mod tables;
 
 pub use constrained_step::{CostResult, ExcessCost, TradeOff};
@@ -28,3 +29,4 @@ pub use model_file::ModelFile;
 pub use progress::Progress;
 pub use report::{Page, report};
 pub use results::{Results, parts, results};
+pub use robustness::RobustnessResult;

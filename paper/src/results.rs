@@ -1,5 +1,6 @@
 //! All results, as results.json has them.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::constrained_step::{
@@ -9,10 +10,11 @@ use crate::eigenvalues::{EigenvalueResult, GainResult, eigenvalues_and_gains};
 use crate::error::Error;
 use crate::flights::{FlightResult, flights, flights_parts};
 use crate::progress::Progress;
+use crate::robustness::{FLIGHTS, RobustnessResult, robustness, robustness_parts};
 use crate::tables::{ScaleRow, table2, table3};
 
 /// results.json. Fields are only ever added.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Results {
     /// Table 2.
     pub table2: Vec<ScaleRow>,
@@ -28,6 +30,8 @@ pub struct Results {
     pub trade_off: TradeOff,
     /// Flights on the nonlinear plant: Figures 5–13, and N = 1 … 15.
     pub flights: Vec<FlightResult>,
+    /// Random flights.
+    pub robustness: Vec<RobustnessResult>,
 }
 
 /// Computes all results.
@@ -43,10 +47,21 @@ pub fn results(progress: &Progress) -> Result<Results, Error> {
     let trade_off = trade_off(progress)?;
     progress.stage("flights");
     let flights = flights(progress);
-    Ok(Results { table2: table2()?, table3: table3()?, figure4, gains, closed_loop_cost, trade_off, flights })
+    progress.stage("random flights");
+    let robustness = robustness(FLIGHTS, progress);
+    Ok(Results {
+        table2: table2()?,
+        table3: table3()?,
+        figure4,
+        gains,
+        closed_loop_cost,
+        trade_off,
+        flights,
+        robustness,
+    })
 }
 
 /// How often [`results`] reports progress.
 pub fn parts() -> u64 {
-    closed_loop_cost_parts() + trade_off_parts() + flights_parts()
+    closed_loop_cost_parts() + trade_off_parts() + flights_parts() + robustness_parts(FLIGHTS)
 }

@@ -1,10 +1,11 @@
 //! Tables 2 and 3: the scaling factor that a control horizon asks for.
 
 use lmpc::{DesignError, LaguerreBasis};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A row: a ≈ e^(−N/N_c) (58).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ScaleRow {
     /// N_c, samples.
     pub n_c: u32,

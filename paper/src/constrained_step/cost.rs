@@ -2,6 +2,7 @@
 
 use lmpc::{DesignError, Weighting};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::axis::Axis;
@@ -18,7 +19,7 @@ pub(super) const PAPER_SCALE: f64 = 0.8187;
 pub(super) const PAPER_ALPHA: f64 = 1.2;
 
 /// One controller on one step under limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct CostResult {
     /// The step.
     pub problem: String,

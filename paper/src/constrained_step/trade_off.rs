@@ -2,6 +2,7 @@
 
 use lmpc::{DesignError, Weighting};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::axis::Axis;
@@ -26,7 +27,7 @@ pub const LAST: [usize; 9] = [0, 2, 4, 9, 14, 19, 29, 44, 59];
 pub const PLACED_TERMS: [usize; 4] = [3, 5, 7, 9];
 
 /// One design on all steps of its axis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExcessCost {
     /// "position", "altitude", "roll" or "yaw".
     pub axis: &'static str,
@@ -47,7 +48,7 @@ pub struct ExcessCost {
 }
 
 /// The grids.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TradeOff {
     /// Every design.
     pub designs: Vec<ExcessCost>,

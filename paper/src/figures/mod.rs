@@ -15,7 +15,7 @@ mod svg;
 pub use eigenvalue_figure::eigenvalue_figure;
 pub use heat_map::{HeatMap, heat_maps};
 pub use line_chart::{Line, Panel, line_chart};
-pub use path_figure::path_figure;
+pub use path_figure::{Path, path_figure};
 pub use png::png;
 pub use scale::Scale;
 

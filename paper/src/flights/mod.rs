@@ -10,9 +10,10 @@ mod mission;
 mod pilot;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use flight::{DURATION_S, Flight, Moment, loops, tilt_rad};
+pub use flight::{Moment, loops, tilt_rad};
 pub use mission::{GOAL_M, HEADING_RAD, Mission};
 pub use pilot::Pilot;
 
@@ -23,12 +24,12 @@ pub const TABLE3_TERMS: [u32; 5] = [1, 3, 5, 7, 9];
 /// N_c of Table 3.
 const TABLE3_HORIZON: f64 = 30.0;
 /// a of the paper's flight.
-const PAPER_SCALE: f64 = 0.8187;
+pub const PAPER_SCALE: f64 = 0.8187;
 /// Most terms of the sweep.
 const SWEPT_TERMS: u32 = 15;
 
 /// One flight to 5 m north, 5 m east, 10 m up, of 20 s, from rest at the origin.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FlightResult {
     /// "5-7", "8-13" or "sweep".
     pub figure: &'static str,

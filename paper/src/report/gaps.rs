@@ -2,6 +2,6 @@
 
 use super::Page;
 
-pub fn section(page: &mut Page) {
+pub fn section(page: &mut Page, _results: &crate::results::Results) {
     page.heading("What the paper does not fix, and our choice");
 }

@@ -4,9 +4,12 @@
 
 mod claim;
 mod cost_figures;
+mod flight_figures;
+mod flights;
 mod gaps;
 mod page;
 mod published;
+mod robustness;
 mod trade_off_figures;
 
 pub use page::Page;
@@ -25,6 +28,8 @@ pub fn report(results: &Results) -> Page {
     published::tables(&mut page, results);
     published::eigenvalues(&mut page, results);
     claim::section(&mut page, results);
-    gaps::section(&mut page);
+    flights::section(&mut page, results);
+    robustness::section(&mut page, results);
+    gaps::section(&mut page, results);
     page
 }
