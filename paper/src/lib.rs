@@ -1,9 +1,11 @@
 //! The paper's results, computed again (Chipofya, Lee, Chong 2015).
 //!
 //! ```text
-//! tables ──────────┐
-//! eigenvalues ─────┤
-//! closed_loop ─────┼─► results (results.json) ─► report (report.html)
+//! tables ────────────┐
+//! eigenvalues ───────┤                                       ┌─► report ─► report.html
+//! constrained_step ──┼─► results (results.json, its schema) ─┤     ▲
+//! flights ───────────┤                                       └─► figures ─► *.png
+//! robustness ────────┘
 //! design ◄─ model_file (--gain)
 //! ```
 
@@ -28,5 +30,5 @@ pub use flights::FlightResult;
 pub use model_file::ModelFile;
 pub use progress::Progress;
 pub use report::{Page, report};
-pub use results::{Results, parts, results};
-pub use robustness::RobustnessResult;
+pub use results::{Results, parts, results, schema};
+pub use robustness::{FLIGHTS, RobustnessResult};

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use paper::{Error, ModelFile, Progress, parts, png, report, results};
+use paper::{Error, FLIGHTS, ModelFile, Progress, parts, png, report, results, schema};
 use rayon::prelude::*;
 
-/// Computes the paper's tables and eigenvalues again, or designs a controller for any model.
+/// Computes the paper's tables and figures again, or designs a controller for any model.
 #[derive(Parser)]
 #[command(name = "paper", bin_name = "cargo xtask paper")]
 struct Arguments {
@@ -16,6 +16,9 @@ struct Arguments {
     /// else.
     #[arg(long, value_name = "MODEL.toml")]
     gain: Option<PathBuf>,
+    /// Prints the JSON Schema of results.json, and does nothing else.
+    #[arg(long, conflicts_with = "gain")]
+    schema: bool,
     /// Folder for report.html, results.json and PNG copies of the figures.
     #[arg(long, value_name = "FOLDER", default_value = "target/paper")]
     out: PathBuf,
@@ -25,6 +28,10 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.gain {
         Some(path) => print_gain(path),
+        None if arguments.schema => {
+            println!("{}", json(&schema()));
+            Ok(())
+        }
         None => write_results(&arguments.out),
     };
     match outcome {
@@ -44,8 +51,8 @@ fn print_gain(path: &Path) -> Result<(), Error> {
 }
 
 fn write_results(out: &Path) -> Result<(), Error> {
-    let progress = Progress::shown(parts());
-    let results = results(&progress)?;
+    let progress = Progress::shown(parts(FLIGHTS));
+    let results = results(FLIGHTS, &progress)?;
     progress.stage("figures");
     let page = report(&results);
     let figures = page.all_figures();
@@ -65,6 +72,7 @@ fn write_results(out: &Path) -> Result<(), Error> {
     for (name, picture) in &pictures {
         write(name, picture)?;
     }
+    write("results.schema.json", json(&schema()).as_bytes())?;
     write("results.json", json(&results).as_bytes())?;
     write("report.html", page.html().as_bytes())
 }

@@ -10,7 +10,7 @@ use crate::eigenvalues::{EigenvalueResult, GainResult, eigenvalues_and_gains};
 use crate::error::Error;
 use crate::flights::{FlightResult, flights, flights_parts};
 use crate::progress::Progress;
-use crate::robustness::{FLIGHTS, RobustnessResult, robustness, robustness_parts};
+use crate::robustness::{RobustnessResult, robustness, robustness_parts};
 use crate::tables::{ScaleRow, table2, table3};
 
 /// results.json. Fields are only ever added.
@@ -34,11 +34,11 @@ pub struct Results {
     pub robustness: Vec<RobustnessResult>,
 }
 
-/// Computes all results.
+/// Computes all results, with so many random flights of each controller.
 ///
 /// # Errors
 /// [`Error::Design`] when a design that must exist does not, [`Error::Solver`].
-pub fn results(progress: &Progress) -> Result<Results, Error> {
+pub fn results(random_flights: u32, progress: &Progress) -> Result<Results, Error> {
     progress.stage("eigenvalues");
     let (figure4, gains) = eigenvalues_and_gains()?;
     progress.stage("steps under limits, timed on one core");
@@ -48,7 +48,7 @@ pub fn results(progress: &Progress) -> Result<Results, Error> {
     progress.stage("flights");
     let flights = flights(progress);
     progress.stage("random flights");
-    let robustness = robustness(FLIGHTS, progress);
+    let robustness = robustness(random_flights, progress);
     Ok(Results {
         table2: table2()?,
         table3: table3()?,
@@ -62,6 +62,11 @@ pub fn results(progress: &Progress) -> Result<Results, Error> {
 }
 
 /// How often [`results`] reports progress.
-pub fn parts() -> u64 {
-    closed_loop_cost_parts() + trade_off_parts() + flights_parts() + robustness_parts(FLIGHTS)
+pub fn parts(random_flights: u32) -> u64 {
+    closed_loop_cost_parts() + trade_off_parts() + flights_parts() + robustness_parts(random_flights)
+}
+
+/// What results.json contains, as a JSON Schema.
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Results).to_value()
 }

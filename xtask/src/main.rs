@@ -53,7 +53,7 @@ enum Task {
     ///
     /// Builds the FMU and the Python environment first. Fails when a flight misses its goal.
     Demo,
-    /// Computes the paper's tables and eigenvalues again: target/paper/report.html and results.json.
+    /// Computes the paper's tables and figures again: target/paper/report.html, results.json and PNG files.
     Paper {
         /// Prints gains, eigenvalues and condition numbers of the discrete model in this file as JSON instead.
         #[arg(long, value_name = "MODEL.toml")]

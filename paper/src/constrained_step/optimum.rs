@@ -124,3 +124,26 @@ fn cost(axis: &Axis) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use lmpc::Weighting;
+
+    use super::super::controllers::laguerre;
+    use super::super::flight::fly;
+    use super::{Axis, optimum};
+
+    /// Our solver with 120 free moves at each sample and limits on all of them flies Clarabel's optimum.
+    #[test]
+    fn our_own_solver_flies_the_optimum() {
+        let [axis, _, roll, _] = Axis::all();
+        for (axis, step) in [(axis, 5.0), (roll, 1.0)] {
+            let axis = Axis { horizon: 150, ..axis };
+            let all: Vec<usize> = (0..120).collect();
+            let terminal = Weighting::Terminal { lambda: 1.0 };
+            let controller = laguerre::<121>(&axis, 120, 0.0, terminal, &all).unwrap();
+            let (ours, theirs) = (fly(&axis, step, controller).cost, optimum(&axis, step).unwrap());
+            assert!((ours / theirs - 1.0).abs() < 1e-5, "{}: {ours}, {theirs}", axis.name);
+        }
+    }
+}

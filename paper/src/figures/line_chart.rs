@@ -31,11 +31,6 @@ impl Line {
         Self { dash: "5,3", width: 1.3, ..self }
     }
 
-    /// Dotted, as limits are.
-    pub fn dotted(self) -> Self {
-        Self { dash: "1.5,3", width: 1.2, ..self }
-    }
-
     /// With its points marked.
     pub fn marked(self) -> Self {
         Self { marked: true, ..self }

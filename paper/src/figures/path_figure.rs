@@ -81,7 +81,7 @@ fn frame(svg: &mut Svg, axes: &[AxisRange; 3]) {
         let share = axes[1].share(value);
         svg.line(&[at(0.0, share, 0.0), at(1.0, share, 0.0)], "#ddd", 1.0, "");
         let [x, y] = at(0.0, share, 0.0);
-        svg.text([x - 6.0, y + 16.0], Anchor::End, "#333", &name);
+        svg.text([x + 6.0, y + 18.0], Anchor::Middle, "#333", &name);
     }
     for (value, name) in axes[2].ticks(6) {
         let share = axes[2].share(value);
@@ -97,9 +97,9 @@ fn frame(svg: &mut Svg, axes: &[AxisRange; 3]) {
         [at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0), at(1.0, 1.0, 0.0), at(0.0, 1.0, 0.0), at(0.0, 0.0, 0.0)];
     svg.line(&outline, "#999", 1.0, "");
     let [x, y] = at(0.5, 1.0, 0.0);
-    svg.text([x + 40.0, y + 24.0], Anchor::Start, "#333", "north, m");
+    svg.text([x + 44.0, y + 2.0], Anchor::Start, "#333", "north, m");
     let [x, y] = at(0.0, 0.5, 0.0);
-    svg.text([x - 30.0, y + 36.0], Anchor::End, "#333", "east, m");
+    svg.text([x + 20.0, y + 40.0], Anchor::Middle, "#333", "east, m");
     let [x, y] = at(0.0, 0.0, 0.5);
     svg.upward_text([x - 36.0, y], "altitude, m");
 }

@@ -48,11 +48,6 @@ fn second_section(page: &mut Page, results: &Results) {
     let both = |result: &&FlightResult| result.figure != "5-7" && result.n.is_some();
     let swept: Vec<&FlightResult> = results.flights.iter().filter(both).collect();
     page.figures(vec![sweep(&swept)]);
-    page.paragraph(
-        "N = 2 and N = 3 with α = 1.2 are stable without limits, but get stuck on the way of the step: the predicted \
-         increments are α<sup>m</sup> L(m)ᵀη, with so large an a they grow with m, and the limits on samples far ahead \
-         leave η no room. The solver calls that optimal, and it is, for a prediction that will never be flown.",
-    );
 }
 
 fn title(mission: Mission) -> &'static str {

@@ -1,7 +1,208 @@
 //! What the paper leaves open or misprints, and where its method loses.
 
 use super::Page;
+use super::page::percent;
+use crate::constrained_step::CostResult;
+use crate::flights::Mission;
+use crate::results::Results;
 
-pub fn section(page: &mut Page, _results: &crate::results::Results) {
+pub fn section(page: &mut Page, results: &Results) {
     page.heading("What the paper does not fix, and our choice");
+    let rows =
+        |rows: &[[&str; 3]]| rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect::<Vec<_>>();
+    page.text_table(&["what", "our choice", "why"], &rows(&CHOICES));
+    page.heading("Deviations and misprints");
+    page.text_table(&["where", "printed", "here"], &rows(&MISPRINTS));
+    page.heading("Where Laguerre MPC loses");
+    page.paragraph("Numbers of this run.");
+    page.text_table(&["what", "number"], &losses(results));
+}
+
+const CHOICES: [[&str; 3]; 11] = [
+    [
+        "sample times ΔT",
+        "0.05 s altitude and position, 0.01 s attitude",
+        "a tenth of the time constant of each loop, or less",
+    ],
+    [
+        "weights Q, R",
+        "Q = CᵀC (the paper's) on y − r; Figure 4 with R = I; flights with R = 1, 1200 and 12, 12, 300, and 3 on the increments of \
+         the roll and pitch rates",
+        "bandwidths of 2.7, 1.8, 6.5 and 3 rad/s: each loop a quarter of the one inside it; the damping answers the rotor lag, which \
+         the models do not have",
+    ],
+    [
+        "prediction horizon N<sub>p</sub>",
+        "100 with α = 1.2; 60 (altitude, attitude) and 150 (position) with the terminal weight",
+        "with α = 1.2 the weight has died out long before; the others cost least on steps under limits",
+    ],
+    [
+        "time law of the flight",
+        "10 s³ − 15 s⁴ + 6 s⁵ over 10 s, with feed-forward, and a raw step beside it",
+        "the paper's figures show neither a step nor a straight ramp",
+    ],
+    [
+        "sign of z",
+        "NED: (5, 5, 10) is z = −10",
+        "in (3) gravity enters w with a plus and the thrust with a minus",
+    ],
+    ["heading", "from 0 to 0.5 rad", "the paper plots ψ and gives no goal"],
+    [
+        "rotor constants k₁, k₂",
+        "2.7·10⁻⁵ N·s² and 6.0·10⁻⁷ N·m·s²",
+        "a 12-inch propeller, the largest that clears an arm of 0.275 m",
+    ],
+    [
+        "rotor limits and lag",
+        "50 to 450 rad/s, first order with 0.03 s",
+        "thrust to weight of 3.2; motors of this size",
+    ],
+    [
+        "limits of the controllers",
+        "tilt 0.6 rad (commands 0.36), 2 rad/s; thrust 0.6 to 2 weights; 8 m/s, 4 up, 3 down; torques as the rotors have them",
+        "the paper claims constraints and names none",
+    ],
+    ["α in the literal recipe", "λ = 1, weights transformed", "see below"],
+    [
+        "state-space MPC's horizon and noise covariances",
+        "N<sub>p</sub> as LMPC; in flight the regulator's cost as terminal weight and a disturbance estimate",
+        "(34) ends with the horizon: for yaw with N<sub>p</sub> = 60 that loop is not stable",
+    ],
+];
+
+const MISPRINTS: [[&str; 3]; 9] = [
+    ["(3), second row", "p w − r q", "p w − r u"],
+    ["(21)", "τ<sub>θ</sub>", "τ<sub>ψ</sub>"],
+    ["output matrix under (23)", "a single 1, and rows of different length", "a 1 for each of φ, θ, ψ"],
+    ["(35)", "y = C<sub>m</sub> x", "y = C<sub>m</sub> x<sub>m</sub>"],
+    ["(44)", "l<sub>j</sub>(k<sub>i</sub>)", "l<sub>j</sub>(k): the functions run over the horizon"],
+    ["(50)", "Ψ = φ(m) Q A<sup>m</sup>", "the sum of that over m = 1 … N<sub>p</sub>"],
+    [
+        "set-point",
+        "x = [Δx<sub>m</sub> y]ᵀ, which is driven to zero",
+        "the last entries are y − r (Wang 2009, chapter 3)",
+    ],
+    [
+        "(51)–(57)",
+        "α > 1 with Q and R unchanged; (57) allows eigenvalues up to α",
+        "γ = 1/α, Q<sub>α</sub> = γ²Q + (1 − γ²)P, R<sub>α</sub> = γ²R (Wang 2009, chapter 4): the regulator's own eigenvalues, all inside \
+         the unit circle. Literally, the altitude loop has one of magnitude 1.019",
+    ],
+    [
+        "discretization",
+        "forward Euler (9), (15), (23)",
+        "forward Euler in Figure 4; zero-order hold, which is exact, in flight and on the steps",
+    ],
+];
+
+/// Costs of those whose name begins and ends so.
+fn costs<'a>(results: &'a Results, start: &'a str, end: &'a str) -> impl Iterator<Item = &'a CostResult> {
+    let fits = move |cost: &&CostResult| cost.controller.starts_with(start) && cost.controller.ends_with(end);
+    results.closed_loop_cost.iter().filter(fits)
+}
+
+/// From the least to the largest excess, and where that is.
+fn range<'a>(costs: impl Iterator<Item = &'a CostResult>) -> String {
+    let mut flown: Vec<(f64, &str)> =
+        costs.filter_map(|cost| Some((cost.ratio_to_optimum?, cost.problem.as_str()))).collect();
+    flown.sort_by(|one, other| one.0.total_cmp(&other.0));
+    match (flown.first(), flown.last()) {
+        (Some(least), Some(most)) => {
+            format!("{} to {} ({})", percent(Some(least.0)), percent(Some(most.0)), most.1)
+        }
+        _ => "–".to_owned(),
+    }
+}
+
+fn losses(results: &Results) -> Vec<Vec<String>> {
+    let terminal = "terminal weight";
+    let of = |start: &str, end: &str| range(costs(results, start, end));
+    let weighted = |n: usize| {
+        let start = format!("SS-MPC, N_c = {n}, terminal");
+        range(
+            results
+                .closed_loop_cost
+                .iter()
+                .filter(|cost| cost.controller.starts_with(&start) && cost.controller.ends_with("weight")),
+        )
+    };
+    let mut rows = vec![
+        ["One coefficient is far too few: cost above the optimum with N = 1".to_owned(), of("LMPC, N = 1,", terminal)],
+        ["Three are not enough".to_owned(), of("LMPC, N = 3,", terminal)],
+        ["With five, the default".to_owned(), of("LMPC, N = 5,", terminal)],
+        ["With seven; on both axes at once more than on each".to_owned(), of("LMPC, N = 7,", terminal)],
+        ["Nine with the same a are not always better than seven".to_owned(), of("LMPC, N = 9,", terminal)],
+        ["The paper's α = 1.2 and a = 0.8187 discount the future: N = 5".to_owned(), of("LMPC, N = 5,", "α = 1.2")],
+        ["… which more terms do not heal: N = 9".to_owned(), of("LMPC, N = 9,", "α = 1.2")],
+        [
+            "State-space MPC with 50 moves and the same terminal weight is closer to the optimum than any LMPC here".to_owned(),
+            weighted(50),
+        ],
+        ["… and with 25 moves, for some axes".to_owned(), weighted(25)],
+    ];
+    rows.push([
+        "Small steps need no MPC: clipped DLQR costs nothing above the optimum while no limit is active, and takes one row of \
+         multiplications; on large ones it leaves the limits of speed, at which a cost below the optimum is no gain"
+            .to_owned(),
+        of("DLQR", "clipped"),
+    ]);
+    rows.push([
+        "The choice of a is fragile with the terminal weight: neighbours of a default in the grid above"
+            .to_owned(),
+        neighbours(results),
+    ]);
+    rows.extend(flown_losses(results));
+    rows.into_iter().map(Vec::from).collect()
+}
+
+/// The largest excess among the designs beside the defaults.
+fn neighbours(results: &Results) -> String {
+    let axes = crate::constrained_step::Axis::all();
+    let beside = |axis: &crate::constrained_step::Axis| {
+        let worst = results
+            .trade_off
+            .designs
+            .iter()
+            .filter(|design| design.grid == "N and a" && design.axis == axis.name)
+            .filter(|design| design.n.abs_diff(5) <= 1 && (design.a - axis.scale).abs() <= 0.051)
+            .filter_map(|design| design.worst_excess_percent)
+            .fold(0.0, f64::max);
+        format!("{} up to {worst:.1} %", axis.name)
+    };
+    axes.map(|axis| beside(&axis)).join(", ")
+}
+
+fn flown_losses(results: &Results) -> Vec<[String; 2]> {
+    let mut rows = Vec::new();
+    let step = |name: &str| {
+        let flights = results.flights.iter().filter(|flight| flight.mission == Mission::BareStep.name());
+        flights
+            .filter(|flight| flight.figure == "5-7" && flight.controller.starts_with(name))
+            .filter_map(|flight| flight.overshoot)
+            .map(|overshoot| format!("{:.1} %", 100.0 * overshoot))
+            .collect::<Vec<_>>()
+            .join(" and ")
+    };
+    rows.push([
+        "Overshoot of the raw step without governor: LMPC (paper's, defaults), state-space MPC, DLQR"
+            .to_owned(),
+        format!("{}; {}; {}", step("LMPC"), step("SS-MPC"), step("DLQR")),
+    ]);
+    let refused = results.flights.iter().find(|flight| flight.refused.is_some());
+    if let Some(refused) = refused {
+        let reason = refused.refused.clone().unwrap_or_default();
+        rows.push([format!("Refused: {}", refused.controller), reason]);
+    }
+    let shown: Vec<String> = results
+        .robustness
+        .iter()
+        .map(|result| format!("{}, {}: {:.3} m", result.controller, result.mission, result.median_m))
+        .collect();
+    rows.push([
+        "Random flights, median distance: LMPC is no better than state-space MPC. DLQR is further off, but not for being no MPC: its \
+         increments come from the noisy measurements, where the two others have an estimate of the disturbance"
+            .to_owned(),
+        shown.join("; "),
+    ]);
+    rows
 }

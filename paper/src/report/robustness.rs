@@ -27,7 +27,7 @@ pub fn section(page: &mut Page, results: &Results) {
                 result.mission.to_owned(),
                 format!("{:.1} %", 100.0 * f64::from(result.arrived) / f64::from(result.flights)),
                 format!("{:.3}", result.median_m),
-                format!("{:.3}", result.p95_m),
+                metres(result.p95_m),
                 metres(result.worst_m),
                 format!(
                     "{} ({} tilt, {} speed)",
@@ -49,8 +49,8 @@ pub fn section(page: &mut Page, results: &Results) {
     page.figures(vec![distribution(&results.robustness)]);
 }
 
-fn metres(value: f64) -> String {
-    if value.is_finite() { format!("{value:.2}") } else { "lost".to_owned() }
+fn metres(value: Option<f64>) -> String {
+    value.map_or("lost".to_owned(), |value| format!("{value:.3}"))
 }
 
 fn distribution(results: &[RobustnessResult]) -> Figure {

@@ -36,11 +36,11 @@ pub struct RobustnessResult {
     /// Flights that stayed within 0.5 m of the goal during the last 2 of their 20 s.
     pub arrived: u32,
     /// Largest distance from the goal during the last 2 s, of all flights, m; null when a vehicle was lost to infinity.
-    pub worst_m: f64,
+    pub worst_m: Option<f64>,
     /// Median over the flights of the largest distance from the goal during the last 2 s, m.
     pub median_m: f64,
-    /// 95th percentile of the same, m.
-    pub p95_m: f64,
+    /// 95th percentile of the same, m; null as above.
+    pub p95_m: Option<f64>,
     /// Flights that exceeded, 3 s after the start or later, the limit of tilt, of horizontal speed, of climb or of
     /// sink rate by more than 1 %.
     pub violations: u32,
@@ -124,9 +124,9 @@ fn summary(controller: String, asking: Asking, trials: &[Trial]) -> RobustnessRe
         mission: asking.name(),
         flights: trials.len() as u32,
         arrived: count(|trial| trial.distance_m < ARRIVED_M),
-        worst_m: quantile(1.0),
+        worst_m: Some(quantile(1.0)).filter(|distance| distance.is_finite()),
         median_m: quantile(0.5),
-        p95_m: quantile(0.95),
+        p95_m: Some(quantile(0.95)).filter(|distance| distance.is_finite()),
         violations: count(|trial| trial.tilt_exceeded || trial.speed_exceeded),
         tilt_violations: count(|trial| trial.tilt_exceeded),
         speed_violations: count(|trial| trial.speed_exceeded),
