@@ -1,0 +1,175 @@
+//! One MAVLink frame, version 1 or 2.
+
+use mavlink::dialects::common::MavMessage;
+use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message as _, calculate_crc};
+
+use super::{Message, Payload};
+
+/// Version of the protocol on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// MAVLink 1.
+    One,
+    /// MAVLink 2.
+    Two,
+}
+
+/// Flag of incompatibility: the frame ends in a signature of 13 bytes.
+pub(super) const SIGNED: u8 = 1;
+pub(super) const SIGNATURE_LENGTH: usize = 13;
+pub(super) const CHECKSUM_LENGTH: usize = 2;
+
+impl Version {
+    /// Bytes before the payload.
+    pub(super) fn header_length(self) -> usize {
+        match self {
+            Self::One => 6,
+            Self::Two => 10,
+        }
+    }
+
+    pub(super) fn of_marker(marker: u8) -> Option<Self> {
+        match marker {
+            MAV_STX => Some(Self::One),
+            MAV_STX_V2 => Some(Self::Two),
+            _ => None,
+        }
+    }
+}
+
+impl From<Version> for MavlinkVersion {
+    fn from(version: Version) -> Self {
+        match version {
+            Version::One => Self::V1,
+            Version::Two => Self::V2,
+        }
+    }
+}
+
+/// A whole frame of a message of the common dialect, with a right checksum.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    bytes: Vec<u8>,
+    version: Version,
+    /// End of the payload.
+    end: usize,
+}
+
+impl Frame {
+    /// The frame that `bytes` are exactly, if they are one.
+    pub fn parse(bytes: &[u8]) -> Option<Self> {
+        let version = Version::of_marker(*bytes.first()?)?;
+        let header = version.header_length();
+        let end = header + usize::from(*bytes.get(1)?);
+        let signature = match version {
+            Version::One => 0,
+            Version::Two => match *bytes.get(2)? {
+                0 => 0,
+                SIGNED => SIGNATURE_LENGTH,
+                // Whoever does not know a flag of incompatibility drops the frame.
+                _ => return None,
+            },
+        };
+        if bytes.len() != end + CHECKSUM_LENGTH + signature {
+            return None;
+        }
+        let frame = Self { bytes: bytes.to_vec(), version, end };
+        let extra = extra_crc(frame.message_id())?;
+        let told = u16::from_le_bytes(Payload::new(bytes).bytes(end));
+        (calculate_crc(bytes.get(1..end)?, extra) == told).then_some(frame)
+    }
+
+    /// A message as a frame; `None` if the version has no place for it.
+    pub fn encode(
+        message: &Message,
+        version: Version,
+        sequence: u8,
+        (system, component): (u8, u8),
+    ) -> Option<Self> {
+        let mut payload = [0; 255];
+        let length = message.serialize(version.into(), &mut payload);
+        let id = message.id();
+        let mut bytes = match version {
+            Version::One => {
+                vec![MAV_STX, length as u8, sequence, system, component, u8::try_from(id).ok()?]
+            }
+            Version::Two => {
+                let [low, middle, high, _] = id.to_le_bytes();
+                vec![MAV_STX_V2, length as u8, 0, 0, sequence, system, component, low, middle, high]
+            }
+        };
+        bytes.extend(payload.iter().take(length));
+        let end = bytes.len();
+        let checksum = calculate_crc(bytes.get(1..)?, extra_crc(id)?);
+        bytes.extend(checksum.to_le_bytes());
+        Some(Self { bytes, version, end })
+    }
+
+    /// The frame as it is on the wire.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Version of the protocol.
+    pub fn version(&self) -> Version {
+        self.version
+    }
+
+    /// Number of the frame among those of its sender on a link.
+    pub fn sequence(&self) -> u8 {
+        self.byte(match self.version {
+            Version::One => 2,
+            Version::Two => 4,
+        })
+    }
+
+    /// Identifier of the sending system.
+    pub fn system(&self) -> u8 {
+        self.byte(match self.version {
+            Version::One => 3,
+            Version::Two => 5,
+        })
+    }
+
+    /// Identifier of the sending component.
+    pub fn component(&self) -> u8 {
+        self.byte(match self.version {
+            Version::One => 4,
+            Version::Two => 6,
+        })
+    }
+
+    /// Identifier of the message.
+    pub fn message_id(&self) -> u32 {
+        message_id(&self.bytes, self.version)
+    }
+
+    /// The payload.
+    pub fn payload(&self) -> Payload<'_> {
+        Payload::new(self.payload_bytes())
+    }
+
+    /// Bytes of the payload, trailing zeros perhaps cut off.
+    pub fn payload_bytes(&self) -> &[u8] {
+        self.bytes.get(self.version.header_length()..self.end).unwrap_or_default()
+    }
+
+    fn byte(&self, offset: usize) -> u8 {
+        Payload::new(&self.bytes).u8(offset)
+    }
+}
+
+/// Identifier of the message of a frame of which at least the header is there.
+pub(super) fn message_id(bytes: &[u8], version: Version) -> u32 {
+    let bytes = Payload::new(bytes);
+    match version {
+        Version::One => u32::from(bytes.u8(5)),
+        Version::Two => bytes.u32(7) & 0x00ff_ffff,
+    }
+}
+
+/// The seed of the checksum, which identifies the layout of a message; `None` for an unknown one.
+pub(super) fn extra_crc(message_id: u32) -> Option<u8> {
+    // No message of the dialect has a zero; a test sees to it.
+    Some(MavMessage::extra_crc(message_id)).filter(|extra| *extra != 0)
+}

@@ -1,0 +1,49 @@
+//! Who a received message is for.
+
+use mavlink::Message as _;
+use mavlink::dialects::common::MavMessage;
+
+use super::{Frame, id};
+
+/// System and component; zero means all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// System.
+    pub system: u8,
+    /// Component.
+    pub component: u8,
+}
+
+impl Target {
+    /// All systems and components.
+    pub const ALL: Self = Self { system: 0, component: 0 };
+
+    /// Whether the autopilot of this system is meant.
+    pub fn is_autopilot(self, system: u8) -> bool {
+        const MAV_COMP_ID_AUTOPILOT1: u8 = 1;
+        (self.system == 0 || self.system == system)
+            && (self.component == 0 || self.component == MAV_COMP_ID_AUTOPILOT1)
+    }
+}
+
+/// The target of a frame, also where an enumeration of its message has an unknown value.
+pub fn target_of(frame: &Frame) -> Target {
+    let payload = frame.payload();
+    let at = |system: usize| Target { system: payload.u8(system), component: payload.u8(system + 1) };
+    match frame.message_id() {
+        id::PARAM_REQUEST_LIST => at(0),
+        id::COMMAND_LONG | id::COMMAND_INT => at(30),
+        id::PARAM_SET => at(4),
+        id::SET_ATTITUDE_TARGET => at(36),
+        id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT => at(50),
+        id::SET_MODE => Target { system: payload.u8(4), component: 0 },
+        id::MANUAL_CONTROL => Target { system: payload.u8(10), component: 0 },
+        message_id => MavMessage::parse(frame.version().into(), message_id, frame.payload_bytes()).map_or(
+            Target::ALL,
+            |message| Target {
+                system: message.target_system_id().unwrap_or(0),
+                component: message.target_component_id().unwrap_or(0),
+            },
+        ),
+    }
+}

@@ -1,0 +1,81 @@
+//! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
+
+use serde::{Deserialize, Serialize};
+
+/// What happens when the set-points of the offboard mode stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SetPointLossAction {
+    /// Position mode.
+    Position,
+    /// Return home.
+    Return,
+    /// Land.
+    Land,
+    /// Hold.
+    Hold,
+}
+
+/// Parameters of the vehicle's behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conduct {
+    /// Height of a takeoff that names none, m.
+    pub takeoff_height_m: f64,
+    /// Set-points are lost when none has come for this long, s.
+    pub set_point_timeout_s: f64,
+    /// What is done then (not in ArduPilot's identity, where velocities stop and positions stay).
+    pub set_point_loss: SetPointLossAction,
+    /// Height above home of the way home, m.
+    pub return_height_m: f64,
+    /// Nearer to home than this, m, a return lands without climbing.
+    pub return_near_m: f64,
+    /// Sink rate near the ground, m/s.
+    pub land_speed_m_s: f64,
+    /// Disarms this long after touch-down, s; negative: never.
+    pub disarm_after_landing_s: f64,
+    /// Disarms when not taken off this long after arming, s; negative: never.
+    pub disarm_before_takeoff_s: f64,
+    /// Horizontal speed of a full stick, m/s.
+    pub stick_speed_m_s: f64,
+    /// Climb rate of a full stick, m/s.
+    pub stick_climb_m_s: f64,
+    /// Sink rate of a full stick, m/s.
+    pub stick_sink_m_s: f64,
+    /// Sticks are lost when none has come for this long, s.
+    pub stick_timeout_s: f64,
+    /// Charge of the full battery, A·h.
+    pub battery_capacity_ah: f64,
+    /// Least remaining share of the battery to arm with.
+    pub battery_to_arm: f64,
+}
+
+/// | parameter | default | reason |
+/// | --- | --- | --- |
+/// | takeoff height | 2.5 m | PX4's |
+/// | set-point timeout | 1 s; ArduPilot 3 s | theirs |
+/// | loss action | hold | the one that needs neither a stick nor a clear way home |
+/// | return height | 30 m (ArduPilot 15 m), near 5 m | theirs |
+/// | land speed | 0.7 m/s | PX4's |
+/// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
+/// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
+impl Conduct {
+    /// The defaults, which differ by convention.
+    pub fn new(ardupilot: bool) -> Self {
+        Self {
+            takeoff_height_m: 2.5,
+            set_point_timeout_s: if ardupilot { 3.0 } else { 1.0 },
+            set_point_loss: SetPointLossAction::Hold,
+            return_height_m: if ardupilot { 15.0 } else { 30.0 },
+            return_near_m: 5.0,
+            land_speed_m_s: 0.7,
+            disarm_after_landing_s: 2.0,
+            disarm_before_takeoff_s: 10.0,
+            stick_speed_m_s: 5.0,
+            stick_climb_m_s: 2.0,
+            stick_sink_m_s: 1.5,
+            stick_timeout_s: 0.5,
+            battery_capacity_ah: 2.2,
+            battery_to_arm: 0.15,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Whether the vehicle stands on the ground.
+
+use quadrotor::Outputs;
+
+/// MAV_LANDED_STATE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LandedState {
+    /// On the ground.
+    OnGround,
+    /// Flying.
+    InAir,
+    /// Climbing from the ground.
+    TakingOff,
+    /// Descending to the ground.
+    Landing,
+}
+
+/// Feet this high above the ground, m, or less touch it.
+const CONTACT_HEIGHT_M: f64 = 0.03;
+/// From this height on, m, it flies.
+const FLYING_HEIGHT_M: f64 = 0.12;
+/// Slower than this, m/s, it stands.
+const STILL_M_S: f64 = 0.2;
+/// It stands when it has touched the ground, still, for this long, µs.
+const SETTLED_US: u64 = 300_000;
+/// A reference this far below the vehicle, m, presses it on the ground.
+const PRESSED_M: f64 = 0.2;
+/// Below this share of the weight the rotors do not carry it.
+const UNLOADED: f64 = 0.75;
+
+/// Detects touch-down and lift-off on flat ground at z = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LandedDetector {
+    landed: bool,
+    touching_since_us: Option<u64>,
+}
+
+impl LandedDetector {
+    /// A vehicle at a height, m.
+    pub fn new(height_m: f64) -> Self {
+        Self { landed: height_m < FLYING_HEIGHT_M, touching_since_us: None }
+    }
+
+    /// Whether it stands.
+    pub fn is_landed(&self) -> bool {
+        self.landed
+    }
+
+    /// One look. `controlled` tells whether the reference is flown, `carried` whether rotors turn at all.
+    pub fn update(&mut self, outputs: &Outputs, weight_n: f64, armed: bool, controlled: bool) {
+        let height_m = -outputs.position_m.z;
+        let pressed = controlled && outputs.setpoint.position_m.z > outputs.position_m.z + PRESSED_M;
+        let unloaded = !armed || outputs.thrust_n < UNLOADED * weight_n || pressed;
+        let touching = height_m < CONTACT_HEIGHT_M && outputs.velocity_m_s.norm() < STILL_M_S && unloaded;
+        if !touching {
+            self.touching_since_us = None;
+        }
+        if height_m > FLYING_HEIGHT_M {
+            self.landed = false;
+        } else if touching {
+            let since_us = *self.touching_since_us.get_or_insert(outputs.time_us);
+            self.landed |= outputs.time_us - since_us >= SETTLED_US;
+        }
+    }
+}

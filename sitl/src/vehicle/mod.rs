@@ -1,0 +1,43 @@
+//! The vehicle: a state machine over the closed loop. It takes requests in SI units and simulation time; it owns
+//! no socket and reads no clock.
+//!
+//! ```text
+//!              arm                     take_off / set-point up / stick up
+//!  disarmed ─────────► armed, idling ─────────────────────────────────────► flying
+//!     ▲   ◄───────────  on the ground  ◄────────────────────────────────────  │
+//!     │     disarm, or nothing         touched down                           │
+//!     │     happens for a while                                               │
+//!     └───────────────────────── forced disarm ───────────────────────────────┘
+//!
+//!  flying:  Takeoff ──reached──► Hold (ArduPilot: Offboard)
+//!           Offboard ──set-points lost──► Hold, Land, Return or Position, as the parameter says
+//!           Return ──home reached──► descends ──touched down──► disarms
+//!           Land ──touched down──► disarms
+//! ```
+
+mod arming;
+mod battery;
+mod conduct;
+mod flight;
+mod landed;
+mod mode;
+mod motion;
+mod notice;
+mod offboard;
+mod requests;
+mod return_home;
+mod set_point;
+mod state;
+mod steering;
+mod sticks;
+
+pub use battery::Battery;
+pub use conduct::{Conduct, SetPointLossAction};
+pub use landed::LandedState;
+pub use mode::Mode;
+pub use notice::{Notice, Refusal, Severity};
+pub use requests::Reposition;
+pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
+pub use state::{Home, TICK_US, Vehicle, VehicleSettings};
+pub use steering::SteeringKind;
+pub use sticks::Sticks;

@@ -1,0 +1,287 @@
+//! A reference that moves as its axes are asked to: velocities, accelerations and positions axis by axis, within
+//! the limits of speed, acceleration and jerk.
+//!
+//! Places alone go through the shaper of the closed loop, which plans ahead. This generator has no plan; it can be
+//! told something else on each axis at any time.
+
+use libm::{copysign, sqrt};
+use nalgebra::{Vector2, Vector3};
+use quadrotor::{Limits, PositionReference};
+
+use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+
+/// Speed per velocity error at which the acceleration closes a small one, 1/s.
+const VELOCITY_RATE: f64 = 6.0;
+/// Speed per position error at which a small one is closed, 1/s.
+const POSITION_RATE: f64 = 0.8;
+/// Share of the acceleration limit that braking before a position counts on; the jerk limit takes the rest.
+const BRAKING_SHARE: f64 = 0.3;
+/// An error below this, m or rad, counts as none once it rests.
+const ARRIVED: f64 = 1e-6;
+
+/// The moving reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    state: PositionReference,
+    set_point: PositionSetPoint,
+    /// Since when the set-point holds, µs: its trajectory runs on from there.
+    since_us: u64,
+}
+
+impl Motion {
+    /// Takes a motion over.
+    pub fn from(state: PositionReference, set_point: PositionSetPoint, time_us: u64) -> Self {
+        Self { state, set_point, since_us: time_us }
+    }
+
+    /// Asks for something else.
+    pub fn ask(&mut self, set_point: PositionSetPoint, time_us: u64) {
+        (self.set_point, self.since_us) = (set_point, time_us);
+    }
+
+    /// The reference at `time_us`: points of trajectories run on, the rest is where [`Motion::step`] has brought it.
+    pub fn reference(&mut self, time_us: u64) -> PositionReference {
+        let t = time_us.saturating_sub(self.since_us) as f64 / 1e6;
+        for (axis, target) in self.set_point.axes.iter().enumerate() {
+            if let AxisTarget::Track { position_m: p, velocity_m_s: v, acceleration_m_s2: a } = *target {
+                self.state.position_m[axis] = p + (v + a / 2.0 * t) * t;
+                self.state.velocity_m_s[axis] = v + a * t;
+                self.state.acceleration_m_s2[axis] = a;
+            }
+        }
+        if let YawTarget::Track(yaw_rad, rate_rad_s) = self.set_point.yaw {
+            self.state.yaw_rad = yaw_rad + rate_rad_s * t;
+            self.state.yaw_rate_rad_s = rate_rad_s;
+        }
+        self.state
+    }
+
+    /// Moves on by `dt_s`.
+    pub fn step(&mut self, limits: &Limits, dt_s: f64) {
+        self.accelerate_horizontally(limits, dt_s);
+        self.accelerate_vertically(limits, dt_s);
+        for axis in 0..3 {
+            if matches!(self.set_point.axes[axis], AxisTarget::Track { .. }) {
+                continue;
+            }
+            let (v, a) = (self.state.velocity_m_s[axis], self.state.acceleration_m_s2[axis]);
+            self.state.position_m[axis] += (v + a / 2.0 * dt_s) * dt_s;
+            self.state.velocity_m_s[axis] += a * dt_s;
+            if let AxisTarget::Position(goal) = self.set_point.axes[axis] {
+                self.settle(axis, goal);
+            }
+        }
+        self.turn(limits, dt_s);
+    }
+
+    fn settle(&mut self, axis: usize, goal: f64) {
+        let rests = self.state.velocity_m_s[axis].abs() < 1e-4;
+        if rests && (goal - self.state.position_m[axis]).abs() < ARRIVED {
+            self.state.position_m[axis] = goal;
+            self.state.velocity_m_s[axis] = 0.0;
+            self.state.acceleration_m_s2[axis] = 0.0;
+        }
+    }
+
+    /// Velocity that an axis wants, m/s; `None` if its acceleration is given or it follows a trajectory.
+    fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), acceleration: f64) -> Option<f64> {
+        let wanted = match self.set_point.axes[axis] {
+            AxisTarget::Position(goal) => {
+                approach(goal - self.state.position_m[axis], POSITION_RATE, BRAKING_SHARE * acceleration)
+            }
+            AxisTarget::Velocity(velocity) => velocity,
+            AxisTarget::Acceleration(_) | AxisTarget::Track { .. } => return None,
+        };
+        Some(wanted.clamp(-fastest.0, fastest.1))
+    }
+
+    fn accelerate_horizontally(&mut self, limits: &Limits, dt_s: f64) {
+        let fastest = limits.speed_horizontal_m_s;
+        let strongest = limits.acceleration_horizontal_m_s2;
+        let wanted: [Option<f64>; 2] =
+            core::array::from_fn(|axis| self.wanted_m_s(axis, (fastest, fastest), strongest));
+        let velocity = self.state.velocity_m_s.xy();
+        // The limits are those of the vehicle in its plane, not of an axis.
+        let target = within(Vector2::from_fn(|axis, _| wanted[axis].unwrap_or(velocity[axis])), fastest);
+        let missing = Vector2::from_fn(|axis, _| wanted[axis].map_or(0.0, |_| target[axis] - velocity[axis]));
+        let size = missing.norm();
+        let jerk = limits.jerk_horizontal_m_s3;
+        let goal = if size > 0.0 { missing * (closing(size, strongest, jerk) / size) } else { missing };
+        let now = self.state.acceleration_m_s2.xy();
+        let change = within(goal - now, jerk * dt_s);
+        for axis in 0..2 {
+            if wanted[axis].is_some() {
+                self.state.acceleration_m_s2[axis] += change[axis];
+            } else {
+                self.push(axis, (fastest, fastest), strongest, jerk, dt_s);
+            }
+        }
+    }
+
+    fn accelerate_vertically(&mut self, limits: &Limits, dt_s: f64) {
+        const DOWN: usize = 2;
+        let fastest = (limits.speed_up_m_s, limits.speed_down_m_s);
+        let (strongest, jerk) = (limits.acceleration_vertical_m_s2, limits.jerk_vertical_m_s3);
+        let Some(wanted) = self.wanted_m_s(DOWN, fastest, strongest) else {
+            self.push(DOWN, fastest, strongest, jerk, dt_s);
+            return;
+        };
+        let missing = wanted - self.state.velocity_m_s[DOWN];
+        let goal = copysign(closing(missing.abs(), strongest, jerk), missing);
+        let change = goal - self.state.acceleration_m_s2[DOWN];
+        self.state.acceleration_m_s2[DOWN] += change.clamp(-jerk * dt_s, jerk * dt_s);
+    }
+
+    /// An acceleration that is asked for as such, as long as the speed allows.
+    fn push(&mut self, axis: usize, fastest: (f64, f64), strongest: f64, jerk: f64, dt_s: f64) {
+        let AxisTarget::Acceleration(wanted) = self.set_point.axes[axis] else { return };
+        let velocity = self.state.velocity_m_s[axis];
+        // The acceleration that comes to rest at the limit of speed, from either side.
+        let most = closing((fastest.1 - velocity).max(0.0), strongest, jerk);
+        let least = -closing((fastest.0 + velocity).max(0.0), strongest, jerk);
+        let change =
+            wanted.clamp(-strongest, strongest).clamp(least, most) - self.state.acceleration_m_s2[axis];
+        self.state.acceleration_m_s2[axis] += change.clamp(-jerk * dt_s, jerk * dt_s);
+    }
+
+    fn turn(&mut self, limits: &Limits, dt_s: f64) {
+        let fastest = limits.yaw_rate_rad_s;
+        let strongest = limits.yaw_acceleration_rad_s2;
+        let state = &mut self.state;
+        let wanted = match self.set_point.yaw {
+            YawTarget::Track(..) => return,
+            YawTarget::Hold => 0.0,
+            YawTarget::Rate(rate) => rate,
+            YawTarget::Angle(angle) => {
+                approach(wrapped(angle - state.yaw_rad), POSITION_RATE, BRAKING_SHARE * strongest)
+            }
+        };
+        let change = wanted.clamp(-fastest, fastest) - state.yaw_rate_rad_s;
+        let before = state.yaw_rate_rad_s;
+        state.yaw_rate_rad_s += change.clamp(-strongest * dt_s, strongest * dt_s);
+        state.yaw_rad = wrapped(state.yaw_rad + (before + state.yaw_rate_rad_s) / 2.0 * dt_s);
+        if let YawTarget::Angle(angle) = self.set_point.yaw {
+            let error = wrapped(angle - state.yaw_rad);
+            if error.abs() < ARRIVED && state.yaw_rate_rad_s.abs() < 1e-4 {
+                (state.yaw_rad, state.yaw_rate_rad_s) = (angle, 0.0);
+            }
+        }
+    }
+}
+
+/// An angle brought into [−π, π), rad.
+pub fn wrapped(angle_rad: f64) -> f64 {
+    const TURN: f64 = core::f64::consts::TAU;
+    angle_rad - TURN * libm::floor(angle_rad / TURN + 0.5)
+}
+
+/// Speed towards a goal at a distance: proportional when near, what a deceleration brakes in time when far.
+fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
+    let linear_end = deceleration / (rate * rate);
+    let distance = way.abs();
+    let speed = if distance <= linear_end {
+        rate * distance
+    } else {
+        sqrt(2.0 * deceleration * (distance - linear_end / 2.0))
+    };
+    copysign(speed, way)
+}
+
+/// Acceleration that closes a velocity error: what the jerk can still take back, and gentle at the end.
+fn closing(missing: f64, strongest: f64, jerk: f64) -> f64 {
+    sqrt(2.0 * jerk * missing).min(VELOCITY_RATE * missing).min(strongest)
+}
+
+/// A vector no longer than `most`.
+fn within(vector: Vector2<f64>, most: f64) -> Vector2<f64> {
+    let norm = vector.norm();
+    if norm > most { vector * (most / norm) } else { vector }
+}
+
+/// A reference that rests at a place.
+pub fn at_rest(position_m: Vector3<f64>, yaw_rad: f64) -> PositionReference {
+    PositionReference::goal(position_m.into(), yaw_rad)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+    use quadrotor::Limits;
+
+    use super::{AxisTarget, Motion, PositionSetPoint, YawTarget, at_rest};
+
+    const DT_S: f64 = 0.001;
+
+    fn fly(set_point: PositionSetPoint, seconds: f64, mut look: impl FnMut(&Motion)) -> Motion {
+        let mut motion = Motion::from(at_rest(Vector3::zeros(), 0.0), set_point, 0);
+        for _ in 0..(seconds / DT_S) as usize {
+            motion.step(&Limits::default(), DT_S);
+            look(&motion);
+        }
+        motion
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        /// Positions and velocities on any mix of axes are reached within the limits and without overshoot.
+        #[test]
+        fn any_mix_of_axes_arrives_within_the_limits(
+            kinds in prop::array::uniform3(any::<bool>()), values in prop::array::uniform3(-20.0..20.0),
+            yaw in -3.0..3.0,
+        ) {
+            let limits = Limits::default();
+            let axes: [AxisTarget; 3] = core::array::from_fn(|axis| {
+                if kinds[axis] { AxisTarget::Position(values[axis]) } else { AxisTarget::Velocity(values[axis] / 10.0) }
+            });
+            let mut worst: Result<(), String> = Ok(());
+            let mut before = Vector3::zeros();
+            let set_point = PositionSetPoint { axes, yaw: YawTarget::Angle(yaw) };
+            let mut motion = fly(set_point, 60.0, |motion| {
+                let (v, a) = (motion.state.velocity_m_s, motion.state.acceleration_m_s2);
+                let jerk = (a - before) / DT_S;
+                before = a;
+                let fits = v.xy().norm() <= limits.speed_horizontal_m_s * 1.001
+                    && v.z <= limits.speed_down_m_s * 1.001 && v.z >= -limits.speed_up_m_s * 1.001
+                    && a.xy().norm() <= limits.acceleration_horizontal_m_s2 * 1.001
+                    && a.z.abs() <= limits.acceleration_vertical_m_s2 * 1.001
+                    && jerk.xy().norm() <= limits.jerk_horizontal_m_s3 * 1.01
+                    && jerk.z.abs() <= limits.jerk_vertical_m_s3 * 1.01;
+                let overshoot = (0..3).any(|axis| matches!(axes[axis], AxisTarget::Position(goal)
+                    if motion.state.position_m[axis] * goal.signum() > goal.abs() + 0.03));
+                if !fits || overshoot { worst = Err(format!("{:?} jerk {jerk}", motion.state)); }
+            });
+            prop_assert!(worst.is_ok(), "{worst:?}");
+            let end = motion.reference(60_000_000);
+            for axis in 0..3 {
+                match axes[axis] {
+                    AxisTarget::Position(goal) => prop_assert!((end.position_m[axis] - goal).abs() < 1e-3, "{end:?}"),
+                    AxisTarget::Velocity(v) => prop_assert!((end.velocity_m_s[axis] - v).abs() < 1e-6, "{end:?}"),
+                    _ => unreachable!("not asked for"),
+                }
+            }
+            prop_assert!((end.yaw_rad - yaw).abs() < 1e-3, "{end:?}");
+        }
+    }
+
+    #[test]
+    fn an_acceleration_ends_at_the_limit_of_speed() {
+        let axes = [AxisTarget::Acceleration(1.0), AxisTarget::HOLD, AxisTarget::HOLD];
+        let motion = fly(PositionSetPoint { axes, yaw: YawTarget::Hold }, 2.0, |_| {});
+        assert!((motion.state.velocity_m_s.x - 1.87).abs() < 0.05, "{:?}", motion.state);
+        let motion = fly(PositionSetPoint { axes, yaw: YawTarget::Hold }, 30.0, |_| {});
+        assert!((motion.state.velocity_m_s.x - Limits::default().speed_horizontal_m_s).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_trajectory_runs_on_between_its_points() {
+        let track = AxisTarget::Track { position_m: 1.0, velocity_m_s: 2.0, acceleration_m_s2: -1.0 };
+        let set_point = PositionSetPoint { axes: [track; 3], yaw: YawTarget::Track(0.5, 0.1) };
+        let mut motion = Motion::from(at_rest(Vector3::zeros(), 0.0), set_point, 1_000_000);
+        let reference = motion.reference(1_200_000);
+        assert!(
+            (reference.position_m.x - 1.38).abs() < 1e-12 && (reference.velocity_m_s.y - 1.8).abs() < 1e-12
+        );
+        assert!((reference.yaw_rad - 0.52).abs() < 1e-12);
+    }
+}

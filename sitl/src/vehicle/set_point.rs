@@ -1,0 +1,114 @@
+//! Set-points in the local frame, after frames and masks have been resolved.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// What one axis of the local frame is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AxisTarget {
+    /// Go to a position, m, and stay.
+    Position(f64),
+    /// Reach a velocity, m/s, within the limits, and keep it; zero holds the place.
+    Velocity(f64),
+    /// Accelerate, m/s², within the limits of speed.
+    Acceleration(f64),
+    /// A point of a trajectory, as it is: position, m, velocity, m/s, acceleration, m/s².
+    Track {
+        /// Position, m.
+        position_m: f64,
+        /// Velocity, m/s.
+        velocity_m_s: f64,
+        /// Acceleration, m/s².
+        acceleration_m_s2: f64,
+    },
+}
+
+impl AxisTarget {
+    /// Brake and stay.
+    pub const HOLD: Self = Self::Velocity(0.0);
+}
+
+/// What the heading is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum YawTarget {
+    /// Stay.
+    Hold,
+    /// Turn to an angle, rad, the short way.
+    Angle(f64),
+    /// Keep turning, rad/s.
+    Rate(f64),
+    /// A point of a trajectory: angle, rad, and rate, rad/s.
+    Track(f64, f64),
+}
+
+/// A set-point for position and heading, NED.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionSetPoint {
+    /// North, east, down.
+    pub axes: [AxisTarget; 3],
+    /// Heading.
+    pub yaw: YawTarget,
+}
+
+impl PositionSetPoint {
+    /// Brake and stay.
+    pub const HOLD: Self = Self { axes: [AxisTarget::HOLD; 3], yaw: YawTarget::Hold };
+
+    /// Whether it is only a place to be: then it goes through the shaper.
+    pub fn goal(&self) -> Option<Vector3<f64>> {
+        match (self.axes, self.yaw) {
+            (
+                [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)],
+                YawTarget::Hold | YawTarget::Angle(_),
+            ) => Some(Vector3::new(x, y, z)),
+            _ => None,
+        }
+    }
+
+    /// Whether it leads upwards from z, m: on the ground nothing else takes off.
+    pub fn leads_up(&self, z_m: f64) -> bool {
+        const NEAR_M: f64 = 0.3;
+        const SLOW: f64 = 0.05;
+        let [_, _, down] = self.axes;
+        match down {
+            AxisTarget::Position(z) => z < z_m - NEAR_M,
+            AxisTarget::Velocity(v) => v < -SLOW,
+            AxisTarget::Acceleration(a) => a < -SLOW,
+            AxisTarget::Track { position_m, velocity_m_s, .. } => {
+                position_m < z_m - NEAR_M || velocity_m_s < -SLOW
+            }
+        }
+    }
+
+    /// Whether something in it runs on for ever: without news it has to end.
+    pub fn runs_on(&self) -> bool {
+        let moves = |axis: &AxisTarget| match *axis {
+            AxisTarget::Position(_) => false,
+            AxisTarget::Velocity(v) => v != 0.0,
+            AxisTarget::Acceleration(_) => true,
+            AxisTarget::Track { velocity_m_s, acceleration_m_s2, .. } => {
+                velocity_m_s != 0.0 || acceleration_m_s2 != 0.0
+            }
+        };
+        self.axes.iter().any(moves) || matches!(self.yaw, YawTarget::Rate(_) | YawTarget::Track(..))
+    }
+}
+
+/// A set-point for attitude and thrust.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttitudeSetPoint {
+    /// The attitude, FRD into NED; `None`: turn on from the present one at the body rates.
+    pub attitude: Option<UnitQuaternion<f64>>,
+    /// Body rates, FRD, rad/s; fed forward if there is an attitude.
+    pub body_rate_rad_s: Vector3<f64>,
+    /// Share of the thrust that the rotors can make, 0 to 1.
+    pub thrust: f64,
+}
+
+/// A set-point of the offboard mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SetPoint {
+    /// Position and heading.
+    Position(PositionSetPoint),
+    /// Attitude and thrust.
+    Attitude(AttitudeSetPoint),
+}

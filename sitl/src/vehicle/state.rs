@@ -1,0 +1,298 @@
+//! The vehicle's state and one tick of it.
+
+use nalgebra::Vector3;
+use quadrotor::{
+    Configuration, ConfigurationError, Disturbance, Inputs, Outputs, Simulation, SimulationError,
+};
+use serde::{Deserialize, Serialize};
+
+use super::battery::Battery;
+use super::conduct::Conduct;
+use super::landed::{LandedDetector, LandedState};
+use super::mode::Mode;
+use super::notice::{Notice, Severity};
+use super::offboard::SetPoints;
+use super::return_home::ReturnPhase;
+use super::set_point::PositionSetPoint;
+use super::steering::{Steering, SteeringKind};
+use super::sticks::Sticks;
+use crate::identity::Identity;
+use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
+
+/// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
+pub const TICK_US: u64 = 1_000;
+
+/// Everything that a vehicle is made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehicleSettings {
+    /// Whose conventions it follows.
+    pub identity: Identity,
+    /// The closed loop. Ground and shaper are always on; the initial state is at rest on the ground.
+    pub configuration: Configuration,
+    /// Its own parameters.
+    pub conduct: Conduct,
+    /// Where the local frame has its origin: on the ground below the start.
+    pub origin: Geodetic,
+    /// Heading at the start, rad.
+    pub heading_rad: f64,
+    /// The wind.
+    pub wind: WindSettings,
+}
+
+/// Where a return goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Home {
+    /// NED, m.
+    pub position_m: Vector3<f64>,
+    /// Heading there, rad.
+    pub yaw_rad: f64,
+    /// Whether a user has set it: then arming does not move it.
+    pub set_by_user: bool,
+}
+
+/// The vehicle.
+#[derive(Debug)]
+pub struct Vehicle {
+    pub(super) identity: Identity,
+    pub(super) conduct: Conduct,
+    pub(super) simulation: Simulation,
+    pub(super) outputs: Outputs,
+    pub(super) frame: LocalFrame,
+    pub(super) wind: Wind,
+    pub(super) wind_m_s: Vector3<f64>,
+    pub(super) battery: Battery,
+    pub(super) landed: LandedDetector,
+    pub(super) home: Home,
+    pub(super) armed: bool,
+    pub(super) mode: Mode,
+    pub(super) steering: Steering,
+    pub(super) set_points: SetPoints,
+    pub(super) sticks: Option<(Sticks, u64)>,
+    /// z of the goal of a takeoff, m.
+    pub(super) takeoff_z_m: Option<f64>,
+    pub(super) return_phase: ReturnPhase,
+    /// Whether it has flown since it was armed.
+    pub(super) flown: bool,
+    /// Since when it has been armed and on the ground, µs.
+    pub(super) grounded_since_us: u64,
+    pub(super) notices: Vec<Notice>,
+}
+
+impl Vehicle {
+    /// A vehicle at rest on the ground, disarmed.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
+        let mut configuration = settings.configuration;
+        configuration.environment.ground_plane = true;
+        configuration.reference.shaping = true;
+        configuration.initial.attitude_rad[2] = settings.heading_rad;
+        let inputs = Inputs { armed: false, ..Inputs::default() };
+        let simulation = Simulation::new(&configuration, &inputs)?;
+        let outputs = simulation.outputs();
+        Ok(Self {
+            identity: settings.identity,
+            conduct: settings.conduct,
+            frame: LocalFrame::new(settings.origin),
+            wind: Wind::new(settings.wind),
+            wind_m_s: Vector3::zeros(),
+            battery: Battery::default(),
+            landed: LandedDetector::new(-outputs.position_m.z),
+            home: Home { position_m: Vector3::zeros(), yaw_rad: settings.heading_rad, set_by_user: false },
+            armed: false,
+            mode: settings.identity.first_mode(),
+            steering: Steering::Idle { yaw_rad: settings.heading_rad },
+            set_points: SetPoints::default(),
+            sticks: None,
+            takeoff_z_m: None,
+            return_phase: ReturnPhase::Climb,
+            flown: false,
+            grounded_since_us: 0,
+            notices: Vec::new(),
+            simulation,
+            outputs,
+        })
+    }
+
+    /// Flies one tick on.
+    ///
+    /// # Errors
+    /// [`SimulationError`]: the flight has left the range of numbers.
+    pub fn tick(&mut self) -> Result<(), SimulationError> {
+        if self.armed {
+            self.fly();
+        }
+        let dt_s = TICK_US as f64 / 1e6;
+        let time_us = self.outputs.time_us;
+        let reference = self.steering.apply(&mut self.simulation, &self.outputs, dt_s)?;
+        let height_m = -self.outputs.position_m.z;
+        self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
+        let disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
+        let inputs = Inputs { reference, disturbance, armed: self.armed };
+        self.simulation.advance_to(time_us + TICK_US, &inputs)?;
+        self.outputs = self.simulation.outputs();
+
+        let airframe = self.simulation.configuration().airframe;
+        let capacity_ah = self.conduct.battery_capacity_ah;
+        self.battery.step(&airframe, &self.outputs.rotor_speed_rad_s, capacity_ah, dt_s);
+        let controlled = self.steering.kind() == SteeringKind::Position;
+        let stood = self.landed.is_landed();
+        self.landed.update(&self.outputs, airframe.weight_n(), self.armed, controlled);
+        if self.landed.is_landed() != stood {
+            self.touched(!stood);
+        }
+        Ok(())
+    }
+
+    /// The vehicle has touched down (`true`) or lifted off.
+    fn touched(&mut self, down: bool) {
+        if !down {
+            self.flown |= self.armed;
+            return;
+        }
+        self.grounded_since_us = self.time_us();
+        if self.armed && self.flown {
+            self.say(Severity::Info, "Landing detected");
+        }
+        // An attitude is the pilot's own business.
+        if self.steering.kind() == SteeringKind::Position {
+            self.idle();
+        }
+    }
+
+    pub(super) fn idle(&mut self) {
+        self.steering = Steering::Idle { yaw_rad: self.outputs.attitude_rad.z };
+    }
+
+    /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it.
+    pub(super) fn hold(&mut self) {
+        let at_rest = self.outputs.setpoint.velocity_m_s.norm() == 0.0
+            && self.outputs.setpoint.acceleration_m_s2.norm() == 0.0;
+        match &self.steering {
+            Steering::Idle { .. } => {}
+            Steering::Goal(_) if at_rest => {}
+            _ => self.follow(&PositionSetPoint::HOLD),
+        }
+    }
+
+    pub(super) fn follow(&mut self, set_point: &PositionSetPoint) {
+        self.steering.follow(set_point, &self.outputs);
+    }
+
+    pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.notices.push(Notice { severity, text: text.into() });
+    }
+
+    /// Notices since the last call.
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Whose conventions it follows.
+    pub fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// Simulation time, µs after the start.
+    pub fn time_us(&self) -> u64 {
+        self.outputs.time_us
+    }
+
+    /// What the closed loop shows.
+    pub fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    /// The closed loop.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The local frame.
+    pub fn frame(&self) -> &LocalFrame {
+        &self.frame
+    }
+
+    /// Velocity of the air, NED, m/s.
+    pub fn wind_m_s(&self) -> Vector3<f64> {
+        self.wind_m_s
+    }
+
+    /// The battery.
+    pub fn battery(&self) -> &Battery {
+        &self.battery
+    }
+
+    /// Remaining share of the battery.
+    pub fn battery_remaining(&self) -> f64 {
+        self.battery.remaining(self.conduct.battery_capacity_ah)
+    }
+
+    /// Its own parameters.
+    pub fn conduct(&self) -> &Conduct {
+        &self.conduct
+    }
+
+    /// Changes its own parameters.
+    pub fn set_conduct(&mut self, conduct: Conduct) {
+        self.conduct = conduct;
+    }
+
+    /// Home.
+    pub fn home(&self) -> &Home {
+        &self.home
+    }
+
+    /// Whether the rotors may turn.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// The mode.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// How it is steered.
+    pub fn steering_kind(&self) -> SteeringKind {
+        self.steering.kind()
+    }
+
+    /// Attitude and thrust that are tracked now, if it is steered by them.
+    pub fn attitude_reference(&self) -> Option<(nalgebra::UnitQuaternion<f64>, Vector3<f64>, f64)> {
+        match &self.steering {
+            Steering::Attitude { set_point, reference } => {
+                Some((*reference, set_point.body_rate_rad_s, set_point.thrust))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it stands, climbs from the ground, flies or descends to the ground.
+    pub fn landed_state(&self) -> LandedState {
+        match self.mode {
+            _ if self.landed.is_landed() => LandedState::OnGround,
+            Mode::Takeoff => LandedState::TakingOff,
+            Mode::Land => LandedState::Landing,
+            Mode::Return if self.return_phase == ReturnPhase::Descend => LandedState::Landing,
+            _ => LandedState::InAir,
+        }
+    }
+
+    /// Changes the closed loop's parameters. Tunable ones change in flight, without a bump; the others only while it is
+    /// disarmed on the ground.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`]; nothing has changed then.
+    pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        match self.simulation.reconfigure(configuration) {
+            Err(ConfigurationError::Fixed { .. }) if !self.armed && self.landed.is_landed() => {
+                self.simulation = Simulation::from_state(configuration, *self.simulation.state())?;
+                self.outputs = self.simulation.outputs();
+                Ok(())
+            }
+            result => result,
+        }
+    }
+}

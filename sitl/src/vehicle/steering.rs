@@ -1,0 +1,168 @@
+//! What the closed loop is told, tick by tick.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use quadrotor::{AttitudeTarget, Outputs, PositionReference, Simulation, SimulationError};
+
+use super::motion::{Motion, at_rest};
+use super::set_point::{AttitudeSetPoint, PositionSetPoint, YawTarget};
+
+/// A body-rate command may lead the vehicle by this angle, rad, and no further.
+const RATE_LEAD_RAD: f64 = 0.5;
+
+/// The present way of steering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // There is one of it.
+pub enum Steering {
+    /// Rotors idle, level, on the ground.
+    Idle {
+        /// Heading, rad.
+        yaw_rad: f64,
+    },
+    /// To a place, through the shaper.
+    Goal(PositionReference),
+    /// A moving reference, as it is.
+    Motion(Motion),
+    /// An attitude and a thrust.
+    Attitude {
+        /// As asked for.
+        set_point: AttitudeSetPoint,
+        /// The attitude that is tracked now.
+        reference: UnitQuaternion<f64>,
+    },
+}
+
+/// The ways of steering, without their data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SteeringKind {
+    /// Rotors idle.
+    Idle,
+    /// Position and heading.
+    Position,
+    /// Attitude and thrust.
+    Attitude,
+}
+
+impl Steering {
+    /// Without the data.
+    pub fn kind(&self) -> SteeringKind {
+        match self {
+            Self::Idle { .. } => SteeringKind::Idle,
+            Self::Goal(_) | Self::Motion(_) => SteeringKind::Position,
+            Self::Attitude { .. } => SteeringKind::Attitude,
+        }
+    }
+
+    /// Steers by position from now on. Places go through the shaper, the rest is a moving reference that takes over
+    /// where the present one is.
+    pub fn follow(&mut self, set_point: &PositionSetPoint, outputs: &Outputs) {
+        let now = self.present(outputs);
+        if let Some(goal) = set_point.goal() {
+            let yaw_rad = match (set_point.yaw, &self) {
+                (YawTarget::Angle(angle), _) => angle,
+                // An unfinished turn goes on.
+                (_, Self::Goal(goal)) => goal.yaw_rad,
+                _ => now.yaw_rad,
+            };
+            *self = Self::Goal(at_rest(goal, yaw_rad));
+            return;
+        }
+        match self {
+            Self::Motion(motion) => motion.ask(*set_point, outputs.time_us),
+            _ => *self = Self::Motion(Motion::from(now, *set_point, outputs.time_us)),
+        }
+    }
+
+    /// Steers by attitude from now on.
+    pub fn follow_attitude(&mut self, set_point: &AttitudeSetPoint, outputs: &Outputs) {
+        let before = match self {
+            Self::Attitude { reference, .. } => *reference,
+            _ => attitude_of(outputs),
+        };
+        let reference = set_point.attitude.unwrap_or(before);
+        *self = Self::Attitude { set_point: *set_point, reference };
+    }
+
+    /// The motion to take over: that of the reference, or of the vehicle if it does not follow one.
+    fn present(&self, outputs: &Outputs) -> PositionReference {
+        match self {
+            Self::Goal(_) | Self::Motion(_) => outputs.setpoint,
+            Self::Idle { .. } | Self::Attitude { .. } => PositionReference {
+                velocity_m_s: outputs.velocity_m_s,
+                ..at_rest(outputs.position_m, outputs.attitude_rad.z)
+            },
+        }
+    }
+
+    /// Tells the closed loop, and returns the reference for the tick that begins now.
+    pub fn apply(
+        &mut self,
+        simulation: &mut Simulation,
+        outputs: &Outputs,
+        dt_s: f64,
+    ) -> Result<PositionReference, SimulationError> {
+        let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
+        match self {
+            Self::Idle { yaw_rad } => {
+                simulation.set_attitude_target(Some(AttitudeTarget {
+                    attitude: UnitQuaternion::from_euler_angles(0.0, 0.0, *yaw_rad),
+                    body_rate_rad_s: Vector3::zeros(),
+                    thrust_n: 0.0,
+                }))?;
+                Ok(at_rest(outputs.position_m, *yaw_rad))
+            }
+            Self::Attitude { set_point, reference } => {
+                if set_point.attitude.is_none() {
+                    *reference = turned_on(reference, set_point, &attitude_of(outputs), dt_s);
+                }
+                simulation.set_attitude_target(Some(AttitudeTarget {
+                    attitude: *reference,
+                    body_rate_rad_s: set_point.body_rate_rad_s,
+                    thrust_n: set_point.thrust * strongest_n,
+                }))?;
+                Ok(at_rest(outputs.position_m, outputs.attitude_rad.z))
+            }
+            Self::Goal(goal) => {
+                simulation.set_attitude_target(None)?;
+                shape(simulation, true);
+                Ok(*goal)
+            }
+            Self::Motion(motion) => {
+                simulation.set_attitude_target(None)?;
+                shape(simulation, false);
+                let reference = motion.reference(outputs.time_us);
+                motion.step(&simulation.configuration().limits, dt_s);
+                Ok(reference)
+            }
+        }
+    }
+}
+
+/// Switches the shaper. It cannot be missing: the crate is built with it, see the manifest.
+fn shape(simulation: &mut Simulation, shaping: bool) {
+    if let Err(error) = simulation.set_shaping(shaping) {
+        tracing::error!(%error, "the shaper cannot be switched");
+    }
+}
+
+fn attitude_of(outputs: &Outputs) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = outputs.quaternion;
+    UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z))
+}
+
+/// The reference of a body-rate command: turned on at that rate, near the vehicle.
+fn turned_on(
+    reference: &UnitQuaternion<f64>,
+    set_point: &AttitudeSetPoint,
+    actual: &UnitQuaternion<f64>,
+    dt_s: f64,
+) -> UnitQuaternion<f64> {
+    let ahead = reference * UnitQuaternion::from_scaled_axis(set_point.body_rate_rad_s * dt_s);
+    let lead = (actual.inverse() * ahead).scaled_axis();
+    let angle = lead.norm();
+    let near = if angle > RATE_LEAD_RAD {
+        actual * UnitQuaternion::from_scaled_axis(lead * (RATE_LEAD_RAD / angle))
+    } else {
+        ahead
+    };
+    UnitQuaternion::new_normalize(near.into_inner())
+}
