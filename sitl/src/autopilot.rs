@@ -1,0 +1,223 @@
+//! The whole vehicle as MAVLink sees it, without a socket and without a clock: received frames and ticks of simulation
+//! time go in, messages come out.
+
+use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
+use quadrotor::{ConfigurationError, SimulationError};
+
+use crate::codec::{Frame, Message, id, target_of};
+use crate::identity::Identity;
+use crate::parameters::{Host, ParameterTable, SetError, Speed, Value, View};
+use crate::service::command::Retries;
+use crate::service::file_transfer::FileServer;
+use crate::service::heartbeat::Heartbeat;
+use crate::service::message_interval::Streams;
+use crate::service::status_text::StatusTexts;
+use crate::service::{
+    Destination, LinkProfile, Origin, Outgoing, command, file_transfer, heartbeat, log, manual_control,
+    message_interval, mission, parameter, set_point, status_text, telemetry, time_synchronization,
+};
+use crate::vehicle::{Refusal, Severity, Vehicle, VehicleSettings};
+
+/// Component id of an autopilot.
+pub const COMPONENT: u8 = 1;
+
+/// A vehicle with its services.
+#[derive(Debug)]
+pub struct Autopilot {
+    system_id: u8,
+    unix_start_us: u64,
+    settings: VehicleSettings,
+    speed: Speed,
+    parameters_changed: bool,
+    outbox: Vec<Outgoing>,
+    pub(crate) vehicle: Vehicle,
+    pub(crate) table: ParameterTable,
+    pub(crate) streams: Vec<Streams>,
+    pub(crate) heartbeat: Heartbeat,
+    pub(crate) status_texts: StatusTexts,
+    pub(crate) retries: Retries,
+    pub(crate) files: FileServer,
+}
+
+impl Autopilot {
+    /// A vehicle that has just started.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] when the closed loop cannot be built.
+    pub fn new(
+        settings: &VehicleSettings,
+        system_id: u8,
+        speed: Speed,
+        links: &[LinkProfile],
+        unix_start_us: u64,
+    ) -> Result<Self, ConfigurationError> {
+        let mut autopilot = Self {
+            system_id,
+            unix_start_us,
+            settings: settings.clone(),
+            speed,
+            parameters_changed: false,
+            outbox: Vec::new(),
+            vehicle: Vehicle::new(settings)?,
+            table: ParameterTable::new(settings.identity),
+            streams: links.iter().map(|profile| Streams::new(*profile)).collect(),
+            heartbeat: Heartbeat::default(),
+            status_texts: StatusTexts::default(),
+            retries: Retries::default(),
+            files: FileServer::default(),
+        };
+        heartbeat::update(&mut autopilot);
+        let version = env!("CARGO_PKG_VERSION");
+        let text = format!("lmpc-sitl {version}: simulated quadrotor, Laguerre MPC");
+        status_text::send(&mut autopilot, Severity::Info, &text);
+        Ok(autopilot)
+    }
+
+    /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
+    pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
+        if !target_of(frame).is_autopilot(self.system_id) {
+            return;
+        }
+        match frame.message_id() {
+            id::PING => time_synchronization::ping(self, origin, frame),
+            id::SET_MODE => command::set_mode(self, origin, frame),
+            id::PARAM_REQUEST_READ => parameter::request_read(self, origin, frame),
+            id::PARAM_REQUEST_LIST => parameter::request_list(self, origin),
+            id::PARAM_SET => parameter::set(self, origin, frame),
+            id::MISSION_REQUEST_LIST | id::MISSION_COUNT | id::MISSION_CLEAR_ALL => {
+                mission::answer(self, origin, frame);
+            }
+            id::SET_GPS_GLOBAL_ORIGIN => self.refuse_origin(origin),
+            id::REQUEST_DATA_STREAM => message_interval::request_data_stream(self, origin, frame),
+            id::MANUAL_CONTROL => manual_control::manual_control(self, frame),
+            id::RC_CHANNELS_OVERRIDE => manual_control::channels_override(self, frame),
+            id::COMMAND_INT | id::COMMAND_LONG => command::handle(self, origin, frame),
+            id::SET_ATTITUDE_TARGET => set_point::attitude(self, frame),
+            id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT => {
+                set_point::position(self, frame);
+            }
+            id::FILE_TRANSFER_PROTOCOL => file_transfer::handle(self, origin, frame),
+            id::TIMESYNC => time_synchronization::timesync(self, origin, frame),
+            id::LOG_REQUEST_LIST => log::answer(self, origin),
+            _ => {}
+        }
+        self.tell_changes();
+    }
+
+    /// Flies one tick on and sends what is due then.
+    ///
+    /// # Errors
+    /// [`SimulationError`]: the flight cannot go on.
+    pub fn tick(&mut self) -> Result<(), SimulationError> {
+        self.vehicle.tick()?;
+        self.tell_changes();
+        message_interval::stream(self);
+        Ok(())
+    }
+
+    /// A heartbeat beside the regular ones: a link must not look dead while simulation time stands still.
+    pub fn keep_alive(&mut self) {
+        heartbeat::beat(self);
+    }
+
+    fn tell_changes(&mut self) {
+        status_text::send_notices(self);
+        heartbeat::update(self);
+    }
+
+    /// The origin of the local frame is where the flight began: it is told again.
+    fn refuse_origin(&mut self, origin: &Origin) {
+        const GPS_GLOBAL_ORIGIN: u32 = <GPS_GLOBAL_ORIGIN_DATA as mavlink::MessageData>::ID;
+        status_text::send(self, Severity::Warning, "The origin is set at the start, by --home");
+        if let Some(message) = telemetry::message(self, GPS_GLOBAL_ORIGIN) {
+            self.send(Destination::Peer(origin.peer), message);
+        }
+    }
+
+    pub(crate) fn send(&mut self, to: Destination, message: impl Into<Message>) {
+        self.outbox.push(Outgoing { to, message: message.into() });
+    }
+
+    /// Messages to be sent since the last call.
+    pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
+        std::mem::take(&mut self.outbox)
+    }
+
+    /// The vehicle.
+    pub fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// Whose conventions it follows.
+    pub fn identity(&self) -> Identity {
+        self.settings.identity
+    }
+
+    /// Its system id.
+    pub fn system_id(&self) -> u8 {
+        self.system_id
+    }
+
+    /// The pace that is asked for.
+    pub fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// Time of the wall clock at the start, µs since 1970.
+    pub(crate) fn unix_start_us(&self) -> u64 {
+        self.unix_start_us
+    }
+
+    /// What it was started with.
+    pub fn settings(&self) -> &VehicleSettings {
+        &self.settings
+    }
+
+    /// Number of parameters.
+    pub fn parameter_table(&self) -> &ParameterTable {
+        &self.table
+    }
+
+    fn view(&self) -> View<'_> {
+        View { vehicle: &self.vehicle, system_id: self.system_id, speed: self.speed }
+    }
+
+    pub(crate) fn parameter_value(&self, index: usize) -> Option<Value> {
+        self.table.value(index, &self.view())
+    }
+
+    pub(crate) fn parameter_hash(&self) -> u32 {
+        self.table.hash(&self.view())
+    }
+
+    /// Changes a parameter.
+    pub(crate) fn set_parameter(&mut self, id: &str, value: f64) -> Result<(), SetError> {
+        let mut host = Host { vehicle: &mut self.vehicle, system_id: self.system_id, speed: &mut self.speed };
+        let result = self.table.set(id, value, &mut host);
+        self.parameters_changed |= result.is_ok();
+        result
+    }
+
+    /// All parameters as at the start.
+    pub(crate) fn reset_parameters(&mut self) -> Result<(), Refusal> {
+        if self.vehicle.is_armed() {
+            return Err(Refusal::later("Parameters are not reset while armed"));
+        }
+        let mut configuration = self.settings.configuration;
+        let now = self.vehicle.simulation().configuration();
+        (configuration.initial, configuration.environment) = (now.initial, now.environment);
+        configuration.reference = now.reference;
+        self.vehicle.reconfigure(&configuration).map_err(|error| Refusal::denied(error.to_string()))?;
+        self.vehicle.set_conduct(self.settings.conduct);
+        self.parameters_changed = true;
+        Ok(())
+    }
+
+    /// The parameters as the text of a file, if one has changed since the last call.
+    pub fn take_changed_parameters(&mut self) -> Option<String> {
+        if !std::mem::take(&mut self.parameters_changed) {
+            return None;
+        }
+        Some(crate::parameters::render(&self.table, &self.view()))
+    }
+}

@@ -1,0 +1,140 @@
+//! Command line, environment and configuration file: the same settings by the same names.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use serde::Deserialize;
+
+use super::{HomePosition, WindFrom};
+use crate::identity::Identity;
+use crate::link::LinkSpecification;
+use crate::parameters::Speed;
+
+const AFTER_HELP: &str = "\
+Links:
+  udpout:HOST:PORT[@LOCALPORT]  sends to an address, answers everyone who sends to the local port
+  udpin:[HOST:]PORT             waits for datagrams, answers their senders
+  tcpin:[HOST:]PORT             accepts connections
+  serial:PATH[:BAUD]            a serial device or pseudo-terminal, 57600 baud unless named
+  HOST is 127.0.0.1 unless named. With `,onboard` behind it a link gets the faster telemetry of a companion computer.
+  Without --link: udpout:127.0.0.1:14550@18570 and udpout:127.0.0.1:14540@14580,onboard, as PX4 has them; --instance
+  counts the local ports and 14540 up.
+
+Connect with:
+  QGroundControl     start it: it listens on 14550
+  MAVSDK             udpin://0.0.0.0:14540
+  pymavlink          mavutil.mavlink_connection('udpin:127.0.0.1:14540')
+  MAVProxy           mavproxy.py --master=udpin:127.0.0.1:14550
+
+Every flag can be set in the configuration file by its name (`autopilot = \"ardupilot\"`) and in the environment by
+LMPC_SITL_ and its name in capitals; flags go before the environment, the environment before the file.
+
+Exit codes: 0 ended as asked, 1 the simulation failed, 2 a wrong flag or value, 3 a port or device cannot be used,
+4 a file cannot be used, 5 a replayed flight differs from the recorded one.";
+
+/// A simulated quadrotor under Laguerre model predictive control that MAVLink clients fly.
+#[derive(Clone, Debug, Default, PartialEq, Parser, Deserialize)]
+#[command(name = "lmpc-sitl", version, after_help = AFTER_HELP, max_term_width = 110)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Arguments {
+    /// Configuration file (TOML)
+    #[arg(long, env = "LMPC_SITL_CONFIG", value_name = "FILE")]
+    #[serde(skip)]
+    pub config: Option<PathBuf>,
+
+    /// Link to clients; repeat it for more, see below
+    #[arg(long, env = "LMPC_SITL_LINK", value_name = "LINK", value_delimiter = ';')]
+    pub link: Option<Vec<LinkSpecification>>,
+
+    /// Number of this vehicle on the machine: moves the default ports and system id [default: 0]
+    #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = clap::value_parser!(u16).range(0..=200))]
+    pub instance: Option<u16>,
+
+    /// MAVLink system id, 1 to 250 [default: 1 + instance]
+    #[arg(long, env = "LMPC_SITL_SYSTEM_ID", value_name = "ID", value_parser = clap::value_parser!(u8).range(1..=250))]
+    pub system_id: Option<u8>,
+
+    /// Whose conventions to follow [default: px4]
+    #[arg(long, env = "LMPC_SITL_AUTOPILOT")]
+    pub autopilot: Option<Identity>,
+
+    /// Start: latitude and longitude in degrees, altitude above sea level in m, heading in degrees
+    /// [default: 47.397742,8.545594,488,0]
+    #[arg(long, env = "LMPC_SITL_HOME", value_name = "LAT,LON,ALT[,HEADING]", allow_hyphen_values = true)]
+    pub home: Option<HomePosition>,
+
+    /// Simulated seconds per second, 0 (paused) to 1000, or `max`; the parameter SIM_SPEEDUP changes it in flight
+    /// [default: 1]
+    #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max")]
+    pub speed: Option<Speed>,
+
+    /// Steady wind: speed in m/s and the direction in degrees that it comes from [default: 0,0]
+    #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]")]
+    pub wind: Option<WindFrom>,
+
+    /// Standard deviation of gusts in m/s (Dryden's spectrum) [default: 0]
+    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA")]
+    pub gusts: Option<f64>,
+
+    /// Seed of everything random [default: 1]
+    #[arg(long, env = "LMPC_SITL_SEED", value_name = "N")]
+    pub seed: Option<u64>,
+
+    /// Parameter at the start, by its MAVLink id or its dotted name (airframe.mass=0.9); repeat it for more
+    #[arg(long, env = "LMPC_SITL_SET", value_name = "NAME=VALUE", value_delimiter = ';')]
+    pub set: Option<Vec<String>>,
+
+    /// Parameter file: read at the start if it exists, written whenever a parameter changes
+    #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
+    pub parameters: Option<PathBuf>,
+
+    /// Record received messages with their simulation times, to be replayed
+    #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay")]
+    pub record: Option<PathBuf>,
+
+    /// Fly a record again, without links, and compare the flight with the recorded one
+    #[arg(long, env = "LMPC_SITL_REPLAY", value_name = "FILE")]
+    pub replay: Option<PathBuf>,
+
+    /// Log all traffic as ground stations do (.tlog)
+    #[arg(long, env = "LMPC_SITL_TLOG", value_name = "FILE")]
+    pub tlog: Option<PathBuf>,
+
+    /// File that is written (JSON: process id, addresses of the links) when clients can connect
+    #[arg(long, env = "LMPC_SITL_READY_FILE", value_name = "FILE")]
+    pub ready_file: Option<PathBuf>,
+
+    /// End after this much simulated time
+    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS")]
+    pub duration: Option<f64>,
+
+    /// What to log to the standard error stream: error, warn, info, debug, or a filter of targets [default: info]
+    #[arg(long, env = "LMPC_SITL_LOG", value_name = "FILTER")]
+    pub log: Option<String>,
+}
+
+impl Arguments {
+    /// What is not told here is taken from what goes after it.
+    pub fn or(self, file: Self) -> Self {
+        Self {
+            config: self.config,
+            link: self.link.or(file.link),
+            instance: self.instance.or(file.instance),
+            system_id: self.system_id.or(file.system_id),
+            autopilot: self.autopilot.or(file.autopilot),
+            home: self.home.or(file.home),
+            speed: self.speed.or(file.speed),
+            wind: self.wind.or(file.wind),
+            gusts: self.gusts.or(file.gusts),
+            seed: self.seed.or(file.seed),
+            set: self.set.or(file.set),
+            parameters: self.parameters.or(file.parameters),
+            record: self.record.or(file.record),
+            replay: self.replay.or(file.replay),
+            tlog: self.tlog.or(file.tlog),
+            ready_file: self.ready_file.or(file.ready_file),
+            duration: self.duration.or(file.duration),
+            log: self.log.or(file.log),
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! `--home lat,lon,alt,heading`.
+
+use std::str::FromStr;
+
+use serde::Deserialize;
+
+use super::settings::numbers;
+use crate::world::Geodetic;
+
+/// Where the vehicle stands at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "String")]
+pub struct HomePosition {
+    /// The place.
+    pub place: Geodetic,
+    /// Heading, degrees from north through east.
+    pub heading_deg: f64,
+}
+
+impl Default for HomePosition {
+    fn default() -> Self {
+        let place = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 };
+        Self { place, heading_deg: 0.0 }
+    }
+}
+
+impl FromStr for HomePosition {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "`{text}` is no place: LAT,LON,ALT[,HEADING] in degrees and metres, latitude within 85, longitude \
+                 within 180, altitude within -1000 to 10000, heading within 360"
+            )
+        };
+        let numbers = numbers(text).ok_or_else(wrong)?;
+        let (latitude_deg, longitude_deg, altitude_m, heading_deg) = match *numbers.as_slice() {
+            [latitude, longitude, altitude] => (latitude, longitude, altitude, 0.0),
+            [latitude, longitude, altitude, heading] => (latitude, longitude, altitude, heading),
+            _ => return Err(wrong()),
+        };
+        let fits = latitude_deg.abs() <= 85.0
+            && longitude_deg.abs() <= 180.0
+            && (-1000.0..=10_000.0).contains(&altitude_m)
+            && heading_deg.abs() <= 360.0;
+        let place = Geodetic { latitude_deg, longitude_deg, altitude_m };
+        if fits { Ok(Self { place, heading_deg }) } else { Err(wrong()) }
+    }
+}
+
+impl TryFrom<String> for HomePosition {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}

@@ -1,0 +1,94 @@
+//! Why the program ends otherwise than asked.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use quadrotor::{ConfigurationError, SimulationError};
+
+use crate::link::LinkError;
+use crate::parameters::{ParameterFileError, SetError};
+
+/// One line for the user, and an exit code.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A value, from wherever it came.
+    #[error("{name}: {reason}")]
+    Value {
+        /// What was set.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The closed loop cannot be built.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// A parameter of the command line.
+    #[error("--set: {0}")]
+    Set(#[from] SetError),
+    /// The parameter file.
+    #[error("{}: {source}", path.display())]
+    Parameters {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: ParameterFileError,
+    },
+    /// A port or device.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// A file that cannot be read or written.
+    #[error("cannot {action} {}: {source}", path.display())]
+    File {
+        /// "read" or "write".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file whose content is none.
+    #[error("{}: {reason}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The replayed flight is another one.
+    #[error("the replayed flight differs: recorded {recorded:016x}, replayed {replayed:016x}")]
+    Differs {
+        /// Digest in the record.
+        recorded: u64,
+        /// Digest of the replayed flight.
+        replayed: u64,
+    },
+    /// The flight left the range of numbers.
+    #[error("the simulation failed: {0}")]
+    Simulation(#[from] SimulationError),
+    /// The handlers of signals.
+    #[error("cannot handle signals: {0}")]
+    Signals(io::Error),
+}
+
+impl Failure {
+    /// A file that cannot be written.
+    pub fn write(path: &Path, source: io::Error) -> Self {
+        Self::File { action: "write", path: path.to_owned(), source }
+    }
+
+    /// A file that cannot be read.
+    pub fn read(path: &Path, source: io::Error) -> Self {
+        Self::File { action: "read", path: path.to_owned(), source }
+    }
+
+    /// Exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Simulation(_) | Self::Signals(_) => 1,
+            Self::Value { .. } | Self::Configuration(_) | Self::Set(_) => 2,
+            Self::Link(_) => 3,
+            Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } => 4,
+            Self::Differs { .. } => 5,
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! What a link is, as a person writes it.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::service::LinkProfile;
+
+/// Nothing is reachable from outside unless it is asked for.
+const LOCAL: &str = "127.0.0.1";
+/// Of a serial link that names none.
+const BAUD: u32 = 57_600;
+
+/// Kind and address of a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Endpoint {
+    /// Sends to an address; others may send to it, too.
+    UdpOut {
+        /// Host to send to.
+        host: String,
+        /// Port to send to.
+        port: u16,
+        /// Port to send from; 0: any.
+        local_port: u16,
+    },
+    /// Waits for datagrams and answers their senders.
+    UdpIn {
+        /// Address to listen on.
+        host: String,
+        /// Port to listen on; 0: any.
+        port: u16,
+    },
+    /// Accepts connections.
+    TcpIn {
+        /// Address to listen on.
+        host: String,
+        /// Port to listen on; 0: any.
+        port: u16,
+    },
+    /// A serial device.
+    Serial {
+        /// Its path.
+        path: PathBuf,
+        /// Bits per second.
+        baud: u32,
+    },
+}
+
+/// A link: where, and what for.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct LinkSpecification {
+    /// Where.
+    pub endpoint: Endpoint,
+    /// What for.
+    pub profile: LinkProfile,
+}
+
+/// PX4's ports for a vehicle of this number: a ground-station link and an onboard link.
+pub fn default_links(instance: u16) -> Vec<LinkSpecification> {
+    let link = |port, local_port, profile| LinkSpecification {
+        endpoint: Endpoint::UdpOut { host: LOCAL.to_owned(), port, local_port },
+        profile,
+    };
+    vec![
+        link(14_550, 18_570 + instance, LinkProfile::Ground),
+        link(14_540 + instance, 14_580 + instance, LinkProfile::Onboard),
+    ]
+}
+
+impl FromStr for LinkSpecification {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "`{text}` is no link: udpout:HOST:PORT[@LOCALPORT], udpin:[HOST:]PORT, tcpin:[HOST:]PORT or \
+                 serial:PATH[:BAUD], each with `,onboard` for faster telemetry"
+            )
+        };
+        let (address, profile) = match text.rsplit_once(',') {
+            Some((address, "onboard")) => (address, LinkProfile::Onboard),
+            Some((address, "ground")) => (address, LinkProfile::Ground),
+            Some(_) => return Err(wrong()),
+            None => (text, LinkProfile::Ground),
+        };
+        let (kind, rest) = address.split_once(':').ok_or_else(wrong)?;
+        let endpoint = match kind {
+            "udpout" => {
+                let (remote, local) = rest.split_once('@').unwrap_or((rest, "0"));
+                let (host, port) = host_and_port(remote).ok_or_else(wrong)?;
+                let local_port = local.parse().map_err(|_| wrong())?;
+                Endpoint::UdpOut { host, port, local_port }
+            }
+            "udpin" => {
+                let (host, port) = host_and_port(rest).ok_or_else(wrong)?;
+                Endpoint::UdpIn { host, port }
+            }
+            "tcpin" => {
+                let (host, port) = host_and_port(rest).ok_or_else(wrong)?;
+                Endpoint::TcpIn { host, port }
+            }
+            "serial" if !rest.is_empty() => {
+                let split = rest.rsplit_once(':').and_then(|(path, baud)| Some((path, baud.parse().ok()?)));
+                let (path, baud) = split.unwrap_or((rest, BAUD));
+                Endpoint::Serial { path: path.into(), baud }
+            }
+            _ => return Err(wrong()),
+        };
+        Ok(Self { endpoint, profile })
+    }
+}
+
+/// `PORT` alone is on this machine.
+fn host_and_port(text: &str) -> Option<(String, u16)> {
+    let (host, port) = text.rsplit_once(':').unwrap_or((LOCAL, text));
+    let host = host.trim_start_matches('[').trim_end_matches(']');
+    Some((host.to_owned(), port.parse().ok()?)).filter(|(host, _)| !host.is_empty())
+}
+
+impl fmt::Display for Endpoint {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UdpOut { host, port, local_port } => write!(formatter, "udpout:{host}:{port}@{local_port}"),
+            Self::UdpIn { host, port } => write!(formatter, "udpin:{host}:{port}"),
+            Self::TcpIn { host, port } => write!(formatter, "tcpin:{host}:{port}"),
+            Self::Serial { path, baud } => write!(formatter, "serial:{}:{baud}", path.display()),
+        }
+    }
+}
+
+impl fmt::Display for LinkSpecification {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.profile {
+            LinkProfile::Ground => write!(formatter, "{}", self.endpoint),
+            LinkProfile::Onboard => write!(formatter, "{},onboard", self.endpoint),
+        }
+    }
+}
+
+impl TryFrom<String> for LinkSpecification {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<LinkSpecification> for String {
+    fn from(link: LinkSpecification) -> Self {
+        link.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Endpoint, LinkSpecification, default_links};
+
+    #[test]
+    fn links_read_as_they_are_written() {
+        for text in [
+            "udpout:127.0.0.1:14550@18570",
+            "udpin:0.0.0.0:14550",
+            "tcpin:127.0.0.1:5760,onboard",
+            "serial:/dev/ttyACM0:115200",
+        ] {
+            let link: LinkSpecification = text.parse().expect(text);
+            assert_eq!(link.to_string(), text);
+        }
+        let link: LinkSpecification = "tcpin:5760".parse().expect("a port alone");
+        assert_eq!(link.endpoint, Endpoint::TcpIn { host: "127.0.0.1".to_owned(), port: 5760 });
+        for wrong in
+            ["", "udp", "udpin:", "tcpin:x", "udpout:h:1@x", "serial:", "tcpin:5760,fast", "udpin:70000"]
+        {
+            assert!(wrong.parse::<LinkSpecification>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn default_ports_are_px4s() {
+        let links: Vec<String> = default_links(2).iter().map(ToString::to_string).collect();
+        assert_eq!(links, ["udpout:127.0.0.1:14550@18572", "udpout:127.0.0.1:14542@14582,onboard"]);
+    }
+}

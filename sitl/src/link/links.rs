@@ -1,0 +1,204 @@
+//! All links: receiving, sending, and forwarding from one peer to the others.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::{Duration, Instant};
+
+use super::endpoint::{Endpoint, LinkSpecification};
+use super::error::LinkError;
+use super::peer::Peer;
+use super::tcp::Tcp;
+use super::transport::{Event, Transport};
+use super::udp::Udp;
+use crate::autopilot::COMPONENT;
+use crate::codec::{Frame, target_of};
+use crate::service::{Destination, Origin, Outgoing, PeerId};
+
+/// A frame that comes back within this time by another way is the same frame.
+const ECHO: Duration = Duration::from_millis(500);
+
+/// A received frame.
+#[derive(Clone, Debug)]
+pub struct Received {
+    /// Who sent it.
+    pub origin: Origin,
+    /// The frame.
+    pub frame: Frame,
+}
+
+#[derive(Debug)]
+struct Link {
+    transport: Box<dyn Transport>,
+    peers: BTreeMap<u64, Peer>,
+}
+
+/// All links of a vehicle.
+#[derive(Debug)]
+pub struct Links {
+    system_id: u8,
+    links: Vec<Link>,
+    recent: VecDeque<(Vec<u8>, PeerId, Instant)>,
+}
+
+impl Links {
+    /// Opens all links.
+    ///
+    /// # Errors
+    /// [`LinkError`] of the first one that cannot be opened.
+    pub fn open(specifications: &[LinkSpecification], system_id: u8) -> Result<Self, LinkError> {
+        let links = specifications
+            .iter()
+            .map(|specification| {
+                Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
+            })
+            .collect::<Result<_, LinkError>>()?;
+        Ok(Self { system_id, links, recent: VecDeque::new() })
+    }
+
+    /// For a person: where each link is.
+    pub fn descriptions(&self) -> Vec<String> {
+        self.links.iter().map(|link| link.transport.description()).collect()
+    }
+
+    /// Local address of each link.
+    pub fn addresses(&self) -> Vec<String> {
+        self.links.iter().map(|link| link.transport.address()).collect()
+    }
+
+    /// Peers that have spoken.
+    pub fn active_peers(&self) -> usize {
+        self.links.iter().flat_map(|link| link.peers.values()).filter(|peer| peer.has_spoken()).count()
+    }
+
+    /// Everything that has come, already forwarded to the peers that it is for.
+    pub fn receive(&mut self, now: Instant) -> Vec<Received> {
+        let mut received = Vec::new();
+        for index in 0..self.links.len() {
+            let Some(link) = self.links.get_mut(index) else { continue };
+            for event in link.transport.poll(now) {
+                match event {
+                    Event::Opened(number) => {
+                        link.peers.insert(number, Peer::default());
+                    }
+                    Event::Closed(number) => {
+                        link.peers.remove(&number);
+                    }
+                    Event::Bytes(number, bytes) => {
+                        let datagram = link.transport.is_datagram();
+                        let peer = link.peers.entry(number).or_default();
+                        let frames =
+                            if datagram { peer.decoder.datagram(&bytes) } else { peer.decoder.push(&bytes) };
+                        let peer_id = PeerId { link: index, number };
+                        for frame in frames {
+                            peer.learn(&frame);
+                            let (system, component) = (frame.system(), frame.component());
+                            received.push(Received {
+                                origin: Origin { peer: peer_id, system, component },
+                                frame,
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        received.retain(|received| self.is_news(received, now));
+        for received in &received {
+            self.forward(received);
+        }
+        received
+    }
+
+    /// Whether a frame is neither our own nor one that has come already by another way.
+    fn is_news(&mut self, received: &Received, now: Instant) -> bool {
+        let origin = &received.origin;
+        if (origin.system, origin.component) == (self.system_id, COMPONENT) {
+            return false;
+        }
+        while self.recent.front().is_some_and(|(_, _, when)| now.duration_since(*when) > ECHO) {
+            self.recent.pop_front();
+        }
+        let bytes = received.frame.bytes();
+        let known = self.recent.iter().any(|(seen, by, _)| *by != origin.peer && seen == bytes);
+        // One peer has no one to be an echo of.
+        if !known && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
+            self.recent.push_back((bytes.to_vec(), origin.peer, now));
+        }
+        !known
+    }
+
+    /// Passes a frame on to the peers that lead to its target, unless it is for this vehicle alone.
+    fn forward(&mut self, received: &Received) {
+        let target = target_of(&received.frame);
+        if target.system == self.system_id {
+            return;
+        }
+        let from = received.origin.peer;
+        for (index, link) in self.links.iter_mut().enumerate() {
+            for (number, peer) in &link.peers {
+                let itself = from == PeerId { link: index, number: *number };
+                // What has never spoken cannot be known not to be the sender itself, by another way.
+                if !itself && peer.has_spoken() && peer.leads_to(target.system) {
+                    link.transport.send(*number, received.frame.bytes());
+                }
+            }
+        }
+    }
+
+    /// Sends a message and returns it as one of its frames, for a log.
+    pub fn send(&mut self, outgoing: &Outgoing) -> Option<Frame> {
+        let sender = (self.system_id, COMPONENT);
+        let mut sent = None;
+        for (index, link) in self.links.iter_mut().enumerate() {
+            for (number, peer) in &mut link.peers {
+                let wanted = match outgoing.to {
+                    Destination::Everyone => true,
+                    Destination::Link(link) => link == index,
+                    Destination::Peer(id) => id == PeerId { link: index, number: *number },
+                };
+                if !wanted {
+                    continue;
+                }
+                // Messages beyond number 255 do not exist in MAVLink 1.
+                if let Some(frame) = Frame::encode(&outgoing.message, peer.version(), peer.sequence, sender) {
+                    peer.sequence = peer.sequence.wrapping_add(1);
+                    link.transport.send(*number, frame.bytes());
+                    sent = Some(frame);
+                }
+            }
+        }
+        sent
+    }
+
+    /// Sends what is waiting.
+    pub fn flush(&mut self) {
+        for link in &mut self.links {
+            link.transport.flush();
+        }
+    }
+}
+
+fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
+    let text = endpoint.to_string();
+    Ok(match endpoint {
+        Endpoint::UdpOut { host, port, local_port } => {
+            // To this machine from this machine; else from whichever of its addresses leads there.
+            let loopback = super::udp::resolve(host, *port, &text)?.ip().is_loopback();
+            let local = if loopback { "127.0.0.1" } else { "0.0.0.0" };
+            Box::new(Udp::open((local, *local_port), Some((host, *port)), &text)?)
+        }
+        Endpoint::UdpIn { host, port } => Box::new(Udp::open((host, *port), None, &text)?),
+        Endpoint::TcpIn { host, port } => Box::new(Tcp::open((host, *port), &text)?),
+        #[cfg(unix)]
+        Endpoint::Serial { path, baud } => Box::new(super::serial::Serial::open(path, *baud, &text)?),
+        #[cfg(not(unix))]
+        Endpoint::Serial { path, .. } => {
+            return Err(LinkError::Device {
+                path: path.display().to_string(),
+                link: text,
+                source: std::io::Error::new(
+                    std::io::ErrorKind::Unsupported,
+                    "serial links need a Unix system",
+                ),
+            });
+        }
+    })
+}

@@ -1,0 +1,15 @@
+//! Links: transports, their peers, and what goes between them.
+
+mod endpoint;
+mod error;
+mod links;
+mod peer;
+#[cfg(unix)]
+mod serial;
+mod tcp;
+mod transport;
+mod udp;
+
+pub use endpoint::{Endpoint, LinkSpecification, default_links};
+pub use error::LinkError;
+pub use links::{Links, Received};

@@ -1,0 +1,50 @@
+//! What is known of a peer.
+
+use crate::codec::{Frame, FrameDecoder, Version};
+
+/// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
+/// and change when they hear version 2.
+const OLD_FRAMES: u8 = 3;
+/// Systems behind one peer that are remembered.
+const MOST_SEEN: usize = 64;
+
+/// A peer.
+#[derive(Clone, Debug, Default)]
+pub struct Peer {
+    /// Its stream of bytes.
+    pub decoder: FrameDecoder,
+    /// Number of the next frame to it: each peer sees a flow of its own.
+    pub sequence: u8,
+    old_frames: u8,
+    /// Systems and components behind it.
+    seen: Vec<(u8, u8)>,
+}
+
+impl Peer {
+    /// Learns from a frame of it.
+    pub fn learn(&mut self, frame: &Frame) {
+        self.old_frames = match frame.version() {
+            Version::One => self.old_frames.saturating_add(1),
+            Version::Two => 0,
+        };
+        let sender = (frame.system(), frame.component());
+        if !self.seen.contains(&sender) && self.seen.len() < MOST_SEEN {
+            self.seen.push(sender);
+        }
+    }
+
+    /// The version to speak to it.
+    pub fn version(&self) -> Version {
+        if self.old_frames >= OLD_FRAMES { Version::One } else { Version::Two }
+    }
+
+    /// Whether a system is behind it; zero is any.
+    pub fn leads_to(&self, system: u8) -> bool {
+        system == 0 || self.seen.iter().any(|(seen, _)| *seen == system)
+    }
+
+    /// Whether anything has come from it.
+    pub fn has_spoken(&self) -> bool {
+        !self.seen.is_empty()
+    }
+}

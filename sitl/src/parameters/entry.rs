@@ -1,0 +1,51 @@
+//! One line of the table.
+
+use quadrotor::Parameter;
+
+use super::loop_access::read;
+use super::{ConductParameter, Value, View};
+
+/// Where a parameter lives.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// In the closed loop.
+    Loop(&'static Parameter),
+    /// In the vehicle's behaviour; the factor is from our unit to that of the identifier.
+    Conduct(&'static ConductParameter, f64),
+    /// System id: fixed at the start.
+    SystemId,
+    /// Pace of simulation time.
+    Speed,
+}
+
+/// A parameter with its identifier.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// At most 16 characters.
+    pub id: String,
+    pub(super) source: Source,
+}
+
+impl Entry {
+    /// Whether a parameter file keeps it.
+    pub fn is_kept(&self) -> bool {
+        matches!(self.source, Source::Loop(_) | Source::Conduct(..))
+    }
+
+    /// Present value.
+    pub(super) fn value(&self, view: &View<'_>) -> Value {
+        match self.source {
+            Source::Loop(parameter) => read(parameter, view.vehicle.simulation().configuration()),
+            Source::Conduct(parameter, scale) => {
+                let value = (parameter.get)(view.vehicle.conduct());
+                if parameter.integer {
+                    Value::Integer(value as i32)
+                } else {
+                    Value::Real((value * scale) as f32)
+                }
+            }
+            Source::SystemId => Value::Integer(i32::from(view.system_id)),
+            Source::Speed => Value::Real(view.speed.to_parameter() as f32),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! Parameters by MAVLink identifiers: those of the closed loop and the vehicle's own.
+
+mod conduct_parameters;
+mod entry;
+mod file;
+mod identifier;
+mod loop_access;
+mod speed;
+mod table;
+mod value;
+
+pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
+pub use entry::Entry;
+pub use file::{ParameterFileError, parse, render};
+pub use identifier::identifier;
+pub use speed::Speed;
+pub use table::{Host, ParameterTable, SetError, View};
+pub use value::{Encoding, Value};

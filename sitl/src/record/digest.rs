@@ -1,0 +1,59 @@
+//! A number that two flights share only if they are the same, bit for bit.
+
+use crate::vehicle::Vehicle;
+
+/// How often the state is taken in, µs.
+const PERIOD_US: u64 = 100_000;
+
+/// FNV-1a with 64 bits over the whole state of the closed loop, ten times per simulated second.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Digest(u64);
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Digest {
+    /// Takes the state in, if it is time.
+    pub fn update(&mut self, vehicle: &Vehicle) {
+        if !vehicle.time_us().is_multiple_of(PERIOD_US) {
+            return;
+        }
+        match postcard::to_allocvec(vehicle.simulation().state()) {
+            Ok(bytes) => self.bytes(&bytes),
+            // It has no kind that cannot be written; an error must not look like sameness.
+            Err(error) => tracing::error!(%error, "the state cannot be digested"),
+        }
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    /// The number.
+    pub fn value(self) -> u64 {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Digest;
+
+    /// Published values of FNV-1a, 64 bits.
+    #[test]
+    fn it_is_fnv_1a() {
+        let of = |text: &str| {
+            let mut digest = Digest::default();
+            digest.bytes(text.as_bytes());
+            digest.value()
+        };
+        assert_eq!(of(""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(of("a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(of("foobar"), 0x8594_4171_f739_67e8);
+    }
+}

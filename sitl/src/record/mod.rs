@@ -1,0 +1,11 @@
+//! Records of flights: what came in, when in simulation time, and what flight it made.
+
+mod digest;
+mod record_file;
+mod replay;
+mod traffic_log;
+
+pub use digest::Digest;
+pub use record_file::{Entry, Header, Recorder, read};
+pub use replay::{Replayed, replay};
+pub use traffic_log::TrafficLog;

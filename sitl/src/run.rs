@@ -1,0 +1,85 @@
+//! From arguments to an ended run.
+
+use std::io::{IsTerminal, Write, stdout};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use tracing_subscriber::EnvFilter;
+
+use crate::configuration::{Arguments, Settings};
+use crate::failure::Failure;
+use crate::record::replay;
+use crate::session::Session;
+use crate::terminal::{LogLines, banner};
+
+/// Does what the arguments say.
+///
+/// # Errors
+/// [`Failure`] that ends the program.
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    let arguments = with_file(arguments)?;
+    log_to_stderr(arguments.log.as_deref())?;
+    if let Some(path) = &arguments.replay {
+        let replayed = replay(path)?;
+        say(&format!(
+            "replayed {:.3} s, digest {:016x}: the same flight",
+            replayed.time_us as f64 / 1e6,
+            replayed.digest
+        ));
+        return Ok(());
+    }
+    let settings = Settings::resolve(&arguments)?;
+    let stop = stop_on_signals().map_err(Failure::Signals)?;
+    let session = Session::new(settings.clone())?;
+    say(banner(&settings, session.links()).trim_end());
+    let summary = session.run(&stop)?;
+    let (simulated_s, wall_s) = (summary.time_us as f64 / 1e6, summary.wall.as_secs_f64());
+    say(&format!(
+        "flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), digest {:016x}",
+        simulated_s / wall_s.max(1e-9),
+        summary.digest
+    ));
+    Ok(())
+}
+
+/// The arguments, completed by the configuration file that they name.
+fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
+    let Some(path) = arguments.config.clone() else { return Ok(arguments) };
+    let text = std::fs::read_to_string(&path).map_err(|source| Failure::read(&path, source))?;
+    let file: Arguments = toml::from_str(&text).map_err(|error| {
+        // The message spans lines; a person needs the place and the reason in one.
+        let line =
+            error.span().map_or(1, |span| text.get(..span.start).unwrap_or_default().lines().count().max(1));
+        let reason = format!("line {line}: {}", error.message().lines().collect::<Vec<_>>().join(" "));
+        Failure::Content { path: path.clone(), reason }
+    })?;
+    Ok(arguments.or(file))
+}
+
+fn log_to_stderr(filter: Option<&str>) -> Result<(), Failure> {
+    let filter = EnvFilter::try_new(filter.unwrap_or("info"))
+        .map_err(|error| Failure::Value { name: "--log".to_owned(), reason: error.to_string() })?;
+    let subscriber = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(|| LogLines)
+        .with_target(false)
+        .with_ansi(std::io::stderr().is_terminal());
+    // Somebody who has set one up already keeps it.
+    let _kept = subscriber.try_init();
+    Ok(())
+}
+
+fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // A second one ends the program at once.
+        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
+        signal_hook::flag::register(signal, Arc::clone(&stop))?;
+    }
+    Ok(stop)
+}
+
+/// A line on the standard output. Whoever has closed it does not want it.
+fn say(line: &str) {
+    let _closed = writeln!(stdout(), "{line}").and_then(|()| stdout().flush());
+}

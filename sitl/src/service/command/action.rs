@@ -1,0 +1,223 @@
+//! Commands that do something.
+
+use nalgebra::Vector3;
+
+use super::{Outcome, altitude_frame};
+use crate::autopilot::Autopilot;
+use crate::codec::Command;
+use crate::service::{Origin, message_interval, parameter, set_point, standard_mode};
+use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
+use crate::world::Geodetic;
+
+/// MAV_CMD.
+mod number {
+    pub const NAV_RETURN_TO_LAUNCH: u16 = 20;
+    pub const NAV_LAND: u16 = 21;
+    pub const NAV_TAKEOFF: u16 = 22;
+    pub const NAV_GUIDED_ENABLE: u16 = 92;
+    pub const CONDITION_YAW: u16 = 115;
+    pub const DO_SET_MODE: u16 = 176;
+    pub const DO_CHANGE_SPEED: u16 = 178;
+    pub const DO_SET_HOME: u16 = 179;
+    pub const DO_FLIGHTTERMINATION: u16 = 185;
+    pub const DO_REPOSITION: u16 = 192;
+    pub const DO_PAUSE_CONTINUE: u16 = 193;
+    pub const PREFLIGHT_STORAGE: u16 = 245;
+    pub const DO_SET_STANDARD_MODE: u16 = 262;
+    pub const COMPONENT_ARM_DISARM: u16 = 400;
+    pub const RUN_PREARM_CHECKS: u16 = 401;
+    pub const SET_MESSAGE_INTERVAL: u16 = 511;
+}
+
+/// The number that arms or disarms whatever speaks against it.
+const FORCE: f64 = 21196.0;
+
+/// Carries a command out.
+pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> Outcome {
+    let vehicle = &mut autopilot.vehicle;
+    Some(match command.number {
+        number::NAV_RETURN_TO_LAUNCH => vehicle.set_mode(Mode::Return),
+        number::NAV_LAND => vehicle.set_mode(Mode::Land),
+        number::NAV_TAKEOFF => take_off(autopilot, command),
+        number::NAV_GUIDED_ENABLE if command.parameter(1) > 0.5 => vehicle.set_mode(Mode::Offboard),
+        number::NAV_GUIDED_ENABLE => vehicle.set_mode(Mode::Hold),
+        number::CONDITION_YAW => turn(vehicle, command),
+        number::DO_SET_MODE => set_mode(autopilot, command),
+        number::DO_CHANGE_SPEED => change_speed(autopilot, command.parameter(1), command.parameter(2)),
+        number::DO_SET_HOME => set_home(vehicle, command),
+        number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => vehicle.disarm(true),
+        number::DO_FLIGHTTERMINATION => Ok(()),
+        number::DO_REPOSITION => reposition(autopilot, command),
+        number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.set_mode(Mode::Hold),
+        number::DO_PAUSE_CONTINUE => Err(Refusal::denied("Nothing to continue")),
+        number::PREFLIGHT_STORAGE => storage(autopilot, command),
+        number::DO_SET_STANDARD_MODE => match command.whole(1).and_then(standard_mode::mode) {
+            Some(mode) => vehicle.set_mode(mode),
+            None => Err(Refusal::denied(format!("No standard mode {}", command.parameter(1)))),
+        },
+        number::COMPONENT_ARM_DISARM => arm(vehicle, command),
+        number::RUN_PREARM_CHECKS => {
+            check(autopilot);
+            Ok(())
+        }
+        number::SET_MESSAGE_INTERVAL => set_interval(autopilot, origin, command),
+        _ => return None,
+    })
+}
+
+fn arm(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    let force = command.parameter(2) == FORCE;
+    match command.parameter(1) {
+        1.0 => vehicle.arm(force),
+        0.0 => vehicle.disarm(force),
+        other => Err(Refusal::denied(format!("{other} neither arms (1) nor disarms (0)"))),
+    }
+}
+
+/// Tells what speaks against arming.
+fn check(autopilot: &mut Autopilot) {
+    let obstacles = autopilot.vehicle.arming_obstacles();
+    if obstacles.is_empty() {
+        super::super::status_text::send(autopilot, Severity::Info, "Ready to arm");
+    }
+    for obstacle in obstacles {
+        super::super::status_text::send(autopilot, Severity::Warning, &format!("Preflight: {obstacle}"));
+    }
+}
+
+/// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
+fn take_off(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut autopilot.vehicle;
+    if command.z.is_nan() {
+        return vehicle.take_off(None);
+    }
+    if vehicle.identity().is_ardupilot() {
+        return vehicle.take_off(Some(command.z));
+    }
+    let down_m = set_point::down_of_altitude(altitude_frame(command), command.z, vehicle);
+    let height_m = vehicle.home().position_m.z - down_m;
+    // PX4 takes an altitude below the ground for one above home of its parameter.
+    const LEAST_M: f64 = 0.5;
+    if height_m < LEAST_M {
+        let text = format!("Takeoff altitude {:.1} m is not above home: using the parameter", command.z);
+        super::super::status_text::send(autopilot, Severity::Warning, &text);
+        return autopilot.vehicle.take_off(None);
+    }
+    vehicle.take_off(Some(height_m))
+}
+
+/// To an angle, degrees, from north or (parameter 4) from the present heading, in a direction if there is one.
+fn turn(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    let angle_rad = command.parameter(1).to_radians();
+    if !angle_rad.is_finite() {
+        return Err(Refusal::denied("CONDITION_YAW needs an angle"));
+    }
+    let direction = if command.parameter(3) < 0.0 { -1.0 } else { 1.0 };
+    let relative = command.parameter(4) == 1.0;
+    let goal = if relative { vehicle.outputs().attitude_rad.z + direction * angle_rad } else { angle_rad };
+    vehicle.turn_to(goal)
+}
+
+fn set_mode(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    const CUSTOM_MODE_ENABLED: u32 = 1;
+    let (base, main, sub) = (command.whole(1), command.whole(2), command.whole(3).unwrap_or(0));
+    let (Some(base), Some(main)) = (base, main) else {
+        return Err(Refusal::denied("DO_SET_MODE needs a mode"));
+    };
+    if base & CUSTOM_MODE_ENABLED == 0 {
+        return Err(Refusal::Unsupported("Only custom modes are supported".to_owned()));
+    }
+    let custom_mode = if autopilot.identity().is_ardupilot() {
+        main
+    } else if main <= 0xff && sub <= 0xff {
+        main << 16 | sub << 24
+    } else {
+        return Err(Refusal::denied(format!("No mode {main}, {sub}")));
+    };
+    set_custom_mode(autopilot, custom_mode)
+}
+
+/// Changes to a mode by its number in HEARTBEAT.
+pub fn set_custom_mode(autopilot: &mut Autopilot, custom_mode: u32) -> Result<(), Refusal> {
+    match autopilot.identity().mode(custom_mode) {
+        Some(mode) => autopilot.vehicle.set_mode(mode),
+        None => Err(Refusal::Unsupported(format!("Mode {custom_mode:#x} is not available"))),
+    }
+}
+
+/// Sets the limit of speed of the shaper: 0 and 1 horizontally, 2 up, 3 down; m/s.
+fn change_speed(autopilot: &mut Autopilot, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
+    const NO_CHANGE: f64 = -1.0;
+    let name = match kind {
+        0.0 | 1.0 => "limits.speed.horizontal",
+        2.0 => "limits.speed.up",
+        3.0 => "limits.speed.down",
+        other => return Err(Refusal::denied(format!("No speed of type {other}"))),
+    };
+    if speed_m_s == NO_CHANGE {
+        return Ok(());
+    }
+    let id = crate::parameters::identifier(name);
+    autopilot.set_parameter(&id, speed_m_s).map_err(|error| Refusal::denied(error.to_string()))?;
+    parameter::tell(autopilot, &id);
+    Ok(())
+}
+
+fn place(command: &Command, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {
+    let altitude_m = vehicle.frame().origin().altitude_m;
+    let place = Geodetic { latitude_deg: command.x, longitude_deg: command.y, altitude_m };
+    if !place.is_valid() {
+        return Err(Refusal::denied(format!("No place at latitude {}, longitude {}", command.x, command.y)));
+    }
+    Ok(vehicle.frame().to_local_m(&place))
+}
+
+fn set_home(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    if command.parameter(1) == 1.0 {
+        return vehicle.set_home(vehicle.outputs().position_m, None);
+    }
+    let mut position_m = place(command, vehicle)?;
+    if !command.z.is_finite() {
+        return Err(Refusal::denied("Home needs an altitude"));
+    }
+    position_m.z = set_point::down_of_altitude(altitude_frame(command), command.z, vehicle);
+    let yaw_rad = Some(command.parameter(4).to_radians()).filter(|yaw| yaw.is_finite());
+    vehicle.set_home(position_m, yaw_rad)
+}
+
+/// NaN keeps what it stands for; nothing but NaN is a pause.
+fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &autopilot.vehicle;
+    let horizontal_m = if command.x.is_nan() && command.y.is_nan() {
+        None
+    } else {
+        let position_m = place(command, vehicle)?;
+        Some([position_m.x, position_m.y])
+    };
+    let down_m = Some(command.z)
+        .filter(|altitude| altitude.is_finite())
+        .map(|altitude| set_point::down_of_altitude(altitude_frame(command), altitude, vehicle));
+    let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
+    autopilot.vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
+    let speed_m_s = command.parameter(1);
+    if speed_m_s > 0.0 { change_speed(autopilot, 1.0, speed_m_s) } else { Ok(()) }
+}
+
+/// 0 reads, 1 writes, 2 resets the parameters.
+fn storage(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    match command.parameter(1) {
+        // They are read at the start, and always written when one changes.
+        0.0 | 1.0 => Ok(()),
+        2.0 => autopilot.reset_parameters(),
+        other => Err(Refusal::denied(format!("Parameter storage has no action {other}"))),
+    }
+}
+
+fn set_interval(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> Result<(), Refusal> {
+    let Some(message_id) = command.whole(1) else { return Err(Refusal::denied("A message has a number")) };
+    if message_interval::set(autopilot, origin, message_id, command.parameter(2)) {
+        Ok(())
+    } else {
+        Err(Refusal::Unsupported(format!("There is no message {message_id} to be streamed")))
+    }
+}

@@ -1,0 +1,92 @@
+//! The command protocol: COMMAND_LONG and COMMAND_INT, and the older SET_MODE. Every command is answered.
+
+mod action;
+mod information;
+mod retry;
+
+pub use retry::Retries;
+
+use super::{Destination, Origin};
+use crate::autopilot::Autopilot;
+use crate::codec::{Command, CommandAck, CommandKind, Frame, Message};
+use crate::vehicle::{Refusal, Severity};
+
+/// MAV_RESULT.
+mod result {
+    pub const ACCEPTED: u8 = 0;
+    pub const TEMPORARILY_REJECTED: u8 = 1;
+    pub const DENIED: u8 = 2;
+    pub const UNSUPPORTED: u8 = 3;
+    pub const FAILED: u8 = 4;
+}
+
+/// What becomes of a command: carried out, refused with a reason, or unknown (`None`).
+type Outcome = Option<Result<(), Refusal>>;
+
+/// Carries a command out, or repeats its answer if it has been carried out already, and answers.
+pub fn handle(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let Some(command) = Command::read(frame) else { return };
+    // Asking again for information must bring it again: its first answer may be what was lost.
+    if let Some(outcome) = information::handle(autopilot, origin, &command) {
+        let code = code(&Some(outcome));
+        acknowledge(autopilot, origin, command.number, code);
+        return;
+    }
+    let time_us = autopilot.vehicle.time_us();
+    let code = match autopilot.retries.answer(origin, &command, frame.sequence(), time_us) {
+        Some(code) => code,
+        None => {
+            let outcome = action::handle(autopilot, origin, &command);
+            if let Some(Err(refusal)) = &outcome {
+                super::status_text::send_notices(autopilot);
+                super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
+            }
+            let code = code(&outcome);
+            autopilot.retries.remember(origin, &command, frame.sequence(), time_us, code);
+            code
+        }
+    };
+    acknowledge(autopilot, origin, command.number, code);
+}
+
+/// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
+pub fn set_mode(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let payload = frame.payload();
+    let custom_mode = payload.u32(0);
+    let outcome = Some(action::set_custom_mode(autopilot, custom_mode));
+    if let Some(Err(refusal)) = &outcome {
+        super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
+    }
+    const SET_MODE_MESSAGE: u16 = 11;
+    acknowledge(autopilot, origin, SET_MODE_MESSAGE, code(&outcome));
+}
+
+fn code(outcome: &Outcome) -> u8 {
+    match outcome {
+        Some(Ok(())) => result::ACCEPTED,
+        Some(Err(Refusal::TemporarilyRejected(_))) => result::TEMPORARILY_REJECTED,
+        Some(Err(Refusal::Denied(_))) => result::DENIED,
+        Some(Err(Refusal::Failed(_))) => result::FAILED,
+        Some(Err(Refusal::Unsupported(_))) | None => result::UNSUPPORTED,
+    }
+}
+
+fn acknowledge(autopilot: &mut Autopilot, origin: &Origin, command: u16, result: u8) {
+    let ack = CommandAck {
+        command,
+        result,
+        progress: 0,
+        target_system: origin.system,
+        target_component: origin.component,
+    };
+    autopilot.send(Destination::Peer(origin.peer), Message::CommandAck(ack));
+}
+
+/// The frame in which a command's altitude is meant: COMMAND_LONG has none and means sea level.
+fn altitude_frame(command: &Command) -> u8 {
+    const MAV_FRAME_GLOBAL: u8 = 0;
+    match command.kind {
+        CommandKind::Long { .. } => MAV_FRAME_GLOBAL,
+        CommandKind::Int { frame } => frame,
+    }
+}

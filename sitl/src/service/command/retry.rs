@@ -1,0 +1,61 @@
+//! Commands that were carried out lately: a repeated one is answered again, not carried out again.
+
+use crate::codec::{Command, CommandKind};
+use crate::service::Origin;
+
+/// Commands that are remembered.
+const REMEMBERED: usize = 32;
+/// For this long, µs of simulation time.
+const REMEMBERED_US: u64 = 10_000_000;
+
+#[derive(Clone, Debug)]
+struct Done {
+    sender: (u8, u8),
+    command: Command,
+    sequence: u8,
+    time_us: u64,
+    code: u8,
+}
+
+/// The memory.
+#[derive(Clone, Debug, Default)]
+pub struct Retries(Vec<Done>);
+
+impl Retries {
+    /// The answer to give again, if this is a retry (its sender says so) or a duplicate (the same frame once more).
+    pub fn answer(&self, origin: &Origin, command: &Command, sequence: u8, time_us: u64) -> Option<u8> {
+        let retry = matches!(command.kind, CommandKind::Long { confirmation } if confirmation > 0);
+        self.0
+            .iter()
+            .rev()
+            .find(|done| {
+                done.sender == (origin.system, origin.component)
+                    && time_us.saturating_sub(done.time_us) < REMEMBERED_US
+                    && same(&done.command, command)
+                    && (retry || done.sequence == sequence)
+            })
+            .map(|done| done.code)
+    }
+
+    /// Remembers what was answered.
+    pub fn remember(&mut self, origin: &Origin, command: &Command, sequence: u8, time_us: u64, code: u8) {
+        if self.0.len() >= REMEMBERED {
+            self.0.remove(0);
+        }
+        let sender = (origin.system, origin.component);
+        self.0.push(Done { sender, command: *command, sequence, time_us, code });
+    }
+}
+
+/// The same but for the confirmation. NaN is the same as NaN here.
+fn same(one: &Command, other: &Command) -> bool {
+    let numbers = |command: &Command| {
+        let [a, b, c, d] = command.parameters;
+        [a, b, c, d, command.x, command.y, command.z].map(f64::to_bits)
+    };
+    let kind = match (one.kind, other.kind) {
+        (CommandKind::Long { .. }, CommandKind::Long { .. }) => true,
+        (one, other) => one == other,
+    };
+    kind && one.number == other.number && numbers(one) == numbers(other)
+}

@@ -1,0 +1,108 @@
+//! Health, battery, outputs, landed state and time.
+
+use mavlink::dialects::common::{
+    BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, MavBatteryChargeState, MavBatteryFunction, MavBatteryType,
+    MavLandedState, MavMessage, MavSysStatusSensor, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+};
+
+use super::boot_ms;
+use crate::vehicle::{LandedState, Vehicle};
+
+/// Cells of the battery.
+const CELLS: usize = 3;
+
+/// SYS_STATUS: instruments and controllers are there and healthy; the arming check tells whether it could be armed.
+pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
+    let present = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ANGULAR_RATE_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+        | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
+        | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
+    let health = if armable { present } else { present & !MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK };
+    let battery = vehicle.battery();
+    MavMessage::SYS_STATUS(SYS_STATUS_DATA {
+        onboard_control_sensors_present: present,
+        onboard_control_sensors_enabled: present,
+        onboard_control_sensors_health: health,
+        voltage_battery: (battery.voltage_v() * 1e3).round() as u16,
+        current_battery: (battery.current_a() * 1e2).round() as i16,
+        battery_remaining: percent(vehicle),
+        ..SYS_STATUS_DATA::default()
+    })
+}
+
+fn percent(vehicle: &Vehicle) -> i8 {
+    (100.0 * vehicle.battery_remaining()).ceil() as i8
+}
+
+/// BATTERY_STATUS.
+pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
+    let battery = vehicle.battery();
+    let remaining = vehicle.battery_remaining();
+    let cell_mv = (battery.voltage_v() / CELLS as f64 * 1e3).round() as u16;
+    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
+        current_consumed: (battery.drawn_ah() * 1e3).round() as i32,
+        energy_consumed: (battery.energy_j() / 100.0).round() as i32,
+        // Unknown.
+        temperature: i16::MAX,
+        voltages: core::array::from_fn(|cell| if cell < CELLS { cell_mv } else { u16::MAX }),
+        current_battery: (battery.current_a() * 1e2).round() as i16,
+        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
+        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
+        battery_remaining: percent(vehicle),
+        time_remaining: battery.time_remaining_s(vehicle.conduct().battery_capacity_ah) as i32,
+        charge_state: match remaining {
+            ..=0.07 => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL,
+            ..=0.15 => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW,
+            _ => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK,
+        },
+        ..BATTERY_STATUS_DATA::default()
+    })
+}
+
+/// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most.
+pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
+    let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
+        outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
+    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+        time_usec: outputs.time_us as u32,
+        servo1_raw,
+        servo2_raw,
+        servo3_raw,
+        servo4_raw,
+        ..SERVO_OUTPUT_RAW_DATA::default()
+    })
+}
+
+/// EXTENDED_SYS_STATE.
+pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
+    MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        landed_state: match vehicle.landed_state() {
+            LandedState::OnGround => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+            LandedState::InAir => MavLandedState::MAV_LANDED_STATE_IN_AIR,
+            LandedState::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
+            LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
+        },
+        ..EXTENDED_SYS_STATE_DATA::default()
+    })
+}
+
+/// SYSTEM_TIME: the wall clock's time at the start, and simulation time from there on.
+pub fn system_time(vehicle: &Vehicle, unix_start_us: u64) -> MavMessage {
+    MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
+        time_unix_usec: unix_start_us + vehicle.time_us(),
+        time_boot_ms: boot_ms(vehicle.time_us()),
+    })
+}
