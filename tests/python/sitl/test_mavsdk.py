@@ -1,0 +1,113 @@
+"""MAVSDK from PyPI: connect, health, parameters, takeoff, go-to, offboard, return, land."""
+
+import math
+import socket
+import time
+
+import pytest
+from mavsdk import ComponentType, Configuration, Mavsdk
+from mavsdk.plugins.action import Action
+from mavsdk.plugins.info import Info
+from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
+from mavsdk.plugins.param import Param
+from mavsdk.plugins.telemetry import Telemetry
+
+
+def eventually(what, condition, timeout: float = 20.0):
+    """Waits until a condition holds."""
+    end = time.monotonic() + timeout
+    while time.monotonic() < end:
+        if condition():
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"not within {timeout} s: {what}")
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@pytest.fixture
+def fly(start):
+    """Starts a vehicle and connects MAVSDK as its users do: listening on the port that the vehicle sends to."""
+    made = []
+
+    def make(*arguments):
+        port = free_port()
+        vehicle = start(*arguments, links=(f"udpout:127.0.0.1:{port},onboard",))
+        mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        made.append(mavsdk)
+        mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
+        system = mavsdk.first_autopilot(10.0)
+        assert system is not None, vehicle.output()
+        return system
+
+    yield make
+    for mavsdk in made:
+        mavsdk.destroy()
+
+
+def test_takeoff_goto_return(fly):
+    system = fly("--speed", "2", "--set", "RTL_RETURN_ALT=6")
+    telemetry, action, info = Telemetry(system), Action(system), Info(system)
+    eventually("health", telemetry.health_all_ok)
+    assert telemetry.health().is_armable
+    version = info.get_version()
+    version = version[1] if isinstance(version, tuple) else version
+    assert (version.flight_sw_major, version.flight_sw_minor) == (0, 1)
+
+    action.set_takeoff_altitude(4.0)
+    action.arm()
+    action.takeoff()
+    eventually("in the air", telemetry.in_air)
+    eventually("4 m", lambda: abs(telemetry.position().relative_altitude_m - 4) < 0.2)
+
+    home = telemetry.home()
+    action.goto_location(home.latitude_deg + 1e-4, home.longitude_deg, home.absolute_altitude_m + 5, 90.0)
+    eventually("go-to", lambda: abs(telemetry.position().latitude_deg - home.latitude_deg - 1e-4) < 3e-6
+               and abs(telemetry.heading().heading_deg - 90) < 3, 30)
+    action.hold()
+    action.return_to_launch()
+    eventually("home and disarmed", lambda: not telemetry.armed(), 60)
+    assert not telemetry.in_air()
+    assert math.dist((telemetry.position().latitude_deg, telemetry.position().longitude_deg),
+                     (home.latitude_deg, home.longitude_deg)) < 3e-6
+
+
+def test_offboard(fly):
+    system = fly()
+    telemetry, action, offboard = Telemetry(system), Action(system), Offboard(system)
+    eventually("health", telemetry.health_all_ok)
+    action.arm()
+    action.takeoff()
+    eventually("2.5 m", lambda: abs(telemetry.position().relative_altitude_m - 2.5) < 0.2)
+
+    offboard.set_position_ned(PositionNedYaw(3.0, 1.0, -5.0, 0.0))
+    offboard.start()
+    place = lambda: telemetry.position_velocity_ned().position  # noqa: E731
+    eventually("place", lambda: math.dist((place().north_m, place().east_m, place().down_m), (3, 1, -5)) < 0.2)
+    offboard.set_velocity_ned(VelocityNedYaw(0.0, 2.0, 0.0, 0.0))
+    eventually("2 m/s east", lambda: abs(telemetry.velocity_ned().east_m_s - 2) < 0.1)
+    offboard.set_velocity_body(VelocityBodyYawspeed(0.0, 0.0, -0.5, 20.0))
+    eventually("climbs", lambda: abs(telemetry.velocity_ned().down_m_s + 0.5) < 0.1)
+    eventually("turns", lambda: abs(telemetry.attitude_angular_velocity_body().yaw_rad_s - math.radians(20)) < 0.05)
+    offboard.stop()
+    eventually("holds", lambda: abs(telemetry.velocity_ned().down_m_s) < 0.05)
+    action.land()
+    eventually("disarmed", lambda: not telemetry.armed(), 60)
+
+
+def test_parameters(fly):
+    param = Param(fly())
+    every = param.get_all_params()
+    every = every[1] if isinstance(every, tuple) else every
+    names = {one.name for one in [*every.int_params, *every.float_params]}
+    assert {"MIS_TAKEOFF_ALT", "COM_OBL_RC_ACT", "LIM_SPEED_H", "C_POS_R_THE", "AF_MASS"} <= names
+    param.set_param_float("LIM_SPEED_H", 5.0)
+    value = param.get_param_float("LIM_SPEED_H")
+    assert (value[1] if isinstance(value, tuple) else value) == pytest.approx(5.0)
+    param.set_param_int("COM_OBL_RC_ACT", 4)
+    value = param.get_param_int("COM_OBL_RC_ACT")
+    assert (value[1] if isinstance(value, tuple) else value) == 4
