@@ -42,6 +42,10 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     let (mut count, rust_passed) = rust_tests(workspace)?;
 
     let fmu = bundle::make(workspace, progress, &[])?;
+    progress.step("Building the MAVLink vehicle");
+    let mut build = cargo();
+    build.args(["build", "--package", "sitl"]).current_dir(workspace.root());
+    process::output(&mut build, "cargo build")?;
     progress.step("Running the Python tests");
     let report = workspace.python_report();
     let status = process::status(
@@ -52,7 +56,8 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
             .arg(format!("--junitxml={}", report.display()))
             .current_dir(workspace.root())
             .env("LMPC_QUADROTOR_FMU", &fmu)
-            .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples()),
+            .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
+            .env("LMPC_SITL", workspace.sitl()),
     )?;
     count += python_count(&files::read_text(&report)?)?;
 

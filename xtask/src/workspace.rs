@@ -58,6 +58,11 @@ impl Workspace {
         self.target.join("paper")
     }
 
+    /// The MAVLink vehicle that `cargo build` makes.
+    pub fn sitl(&self) -> PathBuf {
+        self.target.join("debug").join(format!("lmpc-sitl{}", std::env::consts::EXE_SUFFIX))
+    }
+
     /// The examples that `cargo test` builds.
     pub fn examples(&self) -> PathBuf {
         self.target.join("debug").join("examples")

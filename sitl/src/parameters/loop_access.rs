@@ -8,7 +8,7 @@ use super::{SetError, Value};
 pub fn read(parameter: &Parameter, configuration: &Configuration) -> Value {
     match parameter.access {
         Access::Real { get, .. } => Value::Real(get(configuration) as f32),
-        Access::Integer { get, .. } => Value::Integer(get(configuration)),
+        Access::Integer { get, .. } | Access::Enumeration { get, .. } => Value::Integer(get(configuration)),
         Access::Boolean { get, .. } => Value::Integer(i32::from(get(configuration))),
     }
 }
@@ -32,6 +32,11 @@ pub fn write(id: &str, parameter: &Parameter, value: f64, into: &mut Configurati
         }
         Access::Integer { minimum, maximum, set, .. } => {
             range(f64::from(minimum), f64::from(maximum))?;
+            whole()?;
+            set(into, value as i32);
+        }
+        Access::Enumeration { choice, set, .. } => {
+            range(1.0, choice.items.len() as f64)?;
             whole()?;
             set(into, value as i32);
         }

@@ -74,7 +74,7 @@ fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMessage
     };
     let mut messages: Vec<_> = bytes.chunks(CHUNK).enumerate().map(chunk).collect();
     // A piece without a zero says that more follows.
-    if long && bytes.len() % CHUNK == 0 {
+    if long && bytes.len().is_multiple_of(CHUNK) {
         messages.push(chunk((messages.len(), &[])));
     }
     messages
