@@ -2,12 +2,12 @@
 
 use super::line_chart::Line;
 use super::scale::{AxisRange, Scale};
-use super::svg::{Anchor, Svg, text_width};
+use super::svg::{Anchor, Svg};
 
 /// Azimuth and elevation of the eye, rad: from the south-east, above.
 const AZIMUTH: f64 = 0.6;
 const ELEVATION: f64 = 0.38;
-const SIZE: [f64; 2] = [620.0, 560.0];
+const SIZE: [f64; 2] = [720.0, 540.0];
 /// Pixels per unit cube edge.
 const ZOOM: f64 = 300.0;
 
@@ -35,11 +35,11 @@ pub fn path_figure(title: &str, paths: &[Path]) -> String {
             }
         }
     }
-    let mut x = 20.0;
-    for (line, _) in paths.iter().filter(|(line, _)| !line.label.is_empty()) {
-        svg.line(&[[x, 14.0], [x + 20.0, 14.0]], line.colour, 2.0, line.dash);
-        svg.text([x + 26.0, 18.0], Anchor::Start, "#333", &line.label);
-        x += 44.0 + text_width(&line.label);
+    let named = paths.iter().filter(|(line, _)| !line.label.is_empty());
+    for (row, (line, _)) in named.enumerate() {
+        let y = 26.0 + 20.0 * row as f64;
+        svg.line(&[[SIZE[0] - 250.0, y - 4.0], [SIZE[0] - 230.0, y - 4.0]], line.colour, 2.0, line.dash);
+        svg.text([SIZE[0] - 224.0, y], Anchor::Start, "#333", &line.label);
     }
     svg.finish()
 }
@@ -63,7 +63,7 @@ fn projected(Shares([north, east, up]): Shares) -> [f64; 2] {
     let right = east * AZIMUTH.cos() - north * AZIMUTH.sin();
     let away = east * AZIMUTH.sin() + north * AZIMUTH.cos();
     [
-        SIZE[0] / 2.0 + 1.15 * ZOOM * right,
+        0.42 * SIZE[0] + 1.15 * ZOOM * right,
         0.72 * SIZE[1] - ZOOM * (away * ELEVATION.sin() + 1.1 * up * ELEVATION.cos()),
     ]
 }

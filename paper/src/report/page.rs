@@ -121,4 +121,5 @@ pub fn percent(ratio: Option<f64>) -> String {
         None => "refused".to_owned(),
     }
     .replace('-', "−")
+    .replace(' ', "\u{a0}")
 }
