@@ -54,6 +54,11 @@ impl FrameDecoder {
         frames
     }
 
+    /// Bytes of a frame that is not complete yet.
+    pub fn waiting_bytes(&self) -> usize {
+        self.bytes.len()
+    }
+
     /// Bytes that belonged to no frame so far.
     pub fn rejected_bytes(&self) -> u64 {
         self.rejected_bytes

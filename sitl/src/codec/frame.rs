@@ -170,6 +170,7 @@ pub(super) fn message_id(bytes: &[u8], version: Version) -> u32 {
 
 /// The seed of the checksum, which identifies the layout of a message; `None` for an unknown one.
 pub(super) fn extra_crc(message_id: u32) -> Option<u8> {
-    // No message of the dialect has a zero; a test sees to it.
-    Some(MavMessage::extra_crc(message_id)).filter(|extra| *extra != 0)
+    // The dialect answers zero for an unknown message, and one known message has a zero.
+    let extra = MavMessage::extra_crc(message_id);
+    (extra != 0 || MavMessage::default_message_from_id(message_id).is_some()).then_some(extra)
 }

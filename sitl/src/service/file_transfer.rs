@@ -16,7 +16,7 @@ const PARAMETER_DIRECTORY: &str = "@PARAM";
 const DATA: usize = 239;
 /// Messages of one answer to a burst.
 const BURST: usize = 64;
-/// Sessions at the same time.
+/// Open files at the same time; the oldest makes room.
 const SESSIONS: usize = 8;
 
 mod opcode {
@@ -34,7 +34,6 @@ mod opcode {
 
 mod nak {
     pub const INVALID_SESSION: u8 = 4;
-    pub const NO_SESSIONS: u8 = 5;
     pub const END_OF_FILE: u8 = 6;
     pub const UNKNOWN_COMMAND: u8 = 7;
     pub const FILE_NOT_FOUND: u8 = 10;
@@ -52,7 +51,6 @@ struct Session {
 #[derive(Clone, Debug, Default)]
 pub struct FileServer {
     sessions: Vec<Session>,
-    next: u8,
 }
 
 /// A request: header of 12 bytes, then data.
@@ -146,16 +144,21 @@ fn open(autopilot: &mut Autopilot, client: (u8, u8), request: &Request<'_>) -> R
         |code| Reply { result: Err(code), session: request.session, offset: 0, burst_complete: false };
     let Some(content) = file(autopilot, &request.path()) else { return refused(nak::FILE_NOT_FOUND) };
     let files = &mut autopilot.files;
-    // A client opens one file at a time: a second request is a retry whose answer was lost.
-    files.sessions.retain(|open| open.client != client);
+    // The number is the client's choice, and each has its own: some clients tell their transfers apart by it. A second
+    // request under the same number is a retry whose answer was lost.
+    files.sessions.retain(|open| (open.client, open.number) != (client, request.session));
     if files.sessions.len() >= SESSIONS {
-        return refused(nak::NO_SESSIONS);
+        // Somebody has left without closing.
+        files.sessions.remove(0);
     }
-    files.next = files.next.wrapping_add(1);
-    let number = files.next;
     let size = content.len() as u32;
-    files.sessions.push(Session { number, client, content });
-    Reply { result: Ok(size.to_le_bytes().to_vec()), session: number, offset: 0, burst_complete: false }
+    files.sessions.push(Session { number: request.session, client, content });
+    Reply {
+        result: Ok(size.to_le_bytes().to_vec()),
+        session: request.session,
+        offset: 0,
+        burst_complete: false,
+    }
 }
 
 /// Pieces of a file from the offset on: one, or a burst of them.

@@ -24,6 +24,15 @@ const FORCE_SET: u16 = 1 << 9;
 const YAW_IGNORE: u16 = 1 << 10;
 const YAW_RATE_IGNORE: u16 = 1 << 11;
 
+/// Beyond these a set-point is a mistake: m (the tangent plane is not the earth), and the largest values that the limits
+/// of speed, acceleration and turning can be given, m/s, m/s² and rad/s.
+const FARTHEST_M: f64 = 1e5;
+const FASTEST_M_S: f64 = 50.0;
+const STRONGEST_M_S2: f64 = 20.0;
+const QUICKEST_TURN_RAD_S: f64 = 10.0;
+/// Body rates beyond this, rad/s, no gyroscope measures.
+const QUICKEST_RATE_RAD_S: f64 = 35.0;
+
 /// ATTITUDE_TARGET_TYPEMASK.
 const ROLL_RATE_IGNORE: u8 = 1;
 const PITCH_RATE_IGNORE: u8 = 2;
@@ -229,6 +238,23 @@ fn compose(
     if !any(&given.position) && !any(&given.velocity) && !any(&given.acceleration) {
         return Err(Refusal::denied("Set-point refused: neither position, velocity nor acceleration"));
     }
+    for (name, axes, values, most) in [
+        ("position", &given.position, position, FARTHEST_M),
+        ("velocity", &given.velocity, velocity, FASTEST_M_S),
+        ("acceleration", &given.acceleration, acceleration, STRONGEST_M_S2),
+    ] {
+        if let Some(axis) = (0..3).find(|axis| axes[*axis] && values[*axis].abs() > most) {
+            return Err(Refusal::denied(format!(
+                "Set-point refused: {name} {:.3e} is beyond {most}",
+                values[axis]
+            )));
+        }
+    }
+    if given.yaw_rate && yaw_rate_rad_s.abs() > QUICKEST_TURN_RAD_S {
+        return Err(Refusal::denied(format!(
+            "Set-point refused: yaw rate {yaw_rate_rad_s:.3e} is beyond {QUICKEST_TURN_RAD_S}"
+        )));
+    }
     // A trajectory moves; a place with velocities of zero is a place.
     let moves = (0..3).any(|axis| {
         (given.velocity[axis] && velocity[axis] != 0.0)
@@ -267,8 +293,11 @@ fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refu
     let rate_bits = [ROLL_RATE_IGNORE, PITCH_RATE_IGNORE, YAW_RATE_IGNORE_ATTITUDE];
     let rates =
         Vector3::from_fn(|axis, _| if ignored(rate_bits[axis]) { 0.0 } else { target.body_rate_rad_s[axis] });
-    if !rates.iter().all(|rate| rate.is_finite()) {
-        return Err(Refusal::denied("Attitude refused: a body rate is not a number"));
+    // NaN is not within.
+    if !rates.iter().all(|rate| rate.abs() <= QUICKEST_RATE_RAD_S) {
+        return Err(Refusal::denied(format!(
+            "Attitude refused: a body rate is not within {QUICKEST_RATE_RAD_S} rad/s"
+        )));
     }
     let attitude = if ignored(ATTITUDE_IGNORE) {
         if rate_bits.iter().all(|bit| ignored(*bit)) {

@@ -63,7 +63,10 @@ impl Vehicle {
             {
                 return;
             }
-            SetPoint::Position(position) => self.follow(&position),
+            SetPoint::Position(position) => {
+                let limits = self.simulation.configuration().limits;
+                self.follow(&position.within(&limits));
+            }
         }
         self.set_points.applied = true;
     }

@@ -1,6 +1,7 @@
 //! Set-points in the local frame, after frames and masks have been resolved.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use quadrotor::Limits;
 
 /// What one axis of the local frame is asked to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +78,31 @@ impl PositionSetPoint {
                 position_m < z_m - NEAR_M || velocity_m_s < -SLOW
             }
         }
+    }
+
+    /// The same with the velocities of its trajectory within the limits of speed: the rest of the way is left to the
+    /// controllers, which keep the limits, too.
+    pub fn within(mut self, limits: &Limits) -> Self {
+        let speed = |axis: &AxisTarget| match axis {
+            AxisTarget::Track { velocity_m_s, .. } => *velocity_m_s,
+            _ => 0.0,
+        };
+        let [north, east, _] = self.axes.each_ref().map(speed);
+        let horizontal = libm::hypot(north, east);
+        let share = if horizontal > limits.speed_horizontal_m_s {
+            limits.speed_horizontal_m_s / horizontal
+        } else {
+            1.0
+        };
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            if let AxisTarget::Track { velocity_m_s, .. } = axis {
+                *velocity_m_s = match index {
+                    2 => velocity_m_s.clamp(-limits.speed_up_m_s, limits.speed_down_m_s),
+                    _ => *velocity_m_s * share,
+                };
+            }
+        }
+        self
     }
 
     /// Whether something in it runs on for ever: without news it has to end.

@@ -1,0 +1,209 @@
+//! The vehicle's states, driven by messages in simulation time.
+
+mod common;
+
+use common::{Bench, settings};
+use mavlink::dialects::common::{MANUAL_CONTROL_DATA, MavCmd, MavMessage};
+use sitl::identity::Identity;
+use sitl::vehicle::{LandedState, Mode};
+
+const NOTHING: [f32; 7] = [0.0; 7];
+const UNSUPPORTED: u8 = 3;
+const TEMPORARILY_REJECTED: u8 = 1;
+const DENIED: u8 = 2;
+
+#[test]
+fn it_is_armable_from_the_start() {
+    let bench = Bench::new(Identity::Px4);
+    assert!(bench.autopilot.vehicle().arming_obstacles().is_empty());
+    assert!(bench.texts()[0].contains("simulated"), "it says what it is: {:?}", bench.texts());
+}
+
+#[test]
+fn takes_off_holds_lands_and_disarms() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    assert_eq!(bench.mode(), Mode::Hold);
+    assert!(bench.is_near([0.0, 0.0, -10.0]), "{:?}", bench.position());
+    assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::InAir);
+    // In the air nothing but force disarms.
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, NOTHING), TEMPORARILY_REJECTED);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, NOTHING), 0);
+    bench.fly(0.5);
+    assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::Landing);
+    let mut fastest: f64 = 0.0;
+    while bench.autopilot.vehicle().landed_state() == LandedState::Landing {
+        bench.fly(0.01);
+        if bench.position()[2] > -0.3 {
+            fastest = fastest.max(bench.velocity()[2]);
+        }
+    }
+    assert!(fastest < 1.0, "touches down at {fastest} m/s");
+    assert!(bench.autopilot.vehicle().is_armed());
+    bench.fly(2.5);
+    assert!(!bench.autopilot.vehicle().is_armed() && bench.position()[2].abs() < 0.02);
+    assert!(bench.texts().iter().any(|text| text == "Disarmed after landing"), "{:?}", bench.texts());
+}
+
+#[test]
+fn takeoff_before_arming_waits_for_it() {
+    let mut bench = Bench::new(Identity::Px4);
+    let parameters = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 493.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, parameters), 0);
+    bench.fly(1.0);
+    assert!(bench.position()[2] > -0.01);
+    bench.arm();
+    bench.fly_until("5 m", 15.0, |bench| bench.is_near([0.0, 0.0, -5.0]));
+}
+
+#[test]
+fn nothing_happens_after_arming_disarms() {
+    let mut bench = Bench::new(Identity::Px4);
+    bench.arm();
+    bench.fly(9.9);
+    assert!(bench.autopilot.vehicle().is_armed() && bench.position()[2] > -0.01);
+    bench.fly(0.2);
+    assert!(!bench.autopilot.vehicle().is_armed());
+}
+
+#[test]
+fn a_refused_arming_says_why() {
+    let mut bench = Bench::new(Identity::Px4);
+    // The position mode of a set-point that nobody has sent.
+    assert_eq!(bench.set_mode(Mode::Offboard), TEMPORARILY_REJECTED);
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 1);
+    assert!(
+        bench.texts().iter().any(|text| text == "Arming denied: not in Return mode"),
+        "{:?}",
+        bench.texts()
+    );
+    assert_eq!(
+        bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        DENIED
+    );
+}
+
+#[test]
+fn returns_over_its_height_and_lands_at_home() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.return_height_m = 15.0;
+    let mut bench = Bench::of(&start);
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(20.0, -10.0, -5.0));
+    let [latitude, longitude] = [place.latitude_deg as f32, place.longitude_deg as f32];
+    let goal = [-1.0, 1.0, 0.0, f32::NAN, latitude, longitude, 493.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, goal), 0);
+    // A float's degree is good for a metre.
+    bench.fly_until("there", 40.0, |bench| {
+        (bench.position()[0] - 20.0).abs() < 1.0 && bench.velocity()[0].abs() < 0.05
+    });
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, NOTHING), 0);
+    let mut highest: f64 = 0.0;
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        highest = highest.max(-bench.position()[2]);
+        assert!(bench.autopilot.vehicle().time_us() < 200_000_000, "still not home: {:?}", bench.position());
+    }
+    assert!((highest - 15.0).abs() < 0.5, "{highest}");
+    let [x, y, z] = bench.position();
+    assert!(x.hypot(y) < 0.2 && z.abs() < 0.02, "{x} {y} {z}");
+}
+
+#[test]
+fn sticks_fly_the_position_mode_and_their_loss_holds() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let forward = MANUAL_CONTROL_DATA { target: 1, x: 1000, z: 500, ..MANUAL_CONTROL_DATA::default() };
+    bench.stream(4.0, |bench| bench.send(MavMessage::MANUAL_CONTROL(forward.clone())));
+    let [north, east, down] = bench.velocity();
+    assert!((north - 5.0).abs() < 0.2 && east.abs() < 0.05 && down.abs() < 0.1, "{:?}", bench.velocity());
+    bench.fly(5.0);
+    assert!(bench.velocity()[0].abs() < 0.05, "{:?}", bench.velocity());
+    assert!(bench.texts().iter().any(|text| text.starts_with("Manual control lost")), "{:?}", bench.texts());
+    // Down to the ground with the stick.
+    let down = MANUAL_CONTROL_DATA { z: 0, ..forward };
+    let down = MANUAL_CONTROL_DATA { x: 0, ..down };
+    bench.stream(15.0, |bench| bench.send(MavMessage::MANUAL_CONTROL(down.clone())));
+    assert!(
+        !bench.autopilot.vehicle().is_armed() && bench.position()[2].abs() < 0.02,
+        "{:?}",
+        bench.position()
+    );
+}
+
+#[test]
+fn every_command_is_answered() {
+    let mut bench = Bench::new(Identity::Px4);
+    // A number that no enumeration has, in both messages.
+    for number in [0_u16, 31_999, 65_535, 16, 300, 420] {
+        for id in [76_u8, 75] {
+            let mut payload = vec![0; 35];
+            payload[28..30].copy_from_slice(&number.to_le_bytes());
+            (payload[30], payload[31]) = (1, 1);
+            let frame = raw_frame(id, &payload);
+            bench.heard.clear();
+            bench.receive(&frame);
+            let ack = bench.acks()[0];
+            assert_eq!((ack.command, ack.result, ack.target_system), (number, UNSUPPORTED, 255));
+        }
+    }
+}
+
+/// A frame of MAVLink 2 made by hand.
+fn raw_frame(id: u8, payload: &[u8]) -> sitl::codec::Frame {
+    use mavlink::Message as _;
+    let mut bytes = vec![0xfd, payload.len() as u8, 0, 0, 0, 255, 190, id, 0, 0];
+    bytes.extend(payload);
+    let extra = MavMessage::extra_crc(u32::from(id));
+    let checksum = mavlink::calculate_crc(&bytes[1..], extra);
+    bytes.extend(checksum.to_le_bytes());
+    sitl::codec::Frame::parse(&bytes).expect("a right frame")
+}
+
+#[test]
+fn a_retry_turns_once() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    let turn = [90.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+    bench.heard.clear();
+    for confirmation in 0..3 {
+        bench.send(common::command_long(MavCmd::MAV_CMD_CONDITION_YAW, turn, confirmation));
+        bench.fly(0.2);
+    }
+    assert_eq!(bench.acks().len(), 3, "each is answered");
+    bench.fly(12.0);
+    let yaw = bench.autopilot.vehicle().outputs().attitude_rad.z;
+    assert!((yaw - core::f64::consts::FRAC_PI_2).abs() < 0.02, "{yaw}");
+}
+
+#[test]
+fn heartbeats_come_every_second_and_at_once_after_a_change() {
+    let mut bench = Bench::new(Identity::Px4);
+    let beats = |bench: &Bench| bench.heard.iter().filter(|message| message.id() == 0).count();
+    bench.heard.clear();
+    bench.fly(5.0);
+    assert_eq!(beats(&bench), 5);
+    bench.heard.clear();
+    bench.arm();
+    assert_eq!(beats(&bench), 1);
+}
+
+#[test]
+fn messages_keep_their_rates() {
+    let mut bench = Bench::new(Identity::Px4);
+    let set = |bench: &mut Bench, id: f32, interval: f32| {
+        bench.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [id, interval, 0.0, 0.0, 0.0, 0.0, 0.0])
+    };
+    assert_eq!(set(&mut bench, 31.0, 7000.0), 0);
+    assert_eq!(set(&mut bench, 33.0, -1.0), 0);
+    assert_eq!(set(&mut bench, 9999.0, 1000.0), UNSUPPORTED);
+    bench.fly(1.0);
+    bench.heard.clear();
+    bench.fly(10.0);
+    let count = |id: u32| bench.heard.iter().filter(|message| message.id() == id).count();
+    assert_eq!(count(30), 150, "ATTITUDE at 15 Hz");
+    assert!((1428..=1429).contains(&count(31)), "{}", count(31));
+    assert_eq!(count(33), 0);
+    assert_eq!(count(32), 100, "LOCAL_POSITION_NED at 10 Hz");
+}
