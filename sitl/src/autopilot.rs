@@ -1,6 +1,8 @@
 //! The whole vehicle as MAVLink sees it, without a socket and without a clock: received frames and ticks of simulation
 //! time go in, messages come out.
 
+use std::collections::VecDeque;
+
 use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
 use quadrotor::{ConfigurationError, SimulationError};
 
@@ -13,13 +15,20 @@ use crate::service::heartbeat::Heartbeat;
 use crate::service::message_interval::Streams;
 use crate::service::status_text::StatusTexts;
 use crate::service::{
-    Destination, LinkProfile, Origin, Outgoing, command, file_transfer, heartbeat, log, manual_control,
-    message_interval, mission, parameter, set_point, status_text, telemetry, time_synchronization,
+    Destination, LinkProfile, Origin, Outgoing, PeerId, command, file_transfer, heartbeat, log,
+    manual_control, message_interval, mission, parameter, set_point, status_text, telemetry,
+    time_synchronization,
 };
 use crate::vehicle::{Refusal, Severity, Vehicle, VehicleSettings};
 
 /// Component id of an autopilot.
 pub const COMPONENT: u8 = 1;
+
+/// What this is, for whoever takes it for a flying one.
+const INTRODUCTION: &str =
+    concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION"), ": simulated quadrotor, Laguerre MPC");
+/// Peers that are remembered as told so.
+const MOST_GREETED: usize = 256;
 
 /// A vehicle with its services.
 #[derive(Debug)]
@@ -30,6 +39,7 @@ pub struct Autopilot {
     speed: Speed,
     parameters_changed: bool,
     outbox: Vec<Outgoing>,
+    greeted: VecDeque<PeerId>,
     pub(crate) vehicle: Vehicle,
     pub(crate) table: ParameterTable,
     pub(crate) streams: Vec<Streams>,
@@ -58,6 +68,7 @@ impl Autopilot {
             speed,
             parameters_changed: false,
             outbox: Vec::new(),
+            greeted: VecDeque::new(),
             vehicle: Vehicle::new(settings)?,
             table: ParameterTable::new(settings.identity),
             streams: links.iter().map(|profile| Streams::new(*profile)).collect(),
@@ -67,14 +78,13 @@ impl Autopilot {
             files: FileServer::default(),
         };
         heartbeat::update(&mut autopilot);
-        let version = env!("CARGO_PKG_VERSION");
-        let text = format!("lmpc-sitl {version}: simulated quadrotor, Laguerre MPC");
-        status_text::send(&mut autopilot, Severity::Info, &text);
+        status_text::send(&mut autopilot, Severity::Info, INTRODUCTION);
         Ok(autopilot)
     }
 
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
+        self.greet(origin);
         if !target_of(frame).is_autopilot(self.system_id) {
             return;
         }
@@ -102,6 +112,22 @@ impl Autopilot {
             _ => {}
         }
         self.tell_changes();
+    }
+
+    /// Tells a peer that is heard for the first time what this is.
+    fn greet(&mut self, origin: &Origin) {
+        if self.greeted.contains(&origin.peer) {
+            return;
+        }
+        if self.greeted.len() >= MOST_GREETED {
+            self.greeted.pop_front();
+        }
+        self.greeted.push_back(origin.peer);
+        let to = Destination::Peer(origin.peer);
+        self.send(to, heartbeat::message(&self.vehicle));
+        for message in status_text::messages(Severity::Info, INTRODUCTION, &mut 0) {
+            self.send(to, message);
+        }
     }
 
     /// Flies one tick on and sends what is due then.
@@ -136,6 +162,18 @@ impl Autopilot {
 
     pub(crate) fn send(&mut self, to: Destination, message: impl Into<Message>) {
         self.outbox.push(Outgoing { to, message: message.into() });
+    }
+
+    /// A place in the order of what is to be sent: behind everything so far.
+    pub(crate) fn mark(&self) -> usize {
+        self.outbox.len()
+    }
+
+    /// Moves the last message to a mark.
+    pub(crate) fn last_to(&mut self, mark: usize) {
+        if let Some(message) = self.outbox.pop() {
+            self.outbox.insert(mark.min(self.outbox.len()), message);
+        }
     }
 
     /// Messages to be sent since the last call.

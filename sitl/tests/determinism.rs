@@ -73,7 +73,7 @@ fn the_flight_through_messages_is_that_of_the_library() {
         let time_us = bench.autopilot.vehicle().time_us();
         let goal = GOALS.iter().rev().find(|(from_us, _)| *from_us <= time_us);
         if let Some((from_us, [x, y, z, yaw])) = goal {
-            if time_us % 50_000 == 0 {
+            if time_us.is_multiple_of(50_000) {
                 bench.send(place(*x, *y, *z, *yaw));
             }
             if time_us == *from_us && bench.mode() != Mode::Offboard {

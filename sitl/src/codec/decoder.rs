@@ -44,7 +44,13 @@ impl FrameDecoder {
     /// Frames of one datagram; none crosses from one into the next.
     pub fn datagram(&mut self, bytes: &[u8]) -> Vec<Frame> {
         let mut frames = self.push(bytes);
-        // An incomplete frame may hide a whole one behind its marker.
+        frames.extend(self.give_up());
+        frames
+    }
+
+    /// Nothing more comes: an incomplete frame is none, and may hide a whole one behind its marker.
+    pub fn give_up(&mut self) -> Vec<Frame> {
+        let mut frames = Vec::new();
         while !self.bytes.is_empty() {
             self.rejected_bytes += 1;
             let rest = self.bytes.split_off(1);

@@ -5,7 +5,7 @@ use mavlink::{MavlinkVersion, Message as _, MessageData as _};
 
 /// A message to be sent.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant)] // Most are of the large kind, and none lives long.
+#[allow(clippy::large_enum_variant)] // Almost all are of the large kind.
 pub enum Message {
     /// One of the dialect.
     Typed(MavMessage),

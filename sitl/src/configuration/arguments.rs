@@ -65,15 +65,15 @@ pub struct Arguments {
 
     /// Simulated seconds per second, 0 (paused) to 1000, or `max`; the parameter SIM_SPEEDUP changes it in flight
     /// [default: 1]
-    #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max")]
+    #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max", allow_hyphen_values = true)]
     pub speed: Option<Speed>,
 
     /// Steady wind: speed in m/s and the direction in degrees that it comes from [default: 0,0]
-    #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]")]
+    #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true)]
     pub wind: Option<WindFrom>,
 
     /// Standard deviation of gusts in m/s (Dryden's spectrum) [default: 0]
-    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA")]
+    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", allow_hyphen_values = true)]
     pub gusts: Option<f64>,
 
     /// Seed of everything random [default: 1]
@@ -105,7 +105,7 @@ pub struct Arguments {
     pub ready_file: Option<PathBuf>,
 
     /// End after this much simulated time
-    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS")]
+    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", allow_hyphen_values = true)]
     pub duration: Option<f64>,
 
     /// What to log to the standard error stream: error, warn, info, debug, or a filter of targets [default: info]

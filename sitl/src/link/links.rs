@@ -72,8 +72,15 @@ impl Links {
     /// Everything that has come, already forwarded to the peers that it is for.
     pub fn receive(&mut self, now: Instant) -> Vec<Received> {
         let mut received = Vec::new();
-        for index in 0..self.links.len() {
-            let Some(link) = self.links.get_mut(index) else { continue };
+        for (index, link) in self.links.iter_mut().enumerate() {
+            let mut take = |number: u64, peer: &mut Peer, frames: Vec<Frame>| {
+                for frame in frames {
+                    peer.learn(&frame);
+                    let peer = PeerId { link: index, number };
+                    let origin = Origin { peer, system: frame.system(), component: frame.component() };
+                    received.push(Received { origin, frame });
+                }
+            };
             for event in link.transport.poll(now) {
                 match event {
                     Event::Opened(number) => {
@@ -83,21 +90,15 @@ impl Links {
                         link.peers.remove(&number);
                     }
                     Event::Bytes(number, bytes) => {
-                        let datagram = link.transport.is_datagram();
                         let peer = link.peers.entry(number).or_default();
-                        let frames =
-                            if datagram { peer.decoder.datagram(&bytes) } else { peer.decoder.push(&bytes) };
-                        let peer_id = PeerId { link: index, number };
-                        for frame in frames {
-                            peer.learn(&frame);
-                            let (system, component) = (frame.system(), frame.component());
-                            received.push(Received {
-                                origin: Origin { peer: peer_id, system, component },
-                                frame,
-                            });
-                        }
+                        let frames = peer.frames(&bytes, link.transport.is_datagram(), now);
+                        take(number, peer, frames);
                     }
                 }
+            }
+            for (number, peer) in &mut link.peers {
+                let frames = peer.overdue(now);
+                take(*number, peer, frames);
             }
         }
         received.retain(|received| self.is_news(received, now));

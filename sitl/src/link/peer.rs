@@ -1,5 +1,7 @@
 //! What is known of a peer.
 
+use std::time::{Duration, Instant};
+
 use crate::codec::{Frame, FrameDecoder, Version};
 
 /// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
@@ -8,11 +10,15 @@ const OLD_FRAMES: u8 = 3;
 /// Systems behind one peer that are remembered.
 const MOST_SEEN: usize = 64;
 
+/// A frame that is not complete after so long a silence is none: the longest one takes 50 ms on a slow serial line.
+const SILENCE: Duration = Duration::from_millis(200);
+
 /// A peer.
 #[derive(Clone, Debug, Default)]
 pub struct Peer {
     /// Its stream of bytes.
-    pub decoder: FrameDecoder,
+    decoder: FrameDecoder,
+    last_bytes: Option<Instant>,
     /// Number of the next frame to it: each peer sees a flow of its own.
     pub sequence: u8,
     old_frames: u8,
@@ -21,6 +27,18 @@ pub struct Peer {
 }
 
 impl Peer {
+    /// Frames that bytes from it complete.
+    pub fn frames(&mut self, bytes: &[u8], datagram: bool, now: Instant) -> Vec<Frame> {
+        self.last_bytes = Some(now);
+        if datagram { self.decoder.datagram(bytes) } else { self.decoder.push(bytes) }
+    }
+
+    /// Frames behind something that has begun like a frame and never ended.
+    pub fn overdue(&mut self, now: Instant) -> Vec<Frame> {
+        let silent = self.last_bytes.is_some_and(|last| now.saturating_duration_since(last) > SILENCE);
+        if silent && self.decoder.waiting_bytes() > 0 { self.decoder.give_up() } else { Vec::new() }
+    }
+
     /// Learns from a frame of it.
     pub fn learn(&mut self, frame: &Frame) {
         self.old_frames = match frame.version() {

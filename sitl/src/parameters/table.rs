@@ -79,7 +79,7 @@ pub enum SetError {
         /// Identifier.
         id: String,
         /// Why.
-        source: ConfigurationError,
+        source: Box<ConfigurationError>,
     },
 }
 
@@ -181,7 +181,7 @@ fn set_loop(id: &str, parameter: &Parameter, value: f64, vehicle: &mut Vehicle) 
     write(id, parameter, value, &mut configuration)?;
     vehicle.reconfigure(&configuration).map_err(|source| match source {
         ConfigurationError::Fixed { .. } => SetError::Armed(id.to_owned()),
-        source => SetError::Refused { id: id.to_owned(), source },
+        source => SetError::Refused { id: id.to_owned(), source: Box::new(source) },
     })
 }
 

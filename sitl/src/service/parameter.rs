@@ -53,15 +53,13 @@ pub fn set(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         return;
     }
     let value = Value::decode(payload.f32(0), payload.u8(22), autopilot.table.encoding());
-    let to = match autopilot.set_parameter(&name, value) {
-        Ok(()) => Destination::Everyone,
-        Err(error) => {
-            super::status_text::send(autopilot, Severity::Warning, &format!("Parameter refused: {error}"));
-            Destination::Peer(origin.peer)
-        }
-    };
+    let result = autopilot.set_parameter(&name, value);
     if let Some(index) = autopilot.table.index_of(&name) {
+        let to = if result.is_ok() { Destination::Everyone } else { Destination::Peer(origin.peer) };
         send_value(autopilot, index, to);
+    }
+    if let Err(error) = result {
+        super::status_text::send(autopilot, Severity::Warning, &format!("Parameter refused: {error}"));
     }
 }
 

@@ -47,7 +47,8 @@ pub fn send(autopilot: &mut Autopilot, severity: Severity, text: &str) {
     }
 }
 
-fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMessage> {
+/// A line in pieces; `next_id` numbers the lines that need several.
+pub fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMessage> {
     let severity = match severity {
         Severity::Critical => MavSeverity::MAV_SEVERITY_CRITICAL,
         Severity::Error => MavSeverity::MAV_SEVERITY_ERROR,

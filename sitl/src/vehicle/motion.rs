@@ -253,8 +253,8 @@ mod tests {
             });
             prop_assert!(worst.is_ok(), "{worst:?}");
             let end = motion.reference(60_000_000);
-            for (axis, target) in axes.into_iter().enumerate() {
-                match target {
+            for (axis, target) in axes.iter().enumerate() {
+                match *target {
                     AxisTarget::Position(goal) => prop_assert!((end.position_m[axis] - goal).abs() < 1e-3, "{end:?}"),
                     AxisTarget::Velocity(v) => prop_assert!((end.velocity_m_s[axis] - v).abs() < 1e-6, "{end:?}"),
                     _ => unreachable!("not asked for"),

@@ -23,30 +23,36 @@ mod result {
 /// What becomes of a command: carried out, refused with a reason, or unknown (`None`).
 type Outcome = Option<Result<(), Refusal>>;
 
-/// Carries a command out, or repeats its answer if it has been carried out already, and answers.
+/// Carries a command out, or repeats its answer if it has been carried out already. The answer goes before everything
+/// that the command makes the vehicle send.
 pub fn handle(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
     let Some(command) = Command::read(frame) else { return };
     // Asking again for information must bring it again: its first answer may be what was lost.
+    let mark = autopilot.mark();
     if let Some(outcome) = information::handle(autopilot, origin, &command) {
         let code = code(&Some(outcome));
         acknowledge(autopilot, origin, command.number, code);
+        autopilot.last_to(mark);
         return;
     }
     let time_us = autopilot.vehicle.time_us();
-    let code = match autopilot.retries.answer(origin, &command, frame.sequence(), time_us) {
-        Some(code) => code,
-        None => {
-            let outcome = action::handle(autopilot, origin, &command);
-            if let Some(Err(refusal)) = &outcome {
-                super::status_text::send_notices(autopilot);
-                super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
-            }
-            let code = code(&outcome);
-            autopilot.retries.remember(origin, &command, frame.sequence(), time_us, code);
-            code
-        }
-    };
+    if let Some(code) = autopilot.retries.answer(origin, &command, frame.sequence(), time_us) {
+        acknowledge(autopilot, origin, command.number, code);
+        return;
+    }
+    let outcome = action::handle(autopilot, origin, &command);
+    let code = code(&outcome);
+    autopilot.retries.remember(origin, &command, frame.sequence(), time_us, code);
     acknowledge(autopilot, origin, command.number, code);
+    autopilot.last_to(mark);
+    explain(autopilot, &outcome);
+}
+
+/// Says why a command was refused.
+fn explain(autopilot: &mut Autopilot, outcome: &Outcome) {
+    if let Some(Err(refusal)) = outcome {
+        super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
+    }
 }
 
 /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
@@ -54,11 +60,9 @@ pub fn set_mode(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let custom_mode = payload.u32(0);
     let outcome = Some(action::set_custom_mode(autopilot, custom_mode));
-    if let Some(Err(refusal)) = &outcome {
-        super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
-    }
     const SET_MODE_MESSAGE: u16 = 11;
     acknowledge(autopilot, origin, SET_MODE_MESSAGE, code(&outcome));
+    explain(autopilot, &outcome);
 }
 
 fn code(outcome: &Outcome) -> u8 {
