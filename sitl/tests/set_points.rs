@@ -261,7 +261,7 @@ fn attitude_and_thrust_lean_and_rates_turn() {
     assert!((outputs.attitude_rad.x - 0.1).abs() < 0.01, "{}", outputs.attitude_rad);
     assert!(outputs.velocity_m_s.y > 1.0, "it leans to the right: {}", outputs.velocity_m_s);
     let level_mask = 0b1000_0000;
-    bench.stream(2.0, |bench| bench.send(target(level_mask, 0.5)));
+    bench.stream(4.0, |bench| bench.send(target(level_mask, 0.5)));
     let rate = bench.autopilot.vehicle().outputs().body_rate_rad_s.z;
     assert!((rate - 0.5).abs() < 0.05, "{rate}");
     // Without news it brakes and holds.
