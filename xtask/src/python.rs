@@ -1,7 +1,7 @@
 //! The Python environment with the pinned packages.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::failure::Failure;
@@ -37,9 +37,15 @@ impl Python {
 
 /// The environment in target/venv, made anew when the requirements or the interpreter have changed.
 pub fn environment(workspace: &Workspace, progress: &Progress) -> Result<Python, Failure> {
-    let requirements = workspace.python_sources().join("requirements.txt");
+    let [requirements, programs] =
+        ["requirements.txt", "programs.txt"].map(|name| workspace.python_sources().join(name));
     let (interpreter, version) = interpreter()?;
-    let made_from = format!("{interpreter} {version}\n{}", files::read_text(&requirements)?);
+    let made_from = [
+        format!("{interpreter} {version}\n"),
+        files::read_text(&requirements)?,
+        files::read_text(&programs)?,
+    ]
+    .concat();
 
     let folder = workspace.python_environment();
     let program = if cfg!(windows) {
@@ -53,24 +59,30 @@ pub fn environment(workspace: &Workspace, progress: &Progress) -> Result<Python,
         return Ok(python);
     }
 
-    progress.step("Making the Python environment (once; downloads about 125 MB)");
+    progress.step("Making the Python environment (once; downloads about 190 MB)");
     files::remove_folder(&folder)?;
     let mut make = Command::new(&interpreter);
     make.args(["-m", "venv"]).arg(&folder);
     if !process::status(&mut make)?.success() {
         return Err(Failure::NoVenv { program: interpreter });
     }
-    let mut install = python.command();
-    install
-        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"])
-        .args(["--prefer-binary", "--requirement"])
-        .arg(&requirements);
-    if !process::status(&mut install)?.success() {
-        return Err(Failure::Packages);
-    }
+    install(&python, &requirements, &[])?;
+    install(&python, &programs, &["--no-deps"])?;
     // Last: an environment that was interrupted is not taken for a finished one.
     files::write(&marker, made_from.as_bytes())?;
     Ok(python)
+}
+
+/// Installs pinned packages from a file.
+fn install(python: &Python, pinned: &Path, options: &[&str]) -> Result<(), Failure> {
+    let mut install = python.command();
+    install
+        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"])
+        .arg("--prefer-binary")
+        .args(options)
+        .arg("--requirement")
+        .arg(pinned);
+    if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
 }
 
 /// Whether the interpreter still starts; the one it was made from may have been removed.

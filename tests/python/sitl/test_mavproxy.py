@@ -1,0 +1,121 @@
+"""MAVProxy, run as its users run it: its own shell connects, reads and changes parameters, arms, takes off, goes somewhere and lands."""
+
+import math
+import re
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+PROGRAM = Path(sys.executable).parent / "mavproxy.py"
+# Those that a flight by hand needs; others are for maps, cameras and joysticks.
+MODULES = "param,ftp,cmdlong,arm,mode"
+
+
+class Shell:
+    def __init__(self, folder: Path, master: str):
+        self.process = subprocess.Popen(
+            [sys.executable, PROGRAM, f"--master={master}", f"--default-modules={MODULES}", f"--aircraft={folder / 'mavproxy'}",
+             "--retries=5"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=folder, text=True, bufsize=1,
+        )
+        self.text = ""
+        self.reader = threading.Thread(target=self.read)
+        self.reader.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            self.text += line
+
+    def type(self, line: str) -> int:
+        """Types a line; returns where its answer begins."""
+        place = len(self.text)
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+        return place
+
+    def expect(self, pattern: str, since: int = 0, timeout: float = 20.0) -> re.Match:
+        """Waits for text."""
+        end = time.monotonic() + timeout
+        while time.monotonic() < end:
+            if found := re.search(pattern, self.text[since:]):
+                return found
+            time.sleep(0.05)
+        raise AssertionError(f"no {pattern!r} within {timeout} s in:\n{self.text[since:]}")
+
+    def ask(self, line: str, pattern: str) -> re.Match:
+        return self.expect(pattern, self.type(line))
+
+    def stop(self):
+        # Asked politely it takes ten seconds to leave.
+        self.process.kill()
+        self.process.wait()
+        self.reader.join()
+
+
+@pytest.fixture
+def shell(tmp_path):
+    shells = []
+
+    def make(master: str) -> Shell:
+        shells.append(Shell(tmp_path, master))
+        return shells[-1]
+
+    yield make
+    for one in shells:
+        one.stop()
+
+
+def armed(beat) -> bool:
+    return bool(beat.base_mode & 128)
+
+
+def test_a_flight_in_guided_mode(start, connect, shell):
+    vehicle = start("--autopilot", "ardupilot", "--speed", "4", links=("tcpin:0", "udpin:0"))
+    watcher = connect(vehicle, 1)
+    console = shell(f"tcp:{vehicle.addresses[0]}")
+    # As a file, at once: not one by one after a timeout.
+    assert int(console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)[1]) > 70
+    assert float(console.ask("param show LIM_SPEED_H", r"LIM_SPEED_H\s+(\S+)")[1]) == 8.0
+    console.type("param set LIM_SPEED_H 6")
+    watcher.wait("PARAM_VALUE", lambda value: value.param_id == "LIM_SPEED_H" and value.param_value == 6.0)
+    assert float(console.ask("param show LIM_SPEED_H", r"LIM_SPEED_H\s+(\S+)")[1]) == 6.0
+    # Refused, and it says why.
+    console.ask("param set LIM_TILT 9", "LIM_TILT = 9 is outside")
+
+    console.ask("mode guided", "GUIDED> |Mode GUIDED")
+    watcher.wait("HEARTBEAT", lambda beat: beat.custom_mode == 4)
+    console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    watcher.wait("HEARTBEAT", armed)
+    console.ask("takeoff 7", "Got COMMAND_ACK: NAV_TAKEOFF: ACCEPTED")
+    start_place = watcher.wait("GLOBAL_POSITION_INT", lambda place: abs(place.relative_alt - 7000) < 200, 30)
+    # 20 m to the north, 3 m up.
+    north_deg = start_place.lat / 1e7 + math.degrees(20 / 6_378_137)
+    console.type(f"guided {north_deg:.7f} {start_place.lon / 1e7:.7f} 10")
+    watcher.wait("LOCAL_POSITION_NED", lambda p: math.dist((p.x, p.y, p.z), (20, 0, -10)) < 0.2, 30)
+    # In the air it is not disarmed.
+    console.ask("disarm", "Disarming denied: not landed")
+    console.ask("mode land", "LAND> |Mode LAND")
+    watcher.wait("HEARTBEAT", lambda beat: not armed(beat), 60)
+
+
+def test_a_flight_with_px4s_modes(start, connect, shell):
+    vehicle = start("--speed", "4", links=("udpin:0", "udpin:0"))
+    watcher = connect(vehicle, 1)
+    console = shell(f"udpout:{vehicle.addresses[0]}")
+    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)
+    console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    # MAVProxy means a height above home; PX4 takes an altitude that is below the ground for "as the parameter says".
+    console.ask("takeoff 7", "Got COMMAND_ACK: NAV_TAKEOFF: ACCEPTED")
+    watcher.wait("LOCAL_POSITION_NED", lambda p: abs(p.z + 2.5) < 0.1 and abs(p.vz) < 0.1, 30)
+    # Its `mode` fails with PX4's numbers before it sends anything; commands do not.
+    console.ask("long NAV_RETURN_TO_LAUNCH 0 0 0 0 0 0 0", "Got COMMAND_ACK: NAV_RETURN_TO_LAUNCH: ACCEPTED")
+    watcher.wait("HEARTBEAT", lambda beat: beat.custom_mode == (4 << 16 | 5 << 24))
+    watcher.wait("HEARTBEAT", lambda beat: not armed(beat), 60)
+    console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    watcher.wait("HEARTBEAT", armed)
+    console.ask("disarm", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    watcher.wait("HEARTBEAT", lambda beat: not armed(beat))
