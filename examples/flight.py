@@ -2,8 +2,11 @@
 
 Each example flies a vehicle that is already running, `lmpc-sitl` or another one that follows PX4's conventions:
 
-    cargo run --release -p sitl &
-    python examples/position_target.py --plot position.png
+    cargo run --release -p sitl
+    python examples/position_target.py --plot position.png      (in another terminal)
+
+They need `pip install pymavlink matplotlib`. All times are the vehicle's own, so a flight is the same at every `--speed`. Positions are
+north, east, down from the origin, in m. Exit code 0: flown as asked; 1: not.
 """
 
 import argparse
@@ -16,9 +19,13 @@ os.environ.setdefault("MAVLINK20", "1")
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
+# What a set-point gives; every other value is ignored.
 POSITION = 0b100111111000  # position and yaw
 VELOCITY = 0b100111000111  # velocity and yaw
 TRAJECTORY = 0b100000000000  # position, velocity, acceleration and yaw
+
+OFFBOARD = (1, 6)  # PX4's custom mode: base mode "custom", main mode
+INTERVAL = 0.02  # of telemetry and set-points, s
 
 
 class Flight:
@@ -26,108 +33,159 @@ class Flight:
         self.connection = mavutil.mavlink_connection(address, dialect="common")
         self.mav = self.connection.mav
         if address.startswith(("udpout", "tcp")):
-            self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
-        if self.connection.wait_heartbeat(timeout=10) is None:
+            self.beat()
+        if self.connection.wait_heartbeat(timeout=5) is None:
             raise SystemExit(f"no vehicle at {address}")
         self.target = (self.connection.target_system, self.connection.target_component)
         self.flown = []  # time in s, position, velocity
         self.asked = []  # time in s, position or None, velocity or None
+        self.beaten = -math.inf
+        self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 1e6 * INTERVAL)
+        self.tick()
 
-    def read(self, seconds: float = 0.0):
-        """Takes in what has come, and what comes within a while."""
-        end = time.monotonic() + seconds
-        while True:
-            left = end - time.monotonic()
-            message = self.connection.recv_match(blocking=left > 0, timeout=max(left, 0))
-            if message is None and left <= 0:
-                return
-            if message is not None and message.get_type() == "LOCAL_POSITION_NED":
-                self.flown.append((message.time_boot_ms / 1e3, (message.x, message.y, message.z),
-                                   (message.vx, message.vy, message.vz)))
+    def beat(self):
+        self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+
+    def tick(self):
+        """Waits for the vehicle's next report of its place."""
+        message = self.connection.recv_match(type="LOCAL_POSITION_NED", blocking=True, timeout=10)
+        if message is None:
+            raise SystemExit("the vehicle has fallen silent")
+        self.flown.append((message.time_boot_ms / 1e3, (message.x, message.y, message.z), (message.vx, message.vy, message.vz)))
+        if self.now - self.beaten >= 1:
+            self.beat()
+            self.beaten = self.now
 
     @property
     def now(self) -> float:
         """Time of the vehicle, s."""
-        return self.flown[-1][0] if self.flown else 0.0
+        return self.flown[-1][0]
 
     @property
     def position(self):
         return self.flown[-1][1]
+
+    @property
+    def velocity(self):
+        return self.flown[-1][2]
+
+    def rests_at(self, goal, within: float = 0.05) -> bool:
+        return math.dist(self.position, goal) < within and math.hypot(*self.velocity) < within
 
     def command(self, number: int, *parameters: float):
         parameters = [*parameters, *([0.0] * (7 - len(parameters)))]
         for attempt in range(5):
             self.mav.command_long_send(*self.target, number, attempt, *parameters)
             end = time.monotonic() + 1
-            while time.monotonic() < end:
-                ack = self.connection.recv_match(type="COMMAND_ACK", blocking=True, timeout=0.2)
+            while (left := end - time.monotonic()) > 0:
+                ack = self.connection.recv_match(type="COMMAND_ACK", blocking=True, timeout=left)
                 if ack is not None and ack.command == number:
                     if ack.result != mavlink.MAV_RESULT_ACCEPTED:
-                        text = self.connection.messages.get("STATUSTEXT")
+                        text = self.connection.recv_match(type="STATUSTEXT", blocking=True, timeout=0.5)
                         raise SystemExit(f"command {number} was refused: {text.text if text else ack.result}")
                     return
         raise SystemExit(f"command {number} was not answered")
 
+    def until(self, condition, seconds: float, what: str, each_tick=lambda: None):
+        """Flies until a condition holds, doing something with each report."""
+        end = self.now + seconds
+        while not condition():
+            if self.now > end:
+                raise SystemExit(f"{what}: not within {seconds} s; now at {self.position}")
+            each_tick()
+            self.tick()
+
     def take_off(self):
-        self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 20_000)
         self.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
         self.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
-        self.until(lambda: abs(self.position[2] + 2.5) < 0.1, 20, "takeoff")
-
-    def until(self, condition, seconds: float, what: str):
-        end = time.monotonic() + seconds
-        while not (self.flown and condition()):
-            if time.monotonic() > end:
-                raise SystemExit(f"{what}: not within {seconds} s")
-            self.read(0.02)
+        self.until(lambda: abs(self.position[2] + 2.5) < 0.1 and abs(self.velocity[2]) < 0.1, 20, "takeoff")
 
     def set_point(self, mask: int, position=(0, 0, 0), velocity=(0, 0, 0), acceleration=(0, 0, 0), yaw: float = 0.0):
-        """Sends SET_POSITION_TARGET_LOCAL_NED; NED, m, m/s, m/s², rad."""
+        """Sends SET_POSITION_TARGET_LOCAL_NED; m, m/s, m/s², rad."""
         self.mav.set_position_target_local_ned_send(
             0, *self.target, mavlink.MAV_FRAME_LOCAL_NED, mask, *position, *velocity, *acceleration, yaw, 0)
         self.asked.append((self.now, None if mask & 7 else position, None if mask & 56 else velocity))
 
     def offboard(self):
-        """Enters the offboard mode; a set-point must have been sent just before."""
-        self.command(mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
+        """Enters the mode that follows set-points; one must have been sent just before."""
+        self.command(mavlink.MAV_CMD_DO_SET_MODE, *OFFBOARD)
+
+    def stream(self, seconds: float, set_point):
+        """Calls `set_point` with the time since now, with each report."""
+        start = self.now
+        while self.now - start < seconds:
+            set_point(self.now - start)
+            self.tick()
+
+    def go_to(self, goal, seconds: float = 30):
+        """To a place, which the vehicle plans its way to by itself."""
+        self.set_point(POSITION, goal)
+        self.offboard()
+        self.until(lambda: self.rests_at(goal), seconds, f"flying to {goal}", lambda: self.set_point(POSITION, goal))
 
     def land(self):
         self.command(mavlink.MAV_CMD_NAV_LAND)
-        armed = lambda: self.connection.messages["HEARTBEAT"].base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED  # noqa: E731
-        self.until(lambda: not armed(), 60, "landing")
+        armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+        self.until(lambda: not self.connection.messages["HEARTBEAT"].base_mode & armed, 60, "landing")
+
+    def since(self, start: float):
+        """What has been flown since a time."""
+        return [report for report in self.flown if report[0] >= start]
 
     def plot(self, path: str, title: str):
+        """Draws set-points against the flight."""
         import matplotlib
 
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
 
-        figure, axes = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
-        times = [time for time, _, _ in self.flown]
-        for index, name in enumerate(("north", "east", "down")):
-            line, = axes[0].plot(times, [position[index] for _, position, _ in self.flown], label=name)
-            axes[0].plot([time for time, position, _ in self.asked if position],
-                         [position[index] for _, position, _ in self.asked if position],
-                         "--", color=line.get_color(), linewidth=1)
-            line, = axes[1].plot(times, [velocity[index] for _, _, velocity in self.flown], label=name)
-            axes[1].plot([time for time, _, velocity in self.asked if velocity],
-                         [velocity[index] for _, _, velocity in self.asked if velocity],
-                         "--", color=line.get_color(), linewidth=1)
-        axes[0].set(xlabel="time, s", ylabel="position, m", title="flown, and asked (dashed)")
-        axes[1].set(xlabel="time, s", ylabel="velocity, m/s", title="flown, and asked (dashed)")
-        axes[0].legend()
-        axes[1].legend()
-        axes[2].plot([position[1] for _, position, _ in self.flown], [position[0] for _, position, _ in self.flown])
-        axes[2].plot([position[1] for _, position, _ in self.asked if position],
-                     [position[0] for _, position, _ in self.asked if position], "--", linewidth=1)
-        axes[2].set(xlabel="east, m", ylabel="north, m", aspect="equal", title="from above")
+        plt.rcParams.update({"axes.grid": True, "grid.color": "#dddddd", "axes.axisbelow": True})
+        figure, axes = plt.subplot_mosaic([["above", "position"], ["side", "velocity"]], figsize=(11, 8),
+                                          width_ratios=(2, 3), layout="constrained")
+        colours = {"north": "#0072b2", "east": "#d55e00", "up": "#009e73"}
+        dashed = {"color": "#333333", "linestyle": (0, (4, 3)), "linewidth": 1}
+        flown, asked = [(at, up(p), up(v)) for at, p, v in self.flown], [(at, up(p), up(v)) for at, p, v in self.asked]
+
+        for name, across, along in (("above", 1, 0), ("side", 1, 2)):
+            axes[name].plot([p[across] for _, p, _ in flown], [p[along] for _, p, _ in flown], color="#0072b2", label="flown")
+            points = [p for _, p, _ in asked if p]
+            if points:
+                mark = {"marker": "x", "linestyle": "none", "color": "#333333"} if len(set(points)) == 1 else dashed
+                axes[name].plot([p[across] for p in points], [p[along] for p in points], label="set-point", **mark)
+            axes[name].plot(*[[flown[0][1][axis]] for axis in (across, along)], "o", color="#333333", markersize=4)
+            axes[name].set(xlabel="east, m", aspect="equal", adjustable="datalim")
+        axes["above"].set(ylabel="north, m", title="from above")
+        axes["side"].set(ylabel="up, m", title="from the south")
+        axes["above"].legend(loc="upper right")
+
+        for quantity, name, unit in ((1, "position", "m"), (2, "velocity", "m/s")):
+            for axis, (direction, colour) in enumerate(colours.items()):
+                axes[name].plot([report[0] for report in flown], [report[quantity][axis] for report in flown], color=colour,
+                                label=direction)
+                # A gap in time is a gap in the line.
+                given = [(a[0], a[quantity][axis]) if a[quantity] else (a[0], math.nan) for a in asked]
+                axes[name].plot(*zip(*given), **dashed, label="set-point" if axis == 2 else None) if given else None
+            axes[name].set(xlabel="time of the vehicle, s", ylabel=f"{name}, {unit}")
+        figure.legend(*axes["velocity"].get_legend_handles_labels(), ncols=4, loc="outside lower right")
         figure.suptitle(title)
-        figure.savefig(path, dpi=120)
+        figure.savefig(path, dpi=110)
         print(f"wrote {path}")
+
+
+def up(vector):
+    """North, east, up of north, east, down."""
+    return None if vector is None else (vector[0], vector[1], -vector[2])
 
 
 def arguments(description: str, plot: str):
     parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--connect", default="udpin:127.0.0.1:14540", help="as mavutil takes it [%(default)s]")
-    parser.add_argument("--plot", default=plot, help="picture to write [%(default)s]")
+    parser.add_argument("--connect", default="udpin:127.0.0.1:14540", metavar="ADDRESS",
+                        help="where the vehicle is, as pymavlink takes it [%(default)s]")
+    parser.add_argument("--plot", default=plot, metavar="FILE", help="picture to write [%(default)s]")
     return parser.parse_args()
+
+
+def verdict(what: str, value: float, bound: float, unit: str) -> int:
+    """Prints a figure beside its bound, and returns the exit code."""
+    print(f"{what}: {value:.2f} {unit}, at most {bound:g} {unit}" + ("" if value <= bound else ": MISSED"))
+    return 0 if value <= bound else 1

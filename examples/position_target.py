@@ -1,19 +1,20 @@
 """Flies to 5 m north, 5 m east, 10 m up: the paper's goal, as a position target that the vehicle shapes itself."""
 
 import math
+import sys
 
-from flight import POSITION, Flight, arguments
+from flight import POSITION, Flight, arguments, verdict
+
+GOAL = (5.0, 5.0, -10.0)
 
 options = arguments(__doc__, "position_target.png")
 flight = Flight(options.connect)
 flight.take_off()
-
-goal = (5.0, 5.0, -10.0)
-flight.set_point(POSITION, goal)
-flight.offboard()
-while math.dist(flight.position, goal) > 0.05 or math.hypot(*flight.flown[-1][2]) > 0.05:
-    flight.set_point(POSITION, goal)
-    flight.read(0.1)
-print("arrived at north {:.3f}, east {:.3f}, down {:.3f} m".format(*flight.position))
+begin = flight.now
+flight.go_to(GOAL)
+print(f"arrived after {flight.now - begin:.1f} s")
+flight.stream(3, lambda t: flight.set_point(POSITION, GOAL))
+missed = verdict("distance from the goal", 100 * math.dist(flight.position, GOAL), 1, "cm")
 flight.land()
-flight.plot(options.plot, "position target")
+flight.plot(options.plot, "position target: 5 m north, 5 m east, 10 m up")
+sys.exit(missed)

@@ -1,22 +1,24 @@
 """Flies a square by velocities alone, then climbs while it turns east."""
 
 import math
-import time
+import sys
 
-from flight import VELOCITY, Flight, arguments
+from flight import VELOCITY, Flight, arguments, verdict
 
-LEGS = [((2, 0, 0), 0.0), ((0, 2, 0), 0.0), ((-2, 0, 0), 0.0), ((0, -2, 0), 0.0), ((0, 0, -1), math.pi / 2), ((0, 0, 0), math.pi / 2)]
+EAST = math.pi / 2
+LEGS = [((2, 0, 0), 0.0), ((0, 2, 0), 0.0), ((-2, 0, 0), 0.0), ((0, -2, 0), 0.0), ((0, 0, -1), EAST), ((0, 0, 0), EAST)]
 
 options = arguments(__doc__, "velocity_flight.png")
 flight = Flight(options.connect)
 flight.take_off()
 flight.set_point(VELOCITY)
 flight.offboard()
+worst = 0.0
 for velocity, yaw in LEGS:
-    end = time.monotonic() + 4
-    while time.monotonic() < end:
-        flight.set_point(VELOCITY, velocity=velocity, yaw=yaw)
-        flight.read(0.05)
-    print("asked for {} m/s, flew {:.2f}, {:.2f}, {:.2f} m/s".format(velocity, *flight.flown[-1][2]))
+    flight.stream(5, lambda t: flight.set_point(VELOCITY, velocity=velocity, yaw=yaw))
+    print("asked for {}, {}, {} m/s, flies {:.2f}, {:.2f}, {:.2f} m/s".format(*velocity, *flight.velocity))
+    worst = max(worst, math.dist(flight.velocity, velocity))
+missed = verdict("largest error of velocity at the end of a leg", 100 * worst, 5, "cm/s")
 flight.land()
 flight.plot(options.plot, "velocity flight")
+sys.exit(missed)

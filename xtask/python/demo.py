@@ -1,6 +1,6 @@
-"""Flies the FMU in FMPy, writes tables and plots, and tells whether every flight reached its goal.
+"""Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, writes tables and plots, and tells whether every flight reached its goal.
 
-Started by `cargo xtask demo`, which builds the FMU and the Python environment.
+Started by `cargo xtask demo`, which builds both and the Python environment.
 """
 
 import argparse
@@ -15,6 +15,7 @@ from fmpy import extract, read_model_description, simulate_fmu
 import flights
 import measures
 import plots
+import vehicle
 
 #: Standard acceleration of free fall, m/s².
 GRAVITY = 9.80665
@@ -59,19 +60,28 @@ def main() -> int:
             table.append((flight, errors, flight.checks(errors)))
             files.append(write_csv(result, arguments.out / f"{flight.name}.csv"))
             files += plots.draw(flight, result, limits, arguments.out)
+    messages = []
+    for name in vehicle.FLIGHTS:
+        progress(f"Flying the MAVLink vehicle from examples/{name}.py")
+        lines, plot, met = vehicle.fly(name, arguments.vehicle, arguments.root / "examples", arguments.out)
+        messages.append((name, lines, met))
+        files.append(plot)
     progress("Flown")
 
     print_errors(table)
     print_checks(table)
+    print_messages(messages)
     print("\nFiles")
     for file in files:
         print(f"  {shown(file, arguments.root)}")
-    return 0 if all(check.met for _, _, checks in table for check in checks) else GOAL_MISSED
+    met = [check.met for _, _, checks in table for check in checks] + [met for _, _, met in messages]
+    return 0 if all(met) else GOAL_MISSED
 
 
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("fmu", type=Path, help="the FMU")
+    parser.add_argument("vehicle", type=Path, help="the program lmpc-sitl")
     parser.add_argument("out", type=Path, help="folder for tables and plots")
     parser.add_argument("--root", type=Path, default=Path.cwd(), help="folder that printed paths start from")
     parser.add_argument("--elapsed", type=float, default=0.0, help="seconds that the task has taken so far")
@@ -124,6 +134,15 @@ def print_checks(table) -> None:
                 f"  {flight.name:10}{check.what:28}{check.value:10.4f} {check.unit:4}"
                 f"at most {check.bound:6.2f} {check.unit:4}{verdict}"
             )
+
+
+def print_messages(flights) -> None:
+    """What the examples have printed."""
+    print("\nMAVLink")
+    for name, lines, met in flights:
+        for index, line in enumerate(lines):
+            print(f"  {name if index == 0 else '':17}{line}")
+        print(f"  {'':17}{'met' if met else 'MISSED'}")
 
 
 def shown(file: Path, root: Path) -> str:

@@ -12,6 +12,7 @@ mod process;
 mod progress;
 mod python;
 mod test;
+mod vehicle;
 mod workspace;
 
 use std::path::PathBuf;
@@ -49,9 +50,9 @@ enum Task {
     ///
     /// A test fails as long as that file is not what the FMU's table of variables gives.
     ModelDescription,
-    /// Flies the FMU in FMPy and writes tables and plots to target/demo.
+    /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables and plots to target/demo.
     ///
-    /// Builds the FMU and the Python environment first. Fails when a flight misses its goal.
+    /// Builds both and the Python environment first. Fails when a flight misses its goal.
     Demo,
     /// Computes the paper's tables and figures again: target/paper/report.html, results.json and PNG files.
     Paper {

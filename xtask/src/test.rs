@@ -13,6 +13,7 @@ use crate::files;
 use crate::process;
 use crate::progress::Progress;
 use crate::python;
+use crate::vehicle;
 use crate::workspace::Workspace;
 
 /// Environment variable by which a test knows that the Python tests follow.
@@ -42,10 +43,7 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     let (mut count, rust_passed) = rust_tests(workspace)?;
 
     let fmu = bundle::make(workspace, progress, &[])?;
-    progress.step("Building the MAVLink vehicle");
-    let mut build = cargo();
-    build.args(["build", "--package", "sitl"]).current_dir(workspace.root());
-    process::output(&mut build, "cargo build")?;
+    let sitl = vehicle::build(workspace, progress)?;
     progress.step("Running the Python tests");
     let report = workspace.python_report();
     let status = process::status(
@@ -57,7 +55,7 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
             .current_dir(workspace.root())
             .env("LMPC_QUADROTOR_FMU", &fmu)
             .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
-            .env("LMPC_SITL", workspace.sitl()),
+            .env("LMPC_SITL", &sitl),
     )?;
     count += python_count(&files::read_text(&report)?)?;
 
