@@ -11,7 +11,7 @@ README = Path(__file__).resolve().parents[2] / "README.md"
 
 def test_python_code_of_the_readme(fmu, tmp_path):
     blocks = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    # The other one flies the MAVLink vehicle.
+    # The others fly the MAVLink vehicle: sitl/test_readme_flights.py.
     (code,) = (block for block in blocks if "fmpy" in block)
     shutil.copy(fmu, tmp_path / "LmpcQuadrotor.fmu")
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
