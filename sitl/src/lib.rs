@@ -19,6 +19,7 @@
 mod autopilot;
 pub mod codec;
 pub mod configuration;
+pub mod estimation;
 mod failure;
 pub mod identity;
 pub mod link;

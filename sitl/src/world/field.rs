@@ -18,3 +18,8 @@ pub fn earth_field_ned(place: &Geodetic) -> Vector3<f64> {
     // B_north = B₀ cos φ, B_down = 2 B₀ sin φ
     Vector3::new(EQUATOR_GAUSS * libm::cos(latitude), 0.0, 2.0 * EQUATOR_GAUSS * libm::sin(latitude))
 }
+
+/// The altitude in that atmosphere, m, from the pressure, Pa.
+pub fn pressure_altitude_m(pressure_pa: f64) -> f64 {
+    (1.0 - libm::pow(pressure_pa.max(0.0) / 101_325.0, 1.0 / 5.255_88)) / 2.255_77e-5
+}

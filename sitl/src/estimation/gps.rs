@@ -1,0 +1,92 @@
+//! The GPS receiver, a u-blox NEO-M8N.
+
+use nalgebra::Vector3;
+
+use super::noise::{Channel, Noise};
+use super::true_motion::TrueMotion;
+use super::wander::GaussMarkov;
+
+/// Time between fixes, µs: the receiver's 10 Hz with several constellations (UBX-15031086, table 1).
+pub const PERIOD_US: u64 = 100_000;
+/// Time from a fix to its message, µs; PX4 counts with 110 ms (EKF2_GPS_DELAY).
+pub const LATENCY_US: u64 = 100_000;
+/// Time to the first fix of a hot start, µs: 1 s (UBX-15031086, table 1).
+const FIRST_FIX_US: u64 = 1_000_000;
+
+/// Standard deviation of a horizontal axis, m: 2.5 m circular error probable (UBX-15031086, table 1), of which a normal
+/// distribution has 1.1774 standard deviations.
+pub const HORIZONTAL_M: f64 = 2.5 / 1.177_4;
+/// Height is worse: the data sheet is silent, a vertical dilution of 1.5 times the horizontal one is usual.
+pub const VERTICAL_M: f64 = 1.5 * HORIZONTAL_M;
+/// How long an error of the position lasts, s; PX4's simulation in Gazebo counts with the same.
+pub const POSITION_CORRELATION_S: f64 = 60.0;
+/// Standard deviation of an axis of the velocity, m/s: 0.05 m/s for half of all fixes (UBX-15031086, table 1), which of
+/// two normal axes is again 1.1774 standard deviations.
+pub const VELOCITY_M_S: f64 = 0.05 / 1.177_4;
+/// How long an error of the velocity lasts, s: the median over logs of real receivers (fusion-nav's `Correlation`).
+pub const VELOCITY_CORRELATION_S: f64 = 0.5;
+/// Satellites of an open sky.
+const SATELLITES: u8 = 14;
+
+/// What the receiver says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GpsFix {
+    /// When it was taken, µs.
+    pub time_us: u64,
+    /// Where, NED at the origin, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity, NED, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Standard deviation of a horizontal axis, m.
+    pub horizontal_accuracy_m: f64,
+    /// Of the height, m.
+    pub vertical_accuracy_m: f64,
+    /// Of an axis of the velocity, m/s.
+    pub velocity_accuracy_m_s: f64,
+    /// Satellites in use.
+    pub satellites: u8,
+}
+
+/// The instrument.
+#[derive(Clone, Debug)]
+pub struct GpsReceiver {
+    noise: Noise,
+    position_error: GaussMarkov,
+    velocity_error: GaussMarkov,
+    /// Taken, but not yet told.
+    underway: Option<GpsFix>,
+}
+
+impl GpsReceiver {
+    /// One that has just been switched on.
+    pub fn new(seed: u64) -> Self {
+        let mut noise = Noise::new(seed, Channel::Gps);
+        let position_error = GaussMarkov::new(POSITION_CORRELATION_S, &mut noise);
+        let velocity_error = GaussMarkov::new(VELOCITY_CORRELATION_S, &mut noise);
+        Self { noise, position_error, velocity_error, underway: None }
+    }
+
+    /// The fix that arrives now, if one does. To be called every tick.
+    pub fn sample(&mut self, motion: &TrueMotion) -> Option<GpsFix> {
+        let time_us = motion.time_us;
+        let arrived = self.underway.take_if(|fix| fix.time_us + LATENCY_US <= time_us);
+        if time_us.is_multiple_of(PERIOD_US) {
+            let dt_s = PERIOD_US as f64 / 1e6;
+            let position_error = self.position_error.step(dt_s, &mut self.noise);
+            let velocity_error = self.velocity_error.step(dt_s, &mut self.noise);
+            let scale = Vector3::new(HORIZONTAL_M, HORIZONTAL_M, VERTICAL_M);
+            if time_us >= FIRST_FIX_US {
+                self.underway = Some(GpsFix {
+                    time_us,
+                    position_m: motion.position_m + position_error.component_mul(&scale),
+                    velocity_m_s: motion.velocity_m_s + velocity_error * VELOCITY_M_S,
+                    horizontal_accuracy_m: HORIZONTAL_M,
+                    vertical_accuracy_m: VERTICAL_M,
+                    velocity_accuracy_m_s: VELOCITY_M_S,
+                    satellites: SATELLITES,
+                });
+            }
+        }
+        arrived
+    }
+}
