@@ -21,7 +21,7 @@ pub const ACCELEROMETER_NOISE_M_S2_RTHZ: f64 = 70e-6 * GRAVITY_M_S2;
 /// Zero-rate offset ±0.5 dps: taken as three standard deviations.
 const GYROSCOPE_OFFSET_RAD_S: f64 = 0.5 * RAD_S / 3.0;
 /// Zero-g offset ±20 mg: taken as three standard deviations.
-const ACCELEROMETER_OFFSET_M_S2: f64 = 20e-3 * GRAVITY_M_S2 / 3.0;
+pub const ACCELEROMETER_OFFSET_M_S2: f64 = 20e-3 * GRAVITY_M_S2 / 3.0;
 /// Zero-rate offset over temperature: ±0.005 dps/K.
 pub const GYROSCOPE_WALK_RAD_S_RTS: f64 = warming_walk(0.005 * RAD_S);
 /// Zero-g offset over temperature: ±0.15 mg/K.

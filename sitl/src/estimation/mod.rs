@@ -7,16 +7,27 @@
 //!                 └─ magnetometer  50 Hz ──────────────────────────┘    Kalman filter)
 //! ```
 //!
+//! The filter is the crate `fusion-nav`; what it is told of the instruments stands in `tuning.rs`. The linear Kalman
+//! predictor (26) of the closed loop stays behind it: it estimates what pushes the vehicle.
+//!
 //! Each instrument's figures stand in its file, beside the part and the table of the data sheet that they are from.
 
 pub mod barometer;
+mod estimate;
+mod estimator;
 pub mod gps;
 pub mod inertial;
 pub mod magnetometer;
+mod navigation;
 mod noise;
 mod true_motion;
+mod tuning;
 mod vibration;
 mod wander;
+mod watch;
 
+pub use estimate::{Estimate, TestRatios, Validity};
+pub use estimator::Estimator;
+pub use navigation::{InstrumentHealth, Navigation, Readings};
 pub use true_motion::TrueMotion;
 pub use vibration::Vibration;

@@ -1,0 +1,236 @@
+//! The estimator: an error-state extended Kalman filter of attitude, velocity, position and the offsets of gyroscopes
+//! and accelerometers (15 states; the crate `fusion-nav`), fed by the instruments.
+
+use fusion_nav::{
+    Acceleration, Altitude, AngularRate, Covariance, ErrorState, Eskf, Fusion, ImuSample, MagField, Position,
+    PositionNoise, Seconds, SourceHealth, StaticSample, StaticWindow, Status, Timestamp, Velocity,
+    VelocityNoise,
+};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+use super::barometer::BarometerReading;
+use super::estimate::{Estimate, TestRatios, Validity};
+use super::gps::GpsFix;
+use super::inertial::{self, InertialReading};
+use super::magnetometer::MagnetometerReading;
+use super::tuning;
+
+/// Time between predictions, µs: the default rate at which PX4 integrates its inertial unit, 200 Hz. It divides the
+/// samples of the controllers.
+const PREDICTION_US: u64 = 5_000;
+/// The antenna sits on the inertial unit.
+const NO_LEVER: [f32; 3] = [0.0; 3];
+
+/// The estimator.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    filter: Eskf,
+    /// What has been measured at rest, until there is enough to align by.
+    window: StaticWindow,
+    /// Inertial readings since the last prediction.
+    pending: Option<ImuSample>,
+    /// The latest readings that the window has not had yet.
+    altitude: Option<Altitude>,
+    field: Option<MagField<fusion_nav::Body>>,
+    estimate: Estimate,
+    resets: u32,
+}
+
+impl Estimator {
+    /// One that is told where the vehicle stands. It needs two seconds of rest to align.
+    pub fn new(start: Estimate) -> Self {
+        let filter = match Eskf::new(tuning::configuration()) {
+            Ok(filter) => filter,
+            Err(error) => {
+                // The settings are constants that a test checks.
+                tracing::error!(%error, "the estimator's settings are refused");
+                Eskf::default()
+            }
+        };
+        Self {
+            filter,
+            window: StaticWindow::new(),
+            pending: None,
+            altitude: None,
+            field: None,
+            estimate: start,
+            resets: 0,
+        }
+    }
+
+    /// Takes a reading of the inertial unit in. Every 5 ms the estimate goes on.
+    pub fn inertial(&mut self, reading: &InertialReading) {
+        let sample = ImuSample::from_rates(
+            Timestamp::from_micros(reading.time_us),
+            AngularRate::from_array(single(&reading.body_rate_rad_s)),
+            Acceleration::from_array(single(&reading.specific_force_m_s2)),
+            Seconds::from_secs(inertial::PERIOD_US as f32 / 1e6),
+        );
+        let pending = self.pending.map_or(sample, |earlier| earlier.accumulate(sample));
+        self.pending = Some(pending);
+        if !reading.time_us.is_multiple_of(PREDICTION_US) {
+            return;
+        }
+        self.pending = None;
+        if self.filter.is_initialized() {
+            let outcome = self.filter.predict(pending);
+            if !outcome.is_propagated() {
+                tracing::debug!(?outcome, "an inertial reading was not used");
+            }
+        } else {
+            self.align(pending);
+        }
+        self.read(reading);
+    }
+
+    /// Takes a fix in.
+    pub fn gps(&mut self, fix: &GpsFix) {
+        if !self.filter.is_initialized() {
+            return;
+        }
+        let time = Timestamp::from_micros(fix.time_us);
+        let (horizontal, vertical) = (fix.horizontal_accuracy_m as f32, fix.vertical_accuracy_m as f32);
+        let speed = fix.velocity_accuracy_m_s as f32;
+        let antenna = Position::from_array(NO_LEVER);
+        let place = self.filter.fuse_gnss_position(
+            time,
+            Position::from_array(single(&fix.position_m)),
+            PositionNoise::horizontal_vertical(horizontal, vertical),
+            antenna,
+        );
+        let motion = self.filter.fuse_gnss_velocity(
+            time,
+            Velocity::from_array(single(&fix.velocity_m_s)),
+            VelocityNoise::horizontal_vertical(speed, speed),
+            antenna,
+        );
+        self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
+    }
+
+    /// Takes a pressure in.
+    pub fn barometer(&mut self, reading: &BarometerReading) {
+        let altitude = Altitude::from_meters(reading.altitude_m() as f32);
+        if !self.filter.is_initialized() {
+            self.altitude = Some(altitude);
+            return;
+        }
+        let time = Timestamp::from_micros(reading.time_us);
+        let noise = tuning::altitude_noise(reading.pressure_pa);
+        used(self.filter.fuse_baro_altitude(time, altitude, noise));
+    }
+
+    /// Takes a magnetic field in.
+    pub fn magnetometer(&mut self, reading: &MagnetometerReading) {
+        let field = MagField::from_array(single(&reading.field_gauss));
+        if !self.filter.is_initialized() {
+            self.field = Some(field);
+            return;
+        }
+        let time = Timestamp::from_micros(reading.time_us);
+        used(self.filter.fuse_mag_heading(time, field, tuning::heading_noise()));
+    }
+
+    /// The vehicle stands: it has no velocity.
+    pub fn stands(&mut self, time_us: u64) {
+        if self.filter.is_initialized() {
+            let noise = VelocityNoise::horizontal_vertical(tuning::STILL_M_S, tuning::STILL_M_S);
+            used(self.filter.fuse_stationary(Timestamp::from_micros(time_us), noise));
+        }
+    }
+
+    /// The estimate of the last prediction.
+    pub fn estimate(&self) -> &Estimate {
+        &self.estimate
+    }
+
+    /// Whether it has found its attitude.
+    pub fn is_aligned(&self) -> bool {
+        self.filter.is_aligned()
+    }
+
+    /// Covariance of the errors of position and velocity (NED), attitude (FRD), and offsets.
+    pub fn covariance(&self) -> &Covariance {
+        self.filter.covariance()
+    }
+
+    /// What the filter has made of each source.
+    pub fn diagnostics(&self) -> &fusion_nav::Diagnostics {
+        self.filter.diagnostics()
+    }
+
+    fn align(&mut self, imu: ImuSample) {
+        let sample = StaticSample {
+            imu,
+            mag: self.field.take(),
+            baro: self.altitude.take(),
+            ..StaticSample::default()
+        };
+        if self.window.push(sample).is_err() {
+            return;
+        }
+        if !self.window.is_long_enough(self.filter.config()) {
+            return;
+        }
+        let at_rest =
+            matches!(self.filter.alignment_of(&self.window), Ok(alignment) if alignment.is_static());
+        if at_rest && let Err(error) = self.filter.initialize(&self.window) {
+            tracing::warn!(%error, "the estimator does not align");
+        }
+        // It has moved, or the window has served.
+        self.window = StaticWindow::new();
+    }
+
+    /// What the filter knows now.
+    fn read(&mut self, reading: &InertialReading) {
+        self.estimate.time_us = reading.time_us;
+        if !self.filter.is_initialized() {
+            return;
+        }
+        let state = self.filter.state();
+        let q = state.attitude.body_to_ned();
+        let attitude = Quaternion::new(q.w.into(), q.x.into(), q.y.into(), q.z.into());
+        let body = &mut self.estimate.body;
+        body.position_m = double(state.position.to_array());
+        body.velocity_m_s = double(state.velocity.to_array());
+        body.attitude = UnitQuaternion::new_normalize(attitude).into_inner();
+        body.body_rate_rad_s = reading.body_rate_rad_s - double(state.gyro_bias.to_array());
+        let aided = state.status != Status::DeadReckoning;
+        self.estimate.validity = Validity {
+            tilt: state.validity.tilt,
+            heading: state.validity.heading,
+            horizontal_velocity: state.validity.horizontal_velocity && aided,
+            vertical_velocity: state.validity.vertical_velocity,
+            horizontal_position: state.validity.horizontal_position && aided,
+            vertical_position: state.validity.vertical_position,
+        };
+        let variance = |state| f64::from(self.filter.covariance().variance(state));
+        let horizontal = variance(ErrorState::PositionNorth) + variance(ErrorState::PositionEast);
+        self.estimate.horizontal_accuracy_m = libm::sqrt(horizontal / 2.0);
+        self.estimate.vertical_accuracy_m = libm::sqrt(variance(ErrorState::PositionDown));
+        let diagnostics = self.filter.diagnostics();
+        self.estimate.test_ratios = TestRatios {
+            velocity: ratio(&diagnostics.gnss_velocity),
+            horizontal_position: ratio(&diagnostics.gnss_position),
+            height: ratio(&diagnostics.baro_altitude),
+            heading: ratio(&diagnostics.mag_heading),
+        };
+        self.estimate.resets = self.resets;
+    }
+}
+
+fn ratio(source: &SourceHealth) -> f64 {
+    source.test_ratio.map_or(0.0, f64::from)
+}
+
+/// The filter counts what it rejects.
+fn used(outcome: Fusion) {
+    tracing::trace!(?outcome);
+}
+
+fn single(vector: &Vector3<f64>) -> [f32; 3] {
+    vector.data.0[0].map(|value| value as f32)
+}
+
+fn double(vector: [f32; 3]) -> Vector3<f64> {
+    Vector3::from(vector.map(f64::from))
+}

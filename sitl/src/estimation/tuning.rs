@@ -1,0 +1,82 @@
+//! What the estimator believes of its instruments.
+
+use fusion_nav::{
+    AltitudeNoise, Config, Correlation, HeadingNoise, ImuNoise, Initialization, Meters, MetersPerSecond,
+    MetersPerSecond2, Radians, Seconds,
+};
+use quadrotor::GRAVITY_M_S2;
+
+use super::{barometer, gps, inertial};
+use crate::world::pressure_altitude_m;
+
+/// What the model of the motion leaves out (turning within a step of 5 ms) counts as inertial noise: the estimator
+/// believes in this multiple of what the data sheet says.
+const INERTIAL_MARGIN: f64 = 3.0;
+/// How far the place where the vehicle stands is from where it is told to stand, m.
+const START_M: f32 = 0.1;
+/// How still it stands, m/s.
+pub const STILL_M_S: f32 = 0.02;
+/// A compass that has been calibrated keeps this much of the vehicle's own field, rad.
+const HEADING_RAD: f32 = 0.02;
+
+/// A heading is levelled by the estimated tilt, whose error lasts until the vehicle has accelerated, s.
+const LEVELLING_S: f32 = 15.0;
+
+/// The filter's settings.
+pub fn configuration() -> Config {
+    // A one-sided density n is white noise of √(n²/2) in the time domain.
+    let white = |density: f64| (INERTIAL_MARGIN * density / core::f64::consts::SQRT_2) as f32;
+    let walk = |rate: f64| (INERTIAL_MARGIN * rate) as f32;
+    Config {
+        imu: ImuNoise {
+            gyro_white: white(inertial::GYROSCOPE_NOISE_RAD_S_RTHZ),
+            accel_white: white(inertial::ACCELEROMETER_NOISE_M_S2_RTHZ),
+            gyro_bias_walk: walk(inertial::GYROSCOPE_WALK_RAD_S_RTS),
+            accel_bias_walk: walk(inertial::ACCELEROMETER_WALK_M_S2_RTS),
+        },
+        correlation: Correlation {
+            gnss_position: Some(Seconds::from_secs(gps::POSITION_CORRELATION_S as f32)),
+            gnss_height: Some(Seconds::from_secs(gps::POSITION_CORRELATION_S as f32)),
+            gnss_velocity: Some(Seconds::from_secs(gps::VELOCITY_CORRELATION_S as f32)),
+            mag_heading: Some(Seconds::from_secs(LEVELLING_S)),
+            ..Correlation::WHITE
+        },
+        init: Initialization {
+            sigma_position: Meters::from_meters(START_M),
+            sigma_velocity: MetersPerSecond::from_m_per_s(STILL_M_S),
+            sigma_yaw: Radians::from_radians(2.0 * HEADING_RAD),
+            sigma_accel_bias: MetersPerSecond2::from_m_per_s2(inertial::ACCELEROMETER_OFFSET_M_S2 as f32),
+            ..Initialization::default()
+        },
+        gravity: GRAVITY_M_S2 as f32,
+        // A vehicle in flight does not stay where it was when the receiver fell silent.
+        hold: None,
+        baro_offset_walk: metres(barometer::WALK_PA_RTS, 1013e2) as f32,
+        ..Config::default()
+    }
+}
+
+/// Noise of a barometric altitude.
+pub fn altitude_noise(pressure_pa: f64) -> AltitudeNoise {
+    AltitudeNoise::from_sigma(metres(barometer::NOISE_PA, pressure_pa) as f32)
+}
+
+/// Noise of a magnetic heading.
+pub fn heading_noise() -> HeadingNoise {
+    HeadingNoise::from_sigma(HEADING_RAD)
+}
+
+/// Height that a difference of pressure is at some pressure.
+fn metres(difference_pa: f64, pressure_pa: f64) -> f64 {
+    pressure_altitude_m(pressure_pa - difference_pa) - pressure_altitude_m(pressure_pa)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_filter_takes_its_settings() {
+        assert!(fusion_nav::Eskf::new(super::configuration()).is_ok());
+        // 1.2 Pa near the ground: 10 cm, as the barometer's data sheet says.
+        assert!((super::altitude_noise(101_325.0).variance().sqrt() - 0.10).abs() < 0.005);
+    }
+}
