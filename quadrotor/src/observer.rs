@@ -35,25 +35,28 @@ impl Observer {
     pub(crate) fn new(
         configuration: &Configuration,
         plant: &Plant,
+        estimate: Option<&RigidBody>,
         time_us: u64,
         before: Option<&Self>,
     ) -> Self {
         let mut noise = before.map_or_else(NoiseState::default, |observer| observer.noise);
-        let measured = noise.read(&configuration.sensors, &plant.body);
+        let measured = estimate.copied().unwrap_or_else(|| noise.read(&configuration.sensors, &plant.body));
         Self {
             noise,
             estimator: Estimator::new(&configuration.sensors, &measured, plant.rotor_speed_rad_s, time_us),
         }
     }
 
-    /// A reading of the sensors.
+    /// A reading of the sensors, or what an estimator outside has made of its own.
     pub(crate) fn observe(
         &mut self,
         configuration: &Configuration,
         plant: &Plant,
+        estimate: Option<&RigidBody>,
         time_us: u64,
     ) -> Observation {
-        let measured = self.noise.read(&configuration.sensors, &plant.body);
+        let measured =
+            estimate.copied().unwrap_or_else(|| self.noise.read(&configuration.sensors, &plant.body));
         let body =
             if configuration.sensors.output_feedback { self.estimator.body_at(time_us) } else { measured };
         let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);

@@ -13,7 +13,7 @@ use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
-    Outputs, SimulationError,
+    Outputs, RigidBody, SimulationError,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -65,6 +65,8 @@ pub struct Simulation {
     configuration: Configuration,
     design: CascadeDesign,
     state: SimulationState,
+    /// What the controllers take the vehicle's motion for, if somebody outside estimates it.
+    estimate: Option<RigidBody>,
 }
 
 impl Simulation {
@@ -76,8 +78,8 @@ impl Simulation {
     pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
         let design = CascadeDesign::new(configuration)?;
         let plant = Plant::new(configuration, inputs.armed);
-        let observer = Observer::new(configuration, &plant, 0, None);
-        let (guidance, cascade) = engaged(configuration, &plant, 0);
+        let observer = Observer::new(configuration, &plant, None, 0, None);
+        let (guidance, cascade) = engaged(configuration, &plant.body, &plant, 0);
         let state = SimulationState {
             time_us: 0,
             event_us: 0,
@@ -91,7 +93,7 @@ impl Simulation {
             attitude_target: None,
             engage: false,
         };
-        Ok(Self { configuration: *configuration, design, state })
+        Ok(Self { configuration: *configuration, design, state, estimate: None })
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.
@@ -104,7 +106,7 @@ impl Simulation {
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
         let design = CascadeDesign::new(configuration)?;
-        Ok(Self { configuration: *configuration, design, state })
+        Ok(Self { configuration: *configuration, design, state, estimate: None })
     }
 
     /// The configuration.
@@ -179,6 +181,21 @@ impl Simulation {
         }
         self.state.engage |= self.state.attitude_target.is_some() && target.is_none();
         self.state.attitude_target = target;
+        Ok(())
+    }
+
+    /// Lets the controllers fly by an estimate from outside from now on, in place of the true motion and the noise of
+    /// [`Sensors`](crate::Sensors), until it is given `None`. What the predictor of disturbances believes of its errors
+    /// stays the configured noise. It is an input, not a part of the state: whoever restores a flight gives it again.
+    ///
+    /// # Errors
+    /// [`SimulationError::InputNotFinite`]; nothing has changed then.
+    pub fn set_estimate(&mut self, estimate: Option<RigidBody>) -> Result<(), SimulationError> {
+        let usable = |body: &RigidBody| body.is_finite() && body.attitude.norm() > 0.5;
+        if !estimate.as_ref().is_none_or(usable) {
+            return Err(SimulationError::InputNotFinite { name: "estimate", time_us: self.state.time_us });
+        }
+        self.estimate = estimate;
         Ok(())
     }
 
@@ -261,12 +278,15 @@ impl Simulation {
         let time_us = state.event_us;
         inputs.check(time_us)?;
 
+        let estimate = self.estimate.as_ref();
         state.disturbance = inputs.disturbance;
         if inputs.armed && (!state.armed || state.engage) {
-            (state.guidance, state.cascade) = engaged(configuration, &state.plant, time_us);
+            let body = estimate.unwrap_or(&state.plant.body);
+            (state.guidance, state.cascade) = engaged(configuration, body, &state.plant, time_us);
         }
         if inputs.armed && !state.armed {
-            state.observer = Observer::new(configuration, &state.plant, time_us, Some(&state.observer));
+            state.observer =
+                Observer::new(configuration, &state.plant, estimate, time_us, Some(&state.observer));
         }
         state.engage &= !inputs.armed;
         state.armed = inputs.armed;
@@ -282,7 +302,7 @@ impl Simulation {
         if ![position_us, altitude_us, attitude_us].iter().any(|period_us| ticks(time_us, *period_us)) {
             return Ok(());
         }
-        let seen = state.observer.observe(configuration, &state.plant, time_us);
+        let seen = state.observer.observe(configuration, &state.plant, estimate, time_us);
         if let Some(target) = &state.attitude_target {
             if ticks(time_us, attitude_us) {
                 state.cascade.sample_attitude_target(configuration, design, &seen, target);
@@ -316,11 +336,16 @@ impl Simulation {
     }
 }
 
-/// Reference and controllers that take over the vehicle where it is.
-fn engaged(configuration: &Configuration, plant: &Plant, time_us: u64) -> (Guidance, Cascade) {
-    let (_, _, psi) = plant.body.rotation().euler_angles();
+/// Reference and controllers that take over the vehicle where it is, or is estimated to be.
+fn engaged(
+    configuration: &Configuration,
+    body: &RigidBody,
+    plant: &Plant,
+    time_us: u64,
+) -> (Guidance, Cascade) {
+    let (_, _, psi) = body.rotation().euler_angles();
     (
-        Guidance::new(configuration, &plant.body.position_m, psi, time_us),
-        Cascade::new(&plant.body, plant.rotor_speed_rad_s, time_us),
+        Guidance::new(configuration, &body.position_m, psi, time_us),
+        Cascade::new(body, plant.rotor_speed_rad_s, time_us),
     )
 }
