@@ -13,7 +13,7 @@ use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
-    Outputs, RigidBody, SimulationError,
+    Outputs, RigidBody, RotorFault, SimulationError,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -67,6 +67,8 @@ pub struct Simulation {
     state: SimulationState,
     /// What the controllers take the vehicle's motion for, if somebody outside estimates it.
     estimate: Option<RigidBody>,
+    /// What is wrong with the front, right, back and left rotor.
+    rotor_faults: [Option<RotorFault>; 4],
 }
 
 impl Simulation {
@@ -93,7 +95,7 @@ impl Simulation {
             attitude_target: None,
             engage: false,
         };
-        Ok(Self { configuration: *configuration, design, state, estimate: None })
+        Ok(Self { configuration: *configuration, design, state, estimate: None, rotor_faults: [None; 4] })
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.
@@ -106,7 +108,7 @@ impl Simulation {
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
         let design = CascadeDesign::new(configuration)?;
-        Ok(Self { configuration: *configuration, design, state, estimate: None })
+        Ok(Self { configuration: *configuration, design, state, estimate: None, rotor_faults: [None; 4] })
     }
 
     /// The configuration.
@@ -199,6 +201,22 @@ impl Simulation {
         Ok(())
     }
 
+    /// Breaks rotors, front, right, back and left, or mends them, from now on. It is an input, not a part of the state:
+    /// whoever restores a flight gives it again.
+    ///
+    /// # Errors
+    /// [`SimulationError::InputNotFinite`] for a share of the thrust that is none; nothing has changed then.
+    pub fn set_rotor_faults(&mut self, faults: [Option<RotorFault>; 4]) -> Result<(), SimulationError> {
+        if !faults.iter().flatten().all(|fault| fault.is_valid()) {
+            return Err(SimulationError::InputNotFinite {
+                name: "rotor_faults",
+                time_us: self.state.time_us,
+            });
+        }
+        self.rotor_faults = faults;
+        Ok(())
+    }
+
     /// Flies on to `time_us`. However the way there is split into calls, the flight is the same: inputs are
     /// sampled at the events of the engine's own schedule, and an arrival between two events does not
     /// disturb the integration.
@@ -266,7 +284,14 @@ impl Simulation {
         if time_us == state.event_us {
             return state.plant;
         }
-        let command = if state.armed { state.cascade.rotor_command_rad_s() } else { [0.0; 4] };
+        let mut command = if state.armed { state.cascade.rotor_command_rad_s() } else { [0.0; 4] };
+        for ((command, fault), present) in
+            command.iter_mut().zip(self.rotor_faults).zip(state.plant.rotor_speed_rad_s)
+        {
+            if let Some(fault) = fault {
+                *command = fault.goal_rad_s(*command, present);
+            }
+        }
         let h_s = (time_us - state.event_us) as f64 / 1e6;
         state.plant.step(&self.configuration, &command, &state.disturbance, h_s)
     }

@@ -21,6 +21,7 @@ pub mod codec;
 pub mod configuration;
 pub mod estimation;
 mod failure;
+pub mod fault;
 pub mod identity;
 pub mod link;
 mod pace;

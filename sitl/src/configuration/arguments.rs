@@ -26,6 +26,13 @@ Connect with:
   pymavlink          mavutil.mavlink_connection('udpin:127.0.0.1:14540')
   MAVProxy           mavproxy.py --master=udpin:127.0.0.1:14550
 
+Faults:
+  gyroscope, accelerometer, magnetometer, barometer, gps   off, stuck, garbage, wrong, slow, delayed, intermittent
+  battery                                                  off, stuck, wrong
+  rotor1 front, rotor2 right, rotor3 back, rotor4 left,
+  rotors                                                   off, stuck, weak[:SHARE of the thrust, 0.7 unless named]
+  `ok` mends each of them.
+
 Every flag can be set in the configuration file by its name (`autopilot = \"ardupilot\"`) and in the environment by
 LMPC_SITL_ and its name in capitals; flags go before the environment, the environment before the file.
 
@@ -84,6 +91,10 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SET", value_name = "NAME=VALUE", value_delimiter = ';')]
     pub set: Option<Vec<String>>,
 
+    /// What breaks when, such as 12.5:rotor1=off; repeat it for more, see below
+    #[arg(long, env = "LMPC_SITL_FAULT", value_name = "SECONDS:UNIT=KIND", value_delimiter = ';')]
+    pub fault: Option<Vec<String>>,
+
     /// Parameter file: read at the start if it exists, written whenever a parameter changes
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
     pub parameters: Option<PathBuf>,
@@ -128,6 +139,7 @@ impl Arguments {
             gusts: self.gusts.or(file.gusts),
             seed: self.seed.or(file.seed),
             set: self.set.or(file.set),
+            fault: self.fault.or(file.fault),
             parameters: self.parameters.or(file.parameters),
             record: self.record.or(file.record),
             replay: self.replay.or(file.replay),

@@ -6,6 +6,7 @@ use quadrotor::Configuration;
 
 use super::Arguments;
 use crate::failure::Failure;
+use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
 use crate::service::LinkProfile;
@@ -54,6 +55,7 @@ impl Settings {
             Some(seconds) => Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64),
             None => None,
         };
+        let faults = faults(arguments.fault.as_deref().unwrap_or_default())?;
         let mut vehicle = VehicleSettings {
             identity,
             configuration: Configuration::default(),
@@ -66,6 +68,7 @@ impl Settings {
                 gusts_m_s,
                 seed: arguments.seed.unwrap_or(1),
             },
+            faults,
         };
         if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3]
         {
@@ -100,6 +103,12 @@ fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Fai
     }
     let reason = format!("{value} is outside [{minimum}, {maximum}]");
     Err(Failure::Value { name: format!("--{name}"), reason })
+}
+
+fn faults(named: &[String]) -> Result<Vec<ScheduledFault>, Failure> {
+    let fault =
+        |text: &String| text.parse().map_err(|reason| Failure::Value { name: "--fault".to_owned(), reason });
+    named.iter().map(fault).collect()
 }
 
 /// Sets the parameters of the file, then those of the command line, on a vehicle that is only made for that.

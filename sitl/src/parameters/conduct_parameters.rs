@@ -72,6 +72,18 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("COM_RC_LOSS_T", Some(("RC_FS_TIMEOUT", 1.0)), 0.1..=60.0, stick_timeout_s),
     real!("BAT1_CAPACITY", Some(("BATT_CAPACITY", 1.0)), 10.0..=1e6, battery_capacity_ah, 1000.0),
     real!("COM_ARM_BAT_MIN", None, 0.0..=0.9, battery_to_arm),
+    ConductParameter {
+        id: "SYS_FAILURE_EN",
+        ardupilot: None,
+        integer: true,
+        minimum: 0.0,
+        maximum: 1.0,
+        get: |conduct| f64::from(u8::from(conduct.failure_injection)),
+        set: |conduct, value| {
+            conduct.failure_injection = value == 1.0;
+            true
+        },
+    },
 ];
 
 /// PX4's numbers of the actions.

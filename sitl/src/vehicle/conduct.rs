@@ -46,6 +46,14 @@ pub struct Conduct {
     pub battery_capacity_ah: f64,
     /// Least remaining share of the battery to arm with.
     pub battery_to_arm: f64,
+    /// Whether clients may break units.
+    #[serde(default = "yes")]
+    pub failure_injection: bool,
+}
+
+/// Records of before there were faults have none.
+fn yes() -> bool {
+    true
 }
 
 /// | parameter | default | reason |
@@ -58,6 +66,7 @@ pub struct Conduct {
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
 /// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
+/// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
     /// The defaults, which differ by convention.
     pub fn new(ardupilot: bool) -> Self {
@@ -76,6 +85,7 @@ impl Conduct {
             stick_timeout_s: 0.5,
             battery_capacity_ah: 2.2,
             battery_to_arm: 0.15,
+            failure_injection: true,
         }
     }
 }

@@ -19,6 +19,7 @@ mod arming;
 mod battery;
 mod conduct;
 mod flight;
+mod injection;
 mod landed;
 mod mode;
 mod motion;

@@ -1,5 +1,7 @@
 //! The vehicle's state and one tick of it.
 
+use std::collections::VecDeque;
+
 use nalgebra::Vector3;
 use quadrotor::{
     Configuration, ConfigurationError, Disturbance, Inputs, Outputs, Simulation, SimulationError,
@@ -16,6 +18,7 @@ use super::return_home::ReturnPhase;
 use super::set_point::PositionSetPoint;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
+use crate::fault::{Faults, ScheduledFault};
 use crate::identity::Identity;
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
 
@@ -37,6 +40,9 @@ pub struct VehicleSettings {
     pub heading_rad: f64,
     /// The wind.
     pub wind: WindSettings,
+    /// What breaks when.
+    #[serde(default)]
+    pub faults: Vec<ScheduledFault>,
 }
 
 /// Where a return goes.
@@ -61,6 +67,9 @@ pub struct Vehicle {
     pub(super) wind: Wind,
     pub(super) wind_m_s: Vector3<f64>,
     pub(super) battery: Battery,
+    pub(super) faults: Faults,
+    /// Those to come, the next one first.
+    pub(super) scheduled_faults: VecDeque<ScheduledFault>,
     pub(super) landed: LandedDetector,
     pub(super) home: Home,
     pub(super) armed: bool,
@@ -91,6 +100,8 @@ impl Vehicle {
         let inputs = Inputs { armed: false, ..Inputs::default() };
         let simulation = Simulation::new(&configuration, &inputs)?;
         let outputs = simulation.outputs();
+        let mut scheduled_faults = settings.faults.clone();
+        scheduled_faults.sort_by_key(|fault| fault.time_us);
         Ok(Self {
             identity: settings.identity,
             conduct: settings.conduct,
@@ -98,6 +109,8 @@ impl Vehicle {
             wind: Wind::new(settings.wind),
             wind_m_s: Vector3::zeros(),
             battery: Battery::default(),
+            faults: Faults::default(),
+            scheduled_faults: scheduled_faults.into(),
             landed: LandedDetector::new(-outputs.position_m.z),
             home: Home { position_m: Vector3::zeros(), yaw_rad: settings.heading_rad, set_by_user: false },
             armed: false,
@@ -120,6 +133,7 @@ impl Vehicle {
     /// # Errors
     /// [`SimulationError`]: the flight has left the range of numbers.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
+        self.suffer_scheduled();
         if self.armed {
             self.fly();
         }
@@ -130,6 +144,7 @@ impl Vehicle {
         self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
         let disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
         let inputs = Inputs { reference, disturbance, armed: self.armed };
+        self.simulation.set_rotor_faults(self.faults.rotors())?;
         self.simulation.advance_to(time_us + TICK_US, &inputs)?;
         self.outputs = self.simulation.outputs();
 

@@ -22,6 +22,7 @@ pub fn settings(identity: Identity) -> VehicleSettings {
         origin: Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 },
         heading_rad: 0.0,
         wind: WindSettings::default(),
+        faults: Vec::new(),
     }
 }
 

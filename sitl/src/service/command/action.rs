@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::{Outcome, altitude_frame};
 use crate::autopilot::Autopilot;
 use crate::codec::Command;
+use crate::fault::Fault;
 use crate::service::{Origin, message_interval, parameter, set_point, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
@@ -26,6 +27,7 @@ mod number {
     pub const DO_SET_STANDARD_MODE: u16 = 262;
     pub const COMPONENT_ARM_DISARM: u16 = 400;
     pub const RUN_PREARM_CHECKS: u16 = 401;
+    pub const INJECT_FAILURE: u16 = 420;
     pub const SET_MESSAGE_INTERVAL: u16 = 511;
 }
 
@@ -60,6 +62,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
             check(autopilot);
             Ok(())
         }
+        number::INJECT_FAILURE => inject_failure(vehicle, command),
         number::SET_MESSAGE_INTERVAL => set_interval(autopilot, origin, command),
         _ => return None,
     })
@@ -211,6 +214,18 @@ fn storage(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> 
         2.0 => autopilot.reset_parameters(),
         other => Err(Refusal::denied(format!("Parameter storage has no action {other}"))),
     }
+}
+
+/// FAILURE_UNIT, FAILURE_TYPE, instance.
+fn inject_failure(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    // Nothing may be named instead of every instance.
+    let instance = if command.parameter(3).is_nan() { Some(0) } else { command.whole(3) };
+    let (Some(unit), Some(kind), Some(instance)) = (command.whole(1), command.whole(2), instance) else {
+        return Err(Refusal::denied("INJECT_FAILURE needs a unit, a failure type and an instance"));
+    };
+    let fault = Fault::of_numbers(unit, kind, instance)
+        .map_err(|error| Refusal::Unsupported(format!("Failure injection: {error}")))?;
+    vehicle.inject(&fault)
 }
 
 fn set_interval(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> Result<(), Refusal> {
