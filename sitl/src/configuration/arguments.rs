@@ -6,6 +6,7 @@ use clap::Parser;
 use serde::Deserialize;
 
 use super::{HomePosition, WindFrom};
+use crate::estimation::SensorModel;
 use crate::identity::Identity;
 use crate::link::LinkSpecification;
 use crate::parameters::Speed;
@@ -83,6 +84,11 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", allow_hyphen_values = true)]
     pub gusts: Option<f64>,
 
+    /// What the vehicle knows its motion by: `ideal` is the truth; `realistic` are a GPS receiver, an inertial unit, a
+    /// barometer and a magnetometer with the noise of real ones, and an estimator (armable after 2 s) [default: ideal]
+    #[arg(long, env = "LMPC_SITL_SENSORS", value_name = "ideal|realistic")]
+    pub sensors: Option<SensorModel>,
+
     /// Seed of everything random [default: 1]
     #[arg(long, env = "LMPC_SITL_SEED", value_name = "N")]
     pub seed: Option<u64>,
@@ -137,6 +143,7 @@ impl Arguments {
             speed: self.speed.or(file.speed),
             wind: self.wind.or(file.wind),
             gusts: self.gusts.or(file.gusts),
+            sensors: self.sensors.or(file.sensors),
             seed: self.seed.or(file.seed),
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),

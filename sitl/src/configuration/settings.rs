@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use quadrotor::Configuration;
 
 use super::Arguments;
+use crate::estimation::SensorSettings;
 use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
@@ -69,6 +70,10 @@ impl Settings {
                 seed: arguments.seed.unwrap_or(1),
             },
             faults,
+            sensors: SensorSettings {
+                model: arguments.sensors.unwrap_or_default(),
+                seed: arguments.seed.unwrap_or(1),
+            },
         };
         if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3]
         {

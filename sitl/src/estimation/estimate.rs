@@ -53,14 +53,19 @@ pub struct TestRatios {
 }
 
 impl Validity {
+    /// All of it.
+    pub const ALL: Self = Self {
+        tilt: true,
+        heading: true,
+        horizontal_velocity: true,
+        vertical_velocity: true,
+        horizontal_position: true,
+        vertical_position: true,
+    };
+
     /// Everything that a flight by position needs.
     pub fn all(&self) -> bool {
-        self.tilt
-            && self.heading
-            && self.horizontal_velocity
-            && self.vertical_velocity
-            && self.horizontal_position
-            && self.vertical_position
+        *self == Self::ALL
     }
 }
 

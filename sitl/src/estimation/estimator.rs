@@ -168,15 +168,16 @@ impl Estimator {
         if self.window.push(sample).is_err() {
             return;
         }
+        if !self.window.is_at_rest(self.filter.config()) {
+            self.window = StaticWindow::new();
+            return;
+        }
         if !self.window.is_long_enough(self.filter.config()) {
             return;
         }
-        let at_rest =
-            matches!(self.filter.alignment_of(&self.window), Ok(alignment) if alignment.is_static());
-        if at_rest && let Err(error) = self.filter.initialize(&self.window) {
+        if let Err(error) = self.filter.initialize(&self.window) {
             tracing::warn!(%error, "the estimator does not align");
         }
-        // It has moved, or the window has served.
         self.window = StaticWindow::new();
     }
 

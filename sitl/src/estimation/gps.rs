@@ -26,7 +26,9 @@ pub const VELOCITY_M_S: f64 = 0.05 / 1.177_4;
 /// How long an error of the velocity lasts, s: the median over logs of real receivers (fusion-nav's `Correlation`).
 pub const VELOCITY_CORRELATION_S: f64 = 0.5;
 /// Satellites of an open sky.
-const SATELLITES: u8 = 14;
+const SATELLITES: u8 = 12;
+/// A receiver whose last fix is older has none, µs.
+const FRESH_US: u64 = 1_000_000;
 
 /// What the receiver says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +47,26 @@ pub struct GpsFix {
     pub velocity_accuracy_m_s: f64,
     /// Satellites in use.
     pub satellites: u8,
+}
+
+impl GpsFix {
+    /// A fix without errors.
+    pub fn exact(motion: &TrueMotion) -> Self {
+        Self {
+            time_us: motion.time_us,
+            position_m: motion.position_m,
+            velocity_m_s: motion.velocity_m_s,
+            horizontal_accuracy_m: 0.0,
+            vertical_accuracy_m: 0.0,
+            velocity_accuracy_m_s: 0.0,
+            satellites: SATELLITES,
+        }
+    }
+
+    /// Whether it still tells where the vehicle is.
+    pub fn is_fresh(&self, time_us: u64) -> bool {
+        time_us.saturating_sub(self.time_us) <= FRESH_US
+    }
 }
 
 /// The instrument.

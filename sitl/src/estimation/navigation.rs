@@ -9,15 +9,13 @@ use super::magnetometer::{Magnetometer, MagnetometerReading};
 use super::true_motion::TrueMotion;
 use super::vibration::Vibration;
 use super::watch::Watch;
-use crate::world::{LocalFrame, earth_field_ned};
+use crate::world::{LocalFrame, atmospheric_pressure_pa, earth_field_ned};
 
 /// A vehicle at rest says so to the estimator this often, µs.
 const STANDS_PERIOD_US: u64 = 100_000;
 /// An inertial unit that repeats itself for longer is broken, µs; the others read more rarely.
 const INERTIAL_PATIENCE_US: u64 = 50_000;
 const PATIENCE_US: u64 = 500_000;
-/// A receiver that has had no fix for longer has lost its position, µs.
-const FIX_PATIENCE_US: u64 = 1_000_000;
 /// A source that the filter has rejected for longer is not believed, s.
 const REJECTION_PATIENCE_S: f64 = 2.0;
 
@@ -47,6 +45,37 @@ pub struct InstrumentHealth {
     pub barometer: bool,
     /// GPS receiver.
     pub gps: bool,
+}
+
+impl Readings {
+    /// What instruments without errors would show.
+    pub fn exact(motion: &TrueMotion, frame: &LocalFrame) -> Self {
+        let time_us = motion.time_us;
+        let place = frame.to_geodetic(&motion.position_m);
+        let field = earth_field_ned(&place);
+        Self {
+            inertial: InertialReading {
+                time_us,
+                body_rate_rad_s: motion.body_rate_rad_s,
+                specific_force_m_s2: motion.specific_force_m_s2,
+            },
+            gps: Some(GpsFix::exact(motion)),
+            barometer: Some(BarometerReading {
+                time_us,
+                pressure_pa: atmospheric_pressure_pa(place.altitude_m),
+            }),
+            magnetometer: Some(MagnetometerReading {
+                time_us,
+                field_gauss: motion.attitude.inverse_transform_vector(&field),
+            }),
+        }
+    }
+}
+
+impl InstrumentHealth {
+    /// All of them.
+    pub const ALL: Self =
+        Self { gyroscope: true, accelerometer: true, magnetometer: true, barometer: true, gps: true };
 }
 
 /// Instruments and estimator.
@@ -154,7 +183,7 @@ impl Navigation {
             source.time_since_accepted.is_none_or(|time| f64::from(time.as_secs()) <= REJECTION_PATIENCE_S)
         };
         let fix = self.readings.and_then(|readings| readings.gps);
-        let fresh = fix.is_some_and(|fix| self.time_us - fix.time_us <= FIX_PATIENCE_US);
+        let fresh = fix.is_some_and(|fix| fix.is_fresh(self.time_us));
         InstrumentHealth {
             gyroscope: self.gyroscope_watch.is_alive(self.time_us, INERTIAL_PATIENCE_US),
             accelerometer: self.accelerometer_watch.is_alive(self.time_us, INERTIAL_PATIENCE_US),

@@ -5,7 +5,7 @@ use crate::vehicle::Vehicle;
 /// How often the state is taken in, µs.
 const PERIOD_US: u64 = 100_000;
 
-/// FNV-1a with 64 bits over the whole state of the closed loop, ten times per simulated second.
+/// FNV-1a with 64 bits over the whole state of the closed loop, and the estimate that it is flown by, ten times per simulated second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
 
@@ -21,7 +21,14 @@ impl Digest {
         if !vehicle.time_us().is_multiple_of(PERIOD_US) {
             return;
         }
-        match postcard::to_allocvec(vehicle.simulation().state()) {
+        self.part(vehicle.simulation().state());
+        if let Some(estimate) = vehicle.estimate() {
+            self.part(&estimate.body);
+        }
+    }
+
+    fn part(&mut self, part: &impl serde::Serialize) {
+        match postcard::to_allocvec(part) {
             Ok(bytes) => self.bytes(&bytes),
             // It has no kind that cannot be written; an error must not look like sameness.
             Err(error) => tracing::error!(%error, "the state cannot be digested"),

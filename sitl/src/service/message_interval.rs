@@ -49,7 +49,7 @@ const RATES: &[(u32, f64, f64)] = &[
 
 /// Messages of the groups of REQUEST_DATA_STREAM.
 const GROUPS: &[(u8, &[u32])] = &[
-    (1, &[24, 105]),          // RAW_SENSORS
+    (1, &[24, 26, 27, 29]),   // RAW_SENSORS
     (2, &[1, 147, 242, 245]), // EXTENDED_STATUS
     (3, &[36]),               // RC_CHANNELS
     (6, &[32, 33, 85]),       // POSITION

@@ -25,6 +25,7 @@ mod mode;
 mod motion;
 mod notice;
 mod offboard;
+mod perception;
 mod requests;
 mod return_home;
 mod set_point;

@@ -18,6 +18,7 @@ use super::return_home::ReturnPhase;
 use super::set_point::PositionSetPoint;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
+use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
 use crate::identity::Identity;
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
@@ -43,6 +44,9 @@ pub struct VehicleSettings {
     /// What breaks when.
     #[serde(default)]
     pub faults: Vec<ScheduledFault>,
+    /// What it knows its motion by.
+    #[serde(default)]
+    pub sensors: SensorSettings,
 }
 
 /// Where a return goes.
@@ -62,7 +66,12 @@ pub struct Vehicle {
     pub(super) identity: Identity,
     pub(super) conduct: Conduct,
     pub(super) simulation: Simulation,
+    /// What the closed loop shows, as far as the vehicle knows it.
     pub(super) outputs: Outputs,
+    /// What it shows in truth.
+    pub(super) truth: Outputs,
+    /// Instruments and estimator, unless the truth is known.
+    pub(super) navigation: Option<Navigation>,
     pub(super) frame: LocalFrame,
     pub(super) wind: Wind,
     pub(super) wind_m_s: Vector3<f64>,
@@ -97,12 +106,17 @@ impl Vehicle {
         configuration.environment.ground_plane = true;
         configuration.reference.shaping = true;
         configuration.initial.attitude_rad[2] = settings.heading_rad;
+        let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
+            believe_estimate(&mut configuration);
+            let start = Estimate::unaligned(Vector3::zeros(), settings.heading_rad);
+            Navigation::new(settings.sensors.seed, start)
+        });
         let inputs = Inputs { armed: false, ..Inputs::default() };
         let simulation = Simulation::new(&configuration, &inputs)?;
         let outputs = simulation.outputs();
         let mut scheduled_faults = settings.faults.clone();
         scheduled_faults.sort_by_key(|fault| fault.time_us);
-        Ok(Self {
+        let mut vehicle = Self {
             identity: settings.identity,
             conduct: settings.conduct,
             frame: LocalFrame::new(settings.origin),
@@ -125,7 +139,11 @@ impl Vehicle {
             notices: Vec::new(),
             simulation,
             outputs,
-        })
+            truth: outputs,
+            navigation,
+        };
+        vehicle.outputs = vehicle.known();
+        Ok(vehicle)
     }
 
     /// Flies one tick on.
@@ -140,20 +158,21 @@ impl Vehicle {
         let dt_s = TICK_US as f64 / 1e6;
         let time_us = self.outputs.time_us;
         let reference = self.steering.apply(&mut self.simulation, &self.outputs, dt_s)?;
-        let height_m = -self.outputs.position_m.z;
+        let height_m = -self.truth.position_m.z;
         self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
         let disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
         let inputs = Inputs { reference, disturbance, armed: self.armed };
         self.simulation.set_rotor_faults(self.faults.rotors())?;
+        self.simulation.set_estimate(self.estimate().map(|estimate| estimate.body))?;
         self.simulation.advance_to(time_us + TICK_US, &inputs)?;
-        self.outputs = self.simulation.outputs();
+        self.perceive();
 
         let airframe = self.simulation.configuration().airframe;
         let capacity_ah = self.conduct.battery_capacity_ah;
         self.battery.step(&airframe, &self.outputs.rotor_speed_rad_s, capacity_ah, dt_s);
         let controlled = self.steering.kind() == SteeringKind::Position;
         let stood = self.landed.is_landed();
-        self.landed.update(&self.outputs, airframe.weight_n(), self.armed, controlled);
+        self.landed.update(&self.felt(), airframe.weight_n(), self.armed, controlled);
         if self.landed.is_landed() != stood {
             self.touched(!stood);
         }
@@ -214,9 +233,14 @@ impl Vehicle {
         self.outputs.time_us
     }
 
-    /// What the closed loop shows.
+    /// What the closed loop shows, as far as the vehicle knows its motion.
     pub fn outputs(&self) -> &Outputs {
         &self.outputs
+    }
+
+    /// What the closed loop shows in truth.
+    pub fn truth(&self) -> &Outputs {
+        &self.truth
     }
 
     /// The closed loop.
@@ -304,10 +328,22 @@ impl Vehicle {
         match self.simulation.reconfigure(configuration) {
             Err(ConfigurationError::Fixed { .. }) if !self.armed && self.landed.is_landed() => {
                 self.simulation = Simulation::from_state(configuration, *self.simulation.state())?;
-                self.outputs = self.simulation.outputs();
+                self.truth = self.simulation.outputs();
+                self.outputs = self.known();
                 Ok(())
             }
             result => result,
         }
     }
+}
+
+/// Standard deviations of an estimate from one sample of the controllers to the next, m and rad: its predictor of
+/// disturbances takes what is beyond for a push.
+const ESTIMATE_NOISE: (f64, f64) = (0.02, 0.003);
+
+/// Lets the predictor of disturbances count with the errors of an estimate.
+fn believe_estimate(configuration: &mut Configuration) {
+    let sensors = &mut configuration.sensors;
+    sensors.position_noise_m = sensors.position_noise_m.max(ESTIMATE_NOISE.0);
+    sensors.attitude_noise_rad = sensors.attitude_noise_rad.max(ESTIMATE_NOISE.1);
 }

@@ -5,6 +5,7 @@
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use sitl::Autopilot;
 use sitl::codec::{CommandAck, Frame, Message, Version};
+use sitl::estimation::SensorSettings;
 use sitl::identity::Identity;
 use sitl::parameters::Speed;
 use sitl::service::{LinkProfile, Origin, PeerId};
@@ -23,6 +24,7 @@ pub fn settings(identity: Identity) -> VehicleSettings {
         heading_rad: 0.0,
         wind: WindSettings::default(),
         faults: Vec::new(),
+        sensors: SensorSettings::default(),
     }
 }
 

@@ -1,10 +1,12 @@
 //! Telemetry: every message that is sent regularly or asked for, made of the state of now.
 
 mod attitude;
+mod estimate;
 mod position;
 mod sensors;
 mod status;
 mod targets;
+mod truth;
 
 use mavlink::dialects::common::MavMessage;
 
@@ -19,6 +21,9 @@ pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
         1 => status::sys_status(vehicle),
         2 => status::system_time(vehicle, autopilot.unix_start_us()),
         24 => sensors::gps_raw_int(vehicle),
+        26 => sensors::scaled_imu(vehicle),
+        27 => sensors::raw_imu(vehicle),
+        29 => sensors::scaled_pressure(vehicle),
         30 => attitude::attitude(vehicle),
         31 => attitude::attitude_quaternion(vehicle),
         32 => position::local_position_ned(vehicle),
@@ -30,11 +35,12 @@ pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
         85 => targets::position_target_local_ned(vehicle),
         87 => targets::position_target_global_int(vehicle),
         105 => sensors::highres_imu(vehicle),
+        108 => truth::sim_state(vehicle),
         111 => time_synchronization::request(autopilot),
         141 => position::altitude(vehicle),
         147 => status::battery_status(vehicle),
         148 => identification::autopilot_version(vehicle.identity(), autopilot.system_id()),
-        230 => sensors::estimator_status(vehicle),
+        230 => estimate::estimator_status(vehicle),
         241 => sensors::vibration(vehicle),
         242 => position::home_position(vehicle),
         245 => status::extended_sys_state(vehicle),

@@ -138,7 +138,7 @@ pub fn odometry(vehicle: &Vehicle) -> MavMessage {
         velocity_covariance: unknown,
         frame_id: MavFrame::MAV_FRAME_LOCAL_NED,
         child_frame_id: MavFrame::MAV_FRAME_BODY_FRD,
-        reset_counter: 0,
+        reset_counter: vehicle.estimate().map_or(0, |estimate| estimate.resets as u8),
         estimator_type: MavEstimatorType::MAV_ESTIMATOR_TYPE_AUTOPILOT,
         quality: 100,
     })

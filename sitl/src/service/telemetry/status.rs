@@ -11,7 +11,7 @@ use crate::vehicle::{LandedState, Vehicle};
 /// Cells of the battery.
 const CELLS: usize = 3;
 
-/// SYS_STATUS: instruments and controllers are there and healthy; the arming check tells whether it could be armed.
+/// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
 pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
     let present = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL
@@ -28,7 +28,21 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
-    let health = if armable { present } else { present & !MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK };
+    let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
+    let position = validity.horizontal_position && validity.horizontal_velocity;
+    let checks = [
+        (instruments.gyroscope, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO),
+        (instruments.accelerometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL),
+        (instruments.magnetometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG),
+        (instruments.barometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE),
+        (instruments.gps, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS),
+        (validity.tilt && validity.heading, MavSysStatusSensor::MAV_SYS_STATUS_AHRS),
+        (validity.vertical_position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL),
+        (position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL),
+        (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
+    ];
+    let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
+    let health = failed.fold(present, |health, sensor| health & !sensor);
     let battery = vehicle.battery();
     MavMessage::SYS_STATUS(SYS_STATUS_DATA {
         onboard_control_sensors_present: present,

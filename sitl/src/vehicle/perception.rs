@@ -1,0 +1,101 @@
+//! What the vehicle knows of its own motion: the truth, or what an estimator makes of instruments.
+
+use nalgebra::Vector3;
+use quadrotor::{GRAVITY_M_S2, Outputs};
+
+use super::state::Vehicle;
+use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, TrueMotion, Validity};
+
+impl Vehicle {
+    /// Looks at the motion that the last tick has led to.
+    pub(super) fn perceive(&mut self) {
+        self.truth = self.simulation.outputs();
+        let stands = self.landed.is_landed() && !self.armed;
+        if let Some(navigation) = &mut self.navigation {
+            navigation.step(&TrueMotion::of(&self.truth), &self.frame, stands);
+        }
+        self.outputs = self.known();
+    }
+
+    /// The true outputs, with what the estimator says in place of the motion.
+    pub(super) fn known(&self) -> Outputs {
+        match &self.navigation {
+            Some(navigation) => estimated(&self.truth, navigation),
+            None => self.truth,
+        }
+    }
+
+    /// What the feet feel: the true motion, and the reference as far from it as the controllers believe.
+    pub(super) fn felt(&self) -> Outputs {
+        let mut felt = self.truth;
+        felt.setpoint.position_m += self.truth.position_m - self.outputs.position_m;
+        felt
+    }
+
+    /// What of its motion it knows well enough to fly by.
+    pub fn validity(&self) -> Validity {
+        self.navigation.as_ref().map_or(Validity::ALL, |navigation| navigation.estimate().validity)
+    }
+
+    /// Which instruments work.
+    pub fn instrument_health(&self) -> InstrumentHealth {
+        self.navigation.as_ref().map_or(InstrumentHealth::ALL, Navigation::health)
+    }
+
+    /// Instruments and estimator, if it flies by them.
+    pub fn navigation(&self) -> Option<&Navigation> {
+        self.navigation.as_ref()
+    }
+
+    /// The estimate, if it flies by one.
+    pub fn estimate(&self) -> Option<&Estimate> {
+        self.navigation.as_ref().map(Navigation::estimate)
+    }
+
+    /// What the instruments show; ideal ones show the truth.
+    pub fn readings(&self) -> Readings {
+        let measured = self.navigation.as_ref().and_then(Navigation::readings).copied();
+        measured.unwrap_or_else(|| Readings::exact(&TrueMotion::of(&self.truth), &self.frame))
+    }
+
+    /// What of the estimate speaks against arming.
+    pub(super) fn navigation_obstacles(&self) -> Vec<String> {
+        let Some(navigation) = &self.navigation else { return Vec::new() };
+        if !navigation.estimator().is_aligned() {
+            return vec!["attitude not aligned yet".to_owned()];
+        }
+        let (health, validity) = (navigation.health(), navigation.estimate().validity);
+        let checks = [
+            (health.gyroscope, "gyroscope failed"),
+            (health.accelerometer, "accelerometer failed"),
+            (health.magnetometer, "magnetometer failed"),
+            (health.barometer, "barometer failed"),
+            (health.gps, "no GPS fix"),
+            (validity.tilt && validity.heading, "no attitude estimate"),
+            (validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
+            (validity.horizontal_position && validity.vertical_position, "no position estimate"),
+        ];
+        checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned()).collect()
+    }
+}
+
+fn estimated(truth: &Outputs, navigation: &Navigation) -> Outputs {
+    let body = &navigation.estimate().body;
+    let rotation = body.rotation();
+    let (phi, theta, psi) = rotation.euler_angles();
+    let acceleration = navigation.readings().map_or_else(Vector3::zeros, |readings| {
+        rotation * readings.inertial.specific_force_m_s2 + Vector3::new(0.0, 0.0, GRAVITY_M_S2)
+    });
+    Outputs {
+        position_m: body.position_m,
+        velocity_m_s: body.velocity_m_s,
+        acceleration_m_s2: acceleration,
+        body_velocity_m_s: rotation.inverse_transform_vector(&body.velocity_m_s),
+        attitude_rad: Vector3::new(phi, theta, psi),
+        quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
+        body_rate_rad_s: body.body_rate_rad_s,
+        tracking_error_m: body.position_m - truth.setpoint.position_m,
+        yaw_error_rad: super::motion::wrapped(psi - truth.setpoint.yaw_rad),
+        ..*truth
+    }
+}

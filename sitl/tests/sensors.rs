@@ -1,0 +1,249 @@
+//! Flights by instruments and an estimator.
+
+mod common;
+
+use common::{Bench, GROUND_STATION, settings};
+use mavlink::dialects::common::{
+    EstimatorStatusFlags, GpsFixType, MavCmd, MavFrame, MavMessage, MavSysStatusSensor,
+    PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
+use nalgebra::Vector3;
+use sitl::codec::{Frame, Message, Version};
+use sitl::estimation::{SensorModel, SensorSettings};
+use sitl::identity::Identity;
+use sitl::parameters::Speed;
+use sitl::record::{Digest, Header, Recorder, replay};
+use sitl::service::LinkProfile;
+use sitl::vehicle::{Mode, VehicleSettings};
+use sitl::{Autopilot, Failure};
+
+const NOTHING: [f32; 7] = [0.0; 7];
+const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+
+fn realistic(seed: u64) -> VehicleSettings {
+    let mut settings = settings(Identity::Px4);
+    settings.sensors = SensorSettings { model: SensorModel::Realistic, seed };
+    settings
+}
+
+/// Aligned, with a fix.
+fn ready(seed: u64) -> Bench {
+    let mut bench = Bench::of(&realistic(seed));
+    bench.fly(3.0);
+    bench
+}
+
+fn hovering(seed: u64) -> Bench {
+    let mut bench = ready(seed);
+    bench.arm();
+    let takeoff = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, takeoff), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() != Mode::Takeoff);
+    bench
+}
+
+fn truth(bench: &Bench) -> Vector3<f64> {
+    bench.autopilot.vehicle().truth().position_m
+}
+
+/// Distance between what the vehicle believes and where it is, m.
+fn error(bench: &Bench) -> f64 {
+    let vehicle = bench.autopilot.vehicle();
+    (vehicle.outputs().position_m - vehicle.truth().position_m).norm()
+}
+
+/// The message of a kind, asked for now.
+fn asked(bench: &mut Bench, id: u32) -> MavMessage {
+    let parameters = [id as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), 0);
+    let typed = |message: &Message| match message {
+        Message::Typed(typed) if message.id() == id => Some(typed.clone()),
+        _ => None,
+    };
+    bench.heard.iter().find_map(typed).expect("the message asked for")
+}
+
+fn prearm_health(bench: &mut Bench) -> MavSysStatusSensor {
+    let MavMessage::SYS_STATUS(status) = asked(bench, 1) else { panic!("SYS_STATUS") };
+    status.onboard_control_sensors_health
+}
+
+#[test]
+fn it_is_armed_only_once_the_estimator_has_converged() {
+    let mut bench = Bench::of(&realistic(1));
+    bench.fly(0.5);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), 1);
+    let texts = bench.texts();
+    assert!(texts.iter().any(|text| text == "Arming denied: attitude not aligned yet"), "{texts:?}");
+    let health = prearm_health(&mut bench);
+    let missing = MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK
+        | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS;
+    assert!(!health.intersects(missing), "{health:?}");
+    let MavMessage::GPS_RAW_INT(fix) = asked(&mut bench, 24) else { panic!("GPS_RAW_INT") };
+    assert_eq!(fix.fix_type, GpsFixType::GPS_FIX_TYPE_NO_FIX);
+    let MavMessage::ESTIMATOR_STATUS(status) = asked(&mut bench, 230) else { panic!("ESTIMATOR_STATUS") };
+    assert!(status.flags.is_empty(), "{status:?}");
+
+    bench.fly(2.0);
+    assert!(prearm_health(&mut bench).contains(missing));
+    let MavMessage::ESTIMATOR_STATUS(status) = asked(&mut bench, 230) else { panic!("ESTIMATOR_STATUS") };
+    let flown_by = EstimatorStatusFlags::ESTIMATOR_ATTITUDE
+        | EstimatorStatusFlags::ESTIMATOR_POS_HORIZ_ABS
+        | EstimatorStatusFlags::ESTIMATOR_POS_VERT_ABS;
+    assert!(status.flags.contains(flown_by) && status.pos_horiz_accuracy > 0.0, "{status:?}");
+    bench.arm();
+}
+
+/// The messages of the sensors tell of the same instruments in their own units.
+#[test]
+fn sensor_messages_show_the_instruments() {
+    let mut bench = ready(2);
+    let MavMessage::HIGHRES_IMU(imu) = asked(&mut bench, 105) else { panic!("HIGHRES_IMU") };
+    let MavMessage::RAW_IMU(raw) = asked(&mut bench, 27) else { panic!("RAW_IMU") };
+    let MavMessage::SCALED_IMU(scaled) = asked(&mut bench, 26) else { panic!("SCALED_IMU") };
+    let MavMessage::SCALED_PRESSURE(pressure) = asked(&mut bench, 29) else { panic!("SCALED_PRESSURE") };
+    // 1 g is 2048 counts and 1000 mG; offsets and noise are below 30 mG.
+    assert!((imu.zacc + 9.806_65).abs() < 0.3 && imu.zacc != -9.806_65, "{imu:?}");
+    assert!((f32::from(raw.zacc) - imu.zacc / 9.806_65 * 2048.0).abs() < 0.51, "{raw:?}");
+    assert!((f32::from(scaled.zacc) - imu.zacc / 9.806_65 * 1000.0).abs() < 0.51, "{scaled:?}");
+    assert!((f32::from(raw.zmag) - imu.zmag * 7500.0).abs() < 0.51, "{raw:?}");
+    assert!((f32::from(scaled.xmag) - imu.xmag * 1000.0).abs() < 0.51, "{scaled:?}");
+    assert!((pressure.press_abs - imu.abs_pressure).abs() < 0.01, "{pressure:?}");
+    // 488 m in the standard atmosphere: 956 hPa, give or take the offset; 11.8 °C.
+    assert!(
+        (pressure.press_abs - 956.0).abs() < 2.0 && (pressure.temperature - 1183).abs() < 15,
+        "{pressure:?}"
+    );
+    let MavMessage::GPS_RAW_INT(fix) = asked(&mut bench, 24) else { panic!("GPS_RAW_INT") };
+    assert_eq!((fix.fix_type, fix.h_acc), (GpsFixType::GPS_FIX_TYPE_3D_FIX, 2123));
+    assert!((fix.lat - 473_977_420).abs() < 1000 && fix.lat != 473_977_420, "{fix:?}");
+    let MavMessage::VIBRATION(vibration) = asked(&mut bench, 241) else { panic!("VIBRATION") };
+    // 70 µg/√Hz over 500 Hz: 15 mm/s².
+    assert!((0.010..0.020).contains(&vibration.vibration_x), "{vibration:?}");
+    let MavMessage::SIM_STATE(state) = asked(&mut bench, 108) else { panic!("SIM_STATE") };
+    assert!((state.lat_int - 473_977_420).abs() <= 1 && (state.zacc + 9.806_65).abs() < 1e-3, "{state:?}");
+}
+
+/// Bars for a hover of half a minute: how far the vehicle strays from where it believes to be, and from where it is told to be.
+#[test]
+fn a_hover_stays_within_its_bars() {
+    for seed in [1, 2, 3] {
+        let mut bench = hovering(seed);
+        bench.fly(3.0);
+        let goal = bench.autopilot.vehicle().outputs().setpoint.position_m;
+        let (mut strays, mut errors, mut shakes, mut count) = (0.0, 0.0, 0.0, 0.0);
+        let mut lean: f64 = 0.0;
+        for _ in 0..300 {
+            bench.fly(0.1);
+            let outputs = bench.autopilot.vehicle().outputs();
+            strays += (truth(&bench) - goal).norm_squared();
+            errors += error(&bench).powi(2);
+            shakes += (outputs.position_m - goal).norm_squared();
+            lean = lean.max(bench.autopilot.vehicle().truth().attitude_rad.xy().norm());
+            count += 1.0;
+        }
+        let [strays, errors, shakes] = [strays, errors, shakes].map(|sum: f64| (sum / count).sqrt());
+        println!(
+            "seed {seed}: from the goal {strays:.3} m, estimate {errors:.3} m, controlled {shakes:.4} m, lean {lean:.4}"
+        );
+        assert!(
+            strays < 1.0 && errors < 1.0 && shakes < 0.1 && lean < 0.1,
+            "{strays} {errors} {shakes} {lean}"
+        );
+    }
+}
+
+#[test]
+fn it_flies_the_paper_s_goal_and_lands() {
+    let mut bench = ready(4);
+    let goal = MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        target_system: 1,
+        target_component: 1,
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        type_mask: PositionTargetTypemask::from_bits_retain(0b1001_1111_1000),
+        x: 5.0,
+        y: 5.0,
+        z: -10.0,
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+    });
+    bench.send(goal.clone());
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    bench.arm();
+    bench.stream(20.0, |bench| bench.send(goal.clone()));
+    let away = (truth(&bench) - Vector3::new(5.0, 5.0, -10.0)).norm();
+    assert!(away < 1.0, "{away}");
+    let believed = bench.position();
+    assert!((Vector3::from(believed) - Vector3::new(5.0, 5.0, -10.0)).norm() < 0.1, "{believed:?}");
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, NOTHING), 0);
+    bench.fly_until("landing", 60.0, |bench| !bench.autopilot.vehicle().is_armed());
+    assert!(truth(&bench).z.abs() < 0.02, "{}", truth(&bench));
+}
+
+/// The truth is told by SIM_STATE alone; everything else tells the estimate.
+#[test]
+fn telemetry_tells_the_estimate() {
+    let mut bench = hovering(5);
+    bench.fly(2.0);
+    let vehicle = bench.autopilot.vehicle();
+    let (believed, truth) = (vehicle.outputs().position_m, vehicle.truth().position_m);
+    assert!(believed != truth);
+    let MavMessage::LOCAL_POSITION_NED(local) = asked(&mut bench, 32) else { panic!("LOCAL_POSITION_NED") };
+    assert_eq!([local.x, local.y, local.z], believed.data.0[0].map(|value| value as f32));
+    let MavMessage::SIM_STATE(state) = asked(&mut bench, 108) else { panic!("SIM_STATE") };
+    assert!((f64::from(state.alt) - (488.0 - truth.z)).abs() < 1e-3, "{state:?} {truth}");
+}
+
+/// Without the instruments nothing of all this changes a flight: their noise is not even made.
+#[test]
+fn a_seed_changes_only_realistic_sensors() {
+    let end = |settings: &VehicleSettings| {
+        let mut bench = Bench::of(settings);
+        bench.fly(2.5);
+        bench.arm();
+        bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]);
+        bench.fly(3.0);
+        bench.autopilot.vehicle().truth().position_m
+    };
+    let ideal = |seed| {
+        let sensors = SensorSettings { model: SensorModel::Ideal, seed };
+        VehicleSettings { sensors, ..settings(Identity::Px4) }
+    };
+    assert_eq!(end(&ideal(1)), end(&ideal(2)));
+    assert_eq!(end(&realistic(1)), end(&realistic(1)));
+    assert_ne!(end(&realistic(1)), end(&realistic(2)));
+}
+
+/// A flight by instruments, recorded and flown again from its record alone.
+#[test]
+fn a_record_with_realistic_sensors_replays_bit_for_bit() {
+    let vehicle = realistic(6);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("flight.record");
+    let links = vec![LinkProfile::Ground];
+    let header = Header::new(1, Speed::Factor(1.0), links.clone(), vehicle.clone());
+    let mut recorder = Recorder::create(&path, &header).expect("a file");
+    let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 77).expect("settings");
+    let mut digest = Digest::default();
+    let commands = [
+        (2_500, common::command_long(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM, 0)),
+        (2_600, common::command_long(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7], 0)),
+    ];
+    for millisecond in 0..8_000_u32 {
+        for (sequence, (_, message)) in (1..).zip(commands.iter().filter(|(at, _)| *at == millisecond)) {
+            let frame = Frame::encode(&message.clone().into(), Version::Two, sequence, GROUND_STATION);
+            let frame = frame.expect("a message of MAVLink 2");
+            recorder.frame(autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
+            autopilot.receive(&Bench::origin(), &frame);
+        }
+        autopilot.tick().expect("flight");
+        digest.update(autopilot.vehicle());
+    }
+    assert!(autopilot.vehicle().truth().position_m.z < -1.5, "it has flown");
+    recorder.finish(autopilot.vehicle().time_us(), digest).expect("written");
+    assert_eq!(replay(&path).expect("the same flight").digest, digest.value());
+    // The digest sees the seed.
+    let text = std::fs::read_to_string(&path).expect("readable");
+    std::fs::write(&path, text.replacen("\"seed\":6", "\"seed\":7", 1)).expect("written");
+    assert!(matches!(replay(&path), Err(Failure::Differs { .. })));
+}
