@@ -8,7 +8,7 @@ use quadrotor::{ConfigurationError, SimulationError};
 
 use crate::codec::{Frame, Message, id, target_of};
 use crate::identity::Identity;
-use crate::parameters::{Host, ParameterTable, SetError, Speed, Value, View};
+use crate::parameters::{Host, ParameterTable, SPEED_PARAMETER, SetError, Speed, Value, View};
 use crate::service::command::Retries;
 use crate::service::file_transfer::FileServer;
 use crate::service::heartbeat::Heartbeat;
@@ -199,6 +199,12 @@ impl Autopilot {
     /// The pace that is asked for.
     pub fn speed(&self) -> Speed {
         self.speed
+    }
+
+    /// Another pace, which its clients are told.
+    pub fn set_speed(&mut self, speed: Speed) {
+        self.speed = speed;
+        parameter::tell(self, SPEED_PARAMETER);
     }
 
     /// Time of the wall clock at the start, µs since 1970.

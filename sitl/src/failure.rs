@@ -55,8 +55,12 @@ pub enum Failure {
         reason: String,
     },
     /// The replayed flight is another one.
-    #[error("the replayed flight differs: recorded {recorded:016x}, replayed {replayed:016x}")]
+    #[error(
+        "the replayed flight of system {system_id} differs: recorded {recorded:016x}, replayed {replayed:016x}"
+    )]
     Differs {
+        /// The vehicle.
+        system_id: u8,
         /// Digest in the record.
         recorded: u64,
         /// Digest of the replayed flight.

@@ -3,17 +3,28 @@
 use std::path::Path;
 
 use crate::failure::Failure;
+use crate::fleet::Fleet;
 use crate::link::Links;
 
 /// Writes it at once: a reader never sees half of it.
 ///
 /// # Errors
 /// [`Failure::File`]
-pub fn write(path: &Path, links: &Links) -> Result<(), Failure> {
+pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
+    let of_all = |list: fn(&Links) -> Vec<String>| fleet.hubs().iter().flat_map(list).collect::<Vec<_>>();
+    let vehicles = fleet.members().iter().map(|member| {
+        let list = |list: fn(&Links) -> Vec<String>| fleet.hubs().get(member.hub()).map(list);
+        serde_json::json!({
+            "system_id": member.autopilot().system_id(),
+            "addresses": list(Links::addresses),
+            "links": list(Links::descriptions),
+        })
+    });
     let content = serde_json::json!({
         "process_id": std::process::id(),
-        "addresses": links.addresses(),
-        "links": links.descriptions(),
+        "addresses": of_all(Links::addresses),
+        "links": of_all(Links::descriptions),
+        "vehicles": vehicles.collect::<Vec<_>>(),
     });
     let beside = path.with_extension("new");
     std::fs::write(&beside, format!("{content}\n"))

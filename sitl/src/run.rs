@@ -20,25 +20,31 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let arguments = with_file(arguments)?;
     log_to_stderr(arguments.log.as_deref())?;
     if let Some(path) = &arguments.replay {
-        let replayed = replay(path)?;
-        say(&format!(
-            "replayed {:.3} s, digest {:016x}: the same flight",
-            replayed.time_us as f64 / 1e6,
-            replayed.digest
-        ));
+        for flight in replay(path)? {
+            say(&format!(
+                "system {}: replayed {:.3} s, digest {:016x}: the same flight",
+                flight.system_id,
+                flight.time_us as f64 / 1e6,
+                flight.digest
+            ));
+        }
         return Ok(());
     }
     let settings = Settings::resolve(&arguments)?;
     let stop = stop_on_signals().map_err(Failure::Signals)?;
     let session = Session::new(settings.clone())?;
-    say(banner(&settings, session.links()).trim_end());
+    say(banner(&settings, session.fleet()).trim_end());
     let summary = session.run(&stop)?;
-    let (simulated_s, wall_s) = (summary.time_us as f64 / 1e6, summary.wall.as_secs_f64());
-    say(&format!(
-        "flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), digest {:016x}",
-        simulated_s / wall_s.max(1e-9),
-        summary.digest
-    ));
+    let wall_s = summary.wall.as_secs_f64();
+    for flight in summary.flights {
+        let simulated_s = flight.time_us as f64 / 1e6;
+        say(&format!(
+            "system {}: flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), digest {:016x}",
+            flight.system_id,
+            simulated_s / wall_s.max(1e-9),
+            flight.digest
+        ));
+    }
     Ok(())
 }
 

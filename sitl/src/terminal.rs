@@ -1,33 +1,61 @@
 //! What a person sees: the banner, and one live line.
 
+use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
-use crate::autopilot::Autopilot;
 use crate::configuration::Settings;
-use crate::link::{Endpoint, Links};
+use crate::fleet::{Fleet, Member};
+use crate::link::{Endpoint, LinkSpecification, Links};
 use crate::service::LinkProfile;
 
 /// How often the line changes.
 const PERIOD: Duration = Duration::from_millis(500);
 
 /// What is running, where, and how to connect to it.
-pub fn banner(settings: &Settings, links: &Links) -> String {
-    let origin = settings.vehicle.origin;
+pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
+    let Some(first) = fleet.members().first() else { return String::new() };
+    let origin = first.autopilot().settings().origin;
+    let what = match fleet.members() {
+        [only] => format!("simulated quadrotor, system {}", only.autopilot().system_id()),
+        many => format!("{} simulated quadrotors", many.len()),
+    };
     let mut text = format!(
-        "lmpc-sitl {}: simulated quadrotor, system {}, as {:?}, at {:.6}, {:.6}, {:.0} m\n",
+        "lmpc-sitl {}: {what}, as {:?}, at {:.6}, {:.6}, {:.0} m\n",
         env!("CARGO_PKG_VERSION"),
-        settings.system_id,
-        settings.vehicle.identity,
+        first.autopilot().identity(),
         origin.latitude_deg,
         origin.longitude_deg,
         origin.altitude_m,
     );
+    for (number, (links, specifications)) in fleet.hubs().iter().zip(&settings.hubs).enumerate() {
+        if fleet.members().len() > 1 {
+            let behind = fleet.members().iter().filter(|member| member.hub() == number);
+            behind.for_each(|member| text.push_str(&start(member)));
+        }
+        // How to connect to one shows how to connect to all.
+        text.push_str(&ways(links, specifications, number == 0));
+    }
+    text
+}
+
+/// Where a vehicle stands.
+fn start(member: &Member) -> String {
+    let [north, east, _] = member.autopilot().settings().configuration.initial.position_m;
+    format!("  system {}: {north:.1} m north, {east:.1} m east\n", member.autopilot().system_id())
+}
+
+/// Where links are, and what clients are told to connect to them.
+fn ways(links: &Links, specifications: &[LinkSpecification], told: bool) -> String {
+    let mut text = String::new();
     for ((link, description), address) in
-        settings.links.iter().zip(links.descriptions()).zip(links.addresses())
+        specifications.iter().zip(links.descriptions()).zip(links.addresses())
     {
         let profile = if link.profile == LinkProfile::Onboard { "onboard" } else { "ground" };
         text.push_str(&format!("  {description} ({profile})\n"));
+        if !told {
+            continue;
+        }
         text.push_str(&match &link.endpoint {
             Endpoint::UdpOut { port: 14_550, .. } => {
                 "      QGroundControl: start it; MAVProxy: --master=udpin:127.0.0.1:14550\n".to_owned()
@@ -61,23 +89,19 @@ impl StatusLine {
     }
 
     /// Shows the state of now, if it is time.
-    pub fn update(&mut self, now: Instant, autopilot: &Autopilot, peers: usize) {
+    pub fn update(&mut self, now: Instant, fleet: &Fleet) {
         if !self.terminal || now.saturating_duration_since(self.last) < PERIOD {
             return;
         }
-        let vehicle = autopilot.vehicle();
-        let time_us = vehicle.time_us();
+        let Some(time_us) = fleet.members().iter().map(Member::time_us).max() else { return };
         let factor = (time_us - self.last_us) as f64 / 1e6 / now.duration_since(self.last).as_secs_f64();
         (self.last, self.last_us, self.shown) = (now, time_us, true);
-        let [x, y, z] = vehicle.outputs().position_m.data.0[0];
-        let armed = if vehicle.is_armed() { "armed" } else { "disarmed" };
-        let mode = vehicle.identity().mode_name(vehicle.mode());
-        let battery = 100.0 * vehicle.battery_remaining();
-        let text = format!(
-            "{:8.1} s x{factor:<5.1} {armed} {mode}  N {x:7.1} E {y:7.1} up {:6.1} m  battery {battery:3.0} %  {peers} peers",
-            time_us as f64 / 1e6,
-            -z,
-        );
+        let peers: usize = fleet.hubs().iter().map(Links::active_peers).sum();
+        let state = match fleet.members() {
+            [only] => state_of_one(only),
+            many => state_of_many(many),
+        };
+        let text = format!("{:8.1} s x{factor:<5.1} {state}  {peers} peers", time_us as f64 / 1e6);
         // Nobody minds if a terminal is gone.
         let _gone = write!(stderr(), "\r\x1b[K{text}").and_then(|()| stderr().flush());
     }
@@ -88,6 +112,28 @@ impl StatusLine {
             let _gone = write!(stderr(), "\r\x1b[K");
         }
     }
+}
+
+fn state_of_one(member: &Member) -> String {
+    let vehicle = member.autopilot().vehicle();
+    let [x, y, z] = vehicle.outputs().position_m.data.0[0];
+    let armed = if vehicle.is_armed() { "armed" } else { "disarmed" };
+    let mode = vehicle.identity().mode_name(vehicle.mode());
+    let battery = 100.0 * vehicle.battery_remaining();
+    format!("{armed} {mode}  N {x:7.1} E {y:7.1} up {:6.1} m  battery {battery:3.0} %", -z)
+}
+
+/// How many are in which state, and the weakest battery.
+fn state_of_many(members: &[Member]) -> String {
+    let vehicles = || members.iter().map(|member| member.autopilot().vehicle());
+    let armed = vehicles().filter(|vehicle| vehicle.is_armed()).count();
+    let mut modes = BTreeMap::new();
+    for vehicle in vehicles() {
+        *modes.entry(vehicle.identity().mode_name(vehicle.mode())).or_insert(0) += 1;
+    }
+    let modes: Vec<String> = modes.into_iter().map(|(mode, count)| format!("{count} {mode}")).collect();
+    let battery = 100.0 * vehicles().map(|vehicle| vehicle.battery_remaining()).fold(1.0, f64::min);
+    format!("{armed} of {} armed  {}  battery {battery:3.0} %", members.len(), modes.join(", "))
 }
 
 /// A writer of log lines that does not mix them with the live line.

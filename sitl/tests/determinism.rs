@@ -10,10 +10,10 @@ use quadrotor::{Inputs, PositionReference, Simulation};
 use sitl::codec::{Frame, Message};
 use sitl::identity::Identity;
 use sitl::parameters::Speed;
-use sitl::record::{Digest, Header, Recorder, replay};
+use sitl::record::{Digest, Header, Participant, Recorder, replay};
 use sitl::service::LinkProfile;
 use sitl::vehicle::Mode;
-use sitl::{Autopilot, Failure};
+use sitl::{Autopilot, Failure, Flight};
 
 fn place(x: f32, y: f32, z: f32, yaw: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
@@ -98,7 +98,8 @@ fn a_record_replays_bit_for_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("flight.record");
     let links = vec![LinkProfile::Ground];
-    let header = Header::new(1, Speed::Factor(1.0), links.clone(), vehicle.clone());
+    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
+    let header = Header::new(Speed::Factor(1.0), vec![participant]);
     let mut recorder = Recorder::create(&path, &header).expect("a file");
     let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 77).expect("settings");
     let mut digest = Digest::default();
@@ -112,7 +113,7 @@ fn a_record_replays_bit_for_bit() {
             let frame =
                 Frame::encode(&Message::from(message), sitl::codec::Version::Two, sequence, GROUND_STATION)
                     .expect("v2");
-            recorder.frame(autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
+            recorder.frame(0, autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
             autopilot.receive(&Bench::origin(), &frame);
         };
         if millisecond >= 1_000 && millisecond % 37 == 0 {
@@ -127,9 +128,11 @@ fn a_record_replays_bit_for_bit() {
         digest.update(autopilot.vehicle());
     }
     assert!(autopilot.vehicle().outputs().position_m.z < -5.0);
-    recorder.finish(autopilot.vehicle().time_us(), digest).expect("written");
+    recorder.end(0, autopilot.vehicle().time_us(), digest).expect("written");
+    recorder.finish().expect("written");
     let replayed = replay(&path).expect("the same flight");
-    assert_eq!((replayed.time_us, replayed.digest), (20_000_000, digest.value()));
+    let flight = Flight { system_id: 1, time_us: 20_000_000, digest: digest.value() };
+    assert_eq!(replayed, [flight]);
 
     // One set-point comes a millisecond later.
     let text = std::fs::read_to_string(&path).expect("readable");

@@ -7,5 +7,5 @@ mod wind;
 
 pub use arguments::Arguments;
 pub use home::HomePosition;
-pub use settings::Settings;
+pub use settings::{MemberSettings, Settings};
 pub use wind::WindFrom;

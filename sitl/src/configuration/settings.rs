@@ -1,5 +1,6 @@
 //! All settings, resolved and checked.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use quadrotor::Configuration;
@@ -10,7 +11,7 @@ use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
-use crate::service::LinkProfile;
+use crate::record::Participant;
 use crate::vehicle::{Conduct, Vehicle, VehicleSettings};
 use crate::world::WindSettings;
 
@@ -21,16 +22,12 @@ const DRAG_IN_WIND_N_S_M: f64 = 0.15;
 /// What the program does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The vehicle.
-    pub vehicle: VehicleSettings,
-    /// MAVLink system id.
-    pub system_id: u8,
-    /// Links.
-    pub links: Vec<LinkSpecification>,
+    /// The vehicles.
+    pub vehicles: Vec<MemberSettings>,
+    /// Links of each hub.
+    pub hubs: Vec<Vec<LinkSpecification>>,
     /// Pace.
     pub speed: Speed,
-    /// Parameter file.
-    pub parameters: Option<PathBuf>,
     /// Record to be written.
     pub record: Option<PathBuf>,
     /// Traffic log.
@@ -41,6 +38,19 @@ pub struct Settings {
     pub end_us: Option<u64>,
 }
 
+/// One vehicle of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MemberSettings {
+    /// MAVLink system id.
+    pub system_id: u8,
+    /// The vehicle.
+    pub vehicle: VehicleSettings,
+    /// Number of the hub that it is behind.
+    pub hub: usize,
+    /// Parameter file.
+    pub parameters: Option<PathBuf>,
+}
+
 impl Settings {
     /// Resolves arguments, with the configuration file that they name already in them.
     ///
@@ -48,47 +58,22 @@ impl Settings {
     /// [`Failure`] that names the wrong value.
     pub fn resolve(arguments: &Arguments) -> Result<Self, Failure> {
         let instance = arguments.instance.unwrap_or(0);
-        let identity = arguments.autopilot.unwrap_or_default();
-        let home = arguments.home.unwrap_or_default();
-        let wind = arguments.wind.unwrap_or_default();
-        let gusts_m_s = within("gusts", arguments.gusts.unwrap_or(0.0), 0.0, 10.0)?;
         let end_us = match arguments.duration {
             Some(seconds) => Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64),
             None => None,
         };
-        let faults = faults(arguments.fault.as_deref().unwrap_or_default())?;
-        let mut vehicle = VehicleSettings {
-            identity,
-            configuration: Configuration::default(),
-            conduct: Conduct::new(identity.is_ardupilot()),
-            origin: home.place,
-            heading_rad: home.heading_deg.to_radians(),
-            wind: WindSettings {
-                speed_m_s: wind.speed_m_s,
-                from_rad: wind.from_deg.to_radians(),
-                gusts_m_s,
-                seed: arguments.seed.unwrap_or(1),
-            },
-            faults,
-            sensors: SensorSettings {
-                model: arguments.sensors.unwrap_or_default(),
-                seed: arguments.seed.unwrap_or(1),
-            },
-        };
-        if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3]
-        {
-            vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
-        }
-        let parameters = arguments.parameters.as_deref();
-        set_parameters(&mut vehicle, parameters, arguments.set.as_deref().unwrap_or_default())?;
         // At most 200, see the arguments.
         let default_id = u8::try_from(instance + 1).unwrap_or(u8::MAX);
-        Ok(Self {
-            vehicle,
+        let member = MemberSettings {
             system_id: arguments.system_id.unwrap_or(default_id),
-            links: arguments.link.clone().unwrap_or_else(|| default_links(instance)),
-            speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
+            vehicle: vehicle(arguments)?,
+            hub: 0,
             parameters: arguments.parameters.clone(),
+        };
+        Ok(Self {
+            vehicles: vec![member],
+            hubs: vec![arguments.link.clone().unwrap_or_else(|| default_links(instance))],
+            speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
             ready_file: arguments.ready_file.clone(),
@@ -96,10 +81,52 @@ impl Settings {
         })
     }
 
-    /// What each link is for.
-    pub fn profiles(&self) -> Vec<LinkProfile> {
-        self.links.iter().map(|link| link.profile).collect()
+    /// Numbers of the vehicles that tick by each clock.
+    pub fn clocks(&self) -> Vec<Range<usize>> {
+        std::iter::once(0..self.vehicles.len()).collect()
     }
+
+    /// The vehicles as a record has them.
+    pub fn participants(&self) -> Vec<Participant> {
+        let participant = |own: &MemberSettings| Participant {
+            system_id: own.system_id,
+            links: self.hubs.get(own.hub).into_iter().flatten().map(|link| link.profile).collect(),
+            vehicle: own.vehicle.clone(),
+        };
+        self.vehicles.iter().map(participant).collect()
+    }
+}
+
+/// A vehicle as the arguments describe it.
+fn vehicle(arguments: &Arguments) -> Result<VehicleSettings, Failure> {
+    let identity = arguments.autopilot.unwrap_or_default();
+    let home = arguments.home.unwrap_or_default();
+    let wind = arguments.wind.unwrap_or_default();
+    let gusts_m_s = within("gusts", arguments.gusts.unwrap_or(0.0), 0.0, 10.0)?;
+    let mut vehicle = VehicleSettings {
+        identity,
+        configuration: Configuration::default(),
+        conduct: Conduct::new(identity.is_ardupilot()),
+        origin: home.place,
+        heading_rad: home.heading_deg.to_radians(),
+        wind: WindSettings {
+            speed_m_s: wind.speed_m_s,
+            from_rad: wind.from_deg.to_radians(),
+            gusts_m_s,
+            seed: arguments.seed.unwrap_or(1),
+        },
+        faults: faults(arguments.fault.as_deref().unwrap_or_default())?,
+        sensors: SensorSettings {
+            model: arguments.sensors.unwrap_or_default(),
+            seed: arguments.seed.unwrap_or(1),
+        },
+    };
+    if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3] {
+        vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
+    }
+    let named = arguments.set.as_deref().unwrap_or_default();
+    set_parameters(&mut vehicle, arguments.parameters.as_deref(), named)?;
+    Ok(vehicle)
 }
 
 fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Failure> {

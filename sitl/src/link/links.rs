@@ -31,27 +31,28 @@ struct Link {
     peers: BTreeMap<u64, Peer>,
 }
 
-/// All links of a vehicle.
+/// Links, and the vehicles behind them.
 #[derive(Debug)]
 pub struct Links {
-    system_id: u8,
+    /// Our systems.
+    systems: Vec<u8>,
     links: Vec<Link>,
     recent: VecDeque<(Vec<u8>, PeerId, Instant)>,
 }
 
 impl Links {
-    /// Opens all links.
+    /// Opens all links, for the vehicles of some system ids.
     ///
     /// # Errors
     /// [`LinkError`] of the first one that cannot be opened.
-    pub fn open(specifications: &[LinkSpecification], system_id: u8) -> Result<Self, LinkError> {
+    pub fn open(specifications: &[LinkSpecification], systems: Vec<u8>) -> Result<Self, LinkError> {
         let links = specifications
             .iter()
             .map(|specification| {
                 Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
             })
             .collect::<Result<_, LinkError>>()?;
-        Ok(Self { system_id, links, recent: VecDeque::new() })
+        Ok(Self { systems, links, recent: VecDeque::new() })
     }
 
     /// For a person: where each link is.
@@ -111,7 +112,7 @@ impl Links {
     /// Whether a frame is neither our own nor one that has come already by another way.
     fn is_news(&mut self, received: &Received, now: Instant) -> bool {
         let origin = &received.origin;
-        if (origin.system, origin.component) == (self.system_id, COMPONENT) {
+        if origin.component == COMPONENT && self.systems.contains(&origin.system) {
             return false;
         }
         while self.recent.front().is_some_and(|(_, _, when)| now.duration_since(*when) > ECHO) {
@@ -126,10 +127,10 @@ impl Links {
         !known
     }
 
-    /// Passes a frame on to the peers that lead to its target, unless it is for this vehicle alone.
+    /// Passes a frame on to the peers that lead to its target, unless it is for one of ours alone.
     fn forward(&mut self, received: &Received) {
         let target = target_of(&received.frame);
-        if target.system == self.system_id {
+        if self.systems.contains(&target.system) {
             return;
         }
         let from = received.origin.peer;
@@ -144,9 +145,9 @@ impl Links {
         }
     }
 
-    /// Sends a message and returns it as one of its frames, for a log.
-    pub fn send(&mut self, outgoing: &Outgoing) -> Option<Frame> {
-        let sender = (self.system_id, COMPONENT);
+    /// Sends a message of one of our systems and returns it as one of its frames, for a log.
+    pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<Frame> {
+        let sender = (system, COMPONENT);
         let mut sent = None;
         for (index, link) in self.links.iter_mut().enumerate() {
             for (number, peer) in &mut link.peers {
@@ -159,8 +160,10 @@ impl Links {
                     continue;
                 }
                 // Messages beyond number 255 do not exist in MAVLink 1.
-                if let Some(frame) = Frame::encode(&outgoing.message, peer.version(), peer.sequence, sender) {
-                    peer.sequence = peer.sequence.wrapping_add(1);
+                let version = peer.version();
+                let sequence = peer.sequences.entry(system).or_default();
+                if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
+                    *sequence = sequence.wrapping_add(1);
                     link.transport.send(*number, frame.bytes());
                     sent = Some(frame);
                 }

@@ -1,5 +1,6 @@
 //! What is known of a peer.
 
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use crate::codec::{Frame, FrameDecoder, Version};
@@ -19,8 +20,8 @@ pub struct Peer {
     /// Its stream of bytes.
     decoder: FrameDecoder,
     last_bytes: Option<Instant>,
-    /// Number of the next frame to it: each peer sees a flow of its own.
-    pub sequence: u8,
+    /// Number of the next frame to it, from each of our systems: each peer sees flows of its own.
+    pub sequences: BTreeMap<u8, u8>,
     old_frames: u8,
     /// Systems and components behind it.
     seen: Vec<(u8, u8)>,

@@ -14,5 +14,5 @@ pub use entry::Entry;
 pub use file::{ParameterFileError, parse, render};
 pub use identifier::identifier;
 pub use speed::Speed;
-pub use table::{Host, ParameterTable, SetError, View};
+pub use table::{Host, ParameterTable, SPEED_PARAMETER, SetError, View};
 pub use value::{Encoding, Value};

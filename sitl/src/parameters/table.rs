@@ -12,6 +12,9 @@ use crate::vehicle::Vehicle;
 /// Dotted names that describe the start of a flight, not the vehicle: they are set by the command line.
 const NOT_THE_VEHICLE: [&str; 3] = ["initial.", "environment.", "reference."];
 
+/// Identifier of the pace of simulation time.
+pub const SPEED_PARAMETER: &str = "SIM_SPEEDUP";
+
 /// What the parameters are parameters of.
 #[derive(Debug)]
 pub struct Host<'a> {
@@ -107,7 +110,7 @@ impl ParameterTable {
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let others = [
             Entry { id: system.to_owned(), source: Source::SystemId },
-            Entry { id: "SIM_SPEEDUP".to_owned(), source: Source::Speed },
+            Entry { id: SPEED_PARAMETER.to_owned(), source: Source::Speed },
         ];
         let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).collect();
         entries.sort_by(|one, other| one.id.cmp(&other.id));

@@ -6,6 +6,6 @@ mod replay;
 mod traffic_log;
 
 pub use digest::Digest;
-pub use record_file::{Entry, Header, Recorder, read};
-pub use replay::{Replayed, replay};
+pub use record_file::{Entry, Header, Participant, Recorder, read};
+pub use replay::replay;
 pub use traffic_log::TrafficLog;

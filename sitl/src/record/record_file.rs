@@ -1,10 +1,12 @@
 //! The record file: lines of text.
 //!
 //! ```text
-//! {"format":"lmpc-sitl record 1", …}        the vehicle and its settings
-//! frame TIME_US LINK PEER HEX               a received frame
-//! end TIME_US DIGEST                        the end, and the digest of the flight
+//! {"format":"lmpc-sitl record 2", …}        the vehicles and their settings
+//! frame TIME_US VEHICLE LINK PEER HEX       a frame that a vehicle took in
+//! end TIME_US VEHICLE DIGEST                the end of its flight, and the digest
 //! ```
+//!
+//! Vehicles are numbered from zero in the order of the header; times are those of each one's own clock.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -21,7 +23,7 @@ use crate::service::{LinkProfile, Origin, PeerId};
 use crate::vehicle::VehicleSettings;
 
 /// Name and version of the format.
-const FORMAT: &str = "lmpc-sitl record 1";
+const FORMAT: &str = "lmpc-sitl record 2";
 
 /// What a flight began with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,11 +31,18 @@ pub struct Header {
     format: String,
     /// Version of the program.
     pub program: String,
+    /// Pace at the start; it does not change the flights.
+    pub speed: Speed,
+    /// The vehicles.
+    pub vehicles: Vec<Participant>,
+}
+
+/// A vehicle of a record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Participant {
     /// MAVLink system id.
     pub system_id: u8,
-    /// Pace at the start; it does not change the flight.
-    pub speed: Speed,
-    /// What the links were for.
+    /// What its links were for.
     pub links: Vec<LinkProfile>,
     /// The vehicle.
     pub vehicle: VehicleSettings,
@@ -46,15 +55,19 @@ pub enum Entry {
     Frame {
         /// When, µs.
         time_us: u64,
+        /// Number of the vehicle.
+        vehicle: usize,
         /// From whom.
         origin: Origin,
         /// The frame.
         frame: Frame,
     },
-    /// The end of the flight.
+    /// The end of a flight.
     End {
         /// When, µs.
         time_us: u64,
+        /// Number of the vehicle.
+        vehicle: usize,
         /// Its digest.
         digest: u64,
     },
@@ -69,9 +82,9 @@ pub struct Recorder {
 
 impl Header {
     /// A header of this program.
-    pub fn new(system_id: u8, speed: Speed, links: Vec<LinkProfile>, vehicle: VehicleSettings) -> Self {
+    pub fn new(speed: Speed, vehicles: Vec<Participant>) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { format: FORMAT.to_owned(), program, system_id, speed, links, vehicle }
+        Self { format: FORMAT.to_owned(), program, speed, vehicles }
     }
 }
 
@@ -88,12 +101,19 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Records a frame that takes effect at a time.
+    /// Records a frame that takes effect on a vehicle at a time.
     ///
     /// # Errors
     /// [`Failure::File`]
-    pub fn frame(&mut self, time_us: u64, origin: &Origin, frame: &Frame) -> Result<(), Failure> {
-        let mut line = format!("frame {time_us} {} {} ", origin.peer.link, origin.peer.number);
+    pub fn frame(
+        &mut self,
+        vehicle: usize,
+        time_us: u64,
+        origin: &Origin,
+        frame: &Frame,
+    ) -> Result<(), Failure> {
+        let PeerId { link, number } = origin.peer;
+        let mut line = format!("frame {time_us} {vehicle} {link} {number} ");
         for byte in frame.bytes() {
             // Writing into a string cannot fail.
             let _infallible = write!(line, "{byte:02x}");
@@ -101,12 +121,19 @@ impl Recorder {
         self.line(&line)
     }
 
+    /// Records the end of a vehicle's flight.
+    ///
+    /// # Errors
+    /// [`Failure::File`]
+    pub fn end(&mut self, vehicle: usize, time_us: u64, digest: Digest) -> Result<(), Failure> {
+        self.line(&format!("end {time_us} {vehicle} {:016x}", digest.value()))
+    }
+
     /// Ends the record.
     ///
     /// # Errors
     /// [`Failure::File`]
-    pub fn finish(mut self, time_us: u64, digest: Digest) -> Result<(), Failure> {
-        self.line(&format!("end {time_us} {:016x}", digest.value()))?;
+    pub fn finish(mut self) -> Result<(), Failure> {
         self.file.flush().map_err(|source| Failure::write(&self.path, source))
     }
 
@@ -134,24 +161,25 @@ pub fn read(path: &Path) -> Result<(Header, Vec<Entry>), Failure> {
     let entries = lines
         .map(|(number, line)| entry(line).ok_or_else(|| wrong(number, "is neither a frame nor the end")))
         .collect::<Result<Vec<_>, _>>()?;
-    match entries.last() {
-        Some(Entry::End { .. }) => Ok((header, entries)),
-        _ => Err(Failure::Content { path: path.to_owned(), reason: "the record has no end".to_owned() }),
-    }
+    Ok((header, entries))
 }
 
 fn entry(line: &str) -> Option<Entry> {
     let mut words = line.split(' ');
     let kind = words.next()?;
     let time_us = words.next()?.parse().ok()?;
+    let vehicle = words.next()?.parse().ok()?;
     match kind {
         "frame" => {
             let peer = PeerId { link: words.next()?.parse().ok()?, number: words.next()?.parse().ok()? };
             let frame = Frame::parse(&bytes(words.next()?)?)?;
             let origin = Origin { peer, system: frame.system(), component: frame.component() };
-            Some(Entry::Frame { time_us, origin, frame })
+            Some(Entry::Frame { time_us, vehicle, origin, frame })
         }
-        "end" => Some(Entry::End { time_us, digest: u64::from_str_radix(words.next()?, 16).ok()? }),
+        "end" => {
+            let digest = u64::from_str_radix(words.next()?, 16).ok()?;
+            Some(Entry::End { time_us, vehicle, digest })
+        }
         _ => None,
     }
 }

@@ -2,27 +2,41 @@
 
 use std::path::Path;
 
-use super::{Digest, Entry, read};
+use super::{Digest, Entry, Participant, read};
 use crate::autopilot::Autopilot;
 use crate::failure::Failure;
+use crate::parameters::Speed;
+use crate::session::Flight;
 use crate::vehicle::TICK_US;
 
-/// A flight that was flown again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Replayed {
-    /// Its length, µs.
-    pub time_us: u64,
-    /// Its digest, which is the recorded one.
-    pub digest: u64,
-}
-
-/// Flies a record again, as fast as possible, and compares the flights.
+/// Flies every vehicle of a record again, each alone and as fast as possible, and compares the flights. Returns them:
+/// their digests are the recorded ones.
 ///
 /// # Errors
-/// [`Failure::Differs`] when they differ; [`Failure`] when the file is no record.
-pub fn replay(path: &Path) -> Result<Replayed, Failure> {
+/// [`Failure::Differs`] when one differs; [`Failure`] when the file is no record.
+pub fn replay(path: &Path) -> Result<Vec<Flight>, Failure> {
     let (header, entries) = read(path)?;
-    let mut autopilot = Autopilot::new(&header.vehicle, header.system_id, header.speed, &header.links, 0)?;
+    let wrong = |reason: String| Failure::Content { path: path.to_owned(), reason };
+    let mut flights: Vec<Vec<Entry>> = header.vehicles.iter().map(|_| Vec::new()).collect();
+    for entry in entries {
+        let (Entry::Frame { vehicle, .. } | Entry::End { vehicle, .. }) = &entry;
+        let number = *vehicle;
+        let flight = flights.get_mut(number).ok_or_else(|| wrong(format!("there is no vehicle {number}")))?;
+        flight.push(entry);
+    }
+    let each = header.vehicles.iter().zip(flights);
+    each.map(|(participant, entries)| {
+        let no_end = || wrong(format!("the flight of system {} has no end", participant.system_id));
+        fly(participant, header.speed, entries)?.ok_or_else(no_end)
+    })
+    .collect()
+}
+
+/// One vehicle's flight; `None` if its end is missing.
+fn fly(participant: &Participant, speed: Speed, entries: Vec<Entry>) -> Result<Option<Flight>, Failure> {
+    let Participant { system_id, links, vehicle } = participant;
+    let system_id = *system_id;
+    let mut autopilot = Autopilot::new(vehicle, system_id, speed, links, 0)?;
     let mut digest = Digest::default();
     for entry in entries {
         let (Entry::Frame { time_us, .. } | Entry::End { time_us, .. }) = &entry;
@@ -33,14 +47,14 @@ pub fn replay(path: &Path) -> Result<Replayed, Failure> {
         }
         match entry {
             Entry::Frame { origin, frame, .. } => autopilot.receive(&origin, &frame),
-            Entry::End { digest: recorded, time_us } => {
+            Entry::End { digest: recorded, time_us, .. } => {
                 let replayed = digest.value();
                 if replayed != recorded {
-                    return Err(Failure::Differs { recorded, replayed });
+                    return Err(Failure::Differs { system_id, recorded, replayed });
                 }
-                return Ok(Replayed { time_us, digest: replayed });
+                return Ok(Some(Flight { system_id, time_us, digest: replayed }));
             }
         }
     }
-    Err(Failure::Content { path: path.to_owned(), reason: "the record has no end".to_owned() })
+    Ok(None)
 }

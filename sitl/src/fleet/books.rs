@@ -1,0 +1,59 @@
+//! What is written down of the traffic: the record to be replayed, and the log for ground stations.
+
+use super::Member;
+use crate::codec::Frame;
+use crate::configuration::Settings;
+use crate::failure::Failure;
+use crate::link::Received;
+use crate::record::{Header, Participant, Recorder, TrafficLog};
+
+/// Record and log, if they are asked for.
+#[derive(Debug)]
+pub struct Books {
+    recorder: Option<Recorder>,
+    traffic: Option<TrafficLog>,
+    unix_start_us: u64,
+}
+
+impl Books {
+    /// Begins the files.
+    pub fn open(
+        settings: &Settings,
+        participants: Vec<Participant>,
+        unix_start_us: u64,
+    ) -> Result<Self, Failure> {
+        let recorder = match &settings.record {
+            Some(path) => Some(Recorder::create(path, &Header::new(settings.speed, participants))?),
+            None => None,
+        };
+        let traffic = settings.tlog.as_deref().map(TrafficLog::create).transpose()?;
+        Ok(Self { recorder, traffic, unix_start_us })
+    }
+
+    /// A frame is on a link.
+    pub fn traffic(&mut self, time_us: u64, frame: &Frame) -> Result<(), Failure> {
+        match &mut self.traffic {
+            Some(traffic) => traffic.frame(self.unix_start_us + time_us, frame),
+            None => Ok(()),
+        }
+    }
+
+    /// A member takes a frame in.
+    pub fn received(&mut self, member: usize, time_us: u64, received: &Received) -> Result<(), Failure> {
+        match &mut self.recorder {
+            Some(recorder) => recorder.frame(member, time_us, &received.origin, &received.frame),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends the files.
+    pub fn finish(self, members: &[Member]) -> Result<(), Failure> {
+        if let Some(mut recorder) = self.recorder {
+            for (number, member) in members.iter().enumerate() {
+                recorder.end(number, member.time_us(), member.digest())?;
+            }
+            recorder.finish()?;
+        }
+        self.traffic.map_or(Ok(()), TrafficLog::finish)
+    }
+}

@@ -1,0 +1,98 @@
+//! A clock of simulation time, and the vehicles that tick by it.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use super::Fleet;
+use crate::failure::Failure;
+use crate::pace::Pace;
+use crate::parameters::Speed;
+use crate::vehicle::TICK_US;
+
+/// The links are looked at this often at least.
+const BURST: Duration = Duration::from_millis(2);
+
+/// Simulation time of some vehicles: they tick in lock-step, and share its speed.
+#[derive(Debug)]
+pub struct Clock {
+    pace: Pace,
+    speed: Speed,
+    members: Range<usize>,
+    time_us: u64,
+    end_us: Option<u64>,
+}
+
+impl Clock {
+    /// A clock that begins to run now.
+    pub fn new(speed: Speed, members: Range<usize>, end_us: Option<u64>, now: Instant) -> Self {
+        Self { pace: Pace::new(speed, now, 0), speed, members, time_us: 0, end_us }
+    }
+
+    /// Whether it has come to its end.
+    pub fn is_over(&self) -> bool {
+        self.end_us.is_some_and(|end_us| self.time_us >= end_us)
+    }
+
+    /// Flies its vehicles on to where simulation time should be, for about a share of a burst. Whether it is still
+    /// behind after that.
+    ///
+    /// # Errors
+    /// [`Failure`] of the simulation or of a file.
+    pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> Result<bool, Failure> {
+        self.agree_on_speed(fleet, now)?;
+        match self.pace.goal_us(self.speed, now, self.time_us) {
+            None => self.fly_for(fleet, BURST / clocks.max(1)),
+            Some(goal_us) => self.fly_to(fleet, goal_us, 4 * BURST / clocks.max(1)),
+        }
+    }
+
+    /// A new speed of one vehicle is that of all, and told by all.
+    fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
+        let speeds = self.members.clone().filter_map(|number| fleet.members().get(number));
+        let mut news = speeds.map(|member| member.autopilot().speed()).filter(|speed| *speed != self.speed);
+        let Some(speed) = news.next() else { return Ok(()) };
+        self.speed = speed;
+        for number in self.members.clone() {
+            let Some(member) = fleet.member_mut(number) else { continue };
+            if member.autopilot.speed() != speed {
+                member.autopilot.set_speed(speed);
+                fleet.send(number, now)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
+        for number in self.members.clone() {
+            fleet.tick(number, now)?;
+        }
+        self.time_us += TICK_US;
+        Ok(())
+    }
+
+    fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration) -> Result<bool, Failure> {
+        let start = Instant::now();
+        while self.time_us + TICK_US <= goal_us && !self.is_over() {
+            self.tick(fleet, start)?;
+            if start.elapsed() > longest {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// As fast as possible.
+    fn fly_for(&mut self, fleet: &mut Fleet, longest: Duration) -> Result<bool, Failure> {
+        let start = Instant::now();
+        while start.elapsed() < longest && !self.is_over() {
+            // Asking the clock costs more than a tick.
+            for _ in 0..16 {
+                if self.is_over() {
+                    break;
+                }
+                self.tick(fleet, start)?;
+            }
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,19 @@
+//! The vehicles of a run, the links that clients reach them by, and the clocks that they fly by.
+//!
+//! ```text
+//!  clients ◄──► hub (links) ◄──► members ◄── clock ◄── wall clock
+//!               one for all,     autopilot,  one for all,
+//!               or each its own  digest      or each its own
+//! ```
+//!
+//! Vehicles do not see one another: the flight of each depends on nothing but its own messages and their simulation
+//! times, whoever flies beside it.
+
+mod books;
+mod clock;
+mod member;
+mod roster;
+
+pub use clock::Clock;
+pub use member::Member;
+pub use roster::Fleet;

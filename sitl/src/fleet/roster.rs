@@ -1,0 +1,131 @@
+//! All vehicles with their links: messages go to those that they are for.
+
+use std::time::Instant;
+
+use super::Member;
+use super::books::Books;
+use crate::codec::target_of;
+use crate::configuration::Settings;
+use crate::failure::Failure;
+use crate::link::Links;
+
+/// The vehicles of a run and the hubs that they are behind.
+#[derive(Debug)]
+pub struct Fleet {
+    members: Vec<Member>,
+    hubs: Vec<Links>,
+    books: Books,
+}
+
+impl Fleet {
+    /// Builds the vehicles, opens links and files.
+    ///
+    /// # Errors
+    /// [`Failure`] of the first thing that cannot be used.
+    pub fn open(settings: &Settings, unix_start_us: u64) -> Result<Self, Failure> {
+        let participants = settings.participants();
+        let members = participants
+            .iter()
+            .zip(&settings.vehicles)
+            .map(|(participant, own)| {
+                Member::new(participant, settings.speed, own.hub, own.parameters.clone(), unix_start_us)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let hubs = (0..)
+            .zip(&settings.hubs)
+            .map(|(hub, links)| {
+                let behind = settings.vehicles.iter().filter(|vehicle| vehicle.hub == hub);
+                Links::open(links, behind.map(|vehicle| vehicle.system_id).collect())
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { members, hubs, books: Books::open(settings, participants, unix_start_us)? })
+    }
+
+    /// The vehicles.
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    /// The links.
+    pub fn hubs(&self) -> &[Links] {
+        &self.hubs
+    }
+
+    /// Gives everything that has come to the vehicles that it is for: one, or all behind the link.
+    pub(crate) fn receive(&mut self, now: Instant) -> Result<(), Failure> {
+        for hub in 0..self.hubs.len() {
+            let Some(links) = self.hubs.get_mut(hub) else { continue };
+            for received in links.receive(now) {
+                let target = target_of(&received.frame).system;
+                let mut logged = false;
+                for number in 0..self.members.len() {
+                    let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+                        continue;
+                    };
+                    let time_us = member.time_us();
+                    if !std::mem::replace(&mut logged, true) {
+                        self.books.traffic(time_us, &received.frame)?;
+                    }
+                    if target == 0 || target == member.autopilot.system_id() {
+                        self.books.received(number, time_us, &received)?;
+                        member.autopilot.receive(&received.origin, &received.frame);
+                        self.send(number, now)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A tick of one vehicle.
+    pub(super) fn tick(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
+        if let Some(member) = self.members.get_mut(number) {
+            member.tick()?;
+        }
+        self.send(number, now)
+    }
+
+    pub(super) fn member_mut(&mut self, number: usize) -> Option<&mut Member> {
+        self.members.get_mut(number)
+    }
+
+    /// Sends what a vehicle has to say.
+    pub(super) fn send(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
+        const HEARTBEAT_ID: u32 = 0;
+        let Some(member) = self.members.get_mut(number) else { return Ok(()) };
+        let Some(links) = self.hubs.get_mut(member.hub) else { return Ok(()) };
+        for outgoing in member.autopilot.take_outgoing() {
+            if outgoing.message.id() == HEARTBEAT_ID {
+                member.last_heartbeat = now;
+            }
+            if let Some(frame) = links.send(&outgoing, member.autopilot.system_id()) {
+                self.books.traffic(member.time_us(), &frame)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Heartbeats where simulation time is too slow for them.
+    pub(crate) fn keep_links_alive(&mut self, now: Instant) -> Result<(), Failure> {
+        for number in 0..self.members.len() {
+            let Some(member) = self.members.get_mut(number) else { continue };
+            if member.is_silent(now) {
+                member.autopilot.keep_alive();
+                self.send(number, now)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends what waits in the links, and writes changed parameters.
+    pub(crate) fn flush(&mut self) -> Result<(), Failure> {
+        self.hubs.iter_mut().for_each(Links::flush);
+        self.members.iter_mut().try_for_each(Member::save_parameters)
+    }
+
+    /// Ends the files and returns the vehicles as they are.
+    pub(crate) fn finish(self) -> Result<Vec<Member>, Failure> {
+        self.books.finish(&self.members)?;
+        Ok(self.members)
+    }
+}
