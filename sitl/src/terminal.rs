@@ -28,34 +28,38 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
         origin.longitude_deg,
         origin.altitude_m,
     );
-    for (number, (links, specifications)) in fleet.hubs().iter().zip(&settings.hubs).enumerate() {
-        if fleet.members().len() > 1 {
-            let behind = fleet.members().iter().filter(|member| member.hub() == number);
-            behind.for_each(|member| text.push_str(&start(member)));
+    if fleet.members().len() > 1 {
+        fleet.members().iter().for_each(|member| text.push_str(&start(member, fleet)));
+        if fleet.hubs().len() > 1 {
+            text.push_str(&format!("Links of system {}:\n", first.autopilot().system_id()));
         }
-        // How to connect to one shows how to connect to all.
-        text.push_str(&ways(links, specifications, number == 0));
+    }
+    // How to connect to one shows how to connect to all.
+    for (links, specifications) in fleet.hubs().iter().zip(&settings.hubs).take(1) {
+        text.push_str(&ways(links, specifications));
     }
     text
 }
 
-/// Where a vehicle stands.
-fn start(member: &Member) -> String {
+/// Where a vehicle stands, and where its links are if they are its own.
+fn start(member: &Member, fleet: &Fleet) -> String {
     let [north, east, _] = member.autopilot().settings().configuration.initial.position_m;
-    format!("  system {}: {north:.1} m north, {east:.1} m east\n", member.autopilot().system_id())
+    let own = fleet.hubs().get(member.hub()).filter(|_| fleet.hubs().len() > 1);
+    let addresses = own.map(|links| format!("  {}", links.addresses().join(" "))).unwrap_or_default();
+    format!(
+        "  system {:3} at north {north:6.1} east {east:6.1} m{addresses}\n",
+        member.autopilot().system_id()
+    )
 }
 
 /// Where links are, and what clients are told to connect to them.
-fn ways(links: &Links, specifications: &[LinkSpecification], told: bool) -> String {
+fn ways(links: &Links, specifications: &[LinkSpecification]) -> String {
     let mut text = String::new();
     for ((link, description), address) in
         specifications.iter().zip(links.descriptions()).zip(links.addresses())
     {
         let profile = if link.profile == LinkProfile::Onboard { "onboard" } else { "ground" };
         text.push_str(&format!("  {description} ({profile})\n"));
-        if !told {
-            continue;
-        }
         text.push_str(&match &link.endpoint {
             Endpoint::UdpOut { port: 14_550, .. } => {
                 "      QGroundControl: start it; MAVProxy: --master=udpin:127.0.0.1:14550\n".to_owned()

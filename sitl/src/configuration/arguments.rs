@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use serde::Deserialize;
 
-use super::{HomePosition, WindFrom};
+use super::{Clocks, Formation, HomePosition, Ports, WindFrom};
 use crate::estimation::SensorModel;
 use crate::identity::Identity;
 use crate::link::LinkSpecification;
@@ -19,7 +19,13 @@ Links:
   serial:PATH[:BAUD]            a serial device or pseudo-terminal, 57600 baud unless named
   HOST is 127.0.0.1 unless named. With `,onboard` behind it a link gets the faster telemetry of a companion computer.
   Without --link: udpout:127.0.0.1:14550@18570 and udpout:127.0.0.1:14540@14580,onboard, as PX4 has them; --instance
-  counts the local ports and 14540 up.
+  counts the local ports and 14540 up, the latter to 14549.
+
+Many vehicles:
+  --vehicles 5                            each with PX4's ports of its instance
+  --vehicles 5 --ports shared             all behind the same links, told apart by their system ids
+  --vehicles 5 --link tcpin:5760          on 5760 to 5764: local ports count up, and where an onboard link sends to
+  --parameters fleet.params               of system 3 among several: fleet-3.params
 
 Connect with:
   QGroundControl     start it: it listens on 14550
@@ -61,6 +67,23 @@ pub struct Arguments {
     /// MAVLink system id, 1 to 250 [default: 1 + instance]
     #[arg(long, env = "LMPC_SITL_SYSTEM_ID", value_name = "ID", value_parser = clap::value_parser!(u8).range(1..=250))]
     pub system_id: Option<u8>,
+
+    /// Number of vehicles, with system ids from --system-id upwards; gusts and noise of each have their own seed
+    /// [default: 1]
+    #[arg(long, env = "LMPC_SITL_VEHICLES", value_name = "N", value_parser = clap::value_parser!(u8).range(1..=250))]
+    pub vehicles: Option<u8>,
+
+    /// Whether each vehicle has its own ports, or all share them [default: own]
+    #[arg(long, env = "LMPC_SITL_PORTS")]
+    pub ports: Option<Ports>,
+
+    /// Where the vehicles start, with 1 to 200 m between neighbours: line, grid or circle [default: line,5]
+    #[arg(long, env = "LMPC_SITL_FORMATION", value_name = "SHAPE[,SPACING]")]
+    pub formation: Option<Formation>,
+
+    /// Whether all vehicles tick by one clock, or each has its own time and SIM_SPEEDUP [default: shared]
+    #[arg(long, env = "LMPC_SITL_CLOCKS")]
+    pub clocks: Option<Clocks>,
 
     /// Whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT")]
@@ -138,6 +161,10 @@ impl Arguments {
             link: self.link.or(file.link),
             instance: self.instance.or(file.instance),
             system_id: self.system_id.or(file.system_id),
+            vehicles: self.vehicles.or(file.vehicles),
+            ports: self.ports.or(file.ports),
+            formation: self.formation.or(file.formation),
+            clocks: self.clocks.or(file.clocks),
             autopilot: self.autopilot.or(file.autopilot),
             home: self.home.or(file.home),
             speed: self.speed.or(file.speed),

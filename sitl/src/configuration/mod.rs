@@ -1,11 +1,15 @@
 //! What the program is told: defaults, then the file, then the environment, then the flags.
 
 mod arguments;
+mod formation;
 mod home;
 mod settings;
+mod sharing;
 mod wind;
 
 pub use arguments::Arguments;
+pub use formation::{Formation, Shape};
 pub use home::HomePosition;
 pub use settings::{MemberSettings, Settings};
+pub use sharing::{Clocks, Ports};
 pub use wind::WindFrom;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use quadrotor::Configuration;
 
-use super::Arguments;
+use super::{Arguments, Clocks, Ports};
 use crate::estimation::SensorSettings;
 use crate::failure::Failure;
 use crate::fault::ScheduledFault;
@@ -26,6 +26,8 @@ pub struct Settings {
     pub vehicles: Vec<MemberSettings>,
     /// Links of each hub.
     pub hubs: Vec<Vec<LinkSpecification>>,
+    /// Whether all tick by one clock.
+    pub clocks: Clocks,
     /// Pace.
     pub speed: Speed,
     /// Record to be written.
@@ -62,17 +64,21 @@ impl Settings {
             Some(seconds) => Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64),
             None => None,
         };
-        // At most 200, see the arguments.
-        let default_id = u8::try_from(instance + 1).unwrap_or(u8::MAX);
-        let member = MemberSettings {
-            system_id: arguments.system_id.unwrap_or(default_id),
-            vehicle: vehicle(arguments)?,
-            hub: 0,
-            parameters: arguments.parameters.clone(),
+        let ids = system_ids(arguments, instance)?;
+        let shared = arguments.ports.unwrap_or_default() == Ports::Shared;
+        let count = ids.len();
+        let member = |(number, system_id): (usize, u8)| {
+            let parameters = arguments.parameters.as_deref();
+            let parameters =
+                parameters.map(|path| if count > 1 { of_system(path, system_id) } else { path.to_owned() });
+            let vehicle = vehicle(arguments, number, count, parameters.as_deref())?;
+            Ok(MemberSettings { system_id, vehicle, hub: if shared { 0 } else { number }, parameters })
         };
+        let hubs = if shared { 1 } else { count };
         Ok(Self {
-            vehicles: vec![member],
-            hubs: vec![arguments.link.clone().unwrap_or_else(|| default_links(instance))],
+            vehicles: ids.into_iter().enumerate().map(member).collect::<Result<_, Failure>>()?,
+            hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
+            clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
@@ -83,7 +89,11 @@ impl Settings {
 
     /// Numbers of the vehicles that tick by each clock.
     pub fn clocks(&self) -> Vec<Range<usize>> {
-        std::iter::once(0..self.vehicles.len()).collect()
+        let count = self.vehicles.len();
+        match self.clocks {
+            Clocks::Shared => std::iter::once(0..count).collect(),
+            Clocks::Separate => (0..count).map(|number| number..number + 1).collect(),
+        }
     }
 
     /// The vehicles as a record has them.
@@ -97,8 +107,52 @@ impl Settings {
     }
 }
 
-/// A vehicle as the arguments describe it.
-fn vehicle(arguments: &Arguments) -> Result<VehicleSettings, Failure> {
+/// System ids of the vehicles.
+fn system_ids(arguments: &Arguments, instance: u16) -> Result<Vec<u8>, Failure> {
+    const LAST: u16 = 250;
+    let count = u16::from(arguments.vehicles.unwrap_or(1));
+    let first = arguments.system_id.map_or(instance + 1, u16::from);
+    let last = first + count - 1;
+    if last > LAST {
+        let reason =
+            format!("{count} vehicles from system {first} on need system {last}; the last is {LAST}");
+        return Err(Failure::Value { name: "--vehicles".to_owned(), reason });
+    }
+    Ok((first..=last).filter_map(|id| u8::try_from(id).ok()).collect())
+}
+
+/// The links of a hub.
+fn hub(arguments: &Arguments, instance: u16, number: usize) -> Result<Vec<LinkSpecification>, Failure> {
+    // As many as vehicles, see the arguments.
+    let number = u16::try_from(number).unwrap_or(u16::MAX);
+    let Some(links) = &arguments.link else { return Ok(default_links(instance.saturating_add(number))) };
+    let counted = |link: &LinkSpecification| {
+        link.of_vehicle(number).ok_or_else(|| Failure::Value {
+            name: "--link".to_owned(),
+            reason: format!("`{link}` leaves no port to vehicle {}: try --ports shared", number + 1),
+        })
+    };
+    links.iter().map(counted).collect()
+}
+
+/// A file's name for one of several systems: `fleet.params` is `fleet-3.params`.
+fn of_system(path: &Path, system_id: u8) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{system_id}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// The vehicle of a number among several, as the arguments describe it.
+fn vehicle(
+    arguments: &Arguments,
+    number: usize,
+    count: usize,
+    parameters: Option<&Path>,
+) -> Result<VehicleSettings, Failure> {
     let identity = arguments.autopilot.unwrap_or_default();
     let home = arguments.home.unwrap_or_default();
     let wind = arguments.wind.unwrap_or_default();
@@ -113,19 +167,22 @@ fn vehicle(arguments: &Arguments) -> Result<VehicleSettings, Failure> {
             speed_m_s: wind.speed_m_s,
             from_rad: wind.from_deg.to_radians(),
             gusts_m_s,
-            seed: arguments.seed.unwrap_or(1),
+            seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
         faults: faults(arguments.fault.as_deref().unwrap_or_default())?,
         sensors: SensorSettings {
             model: arguments.sensors.unwrap_or_default(),
-            seed: arguments.seed.unwrap_or(1),
+            seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
     };
+    let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
+    vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
+    vehicle.configuration.sensors.seed = number as u32;
     if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3] {
         vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
     }
     let named = arguments.set.as_deref().unwrap_or_default();
-    set_parameters(&mut vehicle, arguments.parameters.as_deref(), named)?;
+    set_parameters(&mut vehicle, parameters, named)?;
     Ok(vehicle)
 }
 

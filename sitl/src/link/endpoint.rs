@@ -66,8 +66,30 @@ pub fn default_links(instance: u16) -> Vec<LinkSpecification> {
     };
     vec![
         link(14_550, 18_570 + instance, LinkProfile::Ground),
-        link(14_540 + instance, 14_580 + instance, LinkProfile::Onboard),
+        // From the eleventh on all share a port: the next one is the ground station's.
+        link(14_540 + instance.min(9), 14_580 + instance, LinkProfile::Onboard),
     ]
+}
+
+impl LinkSpecification {
+    /// The same link of the vehicle of a number (from zero) among several: local ports count up, and the port that an
+    /// onboard link sends to. `None` where ports end, and for a serial device, which is only one.
+    pub fn of_vehicle(&self, number: u16) -> Option<Self> {
+        // 0 is any.
+        let counted = |port: u16| if port == 0 { Some(0) } else { port.checked_add(number) };
+        let endpoint = match &self.endpoint {
+            Endpoint::UdpOut { host, port, local_port } => Endpoint::UdpOut {
+                host: host.clone(),
+                port: if self.profile == LinkProfile::Onboard { counted(*port)? } else { *port },
+                local_port: counted(*local_port)?,
+            },
+            Endpoint::UdpIn { host, port } => Endpoint::UdpIn { host: host.clone(), port: counted(*port)? },
+            Endpoint::TcpIn { host, port } => Endpoint::TcpIn { host: host.clone(), port: counted(*port)? },
+            Endpoint::Serial { .. } if number == 0 => self.endpoint.clone(),
+            Endpoint::Serial { .. } => return None,
+        };
+        Some(Self { endpoint, profile: self.profile })
+    }
 }
 
 impl FromStr for LinkSpecification {
@@ -182,5 +204,24 @@ mod tests {
     fn default_ports_are_px4s() {
         let links: Vec<String> = default_links(2).iter().map(ToString::to_string).collect();
         assert_eq!(links, ["udpout:127.0.0.1:14550@18572", "udpout:127.0.0.1:14542@14582,onboard"]);
+        let links: Vec<String> = default_links(10).iter().map(ToString::to_string).collect();
+        assert_eq!(links, ["udpout:127.0.0.1:14550@18580", "udpout:127.0.0.1:14549@14590,onboard"]);
+    }
+
+    #[test]
+    fn ports_of_several_vehicles_count_up() {
+        for (first, third) in [
+            ("udpin:127.0.0.1:14550", Some("udpin:127.0.0.1:14552")),
+            ("udpin:127.0.0.1:0", Some("udpin:127.0.0.1:0")),
+            ("tcpin:127.0.0.1:5760,onboard", Some("tcpin:127.0.0.1:5762,onboard")),
+            ("udpout:127.0.0.1:14550@18570", Some("udpout:127.0.0.1:14550@18572")),
+            ("udpout:127.0.0.1:14540@0,onboard", Some("udpout:127.0.0.1:14542@0,onboard")),
+            ("tcpin:127.0.0.1:65534", None),
+            ("serial:/dev/ttyACM0:115200", None),
+        ] {
+            let link: LinkSpecification = first.parse().expect(first);
+            assert_eq!(link.of_vehicle(2).map(|link| link.to_string()).as_deref(), third);
+            assert_eq!(link.of_vehicle(0), Some(link));
+        }
     }
 }

@@ -37,12 +37,13 @@ pub fn send(autopilot: &mut Autopilot, severity: Severity, text: &str) {
     texts.said.retain(|(said, when_us)| said != text && time_us < when_us + REPEAT_US);
     texts.said.truncate(REMEMBERED - 1);
     texts.said.push((text.to_owned(), time_us));
+    let system = autopilot.system_id();
     match severity {
-        Severity::Info => tracing::info!("{text}"),
-        Severity::Warning => tracing::warn!("{text}"),
-        Severity::Critical | Severity::Error => tracing::error!("{text}"),
+        Severity::Info => tracing::info!(system, "{text}"),
+        Severity::Warning => tracing::warn!(system, "{text}"),
+        Severity::Critical | Severity::Error => tracing::error!(system, "{text}"),
     }
-    for message in messages(severity, text, &mut texts.next_id) {
+    for message in messages(severity, text, &mut autopilot.status_texts.next_id) {
         autopilot.send(Destination::Everyone, message);
     }
 }

@@ -35,7 +35,7 @@ pub struct VehicleSettings {
     pub configuration: Configuration,
     /// Its own parameters.
     pub conduct: Conduct,
-    /// Where the local frame has its origin: on the ground below the start.
+    /// Where the local frame has its origin, on the ground; the start is where `configuration` has it from there.
     pub origin: Geodetic,
     /// Heading at the start, rad.
     pub heading_rad: f64,
@@ -126,7 +126,11 @@ impl Vehicle {
             faults: Faults::default(),
             scheduled_faults: scheduled_faults.into(),
             landed: LandedDetector::new(-outputs.position_m.z),
-            home: Home { position_m: Vector3::zeros(), yaw_rad: settings.heading_rad, set_by_user: false },
+            home: Home {
+                position_m: Vector3::from(configuration.initial.position_m),
+                yaw_rad: settings.heading_rad,
+                set_by_user: false,
+            },
             armed: false,
             mode: settings.identity.first_mode(),
             steering: Steering::Idle { yaw_rad: settings.heading_rad },

@@ -44,7 +44,8 @@ class Vehicle:
             if self.process.poll() is not None or time.monotonic() - self.started > 20:
                 raise AssertionError(f"did not start: {self.output()}")
             time.sleep(0.002)
-        self.addresses = json.loads(ready.read_text())["addresses"]
+        self.ready = json.loads(ready.read_text())
+        self.addresses = self.ready["addresses"]
 
     def output(self) -> str:
         return (self.folder / "output.txt").read_text(errors="replace")

@@ -1,0 +1,25 @@
+//! What the vehicles of a run share.
+
+use serde::Deserialize;
+
+/// Whose the ports are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Ports {
+    /// Each vehicle has its own, counted up.
+    #[default]
+    Own,
+    /// All vehicles are behind the same ones.
+    Shared,
+}
+
+/// Whose simulation time is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Clocks {
+    /// All vehicles tick in lock-step, at one speed.
+    #[default]
+    Shared,
+    /// Each vehicle has its own time and speed.
+    Separate,
+}
