@@ -1,4 +1,4 @@
-//! Rotors and rigid body together, and their integration.
+//! Rotors and rigid body together, and their integration: the vehicle without its controllers, stepped by rotor commands.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -98,7 +98,8 @@ impl Plant {
         }
     }
 
-    pub(crate) fn is_finite(&self) -> bool {
+    /// Whether it has stayed within the range of numbers.
+    pub fn is_finite(&self) -> bool {
         self.body.is_finite() && self.rotor_speed_rad_s.iter().all(|speed| speed.is_finite())
     }
 }
