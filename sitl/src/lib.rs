@@ -23,6 +23,7 @@ pub mod estimation;
 mod failure;
 pub mod fault;
 pub mod fleet;
+pub mod hil;
 pub mod identity;
 pub mod link;
 mod pace;

@@ -26,6 +26,24 @@ pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
         "links": of_all(Links::descriptions),
         "vehicles": vehicles.collect::<Vec<_>>(),
     });
+    write_content(path, &content)
+}
+
+/// The same for a plant alone.
+///
+/// # Errors
+/// [`Failure::File`]
+pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
+    let content = serde_json::json!({
+        "process_id": std::process::id(),
+        "addresses": [address],
+        "links": [format!("simulator of an external autopilot on TCP {address}")],
+        "vehicles": [],
+    });
+    write_content(path, &content)
+}
+
+fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {
     let beside = path.with_extension("new");
     std::fs::write(&beside, format!("{content}\n"))
         .and_then(|()| std::fs::rename(&beside, path))

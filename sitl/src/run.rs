@@ -6,11 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use tracing_subscriber::EnvFilter;
 
-use crate::configuration::{Arguments, Settings};
+use crate::configuration::{Arguments, HilSettings, Settings};
 use crate::failure::Failure;
+use crate::hil::Simulator;
+use crate::ready;
 use crate::record::replay;
-use crate::session::Session;
-use crate::terminal::{LogLines, banner};
+use crate::session::{Session, Summary};
+use crate::terminal::{LogLines, banner, hil_banner};
 
 /// Does what the arguments say.
 ///
@@ -30,11 +32,16 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let settings = Settings::resolve(&arguments)?;
     let stop = stop_on_signals().map_err(Failure::Signals)?;
-    let session = Session::new(settings.clone())?;
-    say(banner(&settings, session.fleet()).trim_end());
-    let summary = session.run(&stop)?;
+    let summary = match &arguments.hil {
+        Some(address) => simulate(HilSettings::resolve(&arguments, address)?, &stop)?,
+        None => {
+            let settings = Settings::resolve(&arguments)?;
+            let session = Session::new(settings.clone())?;
+            say(banner(&settings, session.fleet()).trim_end());
+            session.run(&stop)?
+        }
+    };
     let wall_s = summary.wall.as_secs_f64();
     for flight in summary.flights {
         let simulated_s = flight.time_us as f64 / 1e6;
@@ -46,6 +53,16 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// The plant for an external autopilot.
+fn simulate(settings: HilSettings, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
+    let simulator = Simulator::open(settings.clone())?;
+    say(hil_banner(&settings, &simulator.address()).trim_end());
+    if let Some(path) = &settings.ready_file {
+        ready::write_address(path, &simulator.address())?;
+    }
+    simulator.run(stop)
 }
 
 /// The arguments, completed by the configuration file that they name.

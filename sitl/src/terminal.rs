@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
-use crate::configuration::Settings;
+use crate::configuration::{HilSettings, Settings};
 use crate::fleet::{Fleet, Member};
+use crate::hil::Mount;
 use crate::link::{Endpoint, LinkSpecification, Links};
 use crate::service::LinkProfile;
 
@@ -39,6 +40,23 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
         text.push_str(&ways(links, specifications));
     }
     text
+}
+
+/// The same for a plant alone.
+pub fn hil_banner(settings: &HilSettings, address: &str) -> String {
+    let origin = settings.vehicle.origin;
+    let motors = match settings.mount {
+        Mount::X => "front right, back left, front left, back right",
+        Mount::Plus => "right, left, front, back",
+    };
+    format!(
+        "lmpc-sitl {}: plant for an external autopilot, at {:.6}, {:.6}, {:.0} m\n  TCP server on {address}; motors 1 to \
+         4: {motors}\n      PX4: make px4_sitl none_iris\n",
+        env!("CARGO_PKG_VERSION"),
+        origin.latitude_deg,
+        origin.longitude_deg,
+        origin.altitude_m,
+    )
 }
 
 /// Where a vehicle stands, and where its links are if they are its own.

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::{Clocks, Formation, HomePosition, Ports, WindFrom};
 use crate::estimation::SensorModel;
+use crate::hil::Mount;
 use crate::identity::Identity;
 use crate::link::LinkSpecification;
 use crate::parameters::Speed;
@@ -26,6 +27,10 @@ Many vehicles:
   --vehicles 5 --ports shared             all behind the same links, told apart by their system ids
   --vehicles 5 --link tcpin:5760          on 5760 to 5764: local ports count up, and where an onboard link sends to
   --parameters fleet.params               of system 3 among several: fleet-3.params
+
+External autopilot:
+  --hil 4560       then, for PX4: make px4_sitl none_iris
+                   (its motors 1 to 4: front right, back left, front left, back right; see --hil-mount)
 
 Connect with:
   QGroundControl     start it: it listens on 14550
@@ -136,6 +141,15 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_REPLAY", value_name = "FILE")]
     pub replay: Option<PathBuf>,
 
+    /// Only the plant, as the simulator of an external autopilot that connects to this TCP port (PX4 to 4560): HIL_SENSOR,
+    /// HIL_GPS and HIL_STATE_QUATERNION for HIL_ACTUATOR_CONTROLS, in lock-step
+    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", conflicts_with = "replay")]
+    pub hil: Option<String>,
+
+    /// How that autopilot sits on the airframe: forward between two arms (x) or along one (plus) [default: x]
+    #[arg(long, env = "LMPC_SITL_HIL_MOUNT", value_name = "MOUNT")]
+    pub hil_mount: Option<Mount>,
+
     /// Log all traffic as ground stations do (.tlog)
     #[arg(long, env = "LMPC_SITL_TLOG", value_name = "FILE")]
     pub tlog: Option<PathBuf>,
@@ -177,6 +191,8 @@ impl Arguments {
             parameters: self.parameters.or(file.parameters),
             record: self.record.or(file.record),
             replay: self.replay.or(file.replay),
+            hil: self.hil.or(file.hil),
+            hil_mount: self.hil_mount.or(file.hil_mount),
             tlog: self.tlog.or(file.tlog),
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod formation;
+mod hil;
 mod home;
 mod settings;
 mod sharing;
@@ -9,6 +10,7 @@ mod wind;
 
 pub use arguments::Arguments;
 pub use formation::{Formation, Shape};
+pub use hil::HilSettings;
 pub use home::HomePosition;
 pub use settings::{MemberSettings, Settings};
 pub use sharing::{Clocks, Ports};

@@ -60,11 +60,7 @@ impl Settings {
     /// [`Failure`] that names the wrong value.
     pub fn resolve(arguments: &Arguments) -> Result<Self, Failure> {
         let instance = arguments.instance.unwrap_or(0);
-        let end_us = match arguments.duration {
-            Some(seconds) => Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64),
-            None => None,
-        };
-        let ids = system_ids(arguments, instance)?;
+        let ids = system_ids(arguments)?;
         let shared = arguments.ports.unwrap_or_default() == Ports::Shared;
         let count = ids.len();
         let member = |(number, system_id): (usize, u8)| {
@@ -83,7 +79,7 @@ impl Settings {
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
             ready_file: arguments.ready_file.clone(),
-            end_us,
+            end_us: end_us(arguments)?,
         })
     }
 
@@ -107,11 +103,24 @@ impl Settings {
     }
 }
 
+/// End, µs of simulation time.
+pub(super) fn end_us(arguments: &Arguments) -> Result<Option<u64>, Failure> {
+    let Some(seconds) = arguments.duration else { return Ok(None) };
+    Ok(Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64))
+}
+
+/// System id of the first vehicle.
+pub(super) fn first_system_id(arguments: &Arguments) -> u8 {
+    // Instances end at 200, see the arguments.
+    let of_instance = u8::try_from(arguments.instance.unwrap_or(0).saturating_add(1)).unwrap_or(u8::MAX);
+    arguments.system_id.unwrap_or(of_instance)
+}
+
 /// System ids of the vehicles.
-fn system_ids(arguments: &Arguments, instance: u16) -> Result<Vec<u8>, Failure> {
+fn system_ids(arguments: &Arguments) -> Result<Vec<u8>, Failure> {
     const LAST: u16 = 250;
     let count = u16::from(arguments.vehicles.unwrap_or(1));
-    let first = arguments.system_id.map_or(instance + 1, u16::from);
+    let first = u16::from(first_system_id(arguments));
     let last = first + count - 1;
     if last > LAST {
         let reason =
@@ -147,7 +156,7 @@ fn of_system(path: &Path, system_id: u8) -> PathBuf {
 }
 
 /// The vehicle of a number among several, as the arguments describe it.
-fn vehicle(
+pub(super) fn vehicle(
     arguments: &Arguments,
     number: usize,
     count: usize,

@@ -13,3 +13,5 @@ mod udp;
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
 pub use links::{Links, Received};
+pub(crate) use transport::is_nothing_yet;
+pub(crate) use udp::resolve;

@@ -1,5 +1,7 @@
 //! A number that two flights share only if they are the same, bit for bit.
 
+use serde::Serialize;
+
 use crate::vehicle::Vehicle;
 
 /// How often the state is taken in, µs.
@@ -16,19 +18,21 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// Takes the state in, if it is time.
+    /// Takes the state in, if it is time, and what the vehicle believes if that is something else.
     pub fn update(&mut self, vehicle: &Vehicle) {
-        if !vehicle.time_us().is_multiple_of(PERIOD_US) {
-            return;
-        }
-        self.part(vehicle.simulation().state());
+        let time_us = vehicle.time_us();
+        self.update_with(time_us, vehicle.simulation().state());
         if let Some(estimate) = vehicle.estimate() {
-            self.part(&estimate.body);
+            self.update_with(time_us, &estimate.body);
         }
     }
 
-    fn part(&mut self, part: &impl serde::Serialize) {
-        match postcard::to_allocvec(part) {
+    /// The same for anything that has a state and a time, µs.
+    pub fn update_with(&mut self, time_us: u64, state: &impl Serialize) {
+        if !time_us.is_multiple_of(PERIOD_US) {
+            return;
+        }
+        match postcard::to_allocvec(state) {
             Ok(bytes) => self.bytes(&bytes),
             // It has no kind that cannot be written; an error must not look like sameness.
             Err(error) => tracing::error!(%error, "the state cannot be digested"),

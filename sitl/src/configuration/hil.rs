@@ -1,0 +1,76 @@
+//! `--hil HOST:PORT`: the plant alone, for an external autopilot.
+
+use std::path::PathBuf;
+
+use super::Arguments;
+use super::settings::{end_us, first_system_id, vehicle};
+use crate::failure::Failure;
+use crate::hil::Mount;
+use crate::link::{Endpoint, LinkSpecification};
+use crate::parameters::Speed;
+use crate::vehicle::VehicleSettings;
+
+/// What the simulator of an external autopilot does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HilSettings {
+    /// Address to listen on.
+    pub host: String,
+    /// Port to listen on; 0: any.
+    pub port: u16,
+    /// How the autopilot sits on the airframe.
+    pub mount: Mount,
+    /// Airframe, start and wind.
+    pub vehicle: VehicleSettings,
+    /// MAVLink system id of the simulator.
+    pub system_id: u8,
+    /// Pace.
+    pub speed: Speed,
+    /// File that tells that the autopilot can connect.
+    pub ready_file: Option<PathBuf>,
+    /// End, µs of simulation time.
+    pub end_us: Option<u64>,
+}
+
+impl HilSettings {
+    /// Resolves arguments that ask for it.
+    ///
+    /// # Errors
+    /// [`Failure`] that names the wrong value, or what means nothing to a plant alone.
+    pub fn resolve(arguments: &Arguments, address: &str) -> Result<Self, Failure> {
+        let wrong = |name: &str, reason: String| Failure::Value { name: format!("--{name}"), reason };
+        for (name, given) in [
+            ("vehicles", arguments.vehicles.is_some()),
+            ("ports", arguments.ports.is_some()),
+            ("formation", arguments.formation.is_some()),
+            ("clocks", arguments.clocks.is_some()),
+            ("link", arguments.link.is_some()),
+            ("record", arguments.record.is_some()),
+            ("tlog", arguments.tlog.is_some()),
+        ] {
+            if given {
+                return Err(wrong(
+                    name,
+                    "does not go with --hil, where the autopilot is another program".into(),
+                ));
+            }
+        }
+        let speed = arguments.speed.unwrap_or(Speed::Factor(1.0));
+        if speed == Speed::Paused {
+            return Err(wrong("speed", "0 does not go with --hil: nobody could end the pause".into()));
+        }
+        let link = format!("tcpin:{address}").parse::<LinkSpecification>();
+        let Ok(Endpoint::TcpIn { host, port }) = link.map(|link| link.endpoint) else {
+            return Err(wrong("hil", format!("`{address}` is not [HOST:]PORT")));
+        };
+        Ok(Self {
+            host,
+            port,
+            mount: arguments.hil_mount.unwrap_or_default(),
+            vehicle: vehicle(arguments, 0, 1, arguments.parameters.as_deref())?,
+            system_id: first_system_id(arguments),
+            speed,
+            ready_file: arguments.ready_file.clone(),
+            end_us: end_us(arguments)?,
+        })
+    }
+}

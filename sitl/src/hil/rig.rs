@@ -1,0 +1,159 @@
+//! Plant, instruments and their time, without a socket and without a clock.
+
+use mavlink::dialects::common::MavMessage;
+use nalgebra::Vector3;
+use quadrotor::{
+    CascadeDesign, Configuration, ConfigurationError, Disturbance, GRAVITY_M_S2, Plant, SimulationError,
+};
+
+use super::actuator_controls::ActuatorControls;
+use super::instruments::Instruments;
+use super::messages;
+use super::mount::Mount;
+use crate::estimation::TrueMotion;
+use crate::record::Digest;
+use crate::vehicle::{TICK_US, VehicleSettings};
+use crate::world::{LocalFrame, Wind};
+
+/// From one HIL_SENSOR to the next, µs: PX4's 250 Hz.
+pub const STEP_US: u64 = 4_000;
+/// HEARTBEAT, µs.
+const HEARTBEAT_US: u64 = 1_000_000;
+/// HIL_STATE_QUATERNION unless something else is asked for, µs.
+const TRUTH_US: u64 = 20_000;
+/// Motors stop when controls have not come for so long, µs, as speed controllers do without a signal.
+const SIGNAL_LOSS_US: u64 = 200_000;
+
+/// A vehicle on the ground, its rotors at rest.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    configuration: Configuration,
+    mount: Mount,
+    frame: LocalFrame,
+    wind: Wind,
+    instruments: Instruments,
+    plant: Plant,
+    time_us: u64,
+    command_rad_s: [f64; 4],
+    controlled_us: Option<u64>,
+    truth_us: Option<u64>,
+    digest: Digest,
+}
+
+impl Rig {
+    /// A rig on the ground at the origin.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] when the vehicle is none.
+    pub fn new(settings: &VehicleSettings, mount: Mount) -> Result<Self, ConfigurationError> {
+        let mut configuration = settings.configuration;
+        configuration.environment.ground_plane = true;
+        configuration.initial.attitude_rad = [0.0, 0.0, settings.heading_rad - mount.yaw_rad()];
+        // Its checks are those of the airframe, too.
+        CascadeDesign::new(&configuration)?;
+        Ok(Self {
+            mount,
+            frame: LocalFrame::new(settings.origin),
+            wind: Wind::new(settings.wind),
+            instruments: Instruments::new(settings.wind.seed),
+            plant: Plant::new(&configuration, false),
+            time_us: 0,
+            command_rad_s: [0.0; 4],
+            controlled_us: None,
+            truth_us: Some(TRUTH_US),
+            digest: Digest::default(),
+            configuration,
+        })
+    }
+
+    /// Simulation time, µs.
+    pub fn time_us(&self) -> u64 {
+        self.time_us
+    }
+
+    /// Rotors and rigid body.
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// Digest of the flight so far.
+    pub fn digest(&self) -> Digest {
+        self.digest
+    }
+
+    /// Turns the motors as told from now on: 0 is the lowest speed of an armed rotor, 1 the highest, linear between.
+    pub fn control(&mut self, controls: &ActuatorControls) {
+        let airframe = &self.configuration.airframe;
+        let (lowest, highest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
+        let speed = |motor: f64| if controls.armed { lowest + motor * (highest - lowest) } else { 0.0 };
+        self.command_rad_s = Mount::rotors(controls.motors.map(speed));
+        self.controlled_us = Some(self.time_us);
+    }
+
+    /// Asks for HIL_STATE_QUATERNION in an interval, µs, in whole steps; `None` for none.
+    pub fn set_truth_interval(&mut self, interval_us: Option<u64>) {
+        self.truth_us =
+            interval_us.map(|interval_us| interval_us.div_ceil(STEP_US).max(1).saturating_mul(STEP_US));
+    }
+
+    /// Flies one step on. What the autopilot is told after it.
+    ///
+    /// # Errors
+    /// [`SimulationError::Diverged`]
+    pub fn step(&mut self) -> Result<Vec<MavMessage>, SimulationError> {
+        let signal = self.controlled_us.is_some_and(|since_us| self.time_us < since_us + SIGNAL_LOSS_US);
+        if !signal {
+            self.command_rad_s = [0.0; 4];
+        }
+        let goal_us = self.time_us + STEP_US;
+        let mut motion = self.motion(&Vector3::zeros());
+        let mut wind_m_s = Vector3::zeros();
+        while self.time_us < goal_us {
+            wind_m_s = self.wind.velocity_m_s(self.time_us, -self.plant.body.position_m.z);
+            let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
+            let h_s = TICK_US as f64 / 1e6;
+            self.plant = self.plant.step(&self.configuration, &self.command_rad_s, &disturbance, h_s);
+            self.time_us += TICK_US;
+            if !self.plant.is_finite() {
+                return Err(SimulationError::Diverged { time_us: self.time_us });
+            }
+            self.digest.update_with(self.time_us, &self.plant);
+            motion = self.motion(&wind_m_s);
+            self.instruments.sample(&motion, &self.frame);
+        }
+        Ok(self.report(&motion, &wind_m_s))
+    }
+
+    fn report(&mut self, motion: &TrueMotion, wind_m_s: &Vector3<f64>) -> Vec<MavMessage> {
+        let readings = self.instruments.take();
+        let mut told = Vec::new();
+        if self.time_us.is_multiple_of(HEARTBEAT_US) {
+            told.push(messages::heartbeat());
+        }
+        if self.truth_us.is_some_and(|interval_us| self.time_us.is_multiple_of(interval_us)) {
+            told.push(messages::state_quaternion(motion, &self.frame, wind_m_s));
+        }
+        told.extend(readings.fix.map(|fix| messages::gps(&fix, &self.frame)));
+        // Last: it makes the autopilot's time pass.
+        told.push(messages::sensor(self.time_us, &readings));
+        told
+    }
+
+    /// What happens to the autopilot's instruments, in its axes.
+    fn motion(&self, wind_m_s: &Vector3<f64>) -> TrueMotion {
+        let body = &self.plant.body;
+        let disturbance = Disturbance { wind_m_s: *wind_m_s, ..Disturbance::default() };
+        let acceleration = self.plant.acceleration_m_s2(&self.configuration, &disturbance);
+        let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
+        let mount = self.mount.rotation();
+        let attitude = body.rotation() * mount;
+        TrueMotion {
+            time_us: self.time_us,
+            position_m: body.position_m,
+            velocity_m_s: body.velocity_m_s,
+            attitude,
+            body_rate_rad_s: mount.inverse_transform_vector(&body.body_rate_rad_s),
+            specific_force_m_s2: attitude.inverse_transform_vector(&(acceleration - gravity)),
+        }
+    }
+}
