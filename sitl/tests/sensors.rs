@@ -12,7 +12,7 @@ use sitl::codec::{Frame, Message, Version};
 use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::identity::Identity;
 use sitl::parameters::Speed;
-use sitl::record::{Digest, Header, Recorder, replay};
+use sitl::record::{Digest, Header, Participant, Recorder, replay};
 use sitl::service::LinkProfile;
 use sitl::vehicle::{Mode, VehicleSettings};
 use sitl::{Autopilot, Failure};
@@ -221,7 +221,8 @@ fn a_record_with_realistic_sensors_replays_bit_for_bit() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("flight.record");
     let links = vec![LinkProfile::Ground];
-    let header = Header::new(1, Speed::Factor(1.0), links.clone(), vehicle.clone());
+    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
+    let header = Header::new(Speed::Factor(1.0), vec![participant]);
     let mut recorder = Recorder::create(&path, &header).expect("a file");
     let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 77).expect("settings");
     let mut digest = Digest::default();
@@ -233,15 +234,16 @@ fn a_record_with_realistic_sensors_replays_bit_for_bit() {
         for (sequence, (_, message)) in (1..).zip(commands.iter().filter(|(at, _)| *at == millisecond)) {
             let frame = Frame::encode(&message.clone().into(), Version::Two, sequence, GROUND_STATION);
             let frame = frame.expect("a message of MAVLink 2");
-            recorder.frame(autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
+            recorder.frame(0, autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
             autopilot.receive(&Bench::origin(), &frame);
         }
         autopilot.tick().expect("flight");
         digest.update(autopilot.vehicle());
     }
     assert!(autopilot.vehicle().truth().position_m.z < -1.5, "it has flown");
-    recorder.finish(autopilot.vehicle().time_us(), digest).expect("written");
-    assert_eq!(replay(&path).expect("the same flight").digest, digest.value());
+    recorder.end(0, autopilot.vehicle().time_us(), digest).expect("written");
+    recorder.finish().expect("written");
+    assert_eq!(replay(&path).expect("the same flight")[0].digest, digest.value());
     // The digest sees the seed.
     let text = std::fs::read_to_string(&path).expect("readable");
     std::fs::write(&path, text.replacen("\"seed\":6", "\"seed\":7", 1)).expect("written");
