@@ -13,6 +13,7 @@ use crate::service::command::Retries;
 use crate::service::file_transfer::FileServer;
 use crate::service::heartbeat::Heartbeat;
 use crate::service::message_interval::Streams;
+use crate::service::mission::Uploads;
 use crate::service::status_text::StatusTexts;
 use crate::service::{
     Destination, LinkProfile, Origin, Outgoing, PeerId, command, file_transfer, heartbeat, log,
@@ -47,6 +48,7 @@ pub struct Autopilot {
     pub(crate) status_texts: StatusTexts,
     pub(crate) retries: Retries,
     pub(crate) files: FileServer,
+    pub(crate) uploads: Uploads,
 }
 
 impl Autopilot {
@@ -76,6 +78,7 @@ impl Autopilot {
             status_texts: StatusTexts::default(),
             retries: Retries::default(),
             files: FileServer::default(),
+            uploads: Uploads::default(),
         };
         heartbeat::update(&mut autopilot);
         status_text::send(&mut autopilot, Severity::Info, INTRODUCTION);
@@ -94,9 +97,14 @@ impl Autopilot {
             id::PARAM_REQUEST_READ => parameter::request_read(self, origin, frame),
             id::PARAM_REQUEST_LIST => parameter::request_list(self, origin),
             id::PARAM_SET => parameter::set(self, origin, frame),
-            id::MISSION_REQUEST_LIST | id::MISSION_COUNT | id::MISSION_CLEAR_ALL => {
-                mission::answer(self, origin, frame);
-            }
+            id::MISSION_REQUEST_LIST => mission::request_list(self, origin, frame),
+            id::MISSION_REQUEST | id::MISSION_REQUEST_INT => mission::request(self, origin, frame),
+            id::MISSION_REQUEST_PARTIAL_LIST => mission::request_partial_list(self, origin, frame),
+            id::MISSION_WRITE_PARTIAL_LIST => mission::write_partial_list(self, origin, frame),
+            id::MISSION_COUNT => mission::count(self, origin, frame),
+            id::MISSION_ITEM | id::MISSION_ITEM_INT => mission::item(self, origin, frame),
+            id::MISSION_ACK => mission::acknowledge(self, origin, frame),
+            id::MISSION_CLEAR_ALL => mission::clear_all(self, origin, frame),
             id::SET_GPS_GLOBAL_ORIGIN => self.refuse_origin(origin),
             id::REQUEST_DATA_STREAM => message_interval::request_data_stream(self, origin, frame),
             id::MANUAL_CONTROL => manual_control::manual_control(self, frame),
@@ -136,6 +144,7 @@ impl Autopilot {
     /// [`SimulationError`]: the flight cannot go on.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
         self.vehicle.tick()?;
+        mission::update(self);
         self.tell_changes();
         message_interval::stream(self);
         Ok(())

@@ -28,6 +28,7 @@ pub mod identity;
 pub mod link;
 mod pace;
 pub mod parameters;
+pub mod plan;
 mod ready;
 pub mod record;
 mod run;

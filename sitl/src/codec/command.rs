@@ -80,6 +80,6 @@ impl Command {
 }
 
 /// MAV_FRAME with metres instead of degrees.
-fn is_local(frame: u8) -> bool {
+pub(super) fn is_local(frame: u8) -> bool {
     matches!(frame, 1 | 4 | 7 | 8 | 9 | 12 | 20 | 21)
 }

@@ -3,6 +3,8 @@
 use mavlink::dialects::common::{COMMAND_ACK_DATA, MavMessage};
 use mavlink::{MavlinkVersion, Message as _, MessageData as _};
 
+use super::MissionItemMessage;
+
 /// A message to be sent.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant)] // Almost all are of the large kind.
@@ -11,6 +13,8 @@ pub enum Message {
     Typed(MavMessage),
     /// An answer to a command that need not be one of the dialect.
     CommandAck(CommandAck),
+    /// An item of a plan, which need not be one of the dialect either.
+    MissionItem(MissionItemMessage),
 }
 
 /// COMMAND_ACK, with any number of a command.
@@ -40,6 +44,7 @@ impl Message {
         match self {
             Self::Typed(message) => message.message_id(),
             Self::CommandAck(_) => COMMAND_ACK_DATA::ID,
+            Self::MissionItem(item) => item.id(),
         }
     }
 
@@ -48,6 +53,7 @@ impl Message {
         match self {
             Self::Typed(message) => message.ser(version, payload),
             Self::CommandAck(ack) => ack.serialize(version, payload),
+            Self::MissionItem(item) => item.serialize(version, payload),
         }
     }
 
@@ -56,6 +62,7 @@ impl Message {
         let (system, component) = match self {
             Self::Typed(message) => (message.target_system_id(), message.target_component_id()),
             Self::CommandAck(ack) => (Some(ack.target_system), Some(ack.target_component)),
+            Self::MissionItem(item) => return item.target,
         };
         super::Target { system: system.unwrap_or(0), component: component.unwrap_or(0) }
     }

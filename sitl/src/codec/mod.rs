@@ -8,6 +8,7 @@ mod command;
 mod decoder;
 mod frame;
 mod message;
+mod mission_item;
 mod payload;
 mod position_target;
 mod target;
@@ -17,6 +18,7 @@ pub use command::{Command, CommandKind};
 pub use decoder::FrameDecoder;
 pub use frame::{Frame, Version};
 pub use message::{CommandAck, Message};
+pub use mission_item::MissionItemMessage;
 pub use payload::Payload;
 pub use position_target::{SetPositionTarget, TargetPosition};
 pub use target::{Target, target_of};
@@ -35,20 +37,36 @@ pub mod id {
     pub const PARAM_REQUEST_LIST: u32 = 21;
     /// PARAM_SET
     pub const PARAM_SET: u32 = 23;
+    /// MISSION_REQUEST_PARTIAL_LIST
+    pub const MISSION_REQUEST_PARTIAL_LIST: u32 = 37;
+    /// MISSION_WRITE_PARTIAL_LIST
+    pub const MISSION_WRITE_PARTIAL_LIST: u32 = 38;
+    /// MISSION_ITEM
+    pub const MISSION_ITEM: u32 = 39;
+    /// MISSION_REQUEST
+    pub const MISSION_REQUEST: u32 = 40;
+    /// MISSION_SET_CURRENT
+    pub const MISSION_SET_CURRENT: u32 = 41;
     /// MISSION_REQUEST_LIST
     pub const MISSION_REQUEST_LIST: u32 = 43;
     /// MISSION_COUNT
     pub const MISSION_COUNT: u32 = 44;
     /// MISSION_CLEAR_ALL
     pub const MISSION_CLEAR_ALL: u32 = 45;
+    /// MISSION_ACK
+    pub const MISSION_ACK: u32 = 47;
     /// SET_GPS_GLOBAL_ORIGIN
     pub const SET_GPS_GLOBAL_ORIGIN: u32 = 48;
+    /// MISSION_REQUEST_INT
+    pub const MISSION_REQUEST_INT: u32 = 51;
     /// REQUEST_DATA_STREAM
     pub const REQUEST_DATA_STREAM: u32 = 66;
     /// MANUAL_CONTROL
     pub const MANUAL_CONTROL: u32 = 69;
     /// RC_CHANNELS_OVERRIDE
     pub const RC_CHANNELS_OVERRIDE: u32 = 70;
+    /// MISSION_ITEM_INT
+    pub const MISSION_ITEM_INT: u32 = 73;
     /// COMMAND_INT
     pub const COMMAND_INT: u32 = 75;
     /// COMMAND_LONG

@@ -32,6 +32,10 @@ pub fn target_of(frame: &Frame) -> Target {
     let at = |system: usize| Target { system: payload.u8(system), component: payload.u8(system + 1) };
     match frame.message_id() {
         id::PARAM_REQUEST_LIST => at(0),
+        id::MISSION_REQUEST_LIST | id::MISSION_CLEAR_ALL | id::MISSION_ACK => at(0),
+        id::MISSION_COUNT | id::MISSION_REQUEST | id::MISSION_REQUEST_INT | id::MISSION_SET_CURRENT => at(2),
+        id::MISSION_REQUEST_PARTIAL_LIST | id::MISSION_WRITE_PARTIAL_LIST => at(4),
+        id::MISSION_ITEM | id::MISSION_ITEM_INT => at(32),
         id::COMMAND_LONG | id::COMMAND_INT => at(30),
         id::PARAM_SET => at(4),
         id::SET_ATTITUDE_TARGET => at(36),

@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
+use crate::plan::Plans;
 use crate::record::Participant;
 use crate::vehicle::{Conduct, Vehicle, VehicleSettings};
 use crate::world::WindSettings;
@@ -183,6 +184,7 @@ pub(super) fn vehicle(
             model: arguments.sensors.unwrap_or_default(),
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
+        plans: Plans::default(),
     };
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];

@@ -10,6 +10,7 @@ pub(crate) mod identification;
 pub(crate) mod log;
 pub(crate) mod manual_control;
 pub(crate) mod message_interval;
+#[allow(deprecated)] // Clients still use what the dialect calls deprecated.
 pub(crate) mod mission;
 pub(crate) mod parameter;
 pub(crate) mod set_point;

@@ -26,6 +26,7 @@ mod motion;
 mod notice;
 mod offboard;
 mod perception;
+mod plans;
 mod requests;
 mod return_home;
 mod set_point;

@@ -21,6 +21,7 @@ use super::sticks::Sticks;
 use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
 use crate::identity::Identity;
+use crate::plan::Plans;
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
@@ -47,6 +48,9 @@ pub struct VehicleSettings {
     /// What it knows its motion by.
     #[serde(default)]
     pub sensors: SensorSettings,
+    /// What it is to fly, and where it may.
+    #[serde(default)]
+    pub plans: Plans,
 }
 
 /// Where a return goes.
@@ -94,6 +98,7 @@ pub struct Vehicle {
     /// Since when it has been armed and on the ground, µs.
     pub(super) grounded_since_us: u64,
     pub(super) notices: Vec<Notice>,
+    pub(super) plans: Plans,
 }
 
 impl Vehicle {
@@ -141,6 +146,7 @@ impl Vehicle {
             flown: false,
             grounded_since_us: 0,
             notices: Vec::new(),
+            plans: settings.plans.clone(),
             simulation,
             outputs,
             truth: outputs,

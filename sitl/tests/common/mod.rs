@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // Each test uses a part of it.
 
+pub mod channel;
+
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use sitl::Autopilot;
 use sitl::codec::{CommandAck, Frame, Message, Version};
@@ -25,6 +27,7 @@ pub fn settings(identity: Identity) -> VehicleSettings {
         wind: WindSettings::default(),
         faults: Vec::new(),
         sensors: SensorSettings::default(),
+        plans: sitl::plan::Plans::default(),
     }
 }
 
@@ -111,7 +114,7 @@ impl Bench {
     pub fn acks(&self) -> Vec<CommandAck> {
         let ack = |message: &Message| match message {
             Message::CommandAck(ack) => Some(*ack),
-            Message::Typed(_) => None,
+            _ => None,
         };
         self.heard.iter().filter_map(ack).collect()
     }

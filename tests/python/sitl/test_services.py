@@ -71,8 +71,8 @@ def test_identity_and_modes(start, connect):
     # Nobody is kept waiting.
     client.mav.mission_request_list_send(*client.target)
     assert client.wait("MISSION_COUNT").count == 0
-    client.mav.mission_count_send(*client.target, 3)
-    assert client.wait("MISSION_ACK").type == mavlink.MAV_MISSION_UNSUPPORTED
+    client.mav.mission_count_send(*client.target, 60000)
+    assert client.wait("MISSION_ACK").type == mavlink.MAV_MISSION_NO_SPACE
     client.mav.log_request_list_send(*client.target, 0, 0xFFFF)
     assert client.wait("LOG_ENTRY").num_logs == 0
 

@@ -1,0 +1,23 @@
+//! What is taken into a fence.
+
+use super::super::{MissionItem, PlanFault, Site, command};
+use super::{ItemFault, one_of, place};
+
+const COMMANDS: [u16; 5] = [
+    command::NAV_FENCE_RETURN_POINT,
+    command::NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    command::NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
+    command::NAV_FENCE_CIRCLE_INCLUSION,
+    command::NAV_FENCE_CIRCLE_EXCLUSION,
+];
+
+/// Checks an item by itself.
+pub fn item(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
+    one_of(item, &COMMANDS)?;
+    place(item, site).map(drop)
+}
+
+/// Checks how the items belong together.
+pub fn whole(_items: &[MissionItem], _site: &Site) -> Result<(), PlanFault> {
+    Ok(())
+}

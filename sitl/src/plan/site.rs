@@ -1,0 +1,98 @@
+//! Where the places of a plan are.
+
+use nalgebra::Vector3;
+
+use super::MissionItem;
+use crate::identity::Identity;
+use crate::world::{Geodetic, LocalFrame};
+
+/// MAV_FRAME.
+#[allow(missing_docs)] // Their names are their documentation.
+pub mod frame {
+    pub const GLOBAL: u8 = 0;
+    pub const LOCAL_NED: u8 = 1;
+    pub const MISSION: u8 = 2;
+    pub const GLOBAL_RELATIVE: u8 = 3;
+    pub const GLOBAL_INT: u8 = 5;
+    pub const GLOBAL_RELATIVE_INT: u8 = 6;
+    pub const GLOBAL_TERRAIN: u8 = 10;
+    pub const GLOBAL_TERRAIN_INT: u8 = 11;
+}
+
+/// What the places of a plan refer to.
+#[derive(Clone, Copy, Debug)]
+pub struct Site {
+    /// Whose conventions hold.
+    pub identity: Identity,
+    /// The local frame.
+    pub frame: LocalFrame,
+    /// Home, NED, m.
+    pub home_m: Vector3<f64>,
+}
+
+/// A place of an item in the local frame; what the item left open is `None`.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Place {
+    /// North and east, m.
+    pub horizontal_m: Option<[f64; 2]>,
+    /// Down, m.
+    pub down_m: Option<f64>,
+}
+
+impl Site {
+    /// Whether x, y, z of a frame are a place here.
+    pub fn knows(frame: u8) -> bool {
+        frame == frame::LOCAL_NED || is_global(frame)
+    }
+
+    /// The place of an item. Latitude and longitude that are no numbers, or both zero, leave it open, as clients send them for
+    /// "here"; the terrain is the flat ground of the simulation.
+    ///
+    /// `None` for an unknown frame or a latitude or longitude that there is not.
+    pub fn place(&self, item: &MissionItem) -> Option<Place> {
+        let [x, y, z] = item.position;
+        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+        if item.frame == frame::LOCAL_NED {
+            let horizontal_m = finite(x).zip(finite(y)).map(|(x, y)| [x, y]);
+            return Some(Place { horizontal_m, down_m: finite(z) });
+        }
+        if !is_global(item.frame) {
+            return None;
+        }
+        let here = x.is_nan() && y.is_nan() || (x == 0.0 && y == 0.0);
+        let horizontal_m = if here {
+            None
+        } else {
+            let altitude_m = self.frame.origin().altitude_m;
+            let place = Geodetic { latitude_deg: x, longitude_deg: y, altitude_m };
+            if !place.is_valid() {
+                return None;
+            }
+            let local = self.frame.to_local_m(&place);
+            Some([local.x, local.y])
+        };
+        Some(Place { horizontal_m, down_m: finite(z).map(|altitude_m| self.down_m(item.frame, altitude_m)) })
+    }
+
+    /// z, m, of an altitude, m, in a global frame.
+    fn down_m(&self, frame: u8, altitude_m: f64) -> f64 {
+        match frame {
+            frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => self.home_m.z - altitude_m,
+            frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => -altitude_m,
+            _ => self.frame.origin().altitude_m - altitude_m,
+        }
+    }
+}
+
+/// Whether a frame has latitude and longitude.
+fn is_global(frame: u8) -> bool {
+    matches!(
+        frame,
+        frame::GLOBAL
+            | frame::GLOBAL_INT
+            | frame::GLOBAL_RELATIVE
+            | frame::GLOBAL_RELATIVE_INT
+            | frame::GLOBAL_TERRAIN
+            | frame::GLOBAL_TERRAIN_INT
+    )
+}
