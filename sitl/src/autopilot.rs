@@ -155,6 +155,11 @@ impl Autopilot {
         heartbeat::beat(self);
     }
 
+    /// Tells everyone what has happened around the vehicle. It changes nothing of the flight.
+    pub fn announce(&mut self, severity: Severity, text: &str) {
+        status_text::send(self, severity, text);
+    }
+
     fn tell_changes(&mut self) {
         status_text::send_notices(self);
         heartbeat::update(self);

@@ -34,6 +34,7 @@ pub mod record;
 mod run;
 pub mod service;
 mod session;
+pub mod signing;
 mod terminal;
 pub mod vehicle;
 pub mod world;

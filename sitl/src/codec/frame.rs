@@ -17,6 +17,7 @@ pub enum Version {
 /// Flag of incompatibility: the frame ends in a signature of 13 bytes.
 pub(super) const SIGNED: u8 = 1;
 pub(super) const SIGNATURE_LENGTH: usize = 13;
+pub(super) const TAG_LENGTH: usize = 6;
 pub(super) const CHECKSUM_LENGTH: usize = 2;
 
 impl Version {
@@ -156,6 +157,55 @@ impl Frame {
 
     fn byte(&self, offset: usize) -> u8 {
         Payload::new(&self.bytes).u8(offset)
+    }
+}
+
+/// What a signed frame ends in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// Number that its sender gave the link.
+    pub link: u8,
+    /// Units of 10 µs since 2015-01-01, 48 bits.
+    pub timestamp: u64,
+    /// Beginning of the hash over key and frame.
+    pub tag: [u8; TAG_LENGTH],
+}
+
+impl Frame {
+    /// The signature, if there is one.
+    pub fn signature(&self) -> Option<Signature> {
+        let bytes = Payload::new(&self.bytes);
+        let at = self.end + CHECKSUM_LENGTH;
+        (self.bytes.len() == at + SIGNATURE_LENGTH).then(|| {
+            let [a, b, c, d, e, f] = bytes.bytes(at + 1);
+            let timestamp = u64::from_le_bytes([a, b, c, d, e, f, 0, 0]);
+            Signature { link: bytes.u8(at), timestamp, tag: bytes.bytes(at + 7) }
+        })
+    }
+
+    /// What a signature covers beside the key: everything before its tag.
+    pub fn covered_bytes(&self) -> &[u8] {
+        self.bytes.get(..self.end + CHECKSUM_LENGTH + SIGNATURE_LENGTH - TAG_LENGTH).unwrap_or_default()
+    }
+
+    /// The frame with a signature, whose tag is made of what it covers. MAVLink 1 has no signatures: such a frame, and
+    /// one that is signed already, stays as it is.
+    pub fn sign(mut self, link: u8, timestamp: u64, tag: impl FnOnce(&[u8]) -> [u8; TAG_LENGTH]) -> Self {
+        if self.version == Version::One || self.signature().is_some() {
+            return self;
+        }
+        if let Some(flags) = self.bytes.get_mut(2) {
+            *flags |= SIGNED;
+        }
+        self.bytes.truncate(self.end);
+        let Some(extra) = extra_crc(self.message_id()) else { return self };
+        let checksum = calculate_crc(self.bytes.get(1..).unwrap_or_default(), extra);
+        self.bytes.extend(checksum.to_le_bytes());
+        self.bytes.push(link);
+        self.bytes.extend(timestamp.to_le_bytes().iter().take(6));
+        let tag = tag(&self.bytes);
+        self.bytes.extend(tag);
+        self
     }
 }
 

@@ -16,7 +16,7 @@ mod target;
 pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
 pub use decoder::FrameDecoder;
-pub use frame::{Frame, Version};
+pub use frame::{Frame, Signature, Version};
 pub use message::{CommandAck, Message};
 pub use mission_item::MissionItemMessage;
 pub use payload::Payload;
@@ -83,6 +83,8 @@ pub mod id {
     pub const TIMESYNC: u32 = 111;
     /// LOG_REQUEST_LIST
     pub const LOG_REQUEST_LIST: u32 = 117;
+    /// RADIO_STATUS
+    pub const RADIO_STATUS: u32 = 109;
     /// SETUP_SIGNING
     pub const SETUP_SIGNING: u32 = 256;
 }

@@ -154,6 +154,11 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_TLOG", value_name = "FILE")]
     pub tlog: Option<PathBuf>,
 
+    /// Key to sign and verify all messages with (MAVLink 2): 64 hexadecimal digits or 32 bytes, mode 0600; timestamps are
+    /// kept beside it. An empty file waits for SETUP_SIGNING, which is accepted on local links only
+    #[arg(long, env = "LMPC_SITL_SIGNING_KEY", value_name = "FILE")]
+    pub signing_key: Option<PathBuf>,
+
     /// File that is written (JSON: process id, addresses of the links) when clients can connect
     #[arg(long, env = "LMPC_SITL_READY_FILE", value_name = "FILE")]
     pub ready_file: Option<PathBuf>,
@@ -194,6 +199,7 @@ impl Arguments {
             hil: self.hil.or(file.hil),
             hil_mount: self.hil_mount.or(file.hil_mount),
             tlog: self.tlog.or(file.tlog),
+            signing_key: self.signing_key.or(file.signing_key),
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),
             log: self.log.or(file.log),

@@ -35,6 +35,8 @@ pub struct Settings {
     pub record: Option<PathBuf>,
     /// Traffic log.
     pub tlog: Option<PathBuf>,
+    /// Key to sign with.
+    pub signing_key: Option<PathBuf>,
     /// File that tells that clients can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
@@ -79,6 +81,7 @@ impl Settings {
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
+            signing_key: arguments.signing_key.clone(),
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments)?,
         })

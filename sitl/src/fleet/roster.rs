@@ -8,12 +8,15 @@ use crate::codec::target_of;
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::link::Links;
+use crate::signing::SigningKeeper;
 
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]
 pub struct Fleet {
     members: Vec<Member>,
     hubs: Vec<Links>,
+    /// One for each hub.
+    signing: Vec<SigningKeeper>,
     books: Books,
 }
 
@@ -31,14 +34,20 @@ impl Fleet {
                 Member::new(participant, settings.speed, own.hub, own.parameters.clone(), unix_start_us)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let hubs = (0..)
+        let mut hubs: Vec<Links> = (0..)
             .zip(&settings.hubs)
             .map(|(hub, links)| {
                 let behind = settings.vehicles.iter().filter(|vehicle| vehicle.hub == hub);
                 Links::open(links, behind.map(|vehicle| vehicle.system_id).collect())
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { members, hubs, books: Books::open(settings, participants, unix_start_us)? })
+        let key = settings.signing_key.as_deref();
+        let signing = hubs
+            .iter_mut()
+            .enumerate()
+            .map(|(hub, links)| SigningKeeper::new(key, hub, unix_start_us, links))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { members, hubs, signing, books: Books::open(settings, participants, unix_start_us)? })
     }
 
     /// The vehicles.
@@ -55,7 +64,9 @@ impl Fleet {
     pub(crate) fn receive(&mut self, now: Instant) -> Result<(), Failure> {
         for hub in 0..self.hubs.len() {
             let Some(links) = self.hubs.get_mut(hub) else { continue };
-            for received in links.receive(now) {
+            let received = links.receive(now);
+            self.keep_signing(hub, now)?;
+            for received in received {
                 let target = target_of(&received.frame).system;
                 let mut logged = false;
                 for number in 0..self.members.len() {
@@ -72,6 +83,29 @@ impl Fleet {
                         self.send(number, now)?;
                     }
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps what has changed about signing at a hub before it takes effect, and tells it to those behind it. A key is
+    /// the same everywhere.
+    fn keep_signing(&mut self, hub: usize, now: Instant) -> Result<(), Failure> {
+        let (Some(links), Some(keeper)) = (self.hubs.get_mut(hub), self.signing.get_mut(hub)) else {
+            return Ok(());
+        };
+        let said = keeper.update(links, now)?;
+        if said.new_key {
+            let key = links.signing().key().cloned();
+            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone(), 0));
+        }
+        for (severity, text) in said.lines {
+            for number in 0..self.members.len() {
+                let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+                    continue;
+                };
+                member.autopilot.announce(severity, &text);
+                self.send(number, now)?;
             }
         }
         Ok(())
@@ -124,7 +158,10 @@ impl Fleet {
     }
 
     /// Ends the files and returns the vehicles as they are.
-    pub(crate) fn finish(self) -> Result<Vec<Member>, Failure> {
+    pub(crate) fn finish(mut self) -> Result<Vec<Member>, Failure> {
+        for (keeper, links) in self.signing.iter().zip(&mut self.hubs) {
+            keeper.finish(links)?;
+        }
         self.books.finish(&self.members)?;
         Ok(self.members)
     }

@@ -6,12 +6,14 @@ use std::time::{Duration, Instant};
 use super::endpoint::{Endpoint, LinkSpecification};
 use super::error::LinkError;
 use super::peer::Peer;
+use super::signing_setup::SigningSetup;
 use super::tcp::Tcp;
 use super::transport::{Event, Transport};
 use super::udp::Udp;
 use crate::autopilot::COMPONENT;
-use crate::codec::{Frame, target_of};
+use crate::codec::{Frame, Version, id, target_of};
 use crate::service::{Destination, Origin, Outgoing, PeerId};
+use crate::signing::Signing;
 
 /// A frame that comes back within this time by another way is the same frame.
 const ECHO: Duration = Duration::from_millis(500);
@@ -38,6 +40,8 @@ pub struct Links {
     systems: Vec<u8>,
     links: Vec<Link>,
     recent: VecDeque<(Vec<u8>, PeerId, Instant)>,
+    signing: Signing,
+    setups: Vec<SigningSetup>,
 }
 
 impl Links {
@@ -52,7 +56,23 @@ impl Links {
                 Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
             })
             .collect::<Result<_, LinkError>>()?;
-        Ok(Self { systems, links, recent: VecDeque::new() })
+        Ok(Self { systems, links, recent: VecDeque::new(), signing: Signing::default(), setups: Vec::new() })
+    }
+
+    /// Signs and verifies from now on.
+    pub fn sign_with(&mut self, signing: Signing) {
+        self.signing = signing;
+    }
+
+    /// What is signed with; its clock is the caller's to advance.
+    pub fn signing(&mut self) -> &mut Signing {
+        &mut self.signing
+    }
+
+    /// Attempts to change the key since the last call. They are acted upon already, and neither forwarded nor returned
+    /// as received: the key goes nowhere.
+    pub fn take_setups(&mut self) -> Vec<SigningSetup> {
+        std::mem::take(&mut self.setups)
     }
 
     /// For a person: where each link is.
@@ -70,13 +90,21 @@ impl Links {
         self.links.iter().flat_map(|link| link.peers.values()).filter(|peer| peer.has_spoken()).count()
     }
 
-    /// Everything that has come, already forwarded to the peers that it is for.
+    /// Everything that has come and is accepted, already forwarded to the peers that it is for.
     pub fn receive(&mut self, now: Instant) -> Vec<Received> {
+        let mut received = self.poll(now);
+        received.retain(|received| self.is_accepted(received, now));
+        for received in &received {
+            self.forward(received);
+        }
+        received
+    }
+
+    fn poll(&mut self, now: Instant) -> Vec<Received> {
         let mut received = Vec::new();
         for (index, link) in self.links.iter_mut().enumerate() {
-            let mut take = |number: u64, peer: &mut Peer, frames: Vec<Frame>| {
+            let mut take = |number: u64, frames: Vec<Frame>| {
                 for frame in frames {
-                    peer.learn(&frame);
                     let peer = PeerId { link: index, number };
                     let origin = Origin { peer, system: frame.system(), component: frame.component() };
                     received.push(Received { origin, frame });
@@ -93,20 +121,44 @@ impl Links {
                     Event::Bytes(number, bytes) => {
                         let peer = link.peers.entry(number).or_default();
                         let frames = peer.frames(&bytes, link.transport.is_datagram(), now);
-                        take(number, peer, frames);
+                        take(number, frames);
                     }
                 }
             }
             for (number, peer) in &mut link.peers {
                 let frames = peer.overdue(now);
-                take(*number, peer, frames);
+                take(*number, frames);
             }
         }
-        received.retain(|received| self.is_news(received, now));
-        for received in &received {
-            self.forward(received);
-        }
         received
+    }
+
+    /// Whether a frame goes on from here. What is refused teaches nothing about who sent it.
+    fn is_accepted(&mut self, received: &Received, now: Instant) -> bool {
+        let news = self.is_news(received, now);
+        if if news { self.signing.verify(&received.frame).is_err() } else { self.signing.is_on() } {
+            return false;
+        }
+        let PeerId { link, number } = received.origin.peer;
+        let ours = self.is_for_us(&received.frame);
+        let Some(link) = self.links.get_mut(link) else { return false };
+        if let Some(peer) = link.peers.get_mut(&number) {
+            peer.learn(&received.frame);
+        }
+        if received.frame.message_id() == id::SETUP_SIGNING {
+            if news && ours {
+                let setup = SigningSetup::of(&received.frame, link.transport.is_local(number));
+                setup.act(&mut self.signing, &received.frame);
+                self.setups.push(setup);
+            }
+            return false;
+        }
+        news
+    }
+
+    fn is_for_us(&self, frame: &Frame) -> bool {
+        let target = target_of(frame);
+        self.systems.iter().any(|system| target.is_autopilot(*system))
     }
 
     /// Whether a frame is neither our own nor one that has come already by another way.
@@ -120,8 +172,9 @@ impl Links {
         }
         let bytes = received.frame.bytes();
         let known = self.recent.iter().any(|(seen, by, _)| *by != origin.peer && seen == bytes);
-        // One peer has no one to be an echo of.
-        if !known && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
+        // One peer has no one to be an echo of, and a key is not remembered.
+        let secret = received.frame.message_id() == id::SETUP_SIGNING;
+        if !known && !secret && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
             self.recent.push_back((bytes.to_vec(), origin.peer, now));
         }
         !known
@@ -159,10 +212,12 @@ impl Links {
                 if !wanted {
                     continue;
                 }
+                // MAVLink 1 has no signatures.
+                let version = if self.signing.is_on() { Version::Two } else { peer.version() };
                 // Messages beyond number 255 do not exist in MAVLink 1.
-                let version = peer.version();
                 let sequence = peer.sequences.entry(system).or_default();
                 if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
+                    let frame = self.signing.sign(frame, index as u8);
                     *sequence = sequence.wrapping_add(1);
                     link.transport.send(*number, frame.bytes());
                     sent = Some(frame);
@@ -205,4 +260,151 @@ fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
             });
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, VecDeque};
+    use std::sync::{Arc, Mutex};
+    use std::time::Instant;
+
+    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
+
+    use super::{Link, Links};
+    use crate::codec::{Frame, Message, Version};
+    use crate::link::SigningSetup;
+    use crate::link::transport::{Event, Transport};
+    use crate::service::{Destination, Outgoing};
+    use crate::signing::{SecretKey, Signing};
+
+    type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
+
+    /// A link whose two ends are lists.
+    #[derive(Debug)]
+    struct Ends {
+        inward: Bytes,
+        outward: Bytes,
+        local: bool,
+    }
+
+    impl Transport for Ends {
+        fn poll(&mut self, _now: Instant) -> Vec<Event> {
+            let mut waiting = self.inward.lock().expect("one thread");
+            waiting.drain(..).map(|bytes| Event::Bytes(1, bytes)).collect()
+        }
+
+        fn send(&mut self, _peer: u64, bytes: &[u8]) {
+            self.outward.lock().expect("one thread").push(bytes.to_vec());
+        }
+
+        fn is_datagram(&self) -> bool {
+            true
+        }
+
+        fn is_local(&self, _peer: u64) -> bool {
+            self.local
+        }
+
+        fn description(&self) -> String {
+            String::new()
+        }
+
+        fn address(&self) -> String {
+            String::new()
+        }
+    }
+
+    /// A vehicle with one link to this machine and one from afar, and their ends.
+    fn links() -> (Links, [(Bytes, Bytes); 2]) {
+        let ends: [(Bytes, Bytes); 2] = Default::default();
+        let of = |(inward, outward): &(Bytes, Bytes), local| Link {
+            transport: Box::new(Ends { inward: inward.clone(), outward: outward.clone(), local }),
+            peers: BTreeMap::new(),
+        };
+        let links = vec![of(&ends[0], true), of(&ends[1], false)];
+        let (recent, signing, setups) = (VecDeque::new(), Signing::default(), Vec::new());
+        (Links { systems: vec![1], links, recent, signing, setups }, ends)
+    }
+
+    fn frame(message: MavMessage, system: u8) -> Frame {
+        Frame::encode(&message.into(), Version::Two, 0, (system, 190)).expect("a message of MAVLink 2")
+    }
+
+    fn heartbeat(system: u8) -> Frame {
+        frame(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()), system)
+    }
+
+    fn setup(key: u8, target_system: u8) -> Frame {
+        let setup = SETUP_SIGNING_DATA {
+            initial_timestamp: 50,
+            target_system,
+            target_component: 1,
+            secret_key: [key; 32],
+        };
+        frame(MavMessage::SETUP_SIGNING(setup), 255)
+    }
+
+    #[test]
+    fn a_key_comes_from_this_machine_only_and_goes_nowhere() {
+        let (mut links, [near, far]) = links();
+        let mut receive = |end: &(Bytes, Bytes), frame: &Frame| {
+            end.0.lock().expect("one thread").push(frame.bytes().to_vec());
+            let received = links.receive(Instant::now());
+            (received.len(), links.take_setups(), links.signing().is_on())
+        };
+        // Both ends have spoken: what one sends is forwarded to the other.
+        assert_eq!(receive(&near, &heartbeat(255)).0, 1);
+        assert_eq!(receive(&far, &heartbeat(254)).0, 1);
+        let forwarded = near.1.lock().expect("one thread").len();
+        assert_eq!(forwarded, 1);
+
+        assert_eq!(receive(&far, &setup(7, 1)), (0, vec![SigningSetup::Refused(255, 190)], false));
+        // For another vehicle it is not passed on, either.
+        assert_eq!(receive(&near, &setup(7, 2)), (0, vec![], false));
+        assert_eq!(receive(&near, &setup(7, 1)), (0, vec![SigningSetup::Set(255, 190)], true));
+        assert_eq!(far.1.lock().expect("one thread").len(), 0, "the key was passed on");
+        assert_eq!(near.1.lock().expect("one thread").len(), forwarded, "the key was passed on");
+
+        // From now on a key can only be changed by who knows it.
+        assert_eq!(receive(&near, &setup(0, 1)), (0, vec![], true));
+        let key = SecretKey::new([7; 32]).expect("a key");
+        let removal = setup(0, 1).sign(0, 60, |bytes| key.tag(bytes));
+        assert_eq!(receive(&near, &removal), (0, vec![SigningSetup::Removed(255, 190)], false));
+        assert!(!format!("{links:?}").contains("7, 7, 7, 7"), "the key is remembered in the open");
+    }
+
+    #[test]
+    fn what_is_refused_reaches_nobody_and_teaches_nothing() {
+        let (mut links, [near, far]) = links();
+        let key = SecretKey::new([7; 32]).expect("a key");
+        links.sign_with(Signing::new(Some(key.clone()), Default::default()));
+        let put = |end: &(Bytes, Bytes), frame: &Frame| {
+            end.0.lock().expect("one thread").push(frame.bytes().to_vec());
+        };
+        let sign = |frame: Frame, timestamp| frame.sign(0, timestamp, |bytes| key.tag(bytes));
+        put(&near, &sign(heartbeat(255), 9));
+        put(&far, &heartbeat(254));
+        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert_eq!(links.active_peers(), 1);
+        put(&near, &sign(heartbeat(255), 10));
+        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert!(far.1.lock().expect("one thread").is_empty(), "who was refused is not forwarded to");
+        put(&far, &sign(heartbeat(254), 11));
+        put(&far, &sign(heartbeat(254), 11));
+        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert_eq!(near.1.lock().expect("one thread").len(), 1, "forwarded once, as it came");
+        assert_eq!(links.signing().counts().to_string(), "1 unsigned, 1 replayed");
+
+        // Ours: signed, each link under its number, never in MAVLink 1.
+        near.1.lock().expect("one thread").clear();
+        let message = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+        links.send(&Outgoing { to: Destination::Everyone, message }, 1);
+        let sent = [near, far].map(|end| {
+            let frame =
+                Frame::parse(end.1.lock().expect("one thread").last().expect("sent")).expect("a frame");
+            frame.signature().expect("signed")
+        });
+        assert_eq!(sent.map(|signature| signature.link), [0, 1]);
+        assert!(sent[0].timestamp < sent[1].timestamp);
+    }
 }

@@ -6,6 +6,7 @@ mod links;
 mod peer;
 #[cfg(unix)]
 mod serial;
+mod signing_setup;
 mod tcp;
 mod transport;
 mod udp;
@@ -13,5 +14,6 @@ mod udp;
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
 pub use links::{Links, Received};
+pub use signing_setup::SigningSetup;
 pub(crate) use transport::is_nothing_yet;
 pub(crate) use udp::resolve;

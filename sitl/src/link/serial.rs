@@ -94,6 +94,10 @@ impl Transport for Serial {
         false
     }
 
+    fn is_local(&self, _peer: u64) -> bool {
+        true
+    }
+
     fn description(&self) -> String {
         format!("serial {} at {} baud", self.path, self.baud)
     }

@@ -134,6 +134,11 @@ impl Transport for Tcp {
         false
     }
 
+    fn is_local(&self, peer: u64) -> bool {
+        let address = self.clients.get(&peer).and_then(|client| client.stream.peer_addr().ok());
+        address.is_some_and(|address| address.ip().to_canonical().is_loopback())
+    }
+
     fn description(&self) -> String {
         format!("TCP server on {}", self.address())
     }

@@ -27,6 +27,9 @@ pub trait Transport: std::fmt::Debug {
     /// Whether frames are whole datagrams.
     fn is_datagram(&self) -> bool;
 
+    /// Whether a peer is on this machine, or at the other end of a cable.
+    fn is_local(&self, peer: u64) -> bool;
+
     /// Where it really is, for a person.
     fn description(&self) -> String;
 

@@ -122,6 +122,10 @@ impl Transport for Udp {
         true
     }
 
+    fn is_local(&self, peer: u64) -> bool {
+        self.peers.get(&peer).is_some_and(|peer| peer.address.ip().to_canonical().is_loopback())
+    }
+
     fn description(&self) -> String {
         match self.target {
             Some(target) => format!("UDP to {target} from {}", self.address()),
