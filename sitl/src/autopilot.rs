@@ -150,6 +150,11 @@ impl Autopilot {
         Ok(())
     }
 
+    /// Tells whether a ground station is heard: that is judged by the wall clock, which is outside.
+    pub fn hear_ground_station(&mut self, heard: bool) {
+        self.vehicle.hear_ground_station(heard);
+    }
+
     /// A heartbeat beside the regular ones: a link must not look dead while simulation time stands still.
     pub fn keep_alive(&mut self) {
         heartbeat::beat(self);

@@ -22,6 +22,7 @@ pub mod configuration;
 pub mod estimation;
 mod failure;
 pub mod fault;
+pub mod fence;
 pub mod fleet;
 pub mod hil;
 pub mod identity;

@@ -46,6 +46,14 @@ impl Books {
         }
     }
 
+    /// A member hears a ground station, or no more.
+    pub fn ground_station(&mut self, member: usize, time_us: u64, heard: bool) -> Result<(), Failure> {
+        match &mut self.recorder {
+            Some(recorder) => recorder.ground_station(member, time_us, heard),
+            None => Ok(()),
+        }
+    }
+
     /// Ends the files.
     pub fn finish(self, members: &[Member]) -> Result<(), Failure> {
         if let Some(mut recorder) = self.recorder {

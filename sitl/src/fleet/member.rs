@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::autopilot::Autopilot;
+use crate::codec::{Frame, id};
 use crate::failure::Failure;
 use crate::parameters::Speed;
 use crate::record::{Digest, Participant};
@@ -17,6 +18,8 @@ pub struct Member {
     pub(super) autopilot: Autopilot,
     pub(super) hub: usize,
     pub(super) last_heartbeat: Instant,
+    /// When a ground station was heard last, and what the vehicle knows of it.
+    ground_station: Option<(Instant, bool)>,
     digest: Digest,
     parameters: Option<PathBuf>,
 }
@@ -35,6 +38,7 @@ impl Member {
             autopilot: Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
             hub,
             last_heartbeat: Instant::now(),
+            ground_station: None,
             digest: Digest::default(),
             parameters,
         })
@@ -65,6 +69,24 @@ impl Member {
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
         Ok(())
+    }
+
+    /// Takes in who is there.
+    pub(super) fn hear(&mut self, frame: &Frame, now: Instant) {
+        const MAV_TYPE_GCS: u8 = 6;
+        const TYPE: usize = 4;
+        if frame.message_id() == id::HEARTBEAT && frame.payload().u8(TYPE) == MAV_TYPE_GCS {
+            let told = self.ground_station.is_some_and(|(_, told)| told);
+            self.ground_station = Some((now, told));
+        }
+    }
+
+    /// Whether a ground station is heard, if the vehicle does not know that yet.
+    pub(super) fn ground_station_news(&mut self, now: Instant) -> Option<bool> {
+        let timeout_s = self.autopilot.vehicle().conduct().failsafe.ground_station_timeout_s;
+        let (last, told) = self.ground_station.as_mut()?;
+        let heard = now.saturating_duration_since(*last).as_secs_f64() <= timeout_s;
+        (std::mem::replace(told, heard) != heard).then_some(heard)
     }
 
     /// Whether its links would look dead, because simulation time is slow.

@@ -78,6 +78,7 @@ impl Fleet {
                         self.books.traffic(time_us, &received.frame)?;
                     }
                     if target == 0 || target == member.autopilot.system_id() {
+                        member.hear(&received.frame, now);
                         self.books.received(number, time_us, &received)?;
                         member.autopilot.receive(&received.origin, &received.frame);
                         self.send(number, now)?;
@@ -143,6 +144,10 @@ impl Fleet {
     pub(crate) fn keep_links_alive(&mut self, now: Instant) -> Result<(), Failure> {
         for number in 0..self.members.len() {
             let Some(member) = self.members.get_mut(number) else { continue };
+            if let Some(heard) = member.ground_station_news(now) {
+                self.books.ground_station(number, member.time_us(), heard)?;
+                member.autopilot.hear_ground_station(heard);
+            }
             if member.is_silent(now) {
                 member.autopilot.keep_alive();
                 self.send(number, now)?;

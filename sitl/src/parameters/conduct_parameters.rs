@@ -1,6 +1,6 @@
 //! The vehicle's own parameters by their identifiers.
 
-use crate::vehicle::{Conduct, SetPointLossAction};
+use crate::vehicle::{Action, BatteryPolicy, Conduct};
 
 /// A parameter of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug)]
@@ -22,20 +22,44 @@ pub struct ConductParameter {
 }
 
 macro_rules! real {
-    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $field:ident) => {
-        real!($id, $ardupilot, $minimum..=$maximum, $field, 1.0)
+    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+) => {
+        real!($id, $ardupilot, $minimum..=$maximum, $($field).+, 1.0)
     };
-    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $field:ident, $scale:literal) => {
+    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:literal) => {
         ConductParameter {
             id: $id,
             ardupilot: $ardupilot,
             integer: false,
             minimum: $minimum,
             maximum: $maximum,
-            get: |conduct| conduct.$field * $scale,
+            get: |conduct| conduct.$($field).+ * $scale,
             set: |conduct, value| {
-                conduct.$field = value / $scale;
+                conduct.$($field).+ = value / $scale;
                 true
+            },
+        }
+    };
+}
+
+/// One of a few meanings with numbers; the first one stands for what has none.
+macro_rules! choice {
+    ($id:literal, $meanings:ident, $($field:ident).+) => {
+        ConductParameter {
+            id: $id,
+            ardupilot: None,
+            integer: true,
+            minimum: 0.0,
+            maximum: 6.0,
+            get: |conduct| {
+                let meaning = $meanings.iter().find(|(known, _)| *known == conduct.$($field).+);
+                meaning.map_or(0.0, |(_, number)| f64::from(*number))
+            },
+            set: |conduct, value| {
+                let meaning = $meanings.iter().find(|(_, number)| f64::from(*number) == value);
+                if let Some((meaning, _)) = meaning {
+                    conduct.$($field).+ = *meaning;
+                }
+                meaning.is_some()
             },
         }
     };
@@ -46,21 +70,20 @@ macro_rules! real {
 pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("MIS_TAKEOFF_ALT", Some(("PILOT_TKOFF_ALT", 100.0)), 0.5..=1000.0, takeoff_height_m),
     real!("COM_OF_LOSS_T", Some(("GUID_TIMEOUT", 1.0)), 0.1..=60.0, set_point_timeout_s),
-    ConductParameter {
-        id: "COM_OBL_RC_ACT",
-        ardupilot: None,
-        integer: true,
-        minimum: 0.0,
-        maximum: 5.0,
-        get: |conduct| f64::from(action_number(conduct.set_point_loss)),
-        set: |conduct, value| {
-            let action = ACTIONS.iter().find(|(_, number)| f64::from(*number) == value);
-            if let Some((action, _)) = action {
-                conduct.set_point_loss = *action;
-            }
-            action.is_some()
-        },
-    },
+    choice!("COM_OBL_RC_ACT", SET_POINTS_ACTIONS, failsafe.set_points_lost),
+    real!("COM_DL_LOSS_T", None, 1.0..=300.0, failsafe.ground_station_timeout_s),
+    choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
+    real!("BAT_LOW_THR", None, 0.0..=0.9, failsafe.battery_low),
+    real!("BAT_CRIT_THR", None, 0.0..=0.9, failsafe.battery_critical),
+    real!("BAT_EMERGEN_THR", None, 0.0..=0.9, failsafe.battery_emergency),
+    choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery),
+    choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence),
+    real!("GF_MAX_HOR_DIST", Some(("FENCE_RADIUS", 1.0)), 0.0..=100_000.0, failsafe.fence_radius_m),
+    real!("GF_MAX_VER_DIST", Some(("FENCE_ALT_MAX", 1.0)), 0.0..=10_000.0, failsafe.fence_height_m),
+    real!("COM_WIND_MAX", None, -1.0..=50.0, failsafe.wind_m_s),
+    choice!("COM_WIND_MAX_ACT", FENCE_ACTIONS, failsafe.high_wind),
+    choice!("COM_POSCTL_NAVL", POSITION_ACTIONS, failsafe.position_lost),
+    choice!("COM_ACT_FAIL_ACT", ROTOR_ACTIONS, failsafe.rotor_failure),
     real!("RTL_RETURN_ALT", Some(("RTL_ALT", 100.0)), 1.0..=1000.0, return_height_m),
     real!("RTL_MIN_DIST", None, 0.5..=1000.0, return_near_m),
     real!("MPC_LAND_SPEED", Some(("LAND_SPEED", 100.0)), 0.1..=3.0, land_speed_m_s),
@@ -86,14 +109,26 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     },
 ];
 
-/// PX4's numbers of the actions.
-const ACTIONS: [(SetPointLossAction, i32); 4] = [
-    (SetPointLossAction::Position, 0),
-    (SetPointLossAction::Return, 3),
-    (SetPointLossAction::Land, 4),
-    (SetPointLossAction::Hold, 5),
+/// PX4's numbers of the actions of each parameter.
+const SET_POINTS_ACTIONS: &[(Action, i32)] = &[
+    (Action::Position, 0),
+    (Action::Return, 3),
+    (Action::Land, 4),
+    (Action::Hold, 5),
+    (Action::Terminate, 6),
 ];
-
-fn action_number(action: SetPointLossAction) -> i32 {
-    ACTIONS.iter().find(|(known, _)| *known == action).map_or(5, |(_, number)| *number)
-}
+const GROUND_STATION_ACTIONS: &[(Action, i32)] =
+    &[(Action::None, 0), (Action::Hold, 1), (Action::Return, 2), (Action::Land, 3), (Action::Terminate, 5)];
+const FENCE_ACTIONS: &[(Action, i32)] = &[
+    (Action::None, 0),
+    (Action::Warn, 1),
+    (Action::Hold, 2),
+    (Action::Return, 3),
+    (Action::Terminate, 4),
+    (Action::Land, 5),
+];
+const POSITION_ACTIONS: &[(Action, i32)] = &[(Action::Warn, 0), (Action::Land, 1), (Action::Terminate, 2)];
+const ROTOR_ACTIONS: &[(Action, i32)] =
+    &[(Action::Warn, 0), (Action::Hold, 1), (Action::Land, 2), (Action::Return, 3), (Action::Terminate, 4)];
+const BATTERY_POLICIES: &[(BatteryPolicy, i32)] =
+    &[(BatteryPolicy::Warn, 0), (BatteryPolicy::Land, 2), (BatteryPolicy::ReturnThenLand, 3)];

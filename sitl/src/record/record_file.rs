@@ -3,6 +3,7 @@
 //! ```text
 //! {"format":"lmpc-sitl record 2", …}        the vehicles and their settings
 //! frame TIME_US VEHICLE LINK PEER HEX       a frame that a vehicle took in
+//! station TIME_US VEHICLE 0|1               a ground station is heard no more, or (again)
 //! end TIME_US VEHICLE DIGEST                the end of its flight, and the digest
 //! ```
 //!
@@ -62,6 +63,15 @@ pub enum Entry {
         /// The frame.
         frame: Frame,
     },
+    /// A ground station is heard, or no more: that is judged by the wall clock.
+    GroundStation {
+        /// When, µs.
+        time_us: u64,
+        /// Number of the vehicle.
+        vehicle: usize,
+        /// Whether it is heard.
+        heard: bool,
+    },
     /// The end of a flight.
     End {
         /// When, µs.
@@ -71,6 +81,22 @@ pub enum Entry {
         /// Its digest.
         digest: u64,
     },
+}
+
+impl Entry {
+    /// Number of the vehicle.
+    pub fn vehicle(&self) -> usize {
+        let (Self::Frame { vehicle, .. } | Self::GroundStation { vehicle, .. } | Self::End { vehicle, .. }) =
+            self;
+        *vehicle
+    }
+
+    /// When, µs.
+    pub fn time_us(&self) -> u64 {
+        let (Self::Frame { time_us, .. } | Self::GroundStation { time_us, .. } | Self::End { time_us, .. }) =
+            self;
+        *time_us
+    }
 }
 
 /// Writes a record.
@@ -121,6 +147,14 @@ impl Recorder {
         self.line(&line)
     }
 
+    /// Records whether a vehicle hears a ground station from a time on.
+    ///
+    /// # Errors
+    /// [`Failure::File`]
+    pub fn ground_station(&mut self, vehicle: usize, time_us: u64, heard: bool) -> Result<(), Failure> {
+        self.line(&format!("station {time_us} {vehicle} {}", u8::from(heard)))
+    }
+
     /// Records the end of a vehicle's flight.
     ///
     /// # Errors
@@ -159,7 +193,7 @@ pub fn read(path: &Path) -> Result<(Header, Vec<Entry>), Failure> {
         return Err(wrong(1, &format!("is not the header of a record (`{FORMAT}`)")));
     };
     let entries = lines
-        .map(|(number, line)| entry(line).ok_or_else(|| wrong(number, "is neither a frame nor the end")))
+        .map(|(number, line)| entry(line).ok_or_else(|| wrong(number, "is none of a record")))
         .collect::<Result<Vec<_>, _>>()?;
     Ok((header, entries))
 }
@@ -175,6 +209,14 @@ fn entry(line: &str) -> Option<Entry> {
             let frame = Frame::parse(&bytes(words.next()?)?)?;
             let origin = Origin { peer, system: frame.system(), component: frame.component() };
             Some(Entry::Frame { time_us, vehicle, origin, frame })
+        }
+        "station" => {
+            let heard = match words.next()? {
+                "0" => false,
+                "1" => true,
+                _ => return None,
+            };
+            Some(Entry::GroundStation { time_us, vehicle, heard })
         }
         "end" => {
             let digest = u64::from_str_radix(words.next()?, 16).ok()?;

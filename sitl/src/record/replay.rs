@@ -19,8 +19,7 @@ pub fn replay(path: &Path) -> Result<Vec<Flight>, Failure> {
     let wrong = |reason: String| Failure::Content { path: path.to_owned(), reason };
     let mut flights: Vec<Vec<Entry>> = header.vehicles.iter().map(|_| Vec::new()).collect();
     for entry in entries {
-        let (Entry::Frame { vehicle, .. } | Entry::End { vehicle, .. }) = &entry;
-        let number = *vehicle;
+        let number = entry.vehicle();
         let flight = flights.get_mut(number).ok_or_else(|| wrong(format!("there is no vehicle {number}")))?;
         flight.push(entry);
     }
@@ -39,14 +38,14 @@ fn fly(participant: &Participant, speed: Speed, entries: Vec<Entry>) -> Result<O
     let mut autopilot = Autopilot::new(vehicle, system_id, speed, links, 0)?;
     let mut digest = Digest::default();
     for entry in entries {
-        let (Entry::Frame { time_us, .. } | Entry::End { time_us, .. }) = &entry;
-        while autopilot.vehicle().time_us() + TICK_US <= *time_us {
+        while autopilot.vehicle().time_us() + TICK_US <= entry.time_us() {
             autopilot.tick()?;
             digest.update(autopilot.vehicle());
             drop(autopilot.take_outgoing());
         }
         match entry {
             Entry::Frame { origin, frame, .. } => autopilot.receive(&origin, &frame),
+            Entry::GroundStation { heard, .. } => autopilot.hear_ground_station(heard),
             Entry::End { digest: recorded, time_us, .. } => {
                 let replayed = digest.value();
                 if replayed != recorded {

@@ -5,21 +5,22 @@ use mavlink::dialects::common::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavMod
 use super::Destination;
 use crate::autopilot::Autopilot;
 use crate::identity::Identity;
-use crate::vehicle::{Mode, SteeringKind, Vehicle};
+use crate::vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
 
 const PERIOD_US: u64 = 1_000_000;
 
 /// What was told last, and when to tell again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Heartbeat {
-    told: Option<(bool, Mode, bool)>,
+    told: Option<(bool, Mode, bool, MavState)>,
     due_us: u64,
 }
 
 /// Sends a heartbeat if one is due.
 pub fn update(autopilot: &mut Autopilot) {
     let vehicle = &autopilot.vehicle;
-    let now = (vehicle.is_armed(), vehicle.mode(), vehicle.steering_kind() == SteeringKind::Idle);
+    let idle = vehicle.steering_kind() == SteeringKind::Idle;
+    let now = (vehicle.is_armed(), vehicle.mode(), idle, system_status(vehicle));
     let time_us = vehicle.time_us();
     if autopilot.heartbeat.told == Some(now) && time_us < autopilot.heartbeat.due_us {
         return;
@@ -45,13 +46,24 @@ pub fn message(vehicle: &Vehicle) -> MavMessage {
             Identity::Generic => MavAutopilot::MAV_AUTOPILOT_GENERIC,
         },
         base_mode: base_mode(vehicle),
-        system_status: if vehicle.is_armed() {
-            MavState::MAV_STATE_ACTIVE
-        } else {
-            MavState::MAV_STATE_STANDBY
-        },
+        system_status: system_status(vehicle),
         mavlink_version: 3,
     })
+}
+
+fn system_status(vehicle: &Vehicle) -> MavState {
+    if !vehicle.is_armed() {
+        return MavState::MAV_STATE_STANDBY;
+    }
+    let failsafe = vehicle.failsafe();
+    let acts = |cause: &&Cause| vehicle.conduct().failsafe.action(**cause) > Action::Warn;
+    if failsafe.present().iter().filter(acts).any(|cause| cause.is_emergency()) {
+        MavState::MAV_STATE_EMERGENCY
+    } else if failsafe.engaged().is_some() {
+        MavState::MAV_STATE_CRITICAL
+    } else {
+        MavState::MAV_STATE_ACTIVE
+    }
 }
 
 fn base_mode(vehicle: &Vehicle) -> MavModeFlag {

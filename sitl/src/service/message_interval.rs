@@ -40,6 +40,7 @@ const RATES: &[(u32, f64, f64)] = &[
     (111, 0.0, 10.0),  // TIMESYNC
     (141, 1.0, 10.0),  // ALTITUDE
     (147, 0.5, 0.5),   // BATTERY_STATUS
+    (162, 0.5, 1.0),   // FENCE_STATUS
     (230, 0.5, 1.0),   // ESTIMATOR_STATUS
     (241, 0.1, 0.5),   // VIBRATION
     (242, 0.5, 0.5),   // HOME_POSITION

@@ -1,5 +1,6 @@
 //! Arming and disarming.
 
+use super::failsafe::Cause;
 use super::mode::Mode;
 use super::notice::{Refusal, Severity};
 use super::state::Vehicle;
@@ -33,6 +34,7 @@ impl Vehicle {
             }
             _ => {}
         }
+        obstacles.extend(self.failsafe_obstacles());
         obstacles
     }
 
@@ -81,6 +83,8 @@ impl Vehicle {
     pub(super) fn stop_rotors(&mut self, why: &str) {
         self.armed = false;
         self.flown = false;
+        self.failsafe.release();
+        self.failsafe.see(Cause::SetPointsLost, false);
         self.takeoff_z_m = None;
         self.idle();
         // A mode that ends on the ground is not one to be armed in.

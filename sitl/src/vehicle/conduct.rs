@@ -2,18 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What happens when the set-points of the offboard mode stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum SetPointLossAction {
-    /// Position mode.
-    Position,
-    /// Return home.
-    Return,
-    /// Land.
-    Land,
-    /// Hold.
-    Hold,
-}
+use super::failsafe::FailsafeSettings;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,8 +11,6 @@ pub struct Conduct {
     pub takeoff_height_m: f64,
     /// Set-points are lost when none has come for this long, s.
     pub set_point_timeout_s: f64,
-    /// What is done then (not in ArduPilot's identity, where velocities stop and positions stay).
-    pub set_point_loss: SetPointLossAction,
     /// Height above home of the way home, m.
     pub return_height_m: f64,
     /// Nearer to home than this, m, a return lands without climbing.
@@ -49,6 +36,9 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// When a failsafe begins, and what it does.
+    #[serde(default)]
+    pub failsafe: FailsafeSettings,
 }
 
 /// Records of before there were faults have none.
@@ -60,7 +50,6 @@ fn yes() -> bool {
 /// | --- | --- | --- |
 /// | takeoff height | 2.5 m | PX4's |
 /// | set-point timeout | 1 s; ArduPilot 3 s | theirs |
-/// | loss action | hold | the one that needs neither a stick nor a clear way home |
 /// | return height | 30 m (ArduPilot 15 m), near 5 m | theirs |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
@@ -73,7 +62,6 @@ impl Conduct {
         Self {
             takeoff_height_m: 2.5,
             set_point_timeout_s: if ardupilot { 3.0 } else { 1.0 },
-            set_point_loss: SetPointLossAction::Hold,
             return_height_m: if ardupilot { 15.0 } else { 30.0 },
             return_near_m: 5.0,
             land_speed_m_s: 0.7,
@@ -86,6 +74,7 @@ impl Conduct {
             battery_capacity_ah: 2.2,
             battery_to_arm: 0.15,
             failure_injection: true,
+            failsafe: FailsafeSettings::default(),
         }
     }
 }

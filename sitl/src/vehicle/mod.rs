@@ -18,6 +18,8 @@
 mod arming;
 mod battery;
 mod conduct;
+mod failsafe;
+mod fence;
 mod flight;
 mod injection;
 mod landed;
@@ -35,7 +37,9 @@ mod steering;
 mod sticks;
 
 pub use battery::Battery;
-pub use conduct::{Conduct, SetPointLossAction};
+pub use conduct::Conduct;
+pub use failsafe::{Action, BatteryPolicy, Cause, Failsafe, FailsafeSettings};
+pub use fence::FenceRecord;
 pub use landed::LandedState;
 pub use mode::Mode;
 pub use notice::{Notice, Refusal, Severity};

@@ -1,6 +1,6 @@
 //! Set-points from outside.
 
-use super::conduct::SetPointLossAction;
+use super::failsafe::Cause;
 use super::mode::Mode;
 use super::notice::{Refusal, Severity};
 use super::set_point::{PositionSetPoint, SetPoint};
@@ -33,6 +33,10 @@ impl Vehicle {
                 return Err(Refusal::later("Set-point ignored: take off first"));
             }
         }
+        if let SetPoint::Position(position) = &set_point {
+            self.check_set_point(position)?;
+        }
+        self.see(Cause::SetPointsLost, false);
         self.set_points =
             SetPoints { latest: Some((set_point, self.time_us())), applied: false, expired: false };
         Ok(())
@@ -76,13 +80,11 @@ impl Vehicle {
             self.guided_without_news();
             return;
         }
-        let action = self.conduct.set_point_loss;
-        self.say(Severity::Critical, format!("Set-points lost: {action:?}"));
-        match action {
-            SetPointLossAction::Position => self.enter(Mode::Position),
-            SetPointLossAction::Return => self.enter(Mode::Return),
-            SetPointLossAction::Land => self.enter(Mode::Land),
-            SetPointLossAction::Hold => self.enter(Mode::Hold),
+        self.see(Cause::SetPointsLost, true);
+        // With an action that leaves the mode as it is, it holds its place there.
+        if self.mode == Mode::Offboard && !self.set_points.expired {
+            self.set_points.expired = true;
+            self.hold();
         }
     }
 

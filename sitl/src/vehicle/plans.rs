@@ -1,7 +1,9 @@
 //! The plans of the vehicle.
 
+use nalgebra::Vector3;
+
 use super::state::Vehicle;
-use crate::plan::{MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check, command, frame};
+use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check, command, frame};
 
 impl Vehicle {
     /// Its plans.
@@ -36,7 +38,26 @@ impl Vehicle {
     /// [`PlanFault`]; the old plan stays then.
     pub fn set_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
         check::plan(kind, &items, &self.site())?;
+        match kind {
+            PlanKind::Fence => self.take_fence(&items)?,
+            PlanKind::Mission | PlanKind::Rally => self.check_places(&items)?,
+        }
         self.plans.set(kind, Plan::new(items));
+        Ok(())
+    }
+
+    /// Refuses items whose places the fence forbids.
+    fn check_places(&self, items: &[MissionItem]) -> Result<(), PlanFault> {
+        let site = self.site();
+        let now = self.home.position_m;
+        for (index, item) in items.iter().enumerate() {
+            let Some(place) = site.place(item) else { continue };
+            let Some([x, y]) = place.horizontal_m else { continue };
+            let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));
+            if let Some(breach) = self.breach_at(&place_m) {
+                return Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string()));
+            }
+        }
         Ok(())
     }
 }

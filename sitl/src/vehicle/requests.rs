@@ -31,6 +31,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] when the mode cannot be flown now.
     pub fn set_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
+        self.may_enter(mode)?;
         let flying = self.steering.kind() != SteeringKind::Idle;
         match mode {
             Mode::Takeoff => return self.take_off(None),
@@ -46,6 +47,7 @@ impl Vehicle {
             _ => {}
         }
         // Asked again it goes on as it does.
+        self.failsafe.release();
         if mode != self.mode {
             self.enter(mode);
         } else if mode == Mode::Hold {
@@ -68,6 +70,8 @@ impl Vehicle {
             )));
         }
         let z = self.home.position_m.z - height_m;
+        let [x, y] = [self.outputs.position_m.x, self.outputs.position_m.y];
+        self.check_fence("Takeoff", &Vector3::new(x, y, z))?;
         let taking_off = self.mode == Mode::Takeoff && self.steering.kind() != SteeringKind::Idle;
         if taking_off && self.takeoff_z_m.is_some_and(|goal| (goal - z).abs() < 0.01) {
             return Ok(());
@@ -96,6 +100,7 @@ impl Vehicle {
         if self.steering.kind() == SteeringKind::Idle {
             return Err(Refusal::later("Reposition rejected: not flying"));
         }
+        self.may_enter(self.holding_mode())?;
         if goal.horizontal_m.is_none() && goal.down_m.is_none() && goal.yaw_rad.is_none() {
             self.enter(self.holding_mode());
             self.follow(&PositionSetPoint::HOLD);
@@ -109,6 +114,8 @@ impl Vehicle {
         let [x, y] = goal.horizontal_m.unwrap_or([now.x, now.y]);
         let target = Vector3::new(x, y, goal.down_m.unwrap_or(now.z));
         check_distance(&target)?;
+        self.check_fence("Reposition", &target)?;
+        self.failsafe.release();
         self.enter(self.holding_mode());
         let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
         self.follow(&PositionSetPoint { axes: target.data.0[0].map(AxisTarget::Position), yaw });

@@ -1,8 +1,10 @@
 //! The way home: climb, travel, descend.
 
+use nalgebra::{UnitQuaternion, Vector3};
+
 use super::mode::Mode;
 use super::notice::Severity;
-use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 use super::state::Vehicle;
 
 /// Part of the way home.
@@ -10,7 +12,7 @@ use super::state::Vehicle;
 pub enum ReturnPhase {
     /// To the height of the way.
     Climb,
-    /// Above home.
+    /// Above the place to land at.
     Travel,
     /// Down.
     Descend,
@@ -19,38 +21,56 @@ pub enum ReturnPhase {
 /// So near to a goal, m, and so slow, m/s, the next phase begins.
 const REACHED_M: f64 = 0.5;
 const SLOW_M_S: f64 = 0.5;
+/// Share of the weight per error of the sink rate, s/m.
+const SINK_GAIN: f64 = 0.3;
 
 impl Vehicle {
     /// Begins the way home.
     pub(super) fn begin_return(&mut self) {
-        let near = (self.outputs.position_m - self.home.position_m).xy().norm() < self.conduct.return_near_m;
+        let [x, y] = self.nearest_safe_point_m();
+        self.return_way_m = self.way_m([x, y]);
+        let place = self.outputs.position_m;
+        let near = libm::hypot(place.x - x, place.y - y) < self.conduct.return_near_m;
         self.return_phase = if near { ReturnPhase::Descend } else { ReturnPhase::Climb };
         match self.return_phase {
-            ReturnPhase::Climb => self.go_home_at_height(self.outputs.setpoint.position_m.xy().into()),
-            _ => self.say(Severity::Info, "Returning: home is near, landing"),
+            ReturnPhase::Climb => self.go_at_return_height(self.outputs.setpoint.position_m.xy().into()),
+            _ => self.say(Severity::Info, "Returning: the place is near, landing"),
         }
     }
 
     /// One tick of the way home.
     pub(super) fn return_home(&mut self) {
-        let home = self.home.position_m;
         match self.return_phase {
             ReturnPhase::Climb if self.goal_is_reached() => {
                 self.return_phase = ReturnPhase::Travel;
-                self.go_home_at_height([home.x, home.y]);
+                self.travel();
+            }
+            ReturnPhase::Travel if self.goal_is_reached() && self.return_way_m.len() > 1 => {
+                self.return_way_m.pop_front();
+                self.travel();
             }
             ReturnPhase::Travel if self.goal_is_reached() => {
                 self.return_phase = ReturnPhase::Descend;
-                self.say(Severity::Info, "Above home, landing");
+                self.say(Severity::Info, "Above the place to return to, landing");
             }
-            ReturnPhase::Descend => self.descend(Some([home.x, home.y])),
+            ReturnPhase::Descend => self.descend(self.return_way_m.back().copied()),
             _ => {}
         }
     }
 
-    fn go_home_at_height(&mut self, [x, y]: [f64; 2]) {
-        let lowest_z = self.home.position_m.z - self.conduct.return_height_m;
-        let z = self.outputs.position_m.z.min(lowest_z);
+    fn travel(&mut self) {
+        if let Some(next) = self.return_way_m.front() {
+            self.go_at_return_height(*next);
+        }
+    }
+
+    fn go_at_return_height(&mut self, [x, y]: [f64; 2]) {
+        let home_z = self.home.position_m.z;
+        let mut z = self.outputs.position_m.z.min(home_z - self.conduct.return_height_m);
+        let highest_m = self.conduct.failsafe.fence_height_m;
+        if self.fence.enabled && highest_m > 0.0 {
+            z = z.max(home_z - highest_m);
+        }
         let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)];
         self.follow(&PositionSetPoint { axes, yaw: YawTarget::Hold });
     }
@@ -67,6 +87,10 @@ impl Vehicle {
         if self.landed.is_landed() {
             return;
         }
+        if !self.validity().horizontal_position {
+            self.descend_blind();
+            return;
+        }
         let height_m = -self.outputs.setpoint.position_m.z;
         let slow = self.conduct.land_speed_m_s;
         // Slower towards the ground, within what the shaper is allowed.
@@ -77,6 +101,21 @@ impl Vehicle {
             None => [AxisTarget::HOLD; 2],
         };
         self.follow(&PositionSetPoint { axes: [x, y, AxisTarget::Velocity(speed)], yaw: YawTarget::Hold });
+    }
+
+    /// A descent without an estimate of the place: level, the thrust by the sink rate. It drifts with the wind.
+    fn descend_blind(&mut self) {
+        let airframe = self.simulation.configuration().airframe;
+        let (_, strongest_n) = airframe.thrust_range_n();
+        let missing_m_s = self.outputs.velocity_m_s.z - self.conduct.land_speed_m_s;
+        let thrust_n = airframe.weight_n() * (1.0 + SINK_GAIN * missing_m_s).clamp(0.6, 1.4);
+        let level = UnitQuaternion::from_euler_angles(0.0, 0.0, self.outputs.attitude_rad.z);
+        let set_point = AttitudeSetPoint {
+            attitude: Some(level),
+            body_rate_rad_s: Vector3::zeros(),
+            thrust: (thrust_n / strongest_n).clamp(0.0, 1.0),
+        };
+        self.steering.follow_attitude(&set_point, &self.outputs);
     }
 
     /// Begins the mode that a return ends in or that a user asked for.

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::battery::Battery;
 use super::conduct::Conduct;
+use super::failsafe::Failsafe;
+use super::fence::FenceRecord;
 use super::landed::{LandedDetector, LandedState};
 use super::mode::Mode;
 use super::notice::{Notice, Severity};
@@ -20,8 +22,9 @@ use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
+use crate::fence::{Fence, zones};
 use crate::identity::Identity;
-use crate::plan::Plans;
+use crate::plan::{PlanKind, Plans, Site};
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
@@ -99,6 +102,11 @@ pub struct Vehicle {
     pub(super) grounded_since_us: u64,
     pub(super) notices: Vec<Notice>,
     pub(super) plans: Plans,
+    pub(super) fence: Fence,
+    pub(super) fence_record: FenceRecord,
+    pub(super) failsafe: Failsafe,
+    /// The way of a return: north and east, m, the place to land at last.
+    pub(super) return_way_m: VecDeque<[f64; 2]>,
 }
 
 impl Vehicle {
@@ -121,21 +129,22 @@ impl Vehicle {
         let outputs = simulation.outputs();
         let mut scheduled_faults = settings.faults.clone();
         scheduled_faults.sort_by_key(|fault| fault.time_us);
+        let frame = LocalFrame::new(settings.origin);
+        let home_m = Vector3::from(configuration.initial.position_m);
+        let site = Site { identity: settings.identity, frame, home_m };
+        // What was taken once is taken again: the plan has been checked where it came from.
+        let fence_zones = zones(settings.plans.get(PlanKind::Fence).items(), &site).unwrap_or_default();
         let mut vehicle = Self {
             identity: settings.identity,
             conduct: settings.conduct,
-            frame: LocalFrame::new(settings.origin),
+            frame,
             wind: Wind::new(settings.wind),
             wind_m_s: Vector3::zeros(),
             battery: Battery::default(),
             faults: Faults::default(),
             scheduled_faults: scheduled_faults.into(),
             landed: LandedDetector::new(-outputs.position_m.z),
-            home: Home {
-                position_m: Vector3::from(configuration.initial.position_m),
-                yaw_rad: settings.heading_rad,
-                set_by_user: false,
-            },
+            home: Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false },
             armed: false,
             mode: settings.identity.first_mode(),
             steering: Steering::Idle { yaw_rad: settings.heading_rad },
@@ -147,6 +156,10 @@ impl Vehicle {
             grounded_since_us: 0,
             notices: Vec::new(),
             plans: settings.plans.clone(),
+            fence: Fence { zones: fence_zones, enabled: true },
+            fence_record: FenceRecord::default(),
+            failsafe: Failsafe::default(),
+            return_way_m: VecDeque::new(),
             simulation,
             outputs,
             truth: outputs,
@@ -162,6 +175,8 @@ impl Vehicle {
     /// [`SimulationError`]: the flight has left the range of numbers.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
         self.suffer_scheduled();
+        self.watch_fence();
+        self.watch();
         if self.armed {
             self.fly();
         }

@@ -18,6 +18,6 @@ pub fn item(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
 }
 
 /// Checks how the items belong together.
-pub fn whole(_items: &[MissionItem], _site: &Site) -> Result<(), PlanFault> {
-    Ok(())
+pub fn whole(items: &[MissionItem], site: &Site) -> Result<(), PlanFault> {
+    crate::fence::zones(items, site).map(drop)
 }

@@ -22,6 +22,7 @@ mod number {
     pub const DO_SET_HOME: u16 = 179;
     pub const DO_FLIGHTTERMINATION: u16 = 185;
     pub const DO_REPOSITION: u16 = 192;
+    pub const DO_FENCE_ENABLE: u16 = 207;
     pub const DO_PAUSE_CONTINUE: u16 = 193;
     pub const PREFLIGHT_STORAGE: u16 = 245;
     pub const DO_SET_STANDARD_MODE: u16 = 262;
@@ -50,6 +51,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => vehicle.disarm(true),
         number::DO_FLIGHTTERMINATION => Ok(()),
         number::DO_REPOSITION => reposition(autopilot, command),
+        number::DO_FENCE_ENABLE => enable_fence(vehicle, command),
         number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.set_mode(Mode::Hold),
         number::DO_PAUSE_CONTINUE => Err(Refusal::denied("Nothing to continue")),
         number::PREFLIGHT_STORAGE => storage(autopilot, command),
@@ -75,6 +77,17 @@ fn arm(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
         0.0 => vehicle.disarm(force),
         other => Err(Refusal::denied(format!("{other} neither arms (1) nor disarms (0)"))),
     }
+}
+
+fn enable_fence(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    match command.parameter(1) {
+        0.0 => vehicle.enable_fence(false),
+        1.0 => vehicle.enable_fence(true),
+        other => {
+            return Err(Refusal::denied(format!("{other} neither enables (1) nor disables (0) the fence")));
+        }
+    }
+    Ok(())
 }
 
 /// Tells what speaks against arming.

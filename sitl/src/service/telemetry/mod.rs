@@ -39,6 +39,7 @@ pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
         111 => time_synchronization::request(autopilot),
         141 => position::altitude(vehicle),
         147 => status::battery_status(vehicle),
+        162 => status::fence_status(vehicle),
         148 => identification::autopilot_version(vehicle.identity(), autopilot.system_id()),
         230 => estimate::estimator_status(vehicle),
         241 => sensors::vibration(vehicle),

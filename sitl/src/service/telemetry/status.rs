@@ -1,11 +1,13 @@
 //! Health, battery, outputs, landed state and time.
 
 use mavlink::dialects::common::{
-    BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, MavBatteryChargeState, MavBatteryFunction, MavBatteryType,
-    MavLandedState, MavMessage, MavSysStatusSensor, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
+    MavBatteryChargeState, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
+    MavSysStatusSensor, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
 };
 
 use super::boot_ms;
+use crate::fence::Breach;
 use crate::vehicle::{LandedState, Vehicle};
 
 /// Cells of the battery.
@@ -110,6 +112,23 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
             LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
         },
         ..EXTENDED_SYS_STATE_DATA::default()
+    })
+}
+
+/// FENCE_STATUS.
+pub fn fence_status(vehicle: &Vehicle) -> MavMessage {
+    let record = vehicle.fence_record();
+    let (breach_type, breach_time) = match record.latest {
+        None => (FenceBreach::FENCE_BREACH_NONE, 0),
+        Some((Breach::Height(_), time_us)) => (FenceBreach::FENCE_BREACH_MAXALT, boot_ms(time_us)),
+        Some((_, time_us)) => (FenceBreach::FENCE_BREACH_BOUNDARY, boot_ms(time_us)),
+    };
+    MavMessage::FENCE_STATUS(FENCE_STATUS_DATA {
+        breach_time,
+        breach_count: record.count,
+        breach_status: u8::from(record.now.is_some()),
+        breach_type,
+        breach_mitigation: FenceMitigate::FENCE_MITIGATE_NONE,
     })
 }
 

@@ -1,0 +1,71 @@
+//! Whether a place is allowed.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::Zones;
+
+/// What of the fence forbids a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Breach {
+    /// Higher above home than this, m.
+    Height(f64),
+    /// Farther from home than this, m.
+    Distance(f64),
+    /// Outside of all areas to stay in.
+    Outside,
+    /// Inside of the area to stay out of with this number.
+    Inside(usize),
+}
+
+impl fmt::Display for Breach {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Height(most_m) => write!(formatter, "higher than {most_m:.0} m above home"),
+            Self::Distance(most_m) => write!(formatter, "farther than {most_m:.0} m from home"),
+            Self::Outside => write!(formatter, "outside the fence"),
+            Self::Inside(_) => write!(formatter, "in an exclusion zone"),
+        }
+    }
+}
+
+/// The fence.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Fence {
+    /// Areas.
+    pub zones: Zones,
+    /// Whether it is looked at.
+    pub enabled: bool,
+}
+
+impl Fence {
+    /// What forbids a place, NED, m, if anything does. A radius or height of zero is none.
+    ///
+    /// Several areas to stay in are one: it is enough to be in one of them.
+    pub fn breach(
+        &self,
+        place_m: &Vector3<f64>,
+        home_m: &Vector3<f64>,
+        radius_m: f64,
+        height_m: f64,
+    ) -> Option<Breach> {
+        if !self.enabled {
+            return None;
+        }
+        if height_m > 0.0 && home_m.z - place_m.z > height_m {
+            return Some(Breach::Height(height_m));
+        }
+        if radius_m > 0.0 && (place_m - home_m).xy().norm() > radius_m {
+            return Some(Breach::Distance(radius_m));
+        }
+        let point = [place_m.x, place_m.y];
+        let zones = &self.zones.zones;
+        if let Some(number) = zones.iter().position(|zone| !zone.inclusion && zone.forbids(point)) {
+            return Some(Breach::Inside(number));
+        }
+        let mut inclusions = zones.iter().filter(|zone| zone.inclusion).peekable();
+        let bounded = inclusions.peek().is_some();
+        (bounded && inclusions.all(|zone| zone.forbids(point))).then_some(Breach::Outside)
+    }
+}

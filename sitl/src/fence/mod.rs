@@ -1,0 +1,18 @@
+//! Where the vehicle may be: circles and polygons to stay in or out of, a greatest distance from home and a greatest height.
+//!
+//! ```text
+//!  plan of kind fence ──► zones ┐
+//!  parameters, home ────────────┴─► fence ──► breach at a place, margin to the nearest border
+//! ```
+
+mod breach;
+mod polygon;
+mod route;
+mod zone;
+mod zones;
+
+pub use breach::{Breach, Fence};
+pub use polygon::{Polygon, PolygonFault};
+pub use route::route_m;
+pub use zone::{Shape, Zone};
+pub use zones::{Zones, zones};
