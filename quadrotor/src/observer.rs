@@ -8,7 +8,7 @@ use crate::estimator::{Command, Estimator, EstimatorDesign};
 use crate::plant::Plant;
 use crate::sensors::NoiseState;
 use crate::vehicle_motion::VehicleMotion;
-use crate::{Configuration, ControllerKind, RigidBody};
+use crate::{Configuration, ControllerKind, RigidBody, Sensors};
 
 /// State of the sensors' noise and of the estimator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,6 +67,20 @@ impl Observer {
             disturbance_n_m: self.estimator.disturbance_rad_s2().component_mul(&inertia)
                 * configuration.controllers.mass_factor,
         }
+    }
+
+    /// What the controllers go by now, between two samples; `None` if it is the truth.
+    pub(crate) fn belief(
+        &self,
+        sensors: &Sensors,
+        plant: &Plant,
+        armed: bool,
+        time_us: u64,
+    ) -> Option<RigidBody> {
+        if sensors.output_feedback && armed {
+            return Some(self.estimator.body_at(time_us));
+        }
+        (!sensors.is_exact()).then(|| self.noise.latest(sensors, &plant.body))
     }
 
     /// On to the next sample of the attitude controller. Only done when somebody asks for the estimate.

@@ -24,34 +24,43 @@ impl NoiseState {
     pub(crate) fn read(&mut self, sensors: &Sensors, body: &RigidBody) -> RigidBody {
         let reading = self.readings;
         self.readings = self.readings.wrapping_add(1);
-        if sensors.is_exact() {
+        sensors.reading(reading, body)
+    }
+
+    /// The noise of the latest reading on the body's motion of now.
+    pub(crate) fn latest(&self, sensors: &Sensors, body: &RigidBody) -> RigidBody {
+        sensors.reading(self.readings.wrapping_sub(1), body)
+    }
+}
+
+impl Sensors {
+    /// Whether nothing is added to the truth.
+    pub(crate) fn is_exact(&self) -> bool {
+        [self.position_noise_m, self.velocity_noise_m_s, self.attitude_noise_rad, self.body_rate_noise_rad_s]
+            == [0.0; 4]
+    }
+
+    fn reading(&self, number: u64, body: &RigidBody) -> RigidBody {
+        if self.is_exact() {
             return *body;
         }
-        let mut generator = ChaCha8Rng::seed_from_u64(u64::from(sensors.seed));
-        generator.set_word_pos(u128::from(reading) * WORDS_PER_READING);
+        let mut generator = ChaCha8Rng::seed_from_u64(u64::from(self.seed));
+        generator.set_word_pos(u128::from(number) * WORDS_PER_READING);
         let mut noise = |deviation: f64| {
             Vector3::from_fn(|_, _| {
                 let sample: f64 = StandardNormal.sample(&mut generator);
                 deviation * sample
             })
         };
-        let position = noise(sensors.position_noise_m);
-        let velocity = noise(sensors.velocity_noise_m_s);
-        let turned = UnitQuaternion::from_scaled_axis(noise(sensors.attitude_noise_rad));
+        let position = noise(self.position_noise_m);
+        let velocity = noise(self.velocity_noise_m_s);
+        let turned = UnitQuaternion::from_scaled_axis(noise(self.attitude_noise_rad));
         RigidBody {
             position_m: body.position_m + position,
             velocity_m_s: body.velocity_m_s + velocity,
             attitude: (body.rotation() * turned).into_inner(),
-            body_rate_rad_s: body.body_rate_rad_s + noise(sensors.body_rate_noise_rad_s),
+            body_rate_rad_s: body.body_rate_rad_s + noise(self.body_rate_noise_rad_s),
         }
-    }
-}
-
-impl Sensors {
-    /// Whether nothing is added to the truth.
-    fn is_exact(&self) -> bool {
-        [self.position_noise_m, self.velocity_noise_m_s, self.attitude_noise_rad, self.body_rate_noise_rad_s]
-            == [0.0; 4]
     }
 }
 

@@ -278,6 +278,17 @@ impl Simulation {
         }
     }
 
+    /// What the controllers take the vehicle's motion for now, unless it is the truth: an estimate from outside, what the
+    /// Kalman predictor makes of the measurements while it flies, or the true motion with the noise of the latest
+    /// reading.
+    pub fn believed_motion(&self) -> Option<RigidBody> {
+        let state = &self.state;
+        let plant = self.plant_at(state.time_us);
+        self.estimate.or_else(|| {
+            state.observer.belief(&self.configuration.sensors, &plant, state.armed, state.time_us)
+        })
+    }
+
     /// The plant at `time_us`, not before the last event nor after the next.
     fn plant_at(&self, time_us: u64) -> Plant {
         let state = &self.state;

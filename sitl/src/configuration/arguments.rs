@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use serde::Deserialize;
 
-use super::{Clocks, Formation, HomePosition, Ports, WindFrom};
+use super::{Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
 use crate::estimation::SensorModel;
 use crate::hil::Mount;
 use crate::identity::Identity;
@@ -117,6 +117,19 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SENSORS", value_name = "ideal|realistic")]
     pub sensors: Option<SensorModel>,
 
+    /// White noise on the measurements that an `ideal` vehicle flies by: `motion-capture` (0.001,0.01,0.002,0.005),
+    /// `rtk-gps` (0.02,0.05,0.005,0.01), or standard deviations in m, m/s, rad and rad/s. Telemetry then tells what the
+    /// vehicle believes, SIM_STATE the truth [default: 0,0,0,0]
+    #[arg(long, env = "LMPC_SITL_NOISE", value_name = "PRESET|P,V,A,R", allow_hyphen_values = true)]
+    pub noise: Option<MeasurementNoise>,
+
+    /// Measure position and attitude only; a Kalman predictor estimates the rest in the loop [default: false]
+    #[arg(
+        long, env = "LMPC_SITL_KALMAN", value_name = "true|false", num_args = 0..=1, require_equals = true,
+        default_missing_value = "true"
+    )]
+    pub kalman: Option<bool>,
+
     /// Seed of everything random [default: 1]
     #[arg(long, env = "LMPC_SITL_SEED", value_name = "N")]
     pub seed: Option<u64>,
@@ -190,6 +203,8 @@ impl Arguments {
             wind: self.wind.or(file.wind),
             gusts: self.gusts.or(file.gusts),
             sensors: self.sensors.or(file.sensors),
+            noise: self.noise.or(file.noise),
+            kalman: self.kalman.or(file.kalman),
             seed: self.seed.or(file.seed),
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),

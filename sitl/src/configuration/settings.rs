@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use quadrotor::Configuration;
 
 use super::{Arguments, Clocks, Ports};
-use crate::estimation::SensorSettings;
+use crate::estimation::{SensorModel, SensorSettings};
 use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
@@ -191,13 +191,38 @@ pub(super) fn vehicle(
     };
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
-    vehicle.configuration.sensors.seed = number as u32;
+    vehicle.configuration.sensors.seed = noise_seed(arguments, number);
     if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3] {
         vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
     }
-    let named = arguments.set.as_deref().unwrap_or_default();
-    set_parameters(&mut vehicle, parameters, named)?;
+    set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
     Ok(vehicle)
+}
+
+/// Parameters that flags name: those of the noise, then `--set`.
+fn named_parameters(arguments: &Arguments, number: usize) -> Result<Vec<String>, Failure> {
+    let mut named = Vec::new();
+    if let Some(noise) = arguments.noise {
+        named.extend(noise.parameters().map(|(name, value)| format!("{name}={value}")));
+    }
+    if let Some(kalman) = arguments.kalman {
+        named.push(format!("sensor.output_feedback={}", u8::from(kalman)));
+    }
+    if !named.is_empty() && arguments.sensors.unwrap_or_default() != SensorModel::Ideal {
+        let reason = "realistic sensors have noise and an estimator of their own".to_owned();
+        return Err(Failure::Value { name: "--noise, --kalman".to_owned(), reason });
+    }
+    if arguments.seed.is_some() {
+        named.push(format!("sensor.seed={}", noise_seed(arguments, number)));
+    }
+    named.extend(arguments.set.iter().flatten().cloned());
+    Ok(named)
+}
+
+/// All bits of a vehicle's seed folded into the 31 that the closed loop's has.
+fn noise_seed(arguments: &Arguments, number: usize) -> u32 {
+    let seed = arguments.seed.unwrap_or(1).wrapping_add(number as u64);
+    ((seed ^ seed >> 31 ^ seed >> 62) & 0x7fff_ffff) as u32
 }
 
 fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Failure> {

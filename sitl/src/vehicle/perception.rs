@@ -1,7 +1,8 @@
-//! What the vehicle knows of its own motion: the truth, or what an estimator makes of instruments.
+//! What the vehicle knows of its own motion: the truth, or what an estimator makes of instruments, or what the
+//! controllers measure with noise.
 
 use nalgebra::Vector3;
-use quadrotor::{GRAVITY_M_S2, Outputs};
+use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
 use super::state::Vehicle;
 use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, TrueMotion, Validity};
@@ -17,11 +18,14 @@ impl Vehicle {
         self.outputs = self.known();
     }
 
-    /// The true outputs, with what the estimator says in place of the motion.
+    /// The true outputs, with what the vehicle believes in place of the motion.
     pub(super) fn known(&self) -> Outputs {
         match &self.navigation {
             Some(navigation) => estimated(&self.truth, navigation),
-            None => self.truth,
+            None => match self.simulation.believed_motion() {
+                Some(body) => believed(&self.truth, &body, self.truth.acceleration_m_s2),
+                None => self.truth,
+            },
         }
     }
 
@@ -81,15 +85,19 @@ impl Vehicle {
 
 fn estimated(truth: &Outputs, navigation: &Navigation) -> Outputs {
     let body = &navigation.estimate().body;
+    let acceleration = navigation.readings().map_or_else(Vector3::zeros, |readings| {
+        body.rotation() * readings.inertial.specific_force_m_s2 + Vector3::new(0.0, 0.0, GRAVITY_M_S2)
+    });
+    believed(truth, body, acceleration)
+}
+
+fn believed(truth: &Outputs, body: &RigidBody, acceleration_m_s2: Vector3<f64>) -> Outputs {
     let rotation = body.rotation();
     let (phi, theta, psi) = rotation.euler_angles();
-    let acceleration = navigation.readings().map_or_else(Vector3::zeros, |readings| {
-        rotation * readings.inertial.specific_force_m_s2 + Vector3::new(0.0, 0.0, GRAVITY_M_S2)
-    });
     Outputs {
         position_m: body.position_m,
         velocity_m_s: body.velocity_m_s,
-        acceleration_m_s2: acceleration,
+        acceleration_m_s2,
         body_velocity_m_s: rotation.inverse_transform_vector(&body.velocity_m_s),
         attitude_rad: Vector3::new(phi, theta, psi),
         quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
