@@ -73,7 +73,9 @@ fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
         // The message spans lines; a person needs the place and the reason in one.
         let line =
             error.span().map_or(1, |span| text.get(..span.start).unwrap_or_default().lines().count().max(1));
-        let reason = format!("line {line}: {}", error.message().lines().collect::<Vec<_>>().join(" "));
+        let content = text.lines().nth(line - 1).unwrap_or_default().trim();
+        let message = error.message().lines().collect::<Vec<_>>().join(" ");
+        let reason = format!("line {line}, `{content}`: {message}");
         Failure::Content { path: path.clone(), reason }
     })?;
     Ok(arguments.or(file))

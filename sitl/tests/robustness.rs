@@ -155,3 +155,22 @@ fn every_known_message_is_read() {
         assert_eq!(framed(id, &[1, 2, 3], Version::Two).is_some(), known, "{id}");
     }
 }
+
+/// An interval beyond all times is the longest that MESSAGE_INTERVAL can tell.
+#[test]
+#[allow(deprecated)] // Clients send GET_MESSAGE_INTERVAL all the same.
+fn an_endless_interval_is_survived() {
+    let mut bench = Bench::new(Identity::Px4);
+    for interval in [1e38, f32::INFINITY] {
+        let set = [30.0, interval, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, set), 0);
+        bench.fly(0.01);
+        let get = [30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL, get), 0);
+        let told = bench.heard.iter().any(|message| {
+            matches!(message, sitl::codec::Message::Typed(MavMessage::MESSAGE_INTERVAL(interval))
+                if interval.message_id == 30 && interval.interval_us == i32::MAX)
+        });
+        assert!(told, "{:?}", bench.heard);
+    }
+}

@@ -249,6 +249,12 @@ fn set_parameters(
         Some(path) if path.exists() => {
             Some((path, std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?))
         }
+        // It will be written when a parameter changes: better now than in flight is said that it cannot be.
+        Some(path)
+            if path.parent().is_some_and(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) =>
+        {
+            return Err(Failure::write(path, std::io::ErrorKind::NotFound.into()));
+        }
         _ => None,
     };
     if text.is_none() && named.is_empty() {

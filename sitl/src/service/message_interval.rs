@@ -59,6 +59,9 @@ const GROUPS: &[(u8, &[u32])] = &[
     (12, &[141, 241]),        // EXTRA3
 ];
 
+/// Longest interval, µs: what MESSAGE_INTERVAL can tell.
+const LONGEST_US: u64 = i32::MAX as u64;
+
 impl Streams {
     /// The rates of a profile.
     pub fn new(profile: LinkProfile) -> Self {
@@ -87,7 +90,7 @@ impl Streams {
     fn set(&mut self, message_id: u32, interval_us: Option<u64>, time_us: u64) {
         self.streams.retain(|stream| stream.message_id != message_id);
         if let Some(interval_us) = interval_us {
-            let interval_us = interval_us.max(TICK_US);
+            let interval_us = interval_us.clamp(TICK_US, LONGEST_US);
             self.streams.push(Stream { message_id, interval_us, due_us: time_us });
         }
     }

@@ -26,6 +26,10 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--config", "/does/not/exist.toml"), 4, "cannot read /does/not/exist.toml"),
     (("--replay", "/does/not/exist"), 4, "cannot read"),
     (("--link", "serial:/dev/no-such-device"), 3, "/dev/no-such-device"),
+    (("--noise", "gps"), 2, "is no noise: motion-capture, rtk-gps"),
+    (("--kalman=perhaps",), 2, "kalman"),
+    (("--kalman", "--sensors", "realistic"), 2, "--noise, --kalman: realistic sensors"),
+    (("--parameters", "/no/such/folder/x.params", "--link", "udpin:0", "--duration", "0"), 4, "cannot write /no/such/folder/x.params"),
     (("--tlog", "/no/such/folder/x.tlog", "--link", "udpin:0"), 4, "cannot write"),
 ])
 def test_a_mistake_is_one_clear_line(program, arguments, code, words):
@@ -49,9 +53,29 @@ def test_flags_go_before_environment_before_file(program, tmp_path):
     environment = {"LMPC_SITL_SYSTEM_ID": "22", "LMPC_SITL_CONFIG": str(file)}
     assert "system 22, as ArduPilot" in run(program, environment=environment).stdout
     assert "system 33," in run(program, "--system-id", 33, environment=environment).stdout
+    file.write_text('noise = "gps"\n')
+    result = run(program, "--config", file)
+    assert result.returncode == 4 and """line 1, `noise = "gps"`: `gps` is no noise""" in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1, result.stderr
     file.write_text("speeed = 1\n")
     result = run(program, "--config", file)
     assert result.returncode == 4 and "line 1" in result.stderr and "speeed" in result.stderr
+
+
+def test_noise_is_the_same_by_flag_environment_and_file(program, tmp_path):
+    file = tmp_path / "sitl.toml"
+    file.write_text('noise = "rtk-gps"\nkalman = true\nseed = 4\n')
+    short = ("--link", "udpin:0", "--speed", "max", "--duration", 1)
+
+    def digest(*arguments, environment=None):
+        result = run(program, *short, *arguments, environment=environment)
+        assert result.returncode == 0, result.stderr
+        return result.stdout.split("digest ")[1].split()[0]
+
+    flown = digest("--noise", "rtk-gps", "--kalman", "--seed", 4)
+    assert digest("--config", file) == flown
+    assert digest(environment={"LMPC_SITL_NOISE": "rtk-gps", "LMPC_SITL_KALMAN": "true", "LMPC_SITL_SEED": "4"}) == flown
+    assert len({flown, digest("--config", file, "--seed", 5), digest("--config", file, "--kalman=false"), digest()}) == 4
 
 
 def test_help_is_worth_reading(program):
