@@ -12,8 +12,6 @@
 //! depends on nothing but its messages and their simulation times. [`run()`] puts links, files and the wall clock around it.
 
 #![forbid(unsafe_code)]
-// Failures end the program; their size costs nothing.
-#![allow(clippy::result_large_err)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod autopilot;

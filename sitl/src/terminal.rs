@@ -142,7 +142,7 @@ fn state_of_one(member: &Member) -> String {
     let armed = if vehicle.is_armed() { "armed" } else { "disarmed" };
     let mode = vehicle.identity().mode_name(vehicle.mode());
     let battery = 100.0 * vehicle.battery_remaining();
-    format!("{armed} {mode}  N {x:7.1} E {y:7.1} up {:6.1} m  battery {battery:3.0} %", -z)
+    format!("{armed} {mode}  N {x:7.1} E {y:7.1} up {:6.1} m  battery {battery:3.0} %", 0.0 - z)
 }
 
 /// How many are in which state, and the weakest battery.
