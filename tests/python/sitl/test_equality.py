@@ -83,7 +83,7 @@ def recorded_set_points(record: Path) -> list[dict]:
     for line in record.read_text().splitlines():
         if not line.startswith("frame "):
             continue
-        _, time_us, _, _, content = line.split(" ")
+        _, time_us, *_, content = line.split(" ")
         for message in parser.parse_buffer(bytearray.fromhex(content)) or []:
             if message.get_type() == "SET_POSITION_TARGET_LOCAL_NED":
                 moves = message.type_mask & 0b111000 == 0
