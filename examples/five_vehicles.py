@@ -1,13 +1,14 @@
 """Five vehicles on one connection: they take off from a circle, turn around its centre once, rising and sinking and
-further out where they are high, and land where they began. Start them behind one port, on one clock:
+further out where they are high, and land where they began. They stand behind one port, on one clock:
 
-    cargo run --release -p sitl -- --vehicles 5 --ports shared --formation circle,6 &
+    cargo run --release -p sitl -- --vehicles 5 --ports shared --formation circle,6
     python examples/five_vehicles.py --plot five_vehicles.png
 """
 
 import itertools
 import math
 import os
+import sys
 import time
 
 os.environ.setdefault("MAVLINK20", "1")
@@ -15,9 +16,11 @@ os.environ.setdefault("MAVLINK20", "1")
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
-from flight import TRAJECTORY, arguments  # noqa: E402
+from flight import INTERVAL, OFFBOARD, TRAJECTORY, arguments, verdict  # noqa: E402
 
-COUNT, HEIGHT, TURN = 5, 5.0, 20.0  # vehicles, m, s of one turn of the wheel
+COUNT = 5
+HEIGHT, TURN = 5.0, 20.0  # m, s of one turn
+ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 
 
 class Fleet:
@@ -25,57 +28,74 @@ class Fleet:
         self.connection = mavutil.mavlink_connection(address, dialect="common")
         self.mav = self.connection.mav
         if address.startswith(("udpout", "tcp")):
-            self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
-        self.flown = {}  # system: time in s and position of each sample
-        self.armed = {}
-        self.acknowledged = {}  # (system, command): result
-        self.until(lambda: len(self.flown) >= COUNT, f"{COUNT} vehicles at {address}", 20)
-
-    def read(self, seconds: float = 0.0):
-        """Takes in what comes within a while."""
-        end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0:
-            message = self.connection.recv_match(blocking=True, timeout=left)
-            if message is None:
-                return
-            system, kind = message.get_srcSystem(), message.get_type()
-            if kind == "LOCAL_POSITION_NED":
-                self.flown.setdefault(system, []).append((message.time_boot_ms / 1e3, (message.x, message.y, message.z)))
-            elif kind == "HEARTBEAT":
-                self.armed[system] = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-            elif kind == "COMMAND_ACK":
-                self.acknowledged[system, message.command] = message.result
-
-    def until(self, condition, what: str, seconds: float):
-        end = time.monotonic() + seconds
-        while not condition():
+            self.beat()
+        self.flown = {}  # system: time in s and position of each report
+        self.armed, self.answers = {}, {}
+        self.beaten = -math.inf
+        end = time.monotonic() + 5
+        while len(self.flown) < COUNT:
             if time.monotonic() > end:
-                raise SystemExit(f"{what}: not within {seconds} s")
-            self.read(0.05)
+                raise SystemExit(f"no {COUNT} vehicles at {address}, only {sorted(self.flown)}")
+            self.read(0.1)
+        self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 1e6 * INTERVAL)
 
-    def command(self, number: int, *parameters: float):
-        """A command for all, and again for those that have not answered."""
-        parameters = [*parameters, *([0.0] * (7 - len(parameters)))]
-        waiting = set(self.flown)
-        for attempt in range(5):
-            for system in waiting:
-                self.acknowledged.pop((system, number), None)
-                self.mav.command_long_send(system, 1, number, attempt, *parameters)
-            self.read(0.3)
-            waiting = {system for system in waiting if self.acknowledged.get((system, number)) != mavlink.MAV_RESULT_ACCEPTED}
-            if not waiting:
-                return
-        raise SystemExit(f"command {number}: not accepted by {sorted(waiting)}")
+    def beat(self):
+        self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+
+    def read(self, timeout: float = 10):
+        """Takes a message in; returns the vehicle whose place it tells, if it does."""
+        message = self.connection.recv_match(blocking=True, timeout=timeout)
+        if message is None:
+            if timeout > 1:
+                raise SystemExit("the vehicles have fallen silent")
+            return None
+        system, kind = message.get_srcSystem(), message.get_type()
+        if kind == "HEARTBEAT":
+            self.armed[system] = bool(message.base_mode & ARMED)
+        elif kind == "COMMAND_ACK":
+            self.answers[system, message.command] = message.result
+        elif kind == "LOCAL_POSITION_NED":
+            self.flown.setdefault(system, []).append((message.time_boot_ms / 1e3, (message.x, message.y, message.z)))
+            if self.now - self.beaten >= 1:
+                self.beat()
+                self.beaten = self.now
+            return system
+        return None
 
     @property
     def now(self) -> float:
         """Time of the vehicles, s."""
-        return max(samples[-1][0] for samples in self.flown.values())
+        return max(reports[-1][0] for reports in self.flown.values())
 
     def place(self, system: int):
         return self.flown[system][-1][1]
 
-    def set_point(self, system: int, position, velocity=(0, 0, 0), acceleration=(0, 0, 0)):
+    def command(self, number: int, *parameters: float, each_report=lambda system: None):
+        """The same command to each; again to those that have not answered."""
+        parameters = [*parameters, *([0.0] * (7 - len(parameters)))]
+        self.answers = {}
+        for attempt in range(5):
+            for system in set(self.flown) - {system for system, _ in self.answers}:
+                self.mav.command_long_send(system, 1, number, attempt, *parameters)
+            end = time.monotonic() + 1
+            while time.monotonic() < end and len(self.answers) < COUNT:
+                if system := self.read(1):
+                    each_report(system)
+            if len(self.answers) == COUNT:
+                break
+        refused = {system: self.answers.get((system, number)) for system in self.flown}
+        if any(result != mavlink.MAV_RESULT_ACCEPTED for result in refused.values()):
+            raise SystemExit(f"command {number} was not accepted by all: {refused}")
+
+    def until(self, condition, seconds: float, what: str, each_report=lambda system: None):
+        end = self.now + seconds
+        while not condition():
+            if self.now > end:
+                raise SystemExit(f"{what}: not within {seconds} s")
+            if system := self.read():
+                each_report(system)
+
+    def set_point(self, system: int, position, velocity, acceleration):
         self.mav.set_position_target_local_ned_send(
             0, system, 1, mavlink.MAV_FRAME_LOCAL_NED, TRAJECTORY, *position, *velocity, *acceleration, 0, 0)
 
@@ -85,17 +105,18 @@ class Fleet:
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
 
+        plt.rcParams.update({"axes.grid": True, "grid.color": "#dddddd", "axes.axisbelow": True})
         figure, (above, heights) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
-        for system, samples in sorted(self.flown.items()):
-            north, east, down = zip(*(position for _, position in samples))
-            line, = above.plot(east, north, linewidth=1, label=f"system {system}")
-            above.plot(east[0], north[0], "o", color=line.get_color())
-            heights.plot([when for when, _ in samples], [-z for z in down], linewidth=1)
-        above.set(xlabel="east, m", ylabel="north, m", aspect="equal", title="from above, and the starts")
-        above.legend(fontsize="small")
-        heights.set(xlabel="time, s", ylabel="height, m", title="heights")
+        for (system, reports), colour in zip(sorted(self.flown.items()), ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00")):
+            north, east, down = zip(*(position for _, position in reports))
+            above.plot(east, north, color=colour, linewidth=1, label=f"system {system}")
+            above.plot(east[0], north[0], "o", color=colour)
+            heights.plot([at for at, _ in reports], [-z for z in down], color=colour, linewidth=1)
+        above.set(xlabel="east, m", ylabel="north, m", aspect="equal", adjustable="datalim", title="from above, and the starts")
+        heights.set(xlabel="time of the vehicles, s", ylabel="up, m", title="heights")
+        figure.legend(*above.get_legend_handles_labels(), ncols=COUNT, loc="outside lower center")
         figure.suptitle("five vehicles on one connection")
-        figure.savefig(path, dpi=120)
+        figure.savefig(path, dpi=110)
         print(f"wrote {path}")
 
 
@@ -117,28 +138,43 @@ def motion(start, phase: float, t: float, h: float = 0.02):
 
 options = arguments(__doc__, "five_vehicles.png")
 fleet = Fleet(options.connect)
-starts = {system: samples[-1][1][:2] for system, samples in sorted(fleet.flown.items())}
-print("vehicles:", ", ".join(f"{system} at {north:.1f} m north, {east:.1f} m east" for system, (north, east) in starts.items()))
-fleet.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-fleet.command(mavlink.MAV_CMD_NAV_TAKEOFF, *[math.nan] * 7)
-fleet.until(lambda: all(fleet.place(system)[2] < -2.3 for system in starts), "takeoff", 30)
-
+starts = {system: reports[0][1][:2] for system, reports in sorted(fleet.flown.items())}
 phases = {system: 2 * math.pi * number / COUNT for number, system in enumerate(starts)}
-climb = fleet.now
+fleet.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+fleet.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
+fleet.until(lambda: all(fleet.place(system)[2] < -2.4 for system in starts), 20, "takeoff")
+
+# All wait for one another at the beginning of their ways.
+begin = math.inf
+late, nearest = 0.0, math.inf
+
+
+def follow(system: int):
+    """Tells a vehicle where to be, whenever it has told where it is."""
+    fleet.set_point(system, *motion(starts[system], phases[system], fleet.now - begin))
+
+
 for system in starts:
-    fleet.set_point(system, wheel(starts[system], phases[system], 0))
-fleet.command(mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
-begin, worst, nearest = climb + 6, 0.0, math.inf
-while (t := fleet.now - begin) < TURN + 1:
-    for system in starts:
-        fleet.set_point(system, *motion(starts[system], phases[system], t))
-    fleet.read(0.02)
-    if t > 0:
-        nearest = min(nearest, *(math.dist(fleet.place(one), fleet.place(other)) for one, other in itertools.combinations(starts, 2)))
-        for system in starts:
-            when, place = fleet.flown[system][-1]
-            worst = max(worst, math.dist(place, wheel(starts[system], phases[system], when - begin)))
-print(f"nobody was further than {100 * worst:.0f} cm from its place, nor nearer than {nearest:.1f} m to another")
+    follow(system)
+fleet.command(mavlink.MAV_CMD_DO_SET_MODE, *OFFBOARD, each_report=follow)
+fleet.until(lambda: all(math.dist(fleet.place(system), wheel(starts[system], 0, 0)) < 0.05 for system in starts), 20, "the beginning", follow)
+begin = fleet.now
+
+
+def follow_and_measure(system: int):
+    global late, nearest
+    follow(system)
+    at, place = fleet.flown[system][-1]
+    late = max(late, math.dist(place, wheel(starts[system], phases[system], at - begin)))
+    nearest = min(nearest, *(math.dist(fleet.place(one), fleet.place(other)) for one, other in itertools.combinations(starts, 2)))
+
+
+fleet.until(lambda: fleet.now > begin + TURN + 1, TURN + 2, "the turn", follow_and_measure)
+missed = verdict("farthest from the moving point", 100 * late, 25, "cm")
+missed |= verdict("two vehicles came nearer than 4 m by", max(0.0, 4 - nearest), 0.1, "m")
 fleet.command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH)
-fleet.until(lambda: not any(fleet.armed.get(system, True) for system in starts), "landing", 60)
+fleet.until(lambda: not any(fleet.armed.values()), 60, "landing")
+away = max(math.dist(fleet.place(system)[:2], starts[system]) for system in starts)
+missed |= verdict("landed away from the start", 100 * away, 10, "cm")
 fleet.plot(options.plot)
+sys.exit(missed)

@@ -13,7 +13,8 @@ NAMES = sorted(file.stem for file in EXAMPLES.glob("*.py") if file.stem != "flig
 
 @pytest.mark.parametrize("name", NAMES)
 def test_example(start, tmp_path, name):
-    vehicle = start("--speed", "8")
+    fleet = ("--vehicles", "5", "--ports", "shared", "--formation", "circle,6") if name == "five_vehicles" else ()
+    vehicle = start("--speed", "8", *fleet)
     plot = tmp_path / "flight.png"
     done = subprocess.run(
         [sys.executable, EXAMPLES / f"{name}.py", "--connect", f"udpout:{vehicle.addresses[0]}", "--plot", plot],
