@@ -30,7 +30,7 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
         origin.altitude_m,
     );
     if fleet.members().len() > 1 {
-        fleet.members().iter().for_each(|member| text.push_str(&start(member, fleet)));
+        fleet.members().iter().for_each(|member| text.push_str(&start(member, settings, fleet)));
         if fleet.hubs().len() > 1 {
             text.push_str(&format!("Links of system {}:\n", first.autopilot().system_id()));
         }
@@ -60,10 +60,20 @@ pub fn hil_banner(settings: &HilSettings, address: &str) -> String {
 }
 
 /// Where a vehicle stands, and where its links are if they are its own.
-fn start(member: &Member, fleet: &Fleet) -> String {
+fn start(member: &Member, settings: &Settings, fleet: &Fleet) -> String {
     let [north, east, _] = member.autopilot().settings().configuration.initial.position_m;
-    let own = fleet.hubs().get(member.hub()).filter(|_| fleet.hubs().len() > 1);
-    let addresses = own.map(|links| format!("  {}", links.addresses().join(" "))).unwrap_or_default();
+    let mut addresses = String::new();
+    if let (Some(links), Some(specifications), true) =
+        (fleet.hubs().get(member.hub()), settings.hubs.get(member.hub()), fleet.hubs().len() > 1)
+    {
+        for (link, address) in specifications.iter().zip(links.addresses()) {
+            // A client listens where a link sends to.
+            addresses.push_str(&match &link.endpoint {
+                Endpoint::UdpOut { host, port, .. } => format!("  to {host}:{port}"),
+                _ => format!("  at {address}"),
+            });
+        }
+    }
     format!(
         "  system {:3} at north {north:6.1} east {east:6.1} m{addresses}\n",
         member.autopilot().system_id()

@@ -43,7 +43,7 @@ fn what_goes_wrong_is_found() {
     let mut watch = run::Watch::default();
     for _ in 0..800 {
         bench.fly(0.05);
-        watch.look(&bench.autopilot, true, &mut figures);
+        watch.look(&bench.autopilot, run::Stays::Calm, &mut figures);
     }
     assert!(figures.violations.iter().any(|violation| violation.contains("drifted by")), "{figures}");
 }

@@ -46,11 +46,15 @@ impl HilSettings {
             ("link", arguments.link.is_some()),
             ("record", arguments.record.is_some()),
             ("tlog", arguments.tlog.is_some()),
+            ("sensors", arguments.sensors.is_some()),
+            ("fault", arguments.fault.is_some()),
+            ("signing-key", arguments.signing_key.is_some()),
         ] {
             if given {
                 return Err(wrong(
                     name,
-                    "does not go with --hil, where the autopilot is another program".into(),
+                    "does not go with --hil: only the plant is ours then, the autopilot is another program"
+                        .into(),
                 ));
             }
         }

@@ -129,6 +129,9 @@ def test_mavsdk_flies_the_second_on_its_own_port(start, connect):
             time.sleep(0.05)
     finally:
         mavsdk.destroy()
+    # The banner says where a program has to listen for each.
+    for number in range(3):
+        assert re.search(rf"system +{number + 1} at north .* to 127.0.0.1:{port + number} ", vehicle.output())
     # The others have heard nothing of it.
     for one in vehicle.ready["vehicles"]:
         client = connect(vehicle, vehicle.addresses.index(one["addresses"][1]))

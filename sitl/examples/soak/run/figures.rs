@@ -6,10 +6,8 @@ use std::time::Duration;
 
 use super::Options;
 
-/// Memory after this share of the time is what it is compared with.
-const WARM: f64 = 0.1;
-/// Growth beyond this is a leak, kB.
-const MOST_GROWTH_KB: u64 = 4096;
+/// Growth beyond this in the second half of the time is a leak, kB.
+const MOST_GROWTH_KB: u64 = 1024;
 /// Violations that are kept.
 const MOST_KEPT: usize = 50;
 
@@ -33,8 +31,8 @@ pub struct Figures {
     pub farthest_drift_m: f64,
     /// Commands by number and result.
     pub commands: BTreeMap<(u16, u8), u64>,
-    warm_kb: Option<u64>,
-    last_kb: Option<u64>,
+    /// Resident memory after each tenth of the time, kB.
+    memory_kb: Vec<u64>,
     sampled_us: u64,
     pub violations: Vec<String>,
 }
@@ -56,20 +54,23 @@ impl Figures {
             return;
         }
         self.sampled_us = time_us;
-        self.last_kb = resident_kb();
-        if self.warm_kb.is_none() && time_us as f64 >= WARM * self.end_us as f64 {
-            self.warm_kb = self.last_kb;
-        }
+        self.memory_kb.extend(resident_kb());
     }
 
     pub fn finish(&mut self, wall: Duration) {
         self.wall = wall;
         // Less than ten minutes is all warm-up.
-        if let (Some(warm), Some(last), true) = (self.warm_kb, self.last_kb, self.end_us >= 600_000_000)
-            && last > warm + MOST_GROWTH_KB
+        if let (Some(warm), Some(last), true) =
+            (self.warm_kb(), self.memory_kb.last(), self.end_us >= 600_000_000)
+            && *last > warm + MOST_GROWTH_KB
         {
             self.violations.push(format!("memory grew from {warm} to {last} kB"));
         }
+    }
+
+    /// Memory when everything has been in use.
+    fn warm_kb(&self) -> Option<u64> {
+        self.memory_kb.get(self.memory_kb.len() / 2).copied()
     }
 }
 
@@ -126,12 +127,7 @@ impl fmt::Display for Figures {
             self.rests,
             1e3 * self.farthest_drift_m
         )?;
-        match (self.warm_kb, self.last_kb) {
-            (Some(warm), Some(last)) => {
-                writeln!(formatter, "memory: {warm} kB after a tenth of the time, {last} kB at the end")?;
-            }
-            _ => writeln!(formatter, "memory: not told by this system")?,
-        }
+        writeln!(formatter, "memory after each tenth of the time: {:?} kB", self.memory_kb)?;
         write!(formatter, "violations: {}", self.violations.len())?;
         self.violations.iter().try_for_each(|violation| write!(formatter, "\n  {violation}"))
     }

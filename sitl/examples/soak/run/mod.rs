@@ -15,7 +15,7 @@ pub use figures::Figures;
 use site::Site;
 use sitl::configuration::{Arguments, Settings};
 #[allow(unused_imports)] // A test looks at it.
-pub use watch::Watch;
+pub use watch::{Stays, Watch};
 
 /// What to fly.
 pub struct Options {

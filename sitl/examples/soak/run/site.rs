@@ -3,6 +3,7 @@
 use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
 use sitl::codec::{Frame, Version};
 use sitl::configuration::MemberSettings;
+use sitl::estimation::SensorModel;
 use sitl::parameters::Speed;
 use sitl::service::LinkProfile;
 use sitl::vehicle::TICK_US;
@@ -13,7 +14,7 @@ use super::Options;
 use super::chance::Chance;
 use super::client::Client;
 use super::figures::Figures;
-use super::watch::{self, Watch};
+use super::watch::{self, Stays, Watch};
 
 /// System ids of the clients: a pilot and two who look on.
 const SYSTEMS: [u8; 3] = [255, 254, 253];
@@ -22,7 +23,7 @@ const BATTERY_AH: f64 = 200.0;
 
 pub struct Site {
     autopilot: Autopilot,
-    calm: bool,
+    stays: Stays,
     clients: [Option<Client>; 3],
     /// When the next one comes to each place.
     comes_us: [u64; 3],
@@ -36,8 +37,11 @@ pub struct Site {
 
 impl Site {
     pub fn new(options: &Options, own: MemberSettings, number: u64) -> Self {
-        let calm = number.is_multiple_of(2);
+        let (calm, realistic) = (number.is_multiple_of(2), number % 5 == 4);
         let mut vehicle = own.vehicle;
+        if realistic {
+            vehicle.sensors.model = SensorModel::Realistic;
+        }
         vehicle.conduct.battery_capacity_ah = BATTERY_AH;
         if !calm {
             vehicle.wind = WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 0.7, ..vehicle.wind };
@@ -48,7 +52,7 @@ impl Site {
             .expect("the default airframe");
         Self {
             autopilot,
-            calm,
+            stays: Stays::of(calm, realistic),
             clients: [const { None }; 3],
             comes_us: [0, 2_000_000, 4_000_000],
             next_peer: 1,
@@ -82,7 +86,7 @@ impl Site {
                 }
             }
             if now_us.is_multiple_of(watch::PERIOD_US) {
-                self.watch.look(&self.autopilot, self.calm, figures);
+                self.watch.look(&self.autopilot, self.stays, figures);
             }
         }
     }

@@ -15,9 +15,35 @@ const FLIES_M: f64 = 0.3;
 const KNOWS_US: u64 = 2_000_000;
 /// A vehicle that has been asked to stay for so long, µs, rests.
 const RESTS_US: u64 = 10_000_000;
-/// It stays within this, m, in a calm and in gusts.
-const DRIFT_CALM_M: f64 = 0.05;
-const DRIFT_GUSTS_M: f64 = 0.6;
+
+/// How well a vehicle can stay where it is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Stays {
+    /// It knows where it is, in a calm.
+    Calm,
+    /// It knows where it is, in gusts.
+    InGusts,
+    /// It knows what its receiver tells it: 2.1 m of standard deviation on each axis.
+    ByInstruments,
+}
+
+impl Stays {
+    pub fn of(calm: bool, realistic: bool) -> Self {
+        match (calm, realistic) {
+            (_, true) => Self::ByInstruments,
+            (true, false) => Self::Calm,
+            (false, false) => Self::InGusts,
+        }
+    }
+
+    fn within_m(self) -> f64 {
+        match self {
+            Self::Calm => 0.05,
+            Self::InGusts => 0.6,
+            Self::ByInstruments => 12.0,
+        }
+    }
+}
 
 #[derive(Default)]
 pub struct Watch {
@@ -28,7 +54,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    pub fn look(&mut self, autopilot: &Autopilot, calm: bool, figures: &mut Figures) {
+    pub fn look(&mut self, autopilot: &Autopilot, stays: Stays, figures: &mut Figures) {
         let vehicle = autopilot.vehicle();
         let (system, time_us) = (autopilot.system_id(), vehicle.time_us());
         let outputs = vehicle.truth();
@@ -61,7 +87,7 @@ impl Watch {
         if lean > 1.0 || height_m > 130.0 || outputs.position_m.xy().norm() > 400.0 {
             wrong = Some(format!("lost: leans {lean:.2} rad at {:?}", outputs.position_m));
         }
-        self.drift(autopilot, calm, figures, &mut wrong);
+        self.drift(autopilot, stays, figures, &mut wrong);
         match wrong {
             // Once per event.
             Some(what) if !std::mem::replace(&mut self.told, true) => {
@@ -76,7 +102,7 @@ impl Watch {
     fn drift(
         &mut self,
         autopilot: &Autopilot,
-        calm: bool,
+        stays: Stays,
         figures: &mut Figures,
         wrong: &mut Option<String>,
     ) {
@@ -97,10 +123,10 @@ impl Watch {
         }
         figures.rests += u64::from(!std::mem::replace(rested, true));
         let drift_m = (outputs.position_m - *place).norm();
-        if calm {
+        if stays == Stays::Calm {
             figures.farthest_drift_m = figures.farthest_drift_m.max(drift_m);
         }
-        if drift_m > if calm { DRIFT_CALM_M } else { DRIFT_GUSTS_M } {
+        if drift_m > stays.within_m() {
             *wrong = Some(format!("drifted by {drift_m:.3} m from where it holds"));
         }
     }
