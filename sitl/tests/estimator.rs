@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quadrotor::GRAVITY_M_S2;
 use sitl::estimation::{Estimate, Navigation, TrueMotion};
+use sitl::fault::Faults;
 use sitl::world::{Geodetic, LocalFrame};
 
 /// It stands this long, s, before it moves.
@@ -64,7 +65,7 @@ fn fly(seed: u64, seconds: f64, mut look: impl FnMut(&Navigation, &TrueMotion)) 
     let mut navigation = Navigation::new(seed, Estimate::unaligned(Vector3::zeros(), 0.0));
     for tick in 1..=(seconds * 1000.0) as u64 {
         let motion = motion(tick * 1000);
-        navigation.step(&motion, &frame(), motion.time_us as f64 / 1e6 <= REST_S);
+        navigation.step(&motion, &frame(), &Faults::default(), motion.time_us as f64 / 1e6 <= REST_S);
         look(&navigation, &motion);
     }
     navigation
@@ -175,7 +176,6 @@ fn errors_stay_small() {
         });
     }
     let [position, velocity, attitude] = squares.map(|square: f64| (square / count).sqrt());
-    println!("RMS {position:.3} m, {velocity:.3} m/s, {attitude:.5} rad, worst tilt {worst_tilt:.5} rad");
     assert!(
         position < 1.0 && velocity < 0.1 && attitude < 0.01 && worst_tilt < 0.01,
         "{position} {velocity} {attitude}"

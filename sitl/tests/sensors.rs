@@ -74,7 +74,10 @@ fn it_is_armed_only_once_the_estimator_has_converged() {
     bench.fly(0.5);
     assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), 1);
     let texts = bench.texts();
-    assert!(texts.iter().any(|text| text == "Arming denied: attitude not aligned yet"), "{texts:?}");
+    assert!(
+        texts.iter().any(|text| text == "Arming denied: no GPS fix; attitude not aligned yet"),
+        "{texts:?}"
+    );
     let health = prearm_health(&mut bench);
     let missing = MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK
         | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
@@ -144,9 +147,6 @@ fn a_hover_stays_within_its_bars() {
             count += 1.0;
         }
         let [strays, errors, shakes] = [strays, errors, shakes].map(|sum: f64| (sum / count).sqrt());
-        println!(
-            "seed {seed}: from the goal {strays:.3} m, estimate {errors:.3} m, controlled {shakes:.4} m, lean {lean:.4}"
-        );
         assert!(
             strays < 1.0 && errors < 1.0 && shakes < 0.1 && lean < 0.1,
             "{strays} {errors} {shakes} {lean}"
@@ -248,4 +248,189 @@ fn a_record_with_realistic_sensors_replays_bit_for_bit() {
     let text = std::fs::read_to_string(&path).expect("readable");
     std::fs::write(&path, text.replacen("\"seed\":6", "\"seed\":7", 1)).expect("written");
     assert!(matches!(replay(&path), Err(Failure::Differs { .. })));
+}
+
+/// FAILURE_UNIT and FAILURE_TYPE.
+const GYROSCOPE: f32 = 0.0;
+const MAGNETOMETER: f32 = 2.0;
+const BAROMETER: f32 = 3.0;
+const GPS: f32 = 4.0;
+const OK: f32 = 0.0;
+const OFF: f32 = 1.0;
+const STUCK: f32 = 2.0;
+const GARBAGE: f32 = 3.0;
+const WRONG: f32 = 4.0;
+const SLOW: f32 = 5.0;
+const DELAYED: f32 = 6.0;
+const INTERMITTENT: f32 = 7.0;
+
+fn inject(bench: &mut Bench, unit: f32, kind: f32) {
+    let parameters = [unit, kind, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, parameters), 0);
+}
+
+/// Flies on and returns the largest distance from a place, the largest lean and the largest horizontal speed.
+fn extremes(bench: &mut Bench, seconds: f64, place: Vector3<f64>) -> [f64; 3] {
+    let mut most = [0.0_f64; 3];
+    for _ in 0..(seconds * 100.0) as usize {
+        bench.fly(0.01);
+        let truth = bench.autopilot.vehicle().truth();
+        let now = [
+            (truth.position_m - place).norm(),
+            truth.attitude_rad.xy().norm(),
+            truth.velocity_m_s.xy().norm(),
+        ];
+        for (most, now) in most.iter_mut().zip(now) {
+            *most = most.max(now);
+        }
+    }
+    most
+}
+
+/// Without a receiver the position is lost after five seconds; when it is back the vehicle goes where it belongs
+/// without a leap.
+#[test]
+fn a_lost_gps_is_told_and_its_return_is_smooth() {
+    for seed in [1, 2, 3] {
+        let mut bench = hovering(seed);
+        bench.fly(5.0);
+        let place = truth(&bench);
+        inject(&mut bench, GPS, OFF);
+        bench.fly(1.5);
+        let health = prearm_health(&mut bench);
+        assert!(!health.contains(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS), "{health:?}");
+        assert!(health.contains(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL));
+        let MavMessage::GPS_RAW_INT(fix) = asked(&mut bench, 24) else { panic!("GPS_RAW_INT") };
+        assert_eq!(fix.fix_type, GpsFixType::GPS_FIX_TYPE_NO_FIX);
+        bench.fly(4.0);
+        assert!(!bench.autopilot.vehicle().validity().horizontal_position);
+        let health = prearm_health(&mut bench);
+        assert!(!health.contains(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL));
+        let MavMessage::ESTIMATOR_STATUS(status) = asked(&mut bench, 230) else { panic!("ESTIMATOR_STATUS") };
+        assert!(!status.flags.contains(EstimatorStatusFlags::ESTIMATOR_POS_HORIZ_ABS), "{status:?}");
+        assert!(status.flags.contains(EstimatorStatusFlags::ESTIMATOR_ATTITUDE), "{status:?}");
+        let [away, lean, _] = extremes(&mut bench, 10.0, place);
+        assert!(away < 20.0 && lean < 0.2, "{away} {lean}");
+        inject(&mut bench, GPS, OK);
+        let [farthest, lean, speed] = extremes(&mut bench, 15.0, place);
+        assert!(lean < 0.3 && speed < 2.0 && farthest < away + 1.0, "{farthest} {lean} {speed}");
+        assert!(bench.autopilot.vehicle().validity().all());
+        assert!((truth(&bench) - place).norm() < 2.0, "{}", truth(&bench));
+        assert!(prearm_health(&mut bench).contains(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS));
+    }
+}
+
+/// Fixes that jump by 10 m are not believed at first; after some seconds the vehicle goes with them, without a leap.
+#[test]
+fn a_gps_that_jumps_is_followed_late_and_gently() {
+    let mut bench = hovering(1);
+    bench.fly(5.0);
+    let place = truth(&bench);
+    inject(&mut bench, GPS, WRONG);
+    let [away, ..] = extremes(&mut bench, 4.0, place);
+    assert!(away < 1.0, "{away}");
+    let MavMessage::ESTIMATOR_STATUS(status) = asked(&mut bench, 230) else { panic!("ESTIMATOR_STATUS") };
+    assert!(status.flags.contains(EstimatorStatusFlags::ESTIMATOR_GPS_GLITCH), "{status:?}");
+    let [_, lean, speed] = extremes(&mut bench, 20.0, place);
+    assert!(lean < 0.35 && speed < 5.0, "{lean} {speed}");
+    let moved = truth(&bench) - place;
+    assert!((moved.x + 10.0).abs() < 6.0 && moved.y.abs() < 6.0, "{moved}");
+    assert!(bench.autopilot.vehicle().estimate().expect("realistic").resets > 0);
+}
+
+/// Whatever else may happen to one instrument, the hover goes on.
+#[test]
+fn a_hover_survives_most_faults() {
+    let cases = [
+        (GPS, SLOW, true),
+        (GPS, DELAYED, true),
+        (GPS, INTERMITTENT, true),
+        (BAROMETER, OFF, false),
+        (BAROMETER, STUCK, false),
+        (BAROMETER, GARBAGE, false),
+        (BAROMETER, WRONG, true),
+        (MAGNETOMETER, OFF, false),
+        (MAGNETOMETER, STUCK, false),
+        (MAGNETOMETER, GARBAGE, false),
+        (GYROSCOPE, SLOW, true),
+    ];
+    for (unit, kind, healthy) in cases {
+        let mut bench = hovering(7);
+        bench.fly(2.0);
+        let place = truth(&bench);
+        inject(&mut bench, unit, kind);
+        let [away, lean, _] = extremes(&mut bench, 15.0, place);
+        let yaw = bench.autopilot.vehicle().truth().attitude_rad.z;
+        assert!(away < 4.0 && lean < 0.3 && yaw.abs() < 0.3, "{unit} {kind}: {away} {lean} {yaw}");
+        let sensor = match unit {
+            BAROMETER => MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE,
+            MAGNETOMETER => MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG,
+            GYROSCOPE => MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO,
+            _ => continue,
+        };
+        assert_eq!(prearm_health(&mut bench).contains(sensor), healthy, "{unit} {kind}");
+    }
+}
+
+/// With the only inertial unit gone no flight goes on; nothing else breaks with it.
+#[test]
+fn a_dead_inertial_unit_is_told() {
+    for unit in [GYROSCOPE, 1.0] {
+        for kind in [OFF, STUCK, GARBAGE] {
+            let mut bench = hovering(8);
+            inject(&mut bench, unit, kind);
+            bench.fly(0.5);
+            let health = prearm_health(&mut bench);
+            let sensor = if unit == GYROSCOPE {
+                MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
+            } else {
+                MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL
+            };
+            assert_eq!(health.contains(sensor), kind == GARBAGE, "{unit} {kind}: {health:?}");
+            // Down it goes, and the program goes on.
+            bench.fly(10.0);
+            assert!(truth(&bench).iter().all(|value| value.is_finite()));
+        }
+    }
+}
+
+/// A fault from the start keeps the vehicle on the ground and says which.
+#[test]
+fn a_broken_instrument_is_named_when_arming_is_refused() {
+    for (unit, why) in
+        [(GPS, "no GPS fix"), (BAROMETER, "barometer failed"), (MAGNETOMETER, "magnetometer failed")]
+    {
+        for model in [SensorModel::Ideal, SensorModel::Realistic] {
+            let sensors = SensorSettings { model, seed: 1 };
+            let mut bench = Bench::of(&VehicleSettings { sensors, ..settings(Identity::Px4) });
+            inject(&mut bench, unit, OFF);
+            bench.fly(4.0);
+            assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), 1);
+            let texts = bench.texts();
+            assert!(
+                texts.iter().any(|text| text.starts_with("Arming denied") && text.contains(why)),
+                "{texts:?}"
+            );
+            inject(&mut bench, unit, OK);
+            bench.fly(4.0);
+            bench.arm();
+        }
+    }
+}
+
+/// With ideal sensors the flight is what it was, but a silent receiver is told, and the position given up after it.
+#[test]
+fn ideal_sensors_can_be_silenced() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    inject(&mut bench, GPS, OFF);
+    bench.fly(2.0);
+    let health = prearm_health(&mut bench);
+    assert!(!health.contains(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS), "{health:?}");
+    assert!(bench.autopilot.vehicle().validity().horizontal_position);
+    bench.fly(4.0);
+    assert!(!bench.autopilot.vehicle().validity().horizontal_position);
+    assert!(bench.is_near([0.0, 0.0, -10.0]));
+    inject(&mut bench, GPS, OK);
+    bench.fly(0.1);
+    assert!(bench.autopilot.vehicle().validity().all());
 }

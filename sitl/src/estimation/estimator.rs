@@ -3,7 +3,7 @@
 
 use fusion_nav::{
     Acceleration, Altitude, AngularRate, Covariance, ErrorState, Eskf, Fusion, ImuSample, MagField, Position,
-    PositionNoise, Seconds, SourceHealth, StaticSample, StaticWindow, Status, Timestamp, Velocity,
+    PositionNoise, Seconds, SourceHealth, State, StaticSample, StaticWindow, Status, Timestamp, Velocity,
     VelocityNoise,
 };
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -11,13 +11,18 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use super::barometer::BarometerReading;
 use super::estimate::{Estimate, TestRatios, Validity};
 use super::gps::GpsFix;
-use super::inertial::{self, InertialReading};
+use super::inertial::InertialReading;
 use super::magnetometer::MagnetometerReading;
+use super::release::Release;
 use super::tuning;
 
 /// Time between predictions, µs: the default rate at which PX4 integrates its inertial unit, 200 Hz. It divides the
 /// samples of the controllers.
 const PREDICTION_US: u64 = 5_000;
+/// How fast the controllers are told that the vehicle is elsewhere, m/s, and moves otherwise, m/s²: after 15 s without
+/// fixes they then lean by no more than 0.3 rad.
+const POSITION_RELEASE_M_S: f64 = 0.3;
+const VELOCITY_RELEASE_M_S2: f64 = 0.3;
 /// The antenna sits on the inertial unit.
 const NO_LEVER: [f32; 3] = [0.0; 3];
 
@@ -29,11 +34,16 @@ pub struct Estimator {
     window: StaticWindow,
     /// Inertial readings since the last prediction.
     pending: Option<ImuSample>,
+    /// Time of the last inertial reading and of the last prediction, µs.
+    read_us: u64,
+    predicted_us: u64,
     /// The latest readings that the window has not had yet.
     altitude: Option<Altitude>,
     field: Option<MagField<fusion_nav::Body>>,
     estimate: Estimate,
     resets: u32,
+    position_release: Release,
+    velocity_release: Release,
 }
 
 impl Estimator {
@@ -51,26 +61,36 @@ impl Estimator {
             filter,
             window: StaticWindow::new(),
             pending: None,
+            read_us: 0,
+            predicted_us: 0,
             altitude: None,
             field: None,
             estimate: start,
             resets: 0,
+            position_release: Release::new(POSITION_RELEASE_M_S),
+            velocity_release: Release::new(VELOCITY_RELEASE_M_S2),
         }
     }
 
     /// Takes a reading of the inertial unit in. Every 5 ms the estimate goes on.
     pub fn inertial(&mut self, reading: &InertialReading) {
+        if reading.time_us <= self.read_us {
+            return;
+        }
         let sample = ImuSample::from_rates(
             Timestamp::from_micros(reading.time_us),
             AngularRate::from_array(single(&reading.body_rate_rad_s)),
             Acceleration::from_array(single(&reading.specific_force_m_s2)),
-            Seconds::from_secs(inertial::PERIOD_US as f32 / 1e6),
+            Seconds::from_secs((reading.time_us - self.read_us) as f32 / 1e6),
         );
+        self.read_us = reading.time_us;
         let pending = self.pending.map_or(sample, |earlier| earlier.accumulate(sample));
         self.pending = Some(pending);
-        if !reading.time_us.is_multiple_of(PREDICTION_US) {
+        if reading.time_us - self.predicted_us < PREDICTION_US {
             return;
         }
+        let dt_s = (reading.time_us - self.predicted_us) as f64 / 1e6;
+        self.predicted_us = reading.time_us;
         self.pending = None;
         if self.filter.is_initialized() {
             let outcome = self.filter.predict(pending);
@@ -80,14 +100,15 @@ impl Estimator {
         } else {
             self.align(pending);
         }
-        self.read(reading);
+        self.read(reading, dt_s);
     }
 
-    /// Takes a fix in.
-    pub fn gps(&mut self, fix: &GpsFix) {
+    /// Takes a fix in, and tells whether it fitted.
+    pub fn gps(&mut self, fix: &GpsFix) -> bool {
         if !self.filter.is_initialized() {
-            return;
+            return true;
         }
+        let before = self.filter.state();
         let time = Timestamp::from_micros(fix.time_us);
         let (horizontal, vertical) = (fix.horizontal_accuracy_m as f32, fix.vertical_accuracy_m as f32);
         let speed = fix.velocity_accuracy_m_s as f32;
@@ -105,36 +126,42 @@ impl Estimator {
             antenna,
         );
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
+        self.hold_back(&before);
+        fitted(place.horizontal) && fitted(place.height) && fitted(motion)
     }
 
-    /// Takes a pressure in.
-    pub fn barometer(&mut self, reading: &BarometerReading) {
+    /// Takes a pressure in, and tells whether it fitted.
+    pub fn barometer(&mut self, reading: &BarometerReading) -> bool {
         let altitude = Altitude::from_meters(reading.altitude_m() as f32);
         if !self.filter.is_initialized() {
             self.altitude = Some(altitude);
-            return;
+            return true;
         }
         let time = Timestamp::from_micros(reading.time_us);
         let noise = tuning::altitude_noise(reading.pressure_pa);
-        used(self.filter.fuse_baro_altitude(time, altitude, noise));
+        let before = self.filter.state();
+        let outcome = self.filter.fuse_baro_altitude(time, altitude, noise);
+        self.hold_back(&before);
+        fitted(outcome)
     }
 
-    /// Takes a magnetic field in.
-    pub fn magnetometer(&mut self, reading: &MagnetometerReading) {
+    /// Takes a magnetic field in, and tells whether it fitted.
+    pub fn magnetometer(&mut self, reading: &MagnetometerReading) -> bool {
         let field = MagField::from_array(single(&reading.field_gauss));
         if !self.filter.is_initialized() {
             self.field = Some(field);
-            return;
+            return true;
         }
         let time = Timestamp::from_micros(reading.time_us);
-        used(self.filter.fuse_mag_heading(time, field, tuning::heading_noise()));
+        fitted(self.filter.fuse_mag_heading(time, field, tuning::heading_noise()))
     }
 
     /// The vehicle stands: it has no velocity.
     pub fn stands(&mut self, time_us: u64) {
         if self.filter.is_initialized() {
             let noise = VelocityNoise::horizontal_vertical(tuning::STILL_M_S, tuning::STILL_M_S);
-            used(self.filter.fuse_stationary(Timestamp::from_micros(time_us), noise));
+            let outcome = self.filter.fuse_stationary(Timestamp::from_micros(time_us), noise);
+            tracing::trace!(?outcome, "the vehicle stands");
         }
     }
 
@@ -181,8 +208,17 @@ impl Estimator {
         self.window = StaticWindow::new();
     }
 
-    /// What the filter knows now.
-    fn read(&mut self, reading: &InertialReading) {
+    /// Holds back what a measurement has corrected since `before`.
+    fn hold_back(&mut self, before: &State) {
+        let now = self.filter.state();
+        let position = double(now.position.to_array()) - double(before.position.to_array());
+        let velocity = double(now.velocity.to_array()) - double(before.velocity.to_array());
+        self.position_release.hold(&position);
+        self.velocity_release.hold(&velocity);
+    }
+
+    /// What the filter knows now, `dt_s` after the last time.
+    fn read(&mut self, reading: &InertialReading, dt_s: f64) {
         self.estimate.time_us = reading.time_us;
         if !self.filter.is_initialized() {
             return;
@@ -191,8 +227,8 @@ impl Estimator {
         let q = state.attitude.body_to_ned();
         let attitude = Quaternion::new(q.w.into(), q.x.into(), q.y.into(), q.z.into());
         let body = &mut self.estimate.body;
-        body.position_m = double(state.position.to_array());
-        body.velocity_m_s = double(state.velocity.to_array());
+        body.position_m = double(state.position.to_array()) - self.position_release.step(dt_s);
+        body.velocity_m_s = double(state.velocity.to_array()) - self.velocity_release.step(dt_s);
         body.attitude = UnitQuaternion::new_normalize(attitude).into_inner();
         body.body_rate_rad_s = reading.body_rate_rad_s - double(state.gyro_bias.to_array());
         let aided = state.status != Status::DeadReckoning;
@@ -223,9 +259,9 @@ fn ratio(source: &SourceHealth) -> f64 {
     source.test_ratio.map_or(0.0, f64::from)
 }
 
-/// The filter counts what it rejects.
-fn used(outcome: Fusion) {
-    tracing::trace!(?outcome);
+/// Whether a measurement was what was expected, or has become so.
+fn fitted(outcome: Fusion) -> bool {
+    outcome.is_accepted() || outcome.is_reset()
 }
 
 fn single(vector: &Vector3<f64>) -> [f32; 3] {

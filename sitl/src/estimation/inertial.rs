@@ -35,7 +35,7 @@ pub const GYROSCOPE_COUNTS_PER_RAD_S: f64 = 16.4 / RAD_S;
 pub const ACCELEROMETER_COUNTS_PER_M_S2: f64 = 2048.0 / GRAVITY_M_S2;
 
 /// What the inertial unit says: means over the time since the reading before.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct InertialReading {
     /// End of that time, µs.
     pub time_us: u64,

@@ -10,16 +10,22 @@
 //! The filter is the crate `fusion-nav`; what it is told of the instruments stands in `tuning.rs`. The linear Kalman
 //! predictor (26) of the closed loop stays behind it: it estimates what pushes the vehicle.
 //!
+//! A fault stands between an instrument and everybody who reads it (`defect.rs`). Ideal sensors (`ideal.rs`) have no
+//! noise and need no estimator; faults can only silence them.
+//!
 //! Each instrument's figures stand in its file, beside the part and the table of the data sheet that they are from.
 
 pub mod barometer;
+mod defect;
 mod estimate;
 mod estimator;
 pub mod gps;
+mod ideal;
 pub mod inertial;
 pub mod magnetometer;
 mod navigation;
 mod noise;
+mod release;
 mod settings;
 mod true_motion;
 mod tuning;
@@ -29,6 +35,7 @@ mod watch;
 
 pub use estimate::{Estimate, TestRatios, Validity};
 pub use estimator::Estimator;
+pub use ideal::IdealSensors;
 pub use navigation::{InstrumentHealth, Navigation, Readings};
 pub use settings::{SensorModel, SensorSettings};
 pub use true_motion::TrueMotion;

@@ -1,14 +1,16 @@
 //! Instruments and estimator together, tick by tick.
 
-use super::barometer::{Barometer, BarometerReading};
+use super::barometer::{self, Barometer, BarometerReading};
+use super::defect::{Axes, Defect};
 use super::estimate::Estimate;
 use super::estimator::Estimator;
-use super::gps::{GpsFix, GpsReceiver};
+use super::gps::{self, GpsFix, GpsReceiver};
 use super::inertial::{InertialReading, InertialUnit};
-use super::magnetometer::{Magnetometer, MagnetometerReading};
+use super::magnetometer::{self, Magnetometer, MagnetometerReading};
 use super::true_motion::TrueMotion;
 use super::vibration::Vibration;
-use super::watch::Watch;
+use super::watch::{Trust, Watch};
+use crate::fault::{Faults, Sensor};
 use crate::world::{LocalFrame, atmospheric_pressure_pa, earth_field_ned};
 
 /// A vehicle at rest says so to the estimator this often, µs.
@@ -16,13 +18,13 @@ const STANDS_PERIOD_US: u64 = 100_000;
 /// An inertial unit that repeats itself for longer is broken, µs; the others read more rarely.
 const INERTIAL_PATIENCE_US: u64 = 50_000;
 const PATIENCE_US: u64 = 500_000;
-/// A source that the filter has rejected for longer is not believed, s.
-const REJECTION_PATIENCE_S: f64 = 2.0;
+/// A receiver without a new fix for longer has lost its position, µs.
+const FIX_PATIENCE_US: u64 = 1_000_000;
 
 /// The latest readings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Readings {
-    /// Inertial unit.
+    /// Inertial unit; zeros before it has said anything.
     pub inertial: InertialReading,
     /// GPS receiver, once it has had a fix.
     pub gps: Option<GpsFix>,
@@ -72,10 +74,14 @@ impl Readings {
     }
 }
 
-impl InstrumentHealth {
-    /// All of them.
-    pub const ALL: Self =
-        Self { gyroscope: true, accelerometer: true, magnetometer: true, barometer: true, gps: true };
+/// What may be wrong with each instrument.
+#[derive(Clone, Debug)]
+struct Defects {
+    gyroscope: Defect<Axes>,
+    accelerometer: Defect<Axes>,
+    magnetometer: Defect<MagnetometerReading>,
+    barometer: Defect<BarometerReading>,
+    gps: Defect<GpsFix>,
 }
 
 /// Instruments and estimator.
@@ -87,11 +93,16 @@ pub struct Navigation {
     magnetometer: Magnetometer,
     estimator: Estimator,
     vibration: Vibration,
-    readings: Option<Readings>,
+    readings: Readings,
+    defects: Defects,
     gyroscope_watch: Watch,
     accelerometer_watch: Watch,
     barometer_watch: Watch,
     magnetometer_watch: Watch,
+    gps_watch: Watch,
+    barometer_trust: Trust,
+    magnetometer_trust: Trust,
+    gps_trust: Trust,
     time_us: u64,
 }
 
@@ -105,50 +116,81 @@ impl Navigation {
             magnetometer: Magnetometer::new(seed),
             estimator: Estimator::new(start),
             vibration: Vibration::default(),
-            readings: None,
+            readings: Readings::default(),
+            defects: Defects {
+                gyroscope: Defect::new(Sensor::Gyroscope, seed),
+                accelerometer: Defect::new(Sensor::Accelerometer, seed),
+                magnetometer: Defect::new(Sensor::Magnetometer, seed),
+                barometer: Defect::new(Sensor::Barometer, seed),
+                gps: Defect::new(Sensor::Gps, seed),
+            },
             gyroscope_watch: Watch::default(),
             accelerometer_watch: Watch::default(),
             barometer_watch: Watch::default(),
             magnetometer_watch: Watch::default(),
+            gps_watch: Watch::default(),
+            barometer_trust: Trust::default(),
+            magnetometer_trust: Trust::default(),
+            gps_trust: Trust::default(),
             time_us: 0,
         }
     }
 
-    /// One tick: the vehicle moves like this, and stands or not.
-    pub fn step(&mut self, motion: &TrueMotion, frame: &LocalFrame, stands: bool) {
+    /// One tick: the vehicle moves like this, with these faults, and stands or not.
+    pub fn step(&mut self, motion: &TrueMotion, frame: &LocalFrame, faults: &Faults, stands: bool) {
         let time_us = motion.time_us;
         self.time_us = time_us;
-        let inertial = self.inertial.sample(motion);
-        self.gyroscope_watch.update(time_us, inertial.body_rate_rad_s.into());
-        self.accelerometer_watch.update(time_us, inertial.specific_force_m_s2.into());
-        self.vibration.update(&inertial);
-        self.estimator.inertial(&inertial);
-        let before = self.readings;
-        let readings = self.readings.insert(Readings {
-            inertial,
-            gps: before.and_then(|readings| readings.gps),
-            barometer: before.and_then(|readings| readings.barometer),
-            magnetometer: before.and_then(|readings| readings.magnetometer),
-        });
+        self.read_inertial(motion, faults);
         let altitude_m = frame.origin().altitude_m - motion.position_m.z;
-        if let Some(reading) = self.barometer.sample(time_us, altitude_m) {
+        let reading = self.barometer.sample(time_us, altitude_m);
+        let fault = faults.sensor(Sensor::Barometer);
+        if let Some(reading) = reading.and_then(|reading| self.defects.barometer.tell(reading, fault)) {
             self.barometer_watch.update(time_us, [reading.pressure_pa, 0.0, 0.0]);
-            self.estimator.barometer(&reading);
-            readings.barometer = Some(reading);
+            let fitted = self.estimator.barometer(&reading);
+            self.barometer_trust.update(fitted, barometer::PERIOD_US);
+            self.readings.barometer = Some(reading);
         }
         let field = || earth_field_ned(&frame.to_geodetic(&motion.position_m));
-        if let Some(reading) = self.magnetometer.sample(time_us, &motion.attitude, field) {
+        let reading = self.magnetometer.sample(time_us, &motion.attitude, field);
+        let fault = faults.sensor(Sensor::Magnetometer);
+        if let Some(reading) = reading.and_then(|reading| self.defects.magnetometer.tell(reading, fault)) {
             self.magnetometer_watch.update(time_us, reading.field_gauss.into());
-            self.estimator.magnetometer(&reading);
-            readings.magnetometer = Some(reading);
+            let fitted = self.estimator.magnetometer(&reading);
+            self.magnetometer_trust.update(fitted, magnetometer::PERIOD_US);
+            self.readings.magnetometer = Some(reading);
         }
-        if let Some(fix) = self.gps.sample(motion) {
-            self.estimator.gps(&fix);
-            readings.gps = Some(fix);
+        let fault = faults.sensor(Sensor::Gps);
+        if let Some(fix) = self.gps.sample(motion).and_then(|fix| self.defects.gps.tell(fix, fault)) {
+            let fitted = self.estimator.gps(&fix);
+            self.gps_trust.update(fitted, gps::PERIOD_US);
+            self.gps_watch.update(time_us, fix.position_m.into());
+            self.readings.gps = Some(fix);
         }
         if stands && time_us.is_multiple_of(STANDS_PERIOD_US) {
             self.estimator.stands(time_us);
         }
+    }
+
+    /// A reading needs both of its halves.
+    fn read_inertial(&mut self, motion: &TrueMotion, faults: &Faults) {
+        let time_us = motion.time_us;
+        let reading = self.inertial.sample(motion);
+        let rate = Axes { time_us, axes: reading.body_rate_rad_s };
+        let force = Axes { time_us, axes: reading.specific_force_m_s2 };
+        let rate = self.defects.gyroscope.tell(rate, faults.sensor(Sensor::Gyroscope));
+        let force = self.defects.accelerometer.tell(force, faults.sensor(Sensor::Accelerometer));
+        if let Some(rate) = rate {
+            self.gyroscope_watch.update(time_us, rate.axes.into());
+        }
+        if let Some(force) = force {
+            self.accelerometer_watch.update(time_us, force.axes.into());
+        }
+        let (Some(rate), Some(force)) = (rate, force) else { return };
+        let inertial =
+            InertialReading { time_us, body_rate_rad_s: rate.axes, specific_force_m_s2: force.axes };
+        self.vibration.update(&inertial);
+        self.estimator.inertial(&inertial);
+        self.readings.inertial = inertial;
     }
 
     /// The estimate.
@@ -161,9 +203,9 @@ impl Navigation {
         &self.estimator
     }
 
-    /// The latest readings; none before the first tick.
-    pub fn readings(&self) -> Option<&Readings> {
-        self.readings.as_ref()
+    /// The latest readings.
+    pub fn readings(&self) -> &Readings {
+        &self.readings
     }
 
     /// How much the accelerometers shake.
@@ -178,20 +220,14 @@ impl Navigation {
 
     /// Which instruments work, and are believed.
     pub fn health(&self) -> InstrumentHealth {
-        let diagnostics = self.estimator.diagnostics();
-        let believed = |source: &fusion_nav::SourceHealth| {
-            source.time_since_accepted.is_none_or(|time| f64::from(time.as_secs()) <= REJECTION_PATIENCE_S)
-        };
-        let fix = self.readings.and_then(|readings| readings.gps);
-        let fresh = fix.is_some_and(|fix| fix.is_fresh(self.time_us));
         InstrumentHealth {
             gyroscope: self.gyroscope_watch.is_alive(self.time_us, INERTIAL_PATIENCE_US),
             accelerometer: self.accelerometer_watch.is_alive(self.time_us, INERTIAL_PATIENCE_US),
             magnetometer: self.magnetometer_watch.is_alive(self.time_us, PATIENCE_US)
-                && believed(&diagnostics.mag_heading),
+                && self.magnetometer_trust.is_deserved(),
             barometer: self.barometer_watch.is_alive(self.time_us, PATIENCE_US)
-                && believed(&diagnostics.baro_altitude),
-            gps: fresh && believed(&diagnostics.gnss_position) && believed(&diagnostics.gnss_velocity),
+                && self.barometer_trust.is_deserved(),
+            gps: self.gps_watch.is_alive(self.time_us, FIX_PATIENCE_US) && self.gps_trust.is_deserved(),
         }
     }
 }

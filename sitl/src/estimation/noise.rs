@@ -5,18 +5,33 @@ use rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use crate::fault::Sensor;
+
 /// Whose numbers they are. Each instrument has its own stream: what happens to one does not change the noise of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u64)]
 pub enum Channel {
     /// Gyroscope and accelerometer.
-    Inertial = 1,
+    Inertial,
     /// GPS receiver.
-    Gps = 2,
+    Gps,
     /// Barometer.
-    Barometer = 3,
+    Barometer,
     /// Magnetometer.
-    Magnetometer = 4,
+    Magnetometer,
+    /// What a fault adds to an instrument.
+    Fault(Sensor),
+}
+
+impl Channel {
+    fn number(self) -> u64 {
+        match self {
+            Self::Inertial => 1,
+            Self::Gps => 2,
+            Self::Barometer => 3,
+            Self::Magnetometer => 4,
+            Self::Fault(sensor) => 5 + u64::from(sensor.number()),
+        }
+    }
 }
 
 /// A stream of normal numbers. The same seed gives the same numbers on every platform.
@@ -27,7 +42,7 @@ impl Noise {
     /// The stream of a channel under the seed of the run.
     pub fn new(seed: u64, channel: Channel) -> Self {
         // An odd factor sends different channels to different seeds.
-        let own = seed ^ (channel as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let own = seed ^ channel.number().wrapping_mul(0x9e37_79b9_7f4a_7c15);
         Self(Pcg64Mcg::seed_from_u64(own))
     }
 

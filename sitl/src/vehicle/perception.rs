@@ -12,8 +12,11 @@ impl Vehicle {
     pub(super) fn perceive(&mut self) {
         self.truth = self.simulation.outputs();
         let stands = self.landed.is_landed() && !self.armed;
-        if let Some(navigation) = &mut self.navigation {
-            navigation.step(&TrueMotion::of(&self.truth), &self.frame, stands);
+        match &mut self.navigation {
+            Some(navigation) => {
+                navigation.step(&TrueMotion::of(&self.truth), &self.frame, &self.faults, stands);
+            }
+            None => self.ideal_sensors.step(self.truth.time_us, &self.faults),
         }
         self.outputs = self.known();
     }
@@ -38,12 +41,18 @@ impl Vehicle {
 
     /// What of its motion it knows well enough to fly by.
     pub fn validity(&self) -> Validity {
-        self.navigation.as_ref().map_or(Validity::ALL, |navigation| navigation.estimate().validity)
+        match &self.navigation {
+            Some(navigation) => navigation.estimate().validity,
+            None => self.ideal_sensors.validity(),
+        }
     }
 
     /// Which instruments work.
     pub fn instrument_health(&self) -> InstrumentHealth {
-        self.navigation.as_ref().map_or(InstrumentHealth::ALL, Navigation::health)
+        match &self.navigation {
+            Some(navigation) => navigation.health(),
+            None => self.ideal_sensors.health(),
+        }
     }
 
     /// Instruments and estimator, if it flies by them.
@@ -58,26 +67,26 @@ impl Vehicle {
 
     /// What the instruments show; ideal ones show the truth.
     pub fn readings(&self) -> Readings {
-        let measured = self.navigation.as_ref().and_then(Navigation::readings).copied();
-        measured.unwrap_or_else(|| Readings::exact(&TrueMotion::of(&self.truth), &self.frame))
+        match &self.navigation {
+            Some(navigation) => *navigation.readings(),
+            None => self.ideal_sensors.readings(&TrueMotion::of(&self.truth), &self.frame),
+        }
     }
 
     /// What of the estimate speaks against arming.
     pub(super) fn navigation_obstacles(&self) -> Vec<String> {
-        let Some(navigation) = &self.navigation else { return Vec::new() };
-        if !navigation.estimator().is_aligned() {
-            return vec!["attitude not aligned yet".to_owned()];
-        }
-        let (health, validity) = (navigation.health(), navigation.estimate().validity);
+        let (health, validity) = (self.instrument_health(), self.validity());
+        let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
             (health.gyroscope, "gyroscope failed"),
             (health.accelerometer, "accelerometer failed"),
             (health.magnetometer, "magnetometer failed"),
             (health.barometer, "barometer failed"),
             (health.gps, "no GPS fix"),
-            (validity.tilt && validity.heading, "no attitude estimate"),
-            (validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
-            (validity.horizontal_position && validity.vertical_position, "no position estimate"),
+            (aligned, "attitude not aligned yet"),
+            (!aligned || validity.tilt && validity.heading, "no attitude estimate"),
+            (!aligned || validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
+            (!aligned || validity.horizontal_position && validity.vertical_position, "no position estimate"),
         ];
         checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned()).collect()
     }
@@ -85,9 +94,8 @@ impl Vehicle {
 
 fn estimated(truth: &Outputs, navigation: &Navigation) -> Outputs {
     let body = &navigation.estimate().body;
-    let acceleration = navigation.readings().map_or_else(Vector3::zeros, |readings| {
-        body.rotation() * readings.inertial.specific_force_m_s2 + Vector3::new(0.0, 0.0, GRAVITY_M_S2)
-    });
+    let force = navigation.readings().inertial.specific_force_m_s2;
+    let acceleration = body.rotation() * force + Vector3::new(0.0, 0.0, GRAVITY_M_S2);
     believed(truth, body, acceleration)
 }
 

@@ -20,7 +20,7 @@ use super::return_home::ReturnPhase;
 use super::set_point::PositionSetPoint;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
-use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
+use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
 use crate::fence::{Fence, zones};
 use crate::identity::Identity;
@@ -79,6 +79,7 @@ pub struct Vehicle {
     pub(super) truth: Outputs,
     /// Instruments and estimator, unless the truth is known.
     pub(super) navigation: Option<Navigation>,
+    pub(super) ideal_sensors: IdealSensors,
     pub(super) frame: LocalFrame,
     pub(super) wind: Wind,
     pub(super) wind_m_s: Vector3<f64>,
@@ -164,6 +165,7 @@ impl Vehicle {
             outputs,
             truth: outputs,
             navigation,
+            ideal_sensors: IdealSensors::default(),
         };
         vehicle.outputs = vehicle.known();
         Ok(vehicle)
