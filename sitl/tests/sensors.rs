@@ -180,6 +180,22 @@ fn it_flies_the_paper_s_goal_and_lands() {
     assert!(truth(&bench).z.abs() < 0.02, "{}", truth(&bench));
 }
 
+/// One of a formation stands beside the origin, and knows it.
+#[test]
+fn it_starts_where_it_stands() {
+    let mut settings = realistic(9);
+    settings.configuration.initial.position_m = [20.0, -10.0, 0.0];
+    let mut bench = Bench::of(&settings);
+    bench.fly(1.0);
+    assert!(error(&bench) < 0.01, "{:?}", bench.position());
+    bench.fly(3.0);
+    assert!(error(&bench) < 0.1 && bench.autopilot.vehicle().estimate().expect("realistic").resets == 0);
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    bench.fly(8.0);
+    assert!((truth(&bench) - Vector3::new(20.0, -10.0, -2.5)).norm() < 1.0, "{}", truth(&bench));
+}
+
 /// The truth is told by SIM_STATE alone; everything else tells the estimate.
 #[test]
 fn telemetry_tells_the_estimate() {

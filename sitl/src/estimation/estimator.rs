@@ -202,8 +202,15 @@ impl Estimator {
         if !self.window.is_long_enough(self.filter.config()) {
             return;
         }
-        if let Err(error) = self.filter.initialize(&self.window) {
-            tracing::warn!(%error, "the estimator does not align");
+        match self.filter.initialize(&self.window) {
+            Ok(_) => {
+                let place = Position::from_array(single(&self.estimate.body.position_m));
+                let told = PositionNoise::horizontal_vertical(tuning::START_M, tuning::START_M);
+                if !self.filter.reset_position_to(place, told) {
+                    tracing::warn!(?place, "the estimator does not start here");
+                }
+            }
+            Err(error) => tracing::warn!(%error, "the estimator does not align"),
         }
         self.window = StaticWindow::new();
     }

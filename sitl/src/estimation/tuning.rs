@@ -13,7 +13,7 @@ use crate::world::pressure_altitude_m;
 /// believes in this multiple of what the data sheet says.
 const INERTIAL_MARGIN: f64 = 3.0;
 /// How far the place where the vehicle stands is from where it is told to stand, m.
-const START_M: f32 = 0.1;
+pub const START_M: f32 = 0.1;
 /// How still it stands, m/s.
 pub const STILL_M_S: f32 = 0.02;
 /// A compass that has been calibrated keeps this much of the vehicle's own field, rad.

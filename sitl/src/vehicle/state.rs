@@ -122,7 +122,7 @@ impl Vehicle {
         configuration.initial.attitude_rad[2] = settings.heading_rad;
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
             believe_estimate(&mut configuration);
-            let start = Estimate::unaligned(Vector3::zeros(), settings.heading_rad);
+            let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
         });
         let inputs = Inputs { armed: false, ..Inputs::default() };
