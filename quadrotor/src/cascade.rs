@@ -76,6 +76,11 @@ impl Cascade {
         self.rotor_command_rad_s
     }
 
+    /// Rotor speeds, rad/s, of another controller.
+    pub(crate) fn set_rotor_command(&mut self, rotor_command_rad_s: [f64; 4]) {
+        self.rotor_command_rad_s = rotor_command_rad_s;
+    }
+
     /// What is commanded at `time_us`.
     pub(crate) fn command(&self, configuration: &Configuration, time_us: u64) -> Command {
         let controllers = &configuration.controllers;

@@ -9,6 +9,7 @@ use crate::estimator::Command;
 use crate::guidance::Guidance;
 use crate::observer::Observer;
 use crate::plant::Plant;
+use crate::recovery::Recovery;
 use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
 use crate::{
@@ -69,6 +70,8 @@ pub struct Simulation {
     estimate: Option<RigidBody>,
     /// What is wrong with the front, right, back and left rotor.
     rotor_faults: [Option<RotorFault>; 4],
+    /// Flies in place of the cascade while a rotor is lost.
+    recovery: Option<Recovery>,
 }
 
 impl Simulation {
@@ -95,7 +98,14 @@ impl Simulation {
             attitude_target: None,
             engage: false,
         };
-        Ok(Self { configuration: *configuration, design, state, estimate: None, rotor_faults: [None; 4] })
+        Ok(Self {
+            configuration: *configuration,
+            design,
+            state,
+            estimate: None,
+            rotor_faults: [None; 4],
+            recovery: None,
+        })
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.
@@ -108,7 +118,14 @@ impl Simulation {
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
         let design = CascadeDesign::new(configuration)?;
-        Ok(Self { configuration: *configuration, design, state, estimate: None, rotor_faults: [None; 4] })
+        Ok(Self {
+            configuration: *configuration,
+            design,
+            state,
+            estimate: None,
+            rotor_faults: [None; 4],
+            recovery: None,
+        })
     }
 
     /// The configuration.
@@ -148,7 +165,9 @@ impl Simulation {
     /// nothing has changed then.
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
         only_tunables_differ(&self.configuration, configuration)?;
-        self.design = CascadeDesign::new(configuration)?;
+        let design = CascadeDesign::new(configuration)?;
+        self.recovery = recovery(configuration, self.lost_rotor())?;
+        self.design = design;
         self.configuration = *configuration;
         Ok(())
     }
@@ -215,6 +234,32 @@ impl Simulation {
         }
         self.rotor_faults = faults;
         Ok(())
+    }
+
+    /// Flies on without the front (0), right, back or left (3) rotor from now on, which is known to be lost: the heading
+    /// is given up, and the reference of the inputs is followed in position and velocity as it is, as far as three rotors
+    /// can. With `None` the cascade takes over the vehicle where it is. It is an input, not a part of the state.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::OutOfRange`] when there is no such rotor, and [`ConfigurationError::Design`]; nothing has
+    /// changed then.
+    pub fn set_lost_rotor(&mut self, lost: Option<usize>) -> Result<(), ConfigurationError> {
+        if lost == self.lost_rotor() {
+            return Ok(());
+        }
+        self.recovery = recovery(&self.configuration, lost)?;
+        self.state.engage |= lost.is_none();
+        Ok(())
+    }
+
+    /// The rotor without which it flies.
+    pub fn lost_rotor(&self) -> Option<usize> {
+        self.recovery.as_ref().map(Recovery::lost)
+    }
+
+    /// Speeds that the rotors are commanded to turn with, front, right, back and left, rad/s.
+    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
+        if self.state.armed { self.state.cascade.rotor_command_rad_s() } else { [0.0; 4] }
     }
 
     /// Flies on to `time_us`. However the way there is split into calls, the flight is the same: inputs are
@@ -295,7 +340,7 @@ impl Simulation {
         if time_us == state.event_us {
             return state.plant;
         }
-        let mut command = if state.armed { state.cascade.rotor_command_rad_s() } else { [0.0; 4] };
+        let mut command = self.rotor_command_rad_s();
         for ((command, fault), present) in
             command.iter_mut().zip(self.rotor_faults).zip(state.plant.rotor_speed_rad_s)
         {
@@ -339,6 +384,16 @@ impl Simulation {
             return Ok(());
         }
         let seen = state.observer.observe(configuration, &state.plant, estimate, time_us);
+        if let Some(recovery) = &self.recovery {
+            if ticks(time_us, attitude_us) {
+                let measured = &state.plant.rotor_speed_rad_s;
+                let rotor_speed_rad_s = recovery.step(configuration, &seen.body, measured, &inputs.reference);
+                state.cascade.set_rotor_command(rotor_speed_rad_s);
+                let command = Command { acceleration_m_s2: None, rotor_speed_rad_s };
+                state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
+            }
+            return Ok(());
+        }
         if let Some(target) = &state.attitude_target {
             if ticks(time_us, attitude_us) {
                 state.cascade.sample_attitude_target(configuration, design, &seen, target);
@@ -370,6 +425,20 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// The controller for the loss of a rotor.
+fn recovery(
+    configuration: &Configuration,
+    lost: Option<usize>,
+) -> Result<Option<Recovery>, ConfigurationError> {
+    let Some(lost) = lost else { return Ok(None) };
+    if lost > 3 {
+        let value = lost as f64;
+        return Err(ConfigurationError::OutOfRange { name: "lost_rotor", value, minimum: 0.0, maximum: 3.0 });
+    }
+    let designed = Recovery::new(configuration, lost);
+    designed.map(Some).map_err(|source| ConfigurationError::Design { controller: "recovery", source })
 }
 
 /// Reference and controllers that take over the vehicle where it is, or is estimated to be.

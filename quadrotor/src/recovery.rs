@@ -1,0 +1,171 @@
+//! Flight on the three rotors that are left: the thrust axis is steered, the heading is given up.
+
+use lmpc::DesignError;
+use nalgebra::{Vector3, Vector6};
+
+use crate::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
+use crate::{Airframe, Configuration, GRAVITY_M_S2, PositionReference, RigidBody};
+
+/// Feedback of position, 1/s², and velocity, 1/s, on the way to the wanted acceleration.
+const POSITION_GAIN: f64 = 0.3;
+const VELOCITY_GAIN: f64 = 1.2;
+const SINK_GAIN: f64 = 2.0;
+/// Farther than this, m, a place pulls no harder.
+const FARTHEST_M: f64 = 3.0;
+/// Largest accelerations asked for, horizontal and vertical, m/s².
+const HORIZONTAL_M_S2: f64 = 2.5;
+const VERTICAL_M_S2: f64 = 2.0;
+/// Without spin an opposite rotor that idles can only push, so that there is no control about one axis. Up to the first
+/// spin rate, rad/s, only the thrust axis is righted, from the second on places are flown to …
+const STEERABLE_SPIN_RAD_S: [f64; 2] = [0.5, 1.5];
+/// … or from where the opposite rotor has so much of the weight to take back.
+const STEERABLE_THRUST: f64 = 0.1;
+/// Range of the whole thrust, as a multiple of the weight.
+const THRUST_RANGE: [f64; 2] = [0.3, 1.5];
+
+/// The controller for the loss of one rotor. It remembers nothing: what it needs of the past is in the measured speeds of
+/// the rotors.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Recovery {
+    lost: usize,
+    design: ReducedAttitudeDesign,
+}
+
+impl Recovery {
+    /// For the loss of the front (0), right, back or left (3) rotor.
+    ///
+    /// # Errors
+    /// [`DesignError`] when the airframe has no regulator.
+    pub(crate) fn new(configuration: &Configuration, lost: usize) -> Result<Self, DesignError> {
+        let [jx, jy, jz] = configuration.airframe.inertia_kg_m2;
+        let inertia = if lost.is_multiple_of(2) { [jx, jy, jz] } else { [jy, jx, jz] };
+        let sample_time_s = configuration.controllers.attitude.sample_time_s();
+        Ok(Self {
+            lost,
+            design: ReducedAttitudeDesign::new(&configuration.airframe, inertia, sample_time_s)?,
+        })
+    }
+
+    /// The lost rotor's index.
+    pub(crate) fn lost(&self) -> usize {
+        self.lost
+    }
+
+    /// Commanded rotor speeds, rad/s, from the vehicle's motion, the measured speeds and where it is asked to be; the
+    /// heading is not looked at.
+    pub(crate) fn step(
+        &self,
+        configuration: &Configuration,
+        body: &RigidBody,
+        rotor_speed_rad_s: &[f64; 4],
+        reference: &PositionReference,
+    ) -> [f64; 4] {
+        let airframe = &configuration.airframe;
+        let k1 = airframe.thrust_coefficient_n_s2;
+        let (weakest, strongest) = airframe.thrust_range_n();
+        let (weakest, strongest) = (weakest / 4.0, strongest / 4.0);
+        let rate = self.turned(&body.body_rate_rad_s, true);
+        let spin = rate.z;
+
+        let [lost, right, opposite, left] =
+            self.turned_rotors(rotor_speed_rad_s).map(|speed| k1 * speed * speed);
+        let weight = airframe.weight_n();
+        let (_, hovering) = self.trim(airframe, weight, lost, spin);
+        let takeable = (hovering - weakest) / (STEERABLE_THRUST * weight);
+        let [from, to] = STEERABLE_SPIN_RAD_S;
+        let steerable = ((libm::fabs(spin) - from) / (to - from)).max(takeable).clamp(0.0, 1.0);
+        let wanted = wanted_acceleration_m_s2(body, reference, steerable);
+        // −F/m R e₃ = a − g e₃
+        let thrust_axis = Vector3::new(0.0, 0.0, GRAVITY_M_S2) - wanted;
+        let axis = self.turned(&(body.rotation().inverse() * thrust_axis.normalize()), false);
+        let [least, most] = THRUST_RANGE;
+        // Leaning, the rotors' thrust falls short by the cosine.
+        let thrust =
+            (airframe.mass_kg * thrust_axis.norm() / axis.z.max(0.5)).clamp(least * weight, most * weight);
+
+        let (lean, trim) = self.trim(airframe, thrust, lost, spin);
+        let trim = trim.max(weakest);
+        let state = Vector6::new(
+            axis.x - libm::sin(lean),
+            axis.y,
+            rate.x - spin * libm::tan(lean),
+            rate.y,
+            opposite - trim,
+            left - right,
+        );
+        let command = self.design.command_n(spin, &state);
+        let opposite = (trim + command.x).clamp(weakest, strongest);
+        let side = ((thrust - opposite - lost) / 2.0).clamp(weakest, strongest);
+        let room = (side - weakest).min(strongest - side);
+        let half = (command.y / 2.0).clamp(-room, room);
+        let thrusts = [0.0, side - half, opposite, side + half];
+        self.body_rotors(&thrusts.map(|newton| libm::sqrt(newton / k1)))
+    }
+
+    /// Lean towards the lost rotor, rad, and thrust of the opposite one, N, in equilibrium: it leans so that the opposite
+    /// rotor brakes the spin, or drives it if the lost one, stuck, brakes it more than it should.
+    fn trim(&self, airframe: &Airframe, thrust_n: f64, lost_n: f64, spin_rad_s: f64) -> (f64, f64) {
+        let [jx, jy, jz] = airframe.inertia_kg_m2;
+        let gyroscopic = jz - if self.lost.is_multiple_of(2) { jx } else { jy };
+        let towards = ((thrust_n / 2.0 - 2.0 * lost_n) / (thrust_n / 8.0)).clamp(-1.0, 1.0);
+        let lean = LEAN_RAD * towards * if gyroscopic < 0.0 { -1.0 } else { 1.0 };
+        let trim = lost_n + gyroscopic * spin_rad_s * spin_rad_s * libm::tan(lean) / airframe.arm_length_m;
+        (lean, trim)
+    }
+
+    /// A vector of body axes in the axes of the design; rates (`true`) are mirrored as such.
+    fn turned(&self, vector: &Vector3<f64>, is_rate: bool) -> Vector3<f64> {
+        let (x, y) = match self.lost {
+            0 => (vector.x, vector.y),
+            1 => (vector.y, -vector.x),
+            2 => (-vector.x, -vector.y),
+            _ => (-vector.y, vector.x),
+        };
+        match (self.is_mirrored(), is_rate) {
+            (false, _) => Vector3::new(x, y, vector.z),
+            (true, false) => Vector3::new(x, -y, vector.z),
+            (true, true) => Vector3::new(-x, y, -vector.z),
+        }
+    }
+
+    /// Without the right or left rotor the vehicle spins to the left.
+    fn is_mirrored(&self) -> bool {
+        !self.lost.is_multiple_of(2)
+    }
+
+    /// Values of the rotors in the order of the design: lost, right, opposite, left.
+    fn turned_rotors(&self, rotors: &[f64; 4]) -> [f64; 4] {
+        self.places().map(|place| rotors.get(place).copied().unwrap_or(0.0))
+    }
+
+    /// The inverse.
+    fn body_rotors(&self, turned: &[f64; 4]) -> [f64; 4] {
+        let mut rotors = [0.0; 4];
+        for (place, value) in self.places().into_iter().zip(turned) {
+            if let Some(rotor) = rotors.get_mut(place) {
+                *rotor = *value;
+            }
+        }
+        rotors
+    }
+
+    /// Where the design's rotors are in the body.
+    fn places(&self) -> [usize; 4] {
+        let steps = if self.is_mirrored() { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
+        steps.map(|step| (self.lost + step) % 4)
+    }
+}
+
+/// Acceleration towards the reference, NED, m/s²; sideways the share that can be steered.
+fn wanted_acceleration_m_s2(body: &RigidBody, reference: &PositionReference, steerable: f64) -> Vector3<f64> {
+    let shortened = |vector: nalgebra::Vector2<f64>, longest: f64| {
+        let length = vector.norm();
+        if length > longest { vector * (longest / length) } else { vector }
+    };
+    let away = shortened((reference.position_m - body.position_m).xy(), FARTHEST_M);
+    let error = (reference.velocity_m_s - body.velocity_m_s).xy();
+    let horizontal = shortened(away * POSITION_GAIN + error * VELOCITY_GAIN, steerable * HORIZONTAL_M_S2);
+    let down = (reference.position_m.z - body.position_m.z) * POSITION_GAIN
+        + (reference.velocity_m_s.z - body.velocity_m_s.z) * SINK_GAIN;
+    Vector3::new(horizontal.x, horizontal.y, down.clamp(-VERTICAL_M_S2, VERTICAL_M_S2))
+}

@@ -1,0 +1,130 @@
+//! The thrust axis of a quadrotor without one of its rotors, as a linear-quadratic problem about a steady spin.
+//!
+//! With three rotors the heading cannot be held; the direction of the thrust can, while the body spins (Mueller and
+//! D'Andrea, ICRA 2014). Body axes are turned here so that the lost rotor is the front one, and mirrored, if need be, so
+//! that the spin is positive: the two rotors beside the lost one turn the same way and drive it.
+//!
+//! With n the wanted thrust axis (unit, down) in these axes and p, q, r the body rates:
+//!
+//! ```text
+//! ṅ₁ = r n₂ − q n₃             J_x ṗ = l (f_left − f_right) − (J_z − J_y) q r
+//! ṅ₂ = p n₃ − r n₁             J_y q̇ = l (f_lost − f_opposite) + (J_z − J_x) p r
+//! ```
+//!
+//! A body that leans by β towards the lost rotor and turns about the wanted axis, ω ∥ n, is in equilibrium when the
+//! opposite rotor makes f_opposite = f_lost + (J_z − J_x) r² tan β / l. Its drag torque brakes the spin, so that the rate
+//! settles where the opposite rotor makes half of the thrust: this vehicle needs no drag of the air for that.
+
+use alloc::vec::Vec;
+
+use lmpc::{DesignError, Discretization, Dlqr, StateSpace};
+use nalgebra::{DMatrix, DVector, Matrix2x6, Vector2, Vector6};
+
+use crate::Airframe;
+
+/// β, rad: the spin settles at 8 rad/s with the default airframe, and the vehicle touches down no more askew.
+pub(crate) const LEAN_RAD: f64 = 0.14;
+/// Spin rates that the gains are designed for, rad/s: from the first to the last, this far apart.
+const FIRST_SPIN_RAD_S: f64 = -1.0;
+const SPIN_STEP_RAD_S: f64 = 1.0;
+const SPINS: usize = 14;
+/// Weights of n, of the rates, rad/s, and of the thrusts, N.
+const AXIS_WEIGHT: f64 = 20.0;
+const RATE_WEIGHT: f64 = 2.0;
+const THRUST_WEIGHT: f64 = 1.0;
+
+/// Gains from [n₁ n₂ p q f_opposite f_left − f_right], as deviations, to [f_opposite, f_left − f_right], by spin rate.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ReducedAttitudeDesign {
+    gains: Vec<Matrix2x6<f64>>,
+}
+
+impl ReducedAttitudeDesign {
+    /// For an airframe, its moments of inertia in the turned axes, kg·m², and a sample time, s.
+    ///
+    /// # Errors
+    /// [`DesignError`] when a regulator does not exist.
+    pub(crate) fn new(
+        airframe: &Airframe,
+        inertia_kg_m2: [f64; 3],
+        sample_time_s: f64,
+    ) -> Result<Self, DesignError> {
+        let q = DMatrix::from_diagonal(&DVector::from_column_slice(&[
+            AXIS_WEIGHT,
+            AXIS_WEIGHT,
+            RATE_WEIGHT,
+            RATE_WEIGHT,
+            0.0,
+            0.0,
+        ]));
+        let r = DMatrix::from_diagonal_element(2, 2, THRUST_WEIGHT);
+        let gain = |index: usize| {
+            let spin_rad_s = FIRST_SPIN_RAD_S + SPIN_STEP_RAD_S * index as f64;
+            let model = model(airframe, inertia_kg_m2, spin_rad_s, sample_time_s)?;
+            let regulator = Dlqr::new(model.a(), model.b(), &q, &r, 1.0)?;
+            Ok(Matrix2x6::from_fn(|row, column| regulator.gain()[(row, column)]))
+        };
+        Ok(Self { gains: (0..SPINS).map(gain).collect::<Result<_, _>>()? })
+    }
+
+    /// Deviations of the commanded thrusts, N, from a deviation of the state at a spin rate, rad/s.
+    pub(crate) fn command_n(&self, spin_rad_s: f64, state: &Vector6<f64>) -> Vector2<f64> {
+        let place = ((spin_rad_s - FIRST_SPIN_RAD_S) / SPIN_STEP_RAD_S).clamp(0.0, (SPINS - 1) as f64);
+        let below = place as usize;
+        let share = place - below as f64;
+        let command =
+            |index: usize| self.gains.get(index).map_or_else(Vector2::zeros, |gain| -(gain * state));
+        command(below) * (1.0 - share) + command((below + 1).min(SPINS - 1)) * share
+    }
+}
+
+/// The linear model about a steady spin, with the rotors' lag.
+fn model(
+    airframe: &Airframe,
+    [jx, jy, jz]: [f64; 3],
+    spin_rad_s: f64,
+    sample_time_s: f64,
+) -> Result<StateSpace, DesignError> {
+    let (l, lag) = (airframe.arm_length_m, 1.0 / airframe.rotor_time_constant_s);
+    let (n1, n3) = (libm::sin(LEAN_RAD), libm::cos(LEAN_RAD));
+    let r = spin_rad_s;
+    let p = r * n1 / n3;
+    let mut a = DMatrix::zeros(6, 6);
+    // n₃ = √(1 − n₁² − n₂²) moves with n₁.
+    (a[(0, 1)], a[(0, 3)]) = (r, -n3);
+    (a[(1, 0)], a[(1, 2)]) = (-r - p * n1 / n3, n3);
+    (a[(2, 3)], a[(2, 5)]) = (-(jz - jy) * r / jx, l / jx);
+    (a[(3, 2)], a[(3, 4)]) = ((jz - jx) * r / jy, -l / jy);
+    (a[(4, 4)], a[(5, 5)]) = (-lag, -lag);
+    let mut b = DMatrix::zeros(6, 2);
+    (b[(4, 0)], b[(5, 1)]) = (lag, lag);
+    let c = DMatrix::identity(2, 6);
+    StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)
+}
+
+#[cfg(test)]
+mod tests {
+    use lmpc::spectral_radius;
+    use nalgebra::{DMatrix, Vector6};
+
+    use super::{FIRST_SPIN_RAD_S, ReducedAttitudeDesign, SPIN_STEP_RAD_S, SPINS, model};
+    use crate::Airframe;
+
+    /// At the spin rates of the design and between them.
+    #[test]
+    fn the_thrust_axis_is_stable_at_every_spin_rate() {
+        let airframe = Airframe::default();
+        let design = ReducedAttitudeDesign::new(&airframe, airframe.inertia_kg_m2, 0.01).expect("regulators");
+        for step in 0..4 * (SPINS - 1) {
+            let spin_rad_s = FIRST_SPIN_RAD_S + SPIN_STEP_RAD_S * step as f64 / 4.0;
+            let model = model(&airframe, airframe.inertia_kg_m2, spin_rad_s, 0.01).expect("a model");
+            let gain = DMatrix::from_fn(2, 6, |row, column| {
+                let mut state = Vector6::zeros();
+                state[column] = 1.0;
+                -design.command_n(spin_rad_s, &state)[row]
+            });
+            let radius = spectral_radius("A − BK", &(model.a() - model.b() * gain)).expect("finite");
+            assert!(radius < 0.997, "{radius} at {spin_rad_s} rad/s");
+        }
+    }
+}
