@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What is wrong with a rotor.
+/// What is wrong with a rotor. Disarmed, all of them come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RotorFault {
     /// Its motor has no power: it comes to rest with the rotor's lag.

@@ -344,7 +344,7 @@ impl Simulation {
         for ((command, fault), present) in
             command.iter_mut().zip(self.rotor_faults).zip(state.plant.rotor_speed_rad_s)
         {
-            if let Some(fault) = fault {
+            if let Some(fault) = fault.filter(|_| state.armed) {
                 *command = fault.goal_rad_s(*command, present);
             }
         }

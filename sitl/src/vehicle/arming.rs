@@ -25,6 +25,7 @@ impl Vehicle {
             obstacles.push(format!("battery at {:.0} %, needs {:.0} %", 100.0 * remaining, 100.0 * needed));
         }
         obstacles.extend(self.navigation_obstacles());
+        obstacles.extend(self.rotor_obstacles());
         match self.mode {
             Mode::Land | Mode::Return => {
                 obstacles.push(format!("not in {} mode", self.identity.mode_name(self.mode)));

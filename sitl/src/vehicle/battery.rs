@@ -2,6 +2,8 @@
 
 use quadrotor::Airframe;
 
+use crate::fault::BatteryFault;
+
 /// Cells in series.
 pub const CELLS: usize = 3;
 /// Share of the electric power that becomes mechanical power of the rotors.
@@ -21,12 +23,27 @@ pub struct Battery {
     /// Energy drawn, J.
     energy_j: f64,
     current_a: f64,
+    /// The true one.
+    terminal_v: f64,
+    /// What the gauge makes of the voltage.
     voltage_v: f64,
+    fault: Option<BatteryFault>,
+    /// Remaining share when the gauge got stuck.
+    stuck: f64,
 }
 
 impl Default for Battery {
     fn default() -> Self {
-        Self { drawn_as: 0.0, energy_j: 0.0, current_a: 0.0, voltage_v: open_circuit_v(1.0) }
+        let voltage_v = open_circuit_v(1.0);
+        Self {
+            drawn_as: 0.0,
+            energy_j: 0.0,
+            current_a: 0.0,
+            terminal_v: voltage_v,
+            voltage_v,
+            fault: None,
+            stuck: 1.0,
+        }
     }
 }
 
@@ -37,19 +54,44 @@ impl Battery {
         let k2 = airframe.torque_coefficient_n_m_s2;
         let mechanical_w: f64 = rotor_speed_rad_s.iter().map(|speed| k2 * speed * speed * speed).sum();
         let power_w = mechanical_w / DRIVE_EFFICIENCY + AVIONICS_W;
-        let open_v = open_circuit_v(self.remaining(capacity_ah));
-        self.current_a = power_w / self.voltage_v.max(LOWEST_VOLTAGE_V);
-        self.voltage_v = open_v - self.current_a * RESISTANCE_OHM;
+        let open_v = open_circuit_v(self.charge(capacity_ah));
+        self.current_a = power_w / self.terminal_v.max(LOWEST_VOLTAGE_V);
+        self.terminal_v = open_v - self.current_a * RESISTANCE_OHM;
+        self.voltage_v = match self.fault {
+            None => self.terminal_v,
+            Some(BatteryFault::Stuck) => self.voltage_v,
+            Some(BatteryFault::Off | BatteryFault::Wrong) => {
+                open_circuit_v(self.remaining(capacity_ah)) - self.current_a * RESISTANCE_OHM
+            }
+        };
         self.drawn_as += self.current_a * dt_s;
         self.energy_j += power_w * dt_s;
     }
 
-    /// Remaining share of the charge, 0 to 1.
+    /// Breaks, or works again.
+    pub fn fail(&mut self, fault: Option<BatteryFault>, capacity_ah: f64) {
+        if fault != self.fault {
+            self.stuck = self.remaining(capacity_ah);
+            self.fault = fault;
+        }
+    }
+
+    /// Remaining share of the charge, 0 to 1, as the gauge has it.
     pub fn remaining(&self, capacity_ah: f64) -> f64 {
+        match self.fault {
+            None => self.charge(capacity_ah),
+            Some(BatteryFault::Off) => 0.0,
+            Some(BatteryFault::Stuck) => self.stuck,
+            Some(BatteryFault::Wrong) => self.charge(capacity_ah) * BatteryFault::WRONG_SHARE,
+        }
+    }
+
+    /// The true one.
+    fn charge(&self, capacity_ah: f64) -> f64 {
         (1.0 - self.drawn_as / (3600.0 * capacity_ah)).clamp(0.0, 1.0)
     }
 
-    /// Voltage of the pack, V.
+    /// Voltage of the pack, V, as the gauge has it.
     pub fn voltage_v(&self) -> f64 {
         self.voltage_v
     }
@@ -87,6 +129,7 @@ mod tests {
     use quadrotor::Airframe;
 
     use super::Battery;
+    use crate::fault::BatteryFault;
 
     #[test]
     fn hovering_lasts_about_half_an_hour_and_idling_longer() {
@@ -103,6 +146,33 @@ mod tests {
         let hover = minutes(airframe.hover_rotor_speed_rad_s());
         assert!((20.0..40.0).contains(&hover), "{hover}");
         assert!(minutes(airframe.rotor_speed_min_rad_s) > 4.0 * hover);
+    }
+
+    /// What the gauge says under each fault, and that it is right again after it.
+    #[test]
+    fn a_broken_gauge_reads_wrong() {
+        let airframe = Airframe::default();
+        let mut battery = Battery::default();
+        let step = |battery: &mut Battery, fault: Option<BatteryFault>, seconds: usize| {
+            for _ in 0..seconds {
+                battery.fail(fault, 2.2);
+                battery.step(&airframe, &[250.0; 4], 2.2, 1.0);
+            }
+            (battery.remaining(2.2), battery.voltage_v())
+        };
+        let sound = step(&mut battery, None, 60);
+        let (remaining, voltage_v) = step(&mut battery, Some(BatteryFault::Off), 1);
+        assert!(remaining == 0.0 && (9.5..9.9).contains(&voltage_v), "3.3 V a cell: {voltage_v}");
+        let (remaining, voltage_v) = step(&mut battery, Some(BatteryFault::Wrong), 1);
+        assert!(
+            (remaining / sound.0 - 0.12).abs() < 0.001 && voltage_v < sound.1 - 1.0,
+            "{remaining} {voltage_v}"
+        );
+        let (recovered, recovered_v) = step(&mut battery, None, 1);
+        assert!(recovered < sound.0 && recovered > sound.0 - 0.01 && recovered_v > sound.1 - 0.1);
+        let stuck = step(&mut battery, Some(BatteryFault::Stuck), 1);
+        assert_eq!(step(&mut battery, Some(BatteryFault::Stuck), 60), stuck);
+        assert!(step(&mut battery, None, 1).0 < stuck.0 - 0.01);
     }
 
     #[test]

@@ -14,6 +14,7 @@ const TAKEOFF_SLOW_M_S: f64 = 0.3;
 impl Vehicle {
     pub(super) fn fly(&mut self) {
         match self.mode {
+            _ if self.lost_rotor().is_some() => self.descend_without_rotor(),
             Mode::Takeoff => self.climb(),
             Mode::Hold => {}
             Mode::Position => self.follow_sticks(),

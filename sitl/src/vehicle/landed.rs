@@ -21,6 +21,8 @@ const CONTACT_HEIGHT_M: f64 = 0.03;
 const FLYING_HEIGHT_M: f64 = 0.12;
 /// Slower than this, m/s, it stands.
 const STILL_M_S: f64 = 0.2;
+/// It does not stand while it turns faster than this, rad/s, as it does having landed without one of its rotors.
+const STILL_RAD_S: f64 = 0.3;
 /// It stands when it has touched the ground, still, for this long, µs.
 const SETTLED_US: u64 = 300_000;
 /// A reference this far below the vehicle, m, presses it on the ground.
@@ -51,7 +53,8 @@ impl LandedDetector {
         let height_m = -outputs.position_m.z;
         let pressed = controlled && outputs.setpoint.position_m.z > outputs.position_m.z + PRESSED_M;
         let unloaded = !armed || outputs.thrust_n < UNLOADED * weight_n || pressed;
-        let touching = height_m < CONTACT_HEIGHT_M && outputs.velocity_m_s.norm() < STILL_M_S && unloaded;
+        let still = outputs.velocity_m_s.norm() < STILL_M_S && outputs.body_rate_rad_s.norm() < STILL_RAD_S;
+        let touching = height_m < CONTACT_HEIGHT_M && still && unloaded;
         if !touching {
             self.touching_since_us = None;
         }

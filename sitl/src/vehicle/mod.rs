@@ -13,6 +13,7 @@
 //!           Offboard ──set-points lost──► Hold, Land, Return or Position, as the parameter says
 //!           Return ──home reached──► descends ──touched down──► disarms
 //!           Land ──touched down──► disarms
+//!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
 //! ```
 
 mod arming;
@@ -31,6 +32,7 @@ mod perception;
 mod plans;
 mod requests;
 mod return_home;
+mod rotor_loss;
 mod set_point;
 mod state;
 mod steering;

@@ -33,6 +33,9 @@ impl Vehicle {
     pub fn set_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
         self.may_enter(mode)?;
         let flying = self.steering.kind() != SteeringKind::Idle;
+        if mode != Mode::Land {
+            self.refuse_without_rotor()?;
+        }
         match mode {
             Mode::Takeoff => return self.take_off(None),
             Mode::Offboard if !self.identity.is_ardupilot() && !self.set_points_are_recent() => {
@@ -62,6 +65,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] when it flies already or the height is no takeoff's.
     pub fn take_off(&mut self, height_m: Option<f64>) -> Result<(), Refusal> {
+        self.refuse_without_rotor()?;
         let height_m = height_m.unwrap_or(self.conduct.takeoff_height_m);
         if !TAKEOFF_HEIGHT_M.contains(&height_m) {
             let (low, high) = (TAKEOFF_HEIGHT_M.start(), TAKEOFF_HEIGHT_M.end());
@@ -97,6 +101,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] on the ground, or too far away.
     pub fn reposition(&mut self, goal: &Reposition) -> Result<(), Refusal> {
+        self.refuse_without_rotor()?;
         if self.steering.kind() == SteeringKind::Idle {
             return Err(Refusal::later("Reposition rejected: not flying"));
         }

@@ -17,6 +17,7 @@ use super::mode::Mode;
 use super::notice::{Notice, Severity};
 use super::offboard::SetPoints;
 use super::return_home::ReturnPhase;
+use super::rotor_loss::RotorWatch;
 use super::set_point::PositionSetPoint;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
@@ -87,6 +88,7 @@ pub struct Vehicle {
     pub(super) faults: Faults,
     /// Those to come, the next one first.
     pub(super) scheduled_faults: VecDeque<ScheduledFault>,
+    pub(super) rotors: RotorWatch,
     pub(super) landed: LandedDetector,
     pub(super) home: Home,
     pub(super) armed: bool,
@@ -144,6 +146,7 @@ impl Vehicle {
             battery: Battery::default(),
             faults: Faults::default(),
             scheduled_faults: scheduled_faults.into(),
+            rotors: RotorWatch::new(outputs.rotor_speed_rad_s),
             landed: LandedDetector::new(-outputs.position_m.z),
             home: Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false },
             armed: false,
@@ -193,9 +196,11 @@ impl Vehicle {
         self.simulation.set_estimate(self.estimate().map(|estimate| estimate.body))?;
         self.simulation.advance_to(time_us + TICK_US, &inputs)?;
         self.perceive();
+        self.watch_rotors(dt_s);
 
         let airframe = self.simulation.configuration().airframe;
         let capacity_ah = self.conduct.battery_capacity_ah;
+        self.battery.fail(self.faults.battery(), capacity_ah);
         self.battery.step(&airframe, &self.outputs.rotor_speed_rad_s, capacity_ah, dt_s);
         let controlled = self.steering.kind() == SteeringKind::Position;
         let stood = self.landed.is_landed();
@@ -238,7 +243,9 @@ impl Vehicle {
     }
 
     pub(super) fn follow(&mut self, set_point: &PositionSetPoint) {
-        self.steering.follow(set_point, &self.outputs);
+        if self.lost_rotor().is_none() {
+            self.steering.follow(set_point, &self.outputs);
+        }
     }
 
     pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {

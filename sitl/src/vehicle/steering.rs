@@ -29,6 +29,13 @@ pub enum Steering {
         /// The attitude that is tracked now.
         reference: UnitQuaternion<f64>,
     },
+    /// Down on the rotors that are left.
+    Descent {
+        /// The one that is lost, front (0) to left (3).
+        lost_rotor: usize,
+        /// Where and how fast.
+        reference: PositionReference,
+    },
 }
 
 /// The ways of steering, without their data.
@@ -40,6 +47,8 @@ pub enum SteeringKind {
     Position,
     /// Attitude and thrust.
     Attitude,
+    /// Position without heading.
+    Descent,
 }
 
 impl Steering {
@@ -49,6 +58,14 @@ impl Steering {
             Self::Idle { .. } => SteeringKind::Idle,
             Self::Goal(_) | Self::Motion(_) => SteeringKind::Position,
             Self::Attitude { .. } => SteeringKind::Attitude,
+            Self::Descent { .. } => SteeringKind::Descent,
+        }
+    }
+
+    fn lost_rotor(&self) -> Option<usize> {
+        match self {
+            Self::Descent { lost_rotor, .. } => Some(*lost_rotor),
+            _ => None,
         }
     }
 
@@ -86,7 +103,7 @@ impl Steering {
     fn present(&self, outputs: &Outputs) -> PositionReference {
         match self {
             Self::Goal(_) | Self::Motion(_) => outputs.setpoint,
-            Self::Idle { .. } | Self::Attitude { .. } => PositionReference {
+            Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => PositionReference {
                 velocity_m_s: outputs.velocity_m_s,
                 ..at_rest(outputs.position_m, outputs.attitude_rad.z)
             },
@@ -101,6 +118,7 @@ impl Steering {
         dt_s: f64,
     ) -> Result<PositionReference, SimulationError> {
         let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
+        fly_without(simulation, self.lost_rotor());
         match self {
             Self::Idle { yaw_rad } => {
                 simulation.set_attitude_target(Some(AttitudeTarget {
@@ -121,6 +139,10 @@ impl Steering {
                 }))?;
                 Ok(at_rest(outputs.position_m, outputs.attitude_rad.z))
             }
+            Self::Descent { reference, .. } => {
+                simulation.set_attitude_target(None)?;
+                Ok(*reference)
+            }
             Self::Goal(goal) => {
                 simulation.set_attitude_target(None)?;
                 shape(simulation, true);
@@ -134,6 +156,13 @@ impl Steering {
                 Ok(reference)
             }
         }
+    }
+}
+
+/// Changes to the controller for the loss of a rotor, or back. An airframe that has none flies on with the cascade.
+fn fly_without(simulation: &mut Simulation, lost_rotor: Option<usize>) {
+    if let Err(error) = simulation.set_lost_rotor(lost_rotor) {
+        tracing::error!(%error, "no flight without a rotor");
     }
 }
 

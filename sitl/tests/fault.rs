@@ -1,0 +1,192 @@
+//! Units that break in flight, by command and by schedule.
+
+mod common;
+
+use common::{Bench, settings};
+use mavlink::dialects::common::{MavCmd, MavMessage};
+use sitl::codec::Message;
+use sitl::identity::Identity;
+use sitl::vehicle::{LandedState, Mode};
+
+/// MAV_RESULT.
+const TEMPORARILY_REJECTED: u8 = 1;
+const DENIED: u8 = 2;
+const UNSUPPORTED: u8 = 3;
+
+/// FAILURE_UNIT and FAILURE_TYPE.
+const BATTERY: f32 = 100.0;
+const MOTOR: f32 = 101.0;
+const OK: f32 = 0.0;
+const OFF: f32 = 1.0;
+const STUCK: f32 = 2.0;
+const WRONG: f32 = 4.0;
+
+fn inject(bench: &mut Bench, unit: f32, kind: f32, instance: f32) -> u8 {
+    bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, [unit, kind, instance, 0.0, 0.0, 0.0, 0.0])
+}
+
+fn tilt_rad(bench: &Bench) -> f64 {
+    let [w, x, y, z] = bench.autopilot.vehicle().truth().quaternion;
+    (w * w - x * x - y * y + z * z).clamp(-1.0, 1.0).acos()
+}
+
+/// Flies until it is disarmed and returns the largest tilt, rad, and the sink rate a tenth of a second before.
+fn fly_down(bench: &mut Bench) -> (f64, f64) {
+    let mut largest: f64 = 0.0;
+    let mut sinks = std::collections::VecDeque::from([0.0; 12]);
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.01);
+        if bench.position()[2] < -0.2 {
+            largest = largest.max(tilt_rad(bench));
+        }
+        sinks.pop_front();
+        sinks.push_back(bench.velocity()[2]);
+        assert!(bench.autopilot.vehicle().time_us() < 120_000_000, "still up: {:?}", bench.position());
+    }
+    (largest, sinks[0])
+}
+
+#[test]
+fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut bench = Bench::hovering(identity);
+        assert_eq!(inject(&mut bench, MOTOR, OFF, 2.0), 0);
+        bench.fly(0.1);
+        assert_eq!(bench.autopilot.vehicle().lost_rotor(), Some(1));
+        let texts = bench.texts();
+        assert!(texts.iter().any(|text| text == "Failure injected: rotor2=off"), "{texts:?}");
+        assert!(texts.iter().any(|text| text == "Rotor 2 lost: descending without yaw control"), "{texts:?}");
+        assert_eq!(bench.mode(), Mode::Land);
+        // Nothing else can be flown now.
+        assert_eq!(bench.set_mode(Mode::Hold), TEMPORARILY_REJECTED);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, [0.0; 7]), TEMPORARILY_REJECTED);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, [f32::NAN; 7]), TEMPORARILY_REJECTED);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 7]), 0);
+
+        let (tilt, sink) = fly_down(&mut bench);
+        assert!(tilt < 40_f64.to_radians(), "it tumbled: {}", tilt.to_degrees());
+        assert!(sink < 0.9, "it touched down at {sink} m/s");
+        assert!(
+            bench.texts().iter().any(|text| text == "Disarmed: landed without rotor 2"),
+            "{:?}",
+            bench.texts()
+        );
+        // Spinning on the ground is not standing on it.
+        assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::InAir);
+        bench.fly(3.0);
+        assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::OnGround);
+        assert!(tilt_rad(&bench) < 0.02 && bench.position()[2].abs() < 0.02, "{:?}", bench.position());
+        // Until it is mended it does not fly again.
+        let obstacles = bench.autopilot.vehicle().arming_obstacles();
+        assert_eq!(obstacles, ["rotor 2 failed"]);
+        assert_eq!(inject(&mut bench, MOTOR, OK, 0.0), 0);
+        assert!(bench.autopilot.vehicle().arming_obstacles().is_empty());
+    }
+}
+
+#[test]
+fn a_rotor_is_lost_at_full_speed_and_near_the_ground() {
+    // 2.5 m up.
+    let mut bench = Bench::new(Identity::Px4);
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    assert_eq!(inject(&mut bench, MOTOR, OFF, 4.0), 0);
+    let (tilt, sink) = fly_down(&mut bench);
+    assert!(tilt < 45_f64.to_radians() && sink < 0.9, "{} {sink}", tilt.to_degrees());
+
+    // 8 m/s to the east.
+    let mut bench = Bench::hovering(Identity::Px4);
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(0.0, 100.0, -10.0));
+    let [latitude, longitude] = [place.latitude_deg as f32, place.longitude_deg as f32];
+    let goal = [-1.0, 1.0, 0.0, f32::NAN, latitude, longitude, 498.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, goal), 0);
+    bench.fly_until("fast", 10.0, |bench| bench.velocity()[1] > 7.8);
+    assert_eq!(inject(&mut bench, MOTOR, OFF, 1.0), 0);
+    let (tilt, sink) = fly_down(&mut bench);
+    assert!(tilt < 45_f64.to_radians() && sink < 0.9, "{} {sink}", tilt.to_degrees());
+}
+
+#[test]
+fn a_weak_rotor_flies_on_and_a_stuck_one_lands() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    assert_eq!(inject(&mut bench, MOTOR, WRONG, 3.0), 0);
+    bench.fly(8.0);
+    assert!(bench.is_near([0.0, 0.0, -10.0]) && bench.autopilot.vehicle().lost_rotor().is_none());
+
+    let mut bench = Bench::hovering(Identity::Px4);
+    assert_eq!(inject(&mut bench, MOTOR, STUCK, 3.0), 0);
+    bench.fly(1.0);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 7]), 0);
+    let (tilt, sink) = fly_down(&mut bench);
+    assert!(tilt < 15_f64.to_radians() && sink < 0.9, "{} {sink}", tilt.to_degrees());
+    bench.fly(3.0);
+    assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::OnGround);
+}
+
+#[test]
+fn a_rotor_that_never_turned_disarms_on_the_ground() {
+    let mut bench = Bench::new(Identity::Px4);
+    assert_eq!(inject(&mut bench, MOTOR, OFF, 1.0), 0);
+    let arm = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm), TEMPORARILY_REJECTED);
+    let force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, force), 0);
+    bench.fly(0.2);
+    assert!(!bench.autopilot.vehicle().is_armed());
+    assert!(bench.texts().iter().any(|text| text == "Disarmed: rotor 1 failed"), "{:?}", bench.texts());
+}
+
+#[test]
+fn faults_come_and_go_by_the_schedule() {
+    let mut start = settings(Identity::Px4);
+    start.faults = ["2.5:battery=ok", "1:battery=off"].map(|text| text.parse().expect("a fault")).to_vec();
+    let mut bench = Bench::of(&start);
+    let remaining = |bench: &Bench| bench.autopilot.vehicle().battery_remaining();
+    bench.fly(0.999);
+    assert!(remaining(&bench) > 0.99);
+    bench.fly(0.002);
+    assert_eq!(remaining(&bench), 0.0);
+    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, needs 15 %"]);
+    bench.fly(1.1);
+    let voltage = bench.heard.iter().rev().find_map(|message| match message {
+        Message::Typed(MavMessage::SYS_STATUS(status)) => {
+            Some((status.voltage_battery, status.battery_remaining))
+        }
+        _ => None,
+    });
+    let (voltage_mv, percent) = voltage.expect("SYS_STATUS");
+    assert!((9_500..9_900).contains(&voltage_mv) && percent == 0, "{voltage_mv} {percent}");
+    bench.fly(0.5);
+    assert!(remaining(&bench) > 0.99);
+    let told: Vec<_> = bench.texts().into_iter().filter(|text| text.starts_with("Failure")).collect();
+    assert_eq!(told, ["Failure injected: battery=off", "Failure injected: battery=ok"]);
+}
+
+#[test]
+fn what_has_no_meaning_is_refused_with_the_reason() {
+    let mut bench = Bench::new(Identity::Px4);
+    for (unit, kind, instance, result, reason) in [
+        (5.0, OFF, 0.0, UNSUPPORTED, "no failure unit 5"),
+        (MOTOR, 9.0, 0.0, UNSUPPORTED, "no failure type 9"),
+        (MOTOR, OFF, 5.0, UNSUPPORTED, "no motor 5"),
+        (MOTOR, 3.0, 1.0, UNSUPPORTED, "a motor cannot be `garbage`"),
+        (BATTERY, 6.0, 0.0, UNSUPPORTED, "a battery cannot be `delayed`"),
+        (4.0, OFF, 3.0, UNSUPPORTED, "no instance 3"),
+        (0.5, OFF, 0.0, DENIED, "needs a unit"),
+    ] {
+        assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");
+        assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
+    }
+    assert_eq!(*bench.autopilot.vehicle().faults(), sitl::fault::Faults::default());
+}
+
+#[test]
+fn a_parameter_forbids_it() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.failure_injection = false;
+    let mut bench = Bench::of(&start);
+    assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
+    assert!(bench.texts().iter().any(|text| text.contains("SYS_FAILURE_EN is 0")), "{:?}", bench.texts());
+    assert_eq!(*bench.autopilot.vehicle().faults(), sitl::fault::Faults::default());
+}
