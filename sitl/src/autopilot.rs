@@ -20,7 +20,7 @@ use crate::service::{
     manual_control, message_interval, mission, parameter, set_point, status_text, telemetry,
     time_synchronization,
 };
-use crate::vehicle::{Refusal, Severity, Vehicle, VehicleSettings};
+use crate::vehicle::{MissionStatus, Refusal, Severity, Vehicle, VehicleSettings};
 
 /// Component id of an autopilot.
 pub const COMPONENT: u8 = 1;
@@ -49,6 +49,7 @@ pub struct Autopilot {
     pub(crate) retries: Retries,
     pub(crate) files: FileServer,
     pub(crate) uploads: Uploads,
+    pub(crate) mission_told: Option<MissionStatus>,
 }
 
 impl Autopilot {
@@ -79,6 +80,7 @@ impl Autopilot {
             retries: Retries::default(),
             files: FileServer::default(),
             uploads: Uploads::default(),
+            mission_told: None,
         };
         heartbeat::update(&mut autopilot);
         status_text::send(&mut autopilot, Severity::Info, INTRODUCTION);
@@ -104,6 +106,7 @@ impl Autopilot {
             id::MISSION_COUNT => mission::count(self, origin, frame),
             id::MISSION_ITEM | id::MISSION_ITEM_INT => mission::item(self, origin, frame),
             id::MISSION_ACK => mission::acknowledge(self, origin, frame),
+            id::MISSION_SET_CURRENT => mission::set_current(self, frame),
             id::MISSION_CLEAR_ALL => mission::clear_all(self, origin, frame),
             id::SET_GPS_GLOBAL_ORIGIN => self.refuse_origin(origin),
             id::REQUEST_DATA_STREAM => message_interval::request_data_stream(self, origin, frame),
@@ -166,6 +169,7 @@ impl Autopilot {
     }
 
     fn tell_changes(&mut self) {
+        mission::update_progress(self);
         status_text::send_notices(self);
         heartbeat::update(self);
     }

@@ -45,6 +45,7 @@ impl Identity {
                 // ArduCopter takes off in its guided mode.
                 Mode::Takeoff | Mode::Offboard => 4,
                 Mode::Position => 5,
+                Mode::Mission => 3,
                 // BRAKE
                 Mode::Hold => 17,
                 Mode::Return => 6,
@@ -55,6 +56,7 @@ impl Identity {
             Mode::Position => px4(3, 0),
             Mode::Takeoff => px4(4, 2),
             Mode::Hold => px4(4, 3),
+            Mode::Mission => px4(4, 4),
             Mode::Return => px4(4, 5),
             Mode::Land => px4(4, 6),
             Mode::Offboard => px4(6, 0),
@@ -65,6 +67,7 @@ impl Identity {
     pub fn mode(self, custom_mode: u32) -> Option<Mode> {
         if self.is_ardupilot() {
             return match custom_mode {
+                3 => Some(Mode::Mission),
                 4 => Some(Mode::Offboard),
                 // LOITER and POSHOLD
                 5 | 16 => Some(Mode::Position),
@@ -89,9 +92,17 @@ impl Identity {
     /// Modes that a user may choose, in the order in which they are listed.
     pub fn selectable_modes(self) -> &'static [Mode] {
         if self.is_ardupilot() {
-            &[Mode::Position, Mode::Offboard, Mode::Return, Mode::Land, Mode::Hold]
+            &[Mode::Position, Mode::Offboard, Mode::Mission, Mode::Return, Mode::Land, Mode::Hold]
         } else {
-            &[Mode::Position, Mode::Hold, Mode::Takeoff, Mode::Return, Mode::Land, Mode::Offboard]
+            &[
+                Mode::Position,
+                Mode::Hold,
+                Mode::Takeoff,
+                Mode::Mission,
+                Mode::Return,
+                Mode::Land,
+                Mode::Offboard,
+            ]
         }
     }
 
@@ -100,11 +111,13 @@ impl Identity {
         match (self.is_ardupilot(), mode) {
             (true, Mode::Position) => "Loiter",
             (true, Mode::Hold) => "Brake",
+            (true, Mode::Mission) => "Auto",
             (true, Mode::Takeoff | Mode::Offboard) => "Guided",
             (true, Mode::Return) => "RTL",
             (_, Mode::Land) => "Land",
             (false, Mode::Position) => "Position",
             (false, Mode::Hold) => "Hold",
+            (false, Mode::Mission) => "Mission",
             (false, Mode::Takeoff) => "Takeoff",
             (false, Mode::Return) => "Return",
             (false, Mode::Offboard) => "Offboard",

@@ -5,22 +5,15 @@
 mod common;
 
 use common::channel::Lossy;
+use common::plan_client::{ack_of, count_message, item_message, mission_type, request_of, result};
 use common::{Bench, GROUND_STATION};
 use mavlink::dialects::common::*;
-use sitl::codec::{Frame, Message, MissionItemMessage, Target, Version};
+use sitl::codec::{Frame, Message, Version};
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, PlanKind, command, frame};
 use sitl::service::{Origin, PeerId};
 
 const ACCEPTED: u8 = 0;
-
-fn mission_type(kind: PlanKind) -> MavMissionType {
-    match kind {
-        PlanKind::Mission => MavMissionType::MAV_MISSION_TYPE_MISSION,
-        PlanKind::Fence => MavMissionType::MAV_MISSION_TYPE_FENCE,
-        PlanKind::Rally => MavMissionType::MAV_MISSION_TYPE_RALLY,
-    }
-}
 
 fn waypoint(north: f64, altitude: f64) -> MissionItem {
     MissionItem {
@@ -50,43 +43,6 @@ fn items(kind: PlanKind, count: usize) -> Vec<MissionItem> {
         }
     };
     (0..count).map(item).collect()
-}
-
-fn item_message(kind: PlanKind, sequence: usize, item: MissionItem, int: bool) -> Message {
-    Message::MissionItem(MissionItemMessage {
-        sequence: sequence as u16,
-        item,
-        current: 0,
-        kind: kind.number(),
-        target: Target { system: 1, component: 1 },
-        int,
-    })
-}
-
-fn count_message(kind: PlanKind, count: usize) -> MavMessage {
-    MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
-        count: count as u16,
-        target_system: 1,
-        target_component: 1,
-        mission_type: mission_type(kind),
-        opaque_id: 0,
-    })
-}
-
-/// The number of an item that is asked for.
-fn request_of(message: &Message) -> Option<u16> {
-    match message {
-        Message::Typed(MavMessage::MISSION_REQUEST_INT(request)) => Some(request.seq),
-        Message::Typed(MavMessage::MISSION_REQUEST(request)) => Some(request.seq),
-        _ => None,
-    }
-}
-
-fn ack_of(message: &Message) -> Option<MISSION_ACK_DATA> {
-    match message {
-        Message::Typed(MavMessage::MISSION_ACK(ack)) => Some(ack.clone()),
-        _ => None,
-    }
 }
 
 /// An upload by a client with the retries that the protocol recommends.
@@ -227,11 +183,7 @@ impl Client {
 
     /// Uploads as a client does, and returns what is heard at the end.
     fn upload(&mut self, kind: PlanKind, items: &[MissionItem]) -> Vec<Message> {
-        let mut heard = self.send(count_message(kind, items.len()));
-        while let Some(sequence) = heard.iter().find_map(request_of) {
-            heard = self.send(item_message(kind, sequence.into(), items[usize::from(sequence)], true));
-        }
-        heard
+        common::plan_client::upload(&mut self.bench, kind, items)
     }
 
     fn take(&mut self, kind: PlanKind, items: &[MissionItem]) {
@@ -242,10 +194,6 @@ impl Client {
     fn plan(&self, kind: PlanKind) -> &[MissionItem] {
         self.bench.autopilot.vehicle().plans().get(kind).items()
     }
-}
-
-fn result(heard: &[Message]) -> Option<u8> {
-    heard.iter().find_map(ack_of).map(|ack| ack.mavtype as u8)
 }
 
 fn texts(heard: Vec<Message>) -> String {

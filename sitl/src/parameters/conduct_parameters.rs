@@ -85,6 +85,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     choice!("COM_POSCTL_NAVL", POSITION_ACTIONS, failsafe.position_lost),
     choice!("COM_ACT_FAIL_ACT", ROTOR_ACTIONS, failsafe.rotor_failure),
     real!("RTL_RETURN_ALT", Some(("RTL_ALT", 100.0)), 1.0..=1000.0, return_height_m),
+    real!("NAV_ACC_RAD", Some(("WPNAV_RADIUS", 100.0)), 0.1..=1000.0, acceptance_radius_m),
     real!("RTL_MIN_DIST", None, 0.5..=1000.0, return_near_m),
     real!("MPC_LAND_SPEED", Some(("LAND_SPEED", 100.0)), 0.1..=3.0, land_speed_m_s),
     real!("COM_DISARM_LAND", None, -1.0..=600.0, disarm_after_landing_s),

@@ -73,7 +73,7 @@ fn base_mode(vehicle: &Vehicle) -> MavModeFlag {
     let flags = match vehicle.mode() {
         Mode::Position => stabilized | MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
         Mode::Offboard => guided,
-        Mode::Takeoff | Mode::Hold | Mode::Return | Mode::Land => {
+        Mode::Takeoff | Mode::Hold | Mode::Mission | Mode::Return | Mode::Land => {
             guided | MavModeFlag::MAV_MODE_FLAG_AUTO_ENABLED
         }
     };

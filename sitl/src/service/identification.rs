@@ -14,6 +14,8 @@ const PRODUCT_ID: u16 = 0x5043;
 pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
     let mut capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED

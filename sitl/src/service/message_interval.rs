@@ -32,7 +32,9 @@ const RATES: &[(u32, f64, f64)] = &[
     (32, 10.0, 30.0),  // LOCAL_POSITION_NED
     (33, 5.0, 50.0),   // GLOBAL_POSITION_INT
     (36, 1.0, 10.0),   // SERVO_OUTPUT_RAW
+    (42, 1.0, 1.0),    // MISSION_CURRENT
     (49, 0.1, 1.0),    // GPS_GLOBAL_ORIGIN
+    (62, 2.0, 10.0),   // NAV_CONTROLLER_OUTPUT
     (74, 4.0, 10.0),   // VFR_HUD
     (83, 2.0, 10.0),   // ATTITUDE_TARGET
     (85, 2.0, 10.0),   // POSITION_TARGET_LOCAL_NED
@@ -50,13 +52,13 @@ const RATES: &[(u32, f64, f64)] = &[
 
 /// Messages of the groups of REQUEST_DATA_STREAM.
 const GROUPS: &[(u8, &[u32])] = &[
-    (1, &[24, 26, 27, 29]),   // RAW_SENSORS
-    (2, &[1, 147, 242, 245]), // EXTENDED_STATUS
-    (3, &[36]),               // RC_CHANNELS
-    (6, &[32, 33, 85]),       // POSITION
-    (10, &[30, 31]),          // EXTRA1
-    (11, &[74]),              // EXTRA2
-    (12, &[141, 241]),        // EXTRA3
+    (1, &[24, 26, 27, 29]),           // RAW_SENSORS
+    (2, &[1, 42, 62, 147, 242, 245]), // EXTENDED_STATUS
+    (3, &[36]),                       // RC_CHANNELS
+    (6, &[32, 33, 85]),               // POSITION
+    (10, &[30, 31]),                  // EXTRA1
+    (11, &[74]),                      // EXTRA2
+    (12, &[141, 241]),                // EXTRA3
 ];
 
 /// Longest interval, µs: what MESSAGE_INTERVAL can tell.

@@ -13,6 +13,7 @@ fn standard(mode: Mode) -> MavStandardMode {
         Mode::Position => MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD,
         Mode::Return => MavStandardMode::MAV_STANDARD_MODE_SAFE_RECOVERY,
         Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
+        Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,
         Mode::Takeoff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
         Mode::Hold | Mode::Offboard => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
     }

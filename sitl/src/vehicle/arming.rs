@@ -30,6 +30,7 @@ impl Vehicle {
             Mode::Land | Mode::Return => {
                 obstacles.push(format!("not in {} mode", self.identity.mode_name(self.mode)));
             }
+            Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Offboard if !self.identity.is_ardupilot() && !self.set_points_are_recent() => {
                 obstacles.push("no set-points".to_owned());
             }
@@ -89,7 +90,10 @@ impl Vehicle {
         self.takeoff_z_m = None;
         self.idle();
         // A mode that ends on the ground is not one to be armed in.
-        if matches!(self.mode, Mode::Land | Mode::Return | Mode::Takeoff) {
+        if self.mode == Mode::Mission {
+            self.leave_mission();
+        }
+        if matches!(self.mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
             self.mode = self.identity.first_mode();
         }
         self.say(Severity::Info, why);

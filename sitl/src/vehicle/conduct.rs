@@ -13,6 +13,8 @@ pub struct Conduct {
     pub set_point_timeout_s: f64,
     /// Height above home of the way home, m.
     pub return_height_m: f64,
+    /// Waypoints that name no acceptance radius are passed within this one, m.
+    pub acceptance_radius_m: f64,
     /// Nearer to home than this, m, a return lands without climbing.
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
@@ -51,6 +53,7 @@ fn yes() -> bool {
 /// | takeoff height | 2.5 m | PX4's |
 /// | set-point timeout | 1 s; ArduPilot 3 s | theirs |
 /// | return height | 30 m (ArduPilot 15 m), near 5 m | theirs |
+/// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
 /// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
@@ -63,6 +66,7 @@ impl Conduct {
             takeoff_height_m: 2.5,
             set_point_timeout_s: if ardupilot { 3.0 } else { 1.0 },
             return_height_m: if ardupilot { 15.0 } else { 30.0 },
+            acceptance_radius_m: 2.0,
             return_near_m: 5.0,
             land_speed_m_s: 0.7,
             disarm_after_landing_s: 2.0,

@@ -1,5 +1,7 @@
 //! One tick of the armed vehicle, by mode.
 
+use quadrotor::Outputs;
+
 use super::mode::Mode;
 use super::notice::Severity;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
@@ -11,6 +13,11 @@ use super::sticks::Sticks;
 const TAKEOFF_REACHED_M: f64 = 0.2;
 const TAKEOFF_SLOW_M_S: f64 = 0.3;
 
+/// Whether a takeoff to z, m, is over.
+pub fn is_slow_near(outputs: &Outputs, z_m: f64) -> bool {
+    (outputs.position_m.z - z_m).abs() < TAKEOFF_REACHED_M && outputs.velocity_m_s.norm() < TAKEOFF_SLOW_M_S
+}
+
 impl Vehicle {
     pub(super) fn fly(&mut self) {
         match self.mode {
@@ -19,6 +26,7 @@ impl Vehicle {
             Mode::Hold => {}
             Mode::Position => self.follow_sticks(),
             Mode::Offboard => self.offboard(),
+            Mode::Mission => self.fly_mission(),
             Mode::Land => self.descend(None),
             Mode::Return => self.return_home(),
         }
@@ -30,6 +38,9 @@ impl Vehicle {
         if mode != self.mode {
             self.say(Severity::Info, format!("{} mode", self.identity.mode_name(mode)));
         }
+        if self.mode == Mode::Mission && mode != Mode::Mission {
+            self.leave_mission();
+        }
         self.mode = mode;
         self.takeoff_z_m = None;
         self.set_points.applied = false;
@@ -38,6 +49,7 @@ impl Vehicle {
             Mode::Offboard if !self.set_points_are_recent() => self.hold(),
             Mode::Return if self.steering.kind() != SteeringKind::Idle => self.begin_return(),
             Mode::Land => self.begin_landing(),
+            Mode::Mission => self.enter_mission(),
             _ => {}
         }
     }
@@ -50,9 +62,7 @@ impl Vehicle {
             self.follow(&PositionSetPoint { axes, yaw: YawTarget::Angle(self.outputs.attitude_rad.z) });
             self.say(Severity::Info, format!("Taking off to {:.1} m above home", self.home.position_m.z - z));
         }
-        let arrived = (self.outputs.position_m.z - z).abs() < TAKEOFF_REACHED_M
-            && self.outputs.velocity_m_s.norm() < TAKEOFF_SLOW_M_S;
-        if arrived {
+        if is_slow_near(&self.outputs, z) {
             self.takeoff_z_m = None;
             self.mode = if self.identity.is_ardupilot() { Mode::Offboard } else { Mode::Hold };
             self.set_points = super::offboard::SetPoints::default();
@@ -82,7 +92,7 @@ impl Vehicle {
     }
 
     fn disarm_on_the_ground(&mut self) {
-        if !self.landed.is_landed() || self.steering.kind() != SteeringKind::Idle {
+        if !self.landed.is_landed() || self.steering.kind() != SteeringKind::Idle || self.mission_goes_on() {
             if !self.landed.is_landed() {
                 self.grounded_since_us = self.time_us();
             }

@@ -11,6 +11,7 @@
 //!
 //!  flying:  Takeoff ──reached──► Hold (ArduPilot: Offboard)
 //!           Offboard ──set-points lost──► Hold, Land, Return or Position, as the parameter says
+//!           Mission ──last item done──► Hold
 //!           Return ──home reached──► descends ──touched down──► disarms
 //!           Land ──touched down──► disarms
 //!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
@@ -24,6 +25,7 @@ mod fence;
 mod flight;
 mod injection;
 mod landed;
+mod mission;
 mod mode;
 mod motion;
 mod notice;
@@ -43,6 +45,7 @@ pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryPolicy, Cause, Failsafe, FailsafeSettings};
 pub use fence::FenceRecord;
 pub use landed::LandedState;
+pub use mission::{MissionState, MissionStatus};
 pub use mode::Mode;
 pub use notice::{Notice, Refusal, Severity};
 pub use requests::Reposition;

@@ -11,6 +11,8 @@ pub enum Mode {
     Hold,
     /// Climbs, flies home and lands.
     Return,
+    /// Flies the mission.
+    Mission,
     /// Lands where it is.
     Land,
     /// Follows set-points (ArduPilot: guided).
@@ -19,6 +21,6 @@ pub enum Mode {
 
 impl Mode {
     /// All modes.
-    pub const ALL: [Self; 6] =
-        [Self::Position, Self::Takeoff, Self::Hold, Self::Return, Self::Land, Self::Offboard];
+    pub const ALL: [Self; 7] =
+        [Self::Position, Self::Takeoff, Self::Hold, Self::Mission, Self::Return, Self::Land, Self::Offboard];
 }

@@ -37,12 +37,27 @@ impl Vehicle {
     /// # Errors
     /// [`PlanFault`]; the old plan stays then.
     pub fn set_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
+        self.take_plan(kind, items, false)
+    }
+
+    /// Replaces a plan by one that goes on where the old one is.
+    ///
+    /// # Errors
+    /// [`PlanFault`]; the old plan stays then.
+    pub fn amend_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
+        self.take_plan(kind, items, true)
+    }
+
+    fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
         check::plan(kind, &items, &self.site())?;
         match kind {
             PlanKind::Fence => self.take_fence(&items)?,
             PlanKind::Mission | PlanKind::Rally => self.check_places(&items)?,
         }
         self.plans.set(kind, Plan::new(items));
+        if kind == PlanKind::Mission {
+            self.mission_has_changed(amended);
+        }
         Ok(())
     }
 

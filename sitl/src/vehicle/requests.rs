@@ -38,6 +38,7 @@ impl Vehicle {
         }
         match mode {
             Mode::Takeoff => return self.take_off(None),
+            Mode::Mission => return self.start_mission(None),
             Mode::Offboard if !self.identity.is_ardupilot() && !self.set_points_are_recent() => {
                 return Err(Refusal::later("Offboard rejected: no recent set-point"));
             }

@@ -13,6 +13,7 @@ use super::conduct::Conduct;
 use super::failsafe::Failsafe;
 use super::fence::FenceRecord;
 use super::landed::{LandedDetector, LandedState};
+use super::mission::Mission;
 use super::mode::Mode;
 use super::notice::{Notice, Severity};
 use super::offboard::SetPoints;
@@ -110,6 +111,7 @@ pub struct Vehicle {
     pub(super) failsafe: Failsafe,
     /// The way of a return: north and east, m, the place to land at last.
     pub(super) return_way_m: VecDeque<[f64; 2]>,
+    pub(super) mission: Mission,
 }
 
 impl Vehicle {
@@ -164,6 +166,7 @@ impl Vehicle {
             fence_record: FenceRecord::default(),
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
+            mission: Mission::default(),
             simulation,
             outputs,
             truth: outputs,
@@ -171,6 +174,7 @@ impl Vehicle {
             ideal_sensors: IdealSensors::default(),
         };
         vehicle.outputs = vehicle.known();
+        vehicle.mission_has_changed(false);
         Ok(vehicle)
     }
 
@@ -344,8 +348,11 @@ impl Vehicle {
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
     pub fn landed_state(&self) -> LandedState {
+        let (climbs, descends) = self.mission_task_is_vertical();
         match self.mode {
             _ if self.landed.is_landed() => LandedState::OnGround,
+            Mode::Mission if climbs => LandedState::TakingOff,
+            Mode::Mission if descends => LandedState::Landing,
             Mode::Takeoff => LandedState::TakingOff,
             Mode::Land => LandedState::Landing,
             Mode::Return if self.return_phase == ReturnPhase::Descend => LandedState::Landing,

@@ -62,9 +62,9 @@ def test_identity_and_modes(start, connect):
     client.command(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1)
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 435, 0)
     # This version of the library does not know AVAILABLE_MODES: its name is behind 11 bytes of numbers.
-    bodies = [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(5)]
+    bodies = [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(6)]
     names = {body[11:].rstrip(b"\0") for body in bodies}
-    assert names == {b"Loiter", b"Guided", b"RTL", b"Land", b"Brake"}
+    assert names == {b"Loiter", b"Guided", b"Auto", b"RTL", b"Land", b"Brake"}
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 397, result=mavlink.MAV_RESULT_UNSUPPORTED)
     # An integer of ArduPilot travels as a number.
     assert client.set_parameter("COM_OBL_RC_ACT", 3.0, mavlink.MAV_PARAM_TYPE_INT32).param_value == 3.0

@@ -6,7 +6,7 @@ use super::{Outcome, altitude_frame};
 use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
-use crate::service::{Origin, message_interval, parameter, set_point, standard_mode};
+use crate::service::{Origin, message_interval, mission, parameter, set_point, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
 
@@ -25,7 +25,9 @@ mod number {
     pub const DO_FENCE_ENABLE: u16 = 207;
     pub const DO_PAUSE_CONTINUE: u16 = 193;
     pub const PREFLIGHT_STORAGE: u16 = 245;
+    pub const DO_SET_MISSION_CURRENT: u16 = 224;
     pub const DO_SET_STANDARD_MODE: u16 = 262;
+    pub const MISSION_START: u16 = 300;
     pub const COMPONENT_ARM_DISARM: u16 = 400;
     pub const RUN_PREARM_CHECKS: u16 = 401;
     pub const INJECT_FAILURE: u16 = 420;
@@ -52,8 +54,10 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::DO_FLIGHTTERMINATION => Ok(()),
         number::DO_REPOSITION => reposition(autopilot, command),
         number::DO_FENCE_ENABLE => enable_fence(vehicle, command),
-        number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.set_mode(Mode::Hold),
-        number::DO_PAUSE_CONTINUE => Err(Refusal::denied("Nothing to continue")),
+        number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.pause(),
+        number::DO_PAUSE_CONTINUE => vehicle.continue_mission(),
+        number::DO_SET_MISSION_CURRENT => mission::set_current_by_command(autopilot, command),
+        number::MISSION_START => mission::start(autopilot, command),
         number::PREFLIGHT_STORAGE => storage(autopilot, command),
         number::DO_SET_STANDARD_MODE => match command.whole(1).and_then(standard_mode::mode) {
             Some(mode) => vehicle.set_mode(mode),

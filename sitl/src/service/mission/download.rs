@@ -41,10 +41,11 @@ pub fn request(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         answer::refused_aloud(autopilot, origin, number, &fault);
         return;
     };
+    let flown = Some(autopilot.vehicle.mission_status().current).filter(|_| kind == PlanKind::Mission);
     let message = MissionItemMessage {
         sequence,
         item,
-        current: 0,
+        current: u8::from(flown == Some(usize::from(sequence))),
         kind: number,
         target: Target { system: origin.system, component: origin.component },
         int: frame.message_id() == id::MISSION_REQUEST_INT,

@@ -163,12 +163,18 @@ fn go_on(autopilot: &mut Autopilot) {
         return;
     }
     let (kind, mut plan) = (upload.kind, std::mem::take(&mut upload.items));
+    let upload_is_partial = upload.partial;
     if upload.partial {
         let items = std::mem::replace(&mut plan, autopilot.vehicle.plans().get(kind).items().to_vec());
         let end = upload.end.min(plan.len());
         plan.splice(upload.first.min(end)..end, items);
     }
-    match autopilot.vehicle.set_plan(kind, plan) {
+    let taken = if upload_is_partial {
+        autopilot.vehicle.amend_plan(kind, plan)
+    } else {
+        autopilot.vehicle.set_plan(kind, plan)
+    };
+    match taken {
         Ok(()) => {
             let id = autopilot.vehicle.plans().get(kind).id();
             finish(autopilot, Ok(id));

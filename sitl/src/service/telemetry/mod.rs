@@ -2,6 +2,7 @@
 
 mod attitude;
 mod estimate;
+mod navigation;
 mod position;
 mod sensors;
 mod status;
@@ -11,7 +12,7 @@ mod truth;
 use mavlink::dialects::common::MavMessage;
 
 use crate::autopilot::Autopilot;
-use crate::service::{heartbeat, identification, standard_mode, time_synchronization};
+use crate::service::{heartbeat, identification, mission, standard_mode, time_synchronization};
 
 /// A message by its id; `None` if there is none.
 pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
@@ -29,7 +30,9 @@ pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
         32 => position::local_position_ned(vehicle),
         33 => position::global_position_int(vehicle),
         36 => status::servo_output_raw(vehicle),
+        42 => mission::current(vehicle),
         49 => position::gps_global_origin(vehicle),
+        62 => navigation::nav_controller_output(vehicle),
         74 => position::vfr_hud(vehicle),
         83 => targets::attitude_target(vehicle),
         85 => targets::position_target_local_ned(vehicle),

@@ -1,0 +1,107 @@
+//! Items on the way from one place to the next: conditions, and what is done at once.
+
+use nalgebra::Vector3;
+
+use super::super::notice::Severity;
+use super::super::state::Vehicle;
+use super::heading::Turn;
+use super::task::Task;
+use crate::plan::{MissionItem, command};
+
+/// What the next action waits for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// A time, µs.
+    Until(u64),
+    /// Nearer than this to the end of the leg, m.
+    Within(f64),
+    /// The end of the turn.
+    Turned,
+}
+
+impl Vehicle {
+    /// Does what is to be done on the way, up to the first condition that is not fulfilled.
+    pub(super) fn act(&mut self) {
+        while let Some(index) = self.mission.actions.front().copied() {
+            match self.mission.condition {
+                Some(condition) if !self.is_fulfilled(condition) => return,
+                Some(_) => self.mission.condition = None,
+                None => {
+                    let Some(item) = self.mission_items().get(index).copied() else { return };
+                    self.mission.condition = self.begin_condition(&item);
+                    if self.mission.condition.is_some() {
+                        continue;
+                    }
+                    self.carry_out(&item);
+                }
+            }
+            self.mission.actions.pop_front();
+            self.reached_item(index);
+        }
+    }
+
+    /// Drops what still waits, at the end of a leg; without a leg to come everything else is done.
+    pub(super) fn drop_conditions(&mut self) {
+        self.mission.condition = None;
+        self.mission.turn = None;
+        self.mission.actions.clear();
+    }
+
+    fn is_fulfilled(&self, condition: Condition) -> bool {
+        match condition {
+            Condition::Until(time_us) => self.time_us() >= time_us,
+            Condition::Within(distance_m) => {
+                let Some(Task::Leg(leg, _)) = &self.mission.task else { return false };
+                (self.outputs.position_m - leg.to_m).norm() <= distance_m
+            }
+            Condition::Turned => {
+                let yaw_rad = self.outputs.attitude_rad.z;
+                self.mission.turn.is_none_or(|turn| turn.is_done(yaw_rad))
+            }
+        }
+    }
+
+    fn begin_condition(&mut self, item: &MissionItem) -> Option<Condition> {
+        match item.command {
+            command::CONDITION_DELAY => {
+                let delay_us = (item.parameter_or(1, 0.0) * 1e6) as u64;
+                Some(Condition::Until(self.time_us().saturating_add(delay_us)))
+            }
+            command::CONDITION_DISTANCE => Some(Condition::Within(item.parameter_or(1, 0.0))),
+            command::CONDITION_YAW => {
+                let fastest_rad_s = self.simulation.configuration().limits.yaw_rate_rad_s;
+                self.mission.turn = Some(Turn::new(item, self.outputs.setpoint.yaw_rad, fastest_rad_s));
+                Some(Condition::Turned)
+            }
+            _ => None,
+        }
+    }
+
+    fn carry_out(&mut self, item: &MissionItem) {
+        match item.command {
+            command::DO_CHANGE_SPEED => {
+                self.change_mission_speed(item.parameter_or(1, 0.0), item.parameter_or(2, -1.0));
+                self.replan_leg();
+            }
+            command::DO_SET_HOME => self.set_mission_home(item),
+            command::DO_SET_ROI_LOCATION
+            | command::DO_SET_ROI_WPNEXT_OFFSET
+            | command::DO_SET_ROI_NONE
+            | command::DO_SET_ROI => self.look_at(item),
+            // Jumps are made when the next item is looked for.
+            _ => {}
+        }
+    }
+
+    fn set_mission_home(&mut self, item: &MissionItem) {
+        let here = self.outputs.position_m;
+        let place = self.site().place(item).filter(|_| item.parameter_or(1, 0.0) < 0.5);
+        let position_m = match place.and_then(|place| Some((place.horizontal_m?, place.down_m))) {
+            Some(([x, y], z)) => Vector3::new(x, y, z.unwrap_or(self.home.position_m.z)),
+            None => here,
+        };
+        if let Err(refusal) = self.set_home(position_m, None) {
+            self.say(Severity::Warning, format!("Mission: {refusal}"));
+        }
+    }
+}
