@@ -146,6 +146,10 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
     pub parameters: Option<PathBuf>,
 
+    /// Plan to start with: QGroundControl's .plan (mission, fence and rally points) or a QGC WPL 110 text (mission)
+    #[arg(long, env = "LMPC_SITL_MISSION", value_name = "FILE")]
+    pub mission: Option<PathBuf>,
+
     /// Record received messages with their simulation times, to be replayed
     #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay")]
     pub record: Option<PathBuf>,
@@ -209,6 +213,7 @@ impl Arguments {
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),
             parameters: self.parameters.or(file.parameters),
+            mission: self.mission.or(file.mission),
             record: self.record.or(file.record),
             replay: self.replay.or(file.replay),
             hil: self.hil.or(file.hil),

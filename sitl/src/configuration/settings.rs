@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use nalgebra::Vector3;
 use quadrotor::Configuration;
 
 use super::{Arguments, Clocks, Ports};
@@ -11,10 +12,10 @@ use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
-use crate::plan::Plans;
+use crate::plan::{self, Plans, Site};
 use crate::record::Participant;
 use crate::vehicle::{Conduct, Vehicle, VehicleSettings};
-use crate::world::WindSettings;
+use crate::world::{LocalFrame, WindSettings};
 
 /// Linear drag that the wind acts through when the airframe has none, N·s/m: 0.7 kg with an open frame drifts with
 /// 10 m/s of wind at a lean of 12°.
@@ -196,6 +197,11 @@ pub(super) fn vehicle(
         vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
     }
     set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
+    if let Some(path) = &arguments.mission {
+        let frame = LocalFrame::new(vehicle.origin);
+        let home_m = Vector3::from(vehicle.configuration.initial.position_m);
+        vehicle.plans = plan::file::read(path, &Site { identity, frame, home_m })?;
+    }
     Ok(vehicle)
 }
 

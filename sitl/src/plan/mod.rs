@@ -9,6 +9,7 @@
 
 pub mod check;
 mod fault;
+pub mod file;
 mod item;
 mod kind;
 mod site;

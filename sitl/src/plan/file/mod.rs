@@ -1,0 +1,70 @@
+//! Plans in files: QGroundControl's `.plan` and the text of QGC WPL 110.
+
+mod json;
+mod text;
+
+use std::path::Path;
+
+use super::{MissionItem, Plan, PlanKind, Plans, Site, check, command, frame};
+use crate::failure::Failure;
+
+/// The items of a file, before they are checked.
+#[derive(Clone, Debug, PartialEq, Default)]
+struct Content {
+    /// Where the mission was planned from, if the file says so: in ArduPilot's convention its first item.
+    home: Option<[f64; 3]>,
+    /// Each item with the place in the file that an error names.
+    mission: Vec<(MissionItem, String)>,
+    fence: Vec<(MissionItem, String)>,
+    rally: Vec<(MissionItem, String)>,
+}
+
+/// Reads the plans of a file for a vehicle at a site.
+///
+/// # Errors
+/// [`Failure::File`], or [`Failure::Content`] that names the line or the item, the value and its range.
+pub fn read(path: &Path, site: &Site) -> Result<Plans, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
+    let wrong = |reason: String| Failure::Content { path: path.to_owned(), reason };
+    let mut content = if text.trim_start().starts_with('{') {
+        json::parse(&text).map_err(wrong)?
+    } else {
+        text::parse(&text).map_err(wrong)?
+    };
+    if site.identity.is_ardupilot() && !content.mission.is_empty() {
+        put_home_in_front(&mut content);
+    }
+    let mut plans = Plans::default();
+    let kinds = [
+        (PlanKind::Mission, content.mission),
+        (PlanKind::Fence, content.fence),
+        (PlanKind::Rally, content.rally),
+    ];
+    for (kind, named) in kinds {
+        let items: Vec<MissionItem> = named.iter().map(|(item, _)| *item).collect();
+        check::plan(kind, &items, site).map_err(|fault| {
+            let place = fault.item.and_then(|item| named.get(item)).map(|(_, place)| format!("{place}: "));
+            wrong(format!("{}{}", place.unwrap_or_default(), fault.reason))
+        })?;
+        plans.set(kind, Plan::new(items));
+    }
+    Ok(plans)
+}
+
+/// Jumps count home then.
+fn put_home_in_front(content: &mut Content) {
+    for (item, _) in &mut content.mission {
+        if item.command == command::DO_JUMP {
+            let [target, ..] = &mut item.parameters;
+            *target += 1.0;
+        }
+    }
+    let home = MissionItem {
+        frame: frame::GLOBAL,
+        command: command::NAV_WAYPOINT,
+        parameters: [0.0; 4],
+        position: content.home.unwrap_or([0.0; 3]),
+        autocontinue: true,
+    };
+    content.mission.insert(0, (home, "home".to_owned()));
+}

@@ -1,0 +1,133 @@
+//! Plans in files, and the flights that they are.
+
+use std::path::{Path, PathBuf};
+
+use sitl::Failure;
+use sitl::identity::Identity;
+use sitl::plan::{PlanKind, Plans, Site, command, file};
+use sitl::world::{Geodetic, LocalFrame};
+
+fn site(identity: Identity) -> Site {
+    let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 };
+    Site { identity, frame: LocalFrame::new(origin), home_m: nalgebra::Vector3::zeros() }
+}
+
+/// Reads a text as a file, and hands its name to the errors.
+fn read(name: &str, text: &str, identity: Identity) -> Result<Plans, String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path: PathBuf = folder.path().join(name);
+    std::fs::write(&path, text).expect("written");
+    file::read(&path, &site(identity)).map_err(|error| error.to_string())
+}
+
+const PLAN: &str = r#"{
+    "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
+    "geoFence": {
+        "version": 2,
+        "circles": [{"circle": {"center": [47.3977, 8.5456], "radius": 120.5}, "inclusion": true, "version": 1}],
+        "polygons": [{"polygon": [[47.398, 8.545], [47.399, 8.545], [47.399, 8.547]], "inclusion": false, "version": 1}],
+        "breachReturn": [47.3977, 8.5456, 30]
+    },
+    "rallyPoints": {"version": 2, "points": [[47.3978, 8.5457, 20]]},
+    "mission": {
+        "version": 2, "firmwareType": 12, "vehicleType": 2, "cruiseSpeed": 15, "hoverSpeed": 5,
+        "plannedHomePosition": [47.397742, 8.545594, 488],
+        "items": [
+            {"type": "SimpleItem", "autoContinue": true, "command": 22, "doJumpId": 1, "frame": 3,
+             "AMSLAltAboveTerrain": null, "Altitude": 12, "AltitudeMode": 1,
+             "params": [0, 0, 0, null, 47.397742, 8.545594, 12]},
+            {"type": "SimpleItem", "autoContinue": true, "command": 16, "doJumpId": 5, "frame": 3,
+             "params": [1.5, 0, 0, null, 47.398, 8.5457, 15]},
+            {"type": "SimpleItem", "autoContinue": true, "command": 177, "doJumpId": 7, "frame": 2,
+             "params": [5, 2, 0, 0, 0, 0, 0]},
+            {"type": "SimpleItem", "autoContinue": true, "command": 20, "doJumpId": 8, "frame": 2,
+             "params": [0, 0, 0, 0, 0, 0, 0]}
+        ]
+    }
+}"#;
+
+#[test]
+fn a_plan_of_qgroundcontrol_is_read_with_fence_and_rally_points() {
+    let plans = read("a.plan", PLAN, Identity::Px4).expect("a plan");
+    let mission = plans.get(PlanKind::Mission).items();
+    let commands: Vec<u16> = mission.iter().map(|item| item.command).collect();
+    assert_eq!(commands, [22, 16, 177, 20]);
+    assert!(mission[0].parameter(4).is_nan());
+    assert_eq!((mission[1].parameter(1), mission[1].parameter(5)), (1.5, 47.398));
+    assert_eq!(mission[2].parameter(1), 1.0, "the id of a jump's target is the item with that id");
+    let fence = plans.get(PlanKind::Fence).items();
+    let commands: Vec<u16> = fence.iter().map(|item| item.command).collect();
+    assert_eq!(commands, [5002, 5002, 5002, 5003, 5000]);
+    assert_eq!((fence[0].parameter(1), fence[3].parameter(1)), (3.0, 120.5));
+    let rally = plans.get(PlanKind::Rally).items();
+    assert_eq!((rally.len(), rally[0].command, rally[0].position), (1, 5100, [47.3978, 8.5457, 20.0]));
+    // In ArduPilot's convention home is the first item.
+    let plans = read("a.plan", PLAN, Identity::ArduPilot).expect("a plan");
+    let mission = plans.get(PlanKind::Mission).items();
+    assert_eq!((mission.len(), mission[0].position), (5, [47.397_742, 8.545_594, 488.0]));
+    assert_eq!(mission[3].parameter(1), 2.0);
+}
+
+const TEXT: &str = "QGC WPL 110
+# with a remark
+0\t1\t0\t16\t0\t0\t0\t0\t47.397742\t8.545594\t488.0\t1
+1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t10\t1
+2\t0\t3\t16\t0\t0\t0\t0\t47.398\t8.5457\t10\t1
+3\t0\t2\t177\t2\t3\t0\t0\t0\t0\t0\t1
+4\t0\t3\t21\t0\t0\t0\t0\t0\t0\t0\t0
+";
+
+#[test]
+fn a_waypoint_text_is_read_and_its_home_is_no_item_of_px4() {
+    let plans = read("a.waypoints", TEXT, Identity::Px4).expect("a plan");
+    let mission = plans.get(PlanKind::Mission).items();
+    assert_eq!(mission.len(), 4);
+    assert_eq!((mission[0].command, mission[0].position[2]), (command::NAV_TAKEOFF, 10.0));
+    assert_eq!((mission[2].command, mission[2].parameter(1)), (command::DO_JUMP, 1.0));
+    assert!(!mission[3].autocontinue);
+    let plans = read("a.waypoints", TEXT, Identity::ArduPilot).expect("a plan");
+    let mission = plans.get(PlanKind::Mission).items();
+    assert_eq!((mission.len(), mission[3].parameter(1)), (5, 2.0));
+}
+
+#[test]
+fn errors_name_the_file_the_place_the_value_and_its_range() {
+    let replaced = |text: &str, from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    };
+    let survey = r#""type": "ComplexItem", "complexItemType": "survey", "autoContinue": true, "command": 16"#;
+    let simple = r#""type": "SimpleItem", "autoContinue": true, "command": 16"#;
+    for (name, text, expected) in [
+        ("a.plan", replaced(PLAN, simple, survey), "item 1: complex item `survey` is not supported"),
+        ("a.plan", replaced(PLAN, "[1.5, 0,", "[-1.5, 0,"), "item 1: hold time -1.5 is outside [0, 86400]"),
+        ("a.plan", replaced(PLAN, "[5, 2,", "[9, 2,"), "item 2: there is no item with doJumpId 9"),
+        ("a.plan", replaced(PLAN, r#""command": 20"#, r#""command": 84"#), "item 3: command 84"),
+        ("a.plan", replaced(PLAN, r#"[1.5, 0, 0, null,"#, "[1.5,"), "item 1: invalid length 4"),
+        ("a.plan", replaced(PLAN, r#"Type": "Plan""#, r#"Type": "Parameters""#), "fileType is `Parameters`"),
+        (
+            "a.plan",
+            replaced(PLAN, r#""version": 2, "firm"#, r#""version": 1, "firm"#),
+            "mission version 1 is not 2",
+        ),
+        (
+            "a.plan",
+            replaced(PLAN, "[47.3978, 8.5457, 20]", "[97, 8, 20]"),
+            "rally point 0: latitude 97 is outside",
+        ),
+        ("a.plan", replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"), "fence polygon 0: longitude 190"),
+        ("a.plan", "{".to_owned(), "no .plan: EOF"),
+        ("a.txt", replaced(TEXT, "47.398", "147.398"), "line 5: latitude 147.398 is outside [-90, 90]"),
+        ("a.txt", replaced(TEXT, "47.398", "north"), "line 5: field 9 `north` is not a number"),
+        ("a.txt", replaced(TEXT, "2\t0\t3", "7\t0\t3"), "line 5: item 7 where 2 was expected"),
+        ("a.txt", replaced(TEXT, "4\t0\t3\t21", "4\t0\t3.5\t21"), "line 7: frame 3.5 is not a whole number"),
+        ("a.txt", replaced(TEXT, "177\t2", "177\t0"), "line 6: item 0 is home"),
+        ("a.txt", replaced(TEXT, "8.5457\t10\t1", "8.5457\t10"), "line 5: 11 fields instead of 12"),
+        ("a.txt", replaced(TEXT, "WPL 110", "WPL 120"), "neither a .plan"),
+    ] {
+        let error = read(name, &text, Identity::Px4).expect_err(expected);
+        assert!(error.contains(name) && error.contains(expected), "{error}");
+    }
+    let missing = file::read(Path::new("/nowhere/a.plan"), &site(Identity::Px4)).expect_err("no file");
+    assert!(matches!(missing, Failure::File { .. }) && missing.exit_code() == 4);
+}
