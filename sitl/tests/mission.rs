@@ -7,12 +7,15 @@ mod common;
 use core::f64::consts::{PI, TAU};
 
 use common::Bench;
-use common::plan_client::{result, upload};
+use common::plan_client::{count_message, item_message, result, upload};
 use mavlink::dialects::common::*;
 use nalgebra::Vector3;
 use sitl::codec::Message;
 use sitl::identity::Identity;
-use sitl::plan::{MissionItem, PlanKind, command, frame};
+use sitl::parameters::Speed;
+use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
+use sitl::record::{Digest, Header, Participant, Recorder, replay};
+use sitl::service::LinkProfile;
 use sitl::vehicle::{LandedState, MissionState, Mode};
 
 const NAN: f64 = f64::NAN;
@@ -521,4 +524,63 @@ fn tracking_errors_are_told() {
     assert!(seen.len() >= 8, "twice a second");
     assert!(seen.iter().any(|error| *error > 0.005), "the gusts are felt: {seen:?}");
     assert!(seen.iter().all(|error| *error < 1.0), "and held: {seen:?}");
+}
+
+/// A plan of the start, one of the messages and a pause: replayed it is the same flight, and it depends on the plan.
+#[test]
+fn a_mission_replays_bit_for_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("mission.record");
+    let mut vehicle = common::settings(Identity::Px4);
+    vehicle.wind = sitl::world::WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 1.0, seed: 5 };
+    vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
+    let roi = at(command::DO_SET_ROI_LOCATION, [0.0; 4], [20.0, 20.0, 0.0]);
+    vehicle.plans.set(
+        PlanKind::Mission,
+        Plan::new(vec![takeoff(), roi, waypoint([30.0, 0.0, -12.0]), waypoint([30.0, 30.0, -8.0])]),
+    );
+    let links = vec![LinkProfile::Ground];
+    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
+    let header = Header::new(Speed::Factor(1.0), vec![participant]);
+    let mut recorder = Recorder::create(&path, &header).expect("a file");
+    let mut bench = Bench::of(&vehicle);
+    let mut digest = Digest::default();
+    let changed = [waypoint([10.0, -10.0, -10.0]), simple(command::NAV_RETURN_TO_LAUNCH, [0.0; 4])];
+    for millisecond in 0..40_000_u32 {
+        let messages: Vec<Message> = match millisecond {
+            500 => vec![common::command_long(MavCmd::MAV_CMD_MISSION_START, [0.0; 7], 0).into()],
+            12_000 => vec![common::command_long(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, [0.0; 7], 0).into()],
+            15_000 => vec![
+                common::command_long(
+                    MavCmd::MAV_CMD_DO_PAUSE_CONTINUE,
+                    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                    0,
+                )
+                .into(),
+            ],
+            17_000 => vec![count_message(PlanKind::Mission, 2).into()],
+            // The second request is waited for, and the item comes late.
+            17_020 => vec![item_message(PlanKind::Mission, 0, changed[0], true)],
+            17_900 => vec![item_message(PlanKind::Mission, 1, changed[1], true)],
+            _ => Vec::new(),
+        };
+        for message in messages {
+            let frame = bench.frame(message);
+            let time_us = bench.autopilot.vehicle().time_us();
+            recorder.frame(0, time_us, &Bench::origin(), &frame).expect("written");
+            bench.receive(&frame);
+        }
+        bench.fly(0.001);
+        digest.update(bench.autopilot.vehicle());
+    }
+    assert_eq!(bench.mode(), Mode::Return, "{:?}", bench.texts());
+    recorder.end(0, bench.autopilot.vehicle().time_us(), digest).expect("written");
+    recorder.finish().expect("written");
+    let replayed = replay(&path).expect("the same flight");
+    assert_eq!(replayed[0].digest, digest.value());
+    // Another place in the plan of the start is another flight.
+    let text = std::fs::read_to_string(&path).expect("readable");
+    assert!(text.contains("[30.0,0.0,-12.0]"));
+    std::fs::write(&path, text.replacen("[30.0,0.0,-12.0]", "[30.0,0.0,-12.5]", 1)).expect("written");
+    assert!(matches!(replay(&path), Err(sitl::Failure::Differs { .. })));
 }
