@@ -584,3 +584,39 @@ fn a_mission_replays_bit_for_bit() {
     std::fs::write(&path, text.replacen("[30.0,0.0,-12.0]", "[30.0,0.0,-12.5]", 1)).expect("written");
     assert!(matches!(replay(&path), Err(sitl::Failure::Differs { .. })));
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(40))]
+    /// Whatever the way is: every place is passed within its radius, in order, within the limits of speed, and the vehicle rests
+    /// at the end.
+    #[test]
+    fn any_way_is_flown(
+        places in proptest::collection::vec(
+            ([-40.0..40.0_f64, -40.0..40.0, -30.0..-4.0], 0.3..6.0_f64), 2..6),
+    ) {
+        let mut items = vec![takeoff()];
+        items.extend(places.iter().map(|(place, radius)| {
+            at(command::NAV_WAYPOINT, [0.0, *radius, 0.0, NAN], *place)
+        }));
+        let flight = Flight::new(&items).complete(400.0);
+        let order: Vec<u16> = (0..items.len() as u16).collect();
+        proptest::prop_assert_eq!(flight.order(), order);
+        let mut from_s = flight.time_of(0);
+        for (index, (place, radius)) in places.iter().enumerate() {
+            let until_s = flight.time_of(index as u16 + 1) + 2.0;
+            let nearest = flight
+                .between(from_s, until_s)
+                .map(|(_, at, _)| (at - Vector3::from(*place)).norm())
+                .fold(f64::INFINITY, f64::min);
+            proptest::prop_assert!(nearest <= *radius, "item {}: {} m beside {:?}", index + 1, nearest, places[index]);
+            from_s = flight.time_of(index as u16 + 1) - 2.0;
+        }
+        for pair in flight.track.windows(2) {
+            let velocity = (pair[1].1 - pair[0].1) / 0.01;
+            proptest::prop_assert!(velocity.xy().norm() < 8.4 && velocity.z < 3.3 && velocity.z > -4.4, "{velocity}");
+        }
+        let (end, _) = places[places.len() - 1];
+        let [x, y, z] = flight.bench.position();
+        proptest::prop_assert!((Vector3::new(x, y, z) - Vector3::from(end)).norm() < 0.6);
+    }
+}
