@@ -17,9 +17,13 @@ fn settings(line: &str) -> Result<Settings, sitl::Failure> {
 
 #[test]
 fn vehicles_have_ids_ports_starts_seeds_and_files_of_their_own() {
-    let own =
-        settings("--vehicles 3 --system-id 20 --instance 4 --formation line,2.5 --parameters a/b.c --seed 9")
-            .expect("settings");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let own = settings(&format!(
+        "--vehicles 3 --system-id 20 --instance 4 --formation line,2.5 --seed 9 --parameters {}",
+        file("b.c").display()
+    ))
+    .expect("settings");
     let ids: Vec<u8> = own.vehicles.iter().map(|vehicle| vehicle.system_id).collect();
     assert_eq!(ids, [20, 21, 22]);
     let links: Vec<String> = own.hubs.iter().map(|links| links[1].to_string()).collect();
@@ -35,16 +39,15 @@ fn vehicles_have_ids_ports_starts_seeds_and_files_of_their_own() {
         assert_eq!(vehicle.vehicle.configuration.initial.position_m, [0.0, 2.5 * number as f64, 0.0]);
         assert_eq!(vehicle.vehicle.wind.seed, 9 + number as u64);
         assert_eq!(vehicle.hub, number);
-        let file = vehicle.parameters.as_deref().expect("a file");
-        assert_eq!(file, std::path::Path::new(&format!("a/b-{}.c", 20 + number)));
+        assert_eq!(vehicle.parameters, Some(file(&format!("b-{}.c", 20 + number))));
         assert_eq!(vehicle.vehicle.origin, own.vehicles[0].vehicle.origin);
     }
     assert_eq!(own.clocks().len(), 1);
 
     let shared = settings("--vehicles 2 --ports shared --clocks separate --link tcpin:0").expect("settings");
     assert_eq!((shared.hubs.len(), shared.clocks().len()), (1, 2));
-    let one = settings("--parameters a/b.c").expect("settings");
-    assert_eq!(one.vehicles[0].parameters.as_deref(), Some(std::path::Path::new("a/b.c")));
+    let one = settings(&format!("--parameters {}", file("b.c").display())).expect("settings");
+    assert_eq!(one.vehicles[0].parameters, Some(file("b.c")));
 }
 
 #[test]

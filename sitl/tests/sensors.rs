@@ -14,7 +14,7 @@ use sitl::identity::Identity;
 use sitl::parameters::Speed;
 use sitl::record::{Digest, Header, Participant, Recorder, replay};
 use sitl::service::LinkProfile;
-use sitl::vehicle::{Mode, VehicleSettings};
+use sitl::vehicle::{Action, Mode, VehicleSettings};
 use sitl::{Autopilot, Failure};
 
 const NOTHING: [f32; 7] = [0.0; 7];
@@ -23,6 +23,8 @@ const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 fn realistic(seed: u64) -> VehicleSettings {
     let mut settings = settings(Identity::Px4);
     settings.sensors = SensorSettings { model: SensorModel::Realistic, seed };
+    // It is to fly on without a position.
+    settings.conduct.failsafe.position_lost = Action::Warn;
     settings
 }
 
@@ -437,7 +439,9 @@ fn a_broken_instrument_is_named_when_arming_is_refused() {
 /// With ideal sensors the flight is what it was, but a silent receiver is told, and the position given up after it.
 #[test]
 fn ideal_sensors_can_be_silenced() {
-    let mut bench = Bench::hovering(Identity::Px4);
+    let mut settings = settings(Identity::Px4);
+    settings.conduct.failsafe.position_lost = Action::Warn;
+    let mut bench = Bench::hovering_with(&settings);
     inject(&mut bench, GPS, OFF);
     bench.fly(2.0);
     let health = prearm_health(&mut bench);

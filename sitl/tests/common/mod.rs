@@ -151,7 +151,11 @@ impl Bench {
 
     /// Hovering, in the mode that follows a takeoff.
     pub fn hovering(identity: Identity) -> Self {
-        let mut bench = Self::new(identity);
+        Self::hovering_with(&settings(identity))
+    }
+
+    pub fn hovering_with(settings: &VehicleSettings) -> Self {
+        let (identity, mut bench) = (settings.identity, Self::of(settings));
         if identity.is_ardupilot() {
             bench.set_mode(Mode::Offboard);
         }

@@ -3,7 +3,7 @@
 /// Causes, in the order in which they are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Cause {
-    /// A rotor does not turn as it should.
+    /// A rotor is lost: the vehicle descends on the others.
     RotorFailure,
     /// The estimator does not know the place any more.
     PositionLost,

@@ -8,7 +8,7 @@
 //!
 //! A cause acts when it begins. After that the pilot decides: a mode that a user chooses is taken, and the failsafe acts again
 //! when another cause begins or the same one comes back. Two causes leave no choice while they last: without an estimate of
-//! its place, and with a failed rotor, the vehicle only lands.
+//! its place, and without a rotor, the vehicle only lands.
 
 mod action;
 mod cause;

@@ -33,7 +33,7 @@ pub struct FailsafeSettings {
     pub high_wind: Action,
     /// What is done without an estimate of the place (COM_POSCTL_NAVL).
     pub position_lost: Action,
-    /// What is done when a rotor fails (COM_ACT_FAIL_ACT).
+    /// Whether it descends on the others when a rotor is lost, or stops them, too (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
 }
 

@@ -50,7 +50,7 @@ impl Vehicle {
         let settings = &self.conduct.failsafe;
         let remaining = self.battery_remaining();
         match cause {
-            Cause::RotorFailure => self.faults.rotors().iter().any(Option::is_some),
+            Cause::RotorFailure => self.lost_rotor().is_some(),
             Cause::PositionLost => self.armed && !self.validity().horizontal_position,
             Cause::BatteryEmergency => remaining < settings.battery_emergency,
             Cause::BatteryCritical => remaining < settings.battery_critical,
@@ -104,7 +104,10 @@ impl Vehicle {
     pub(in crate::vehicle) fn failsafe_obstacles(&self) -> Vec<String> {
         let speaks = |cause: &&Cause| {
             // These have obstacles of their own, or are for the flight only.
-            let others = matches!(cause, Cause::PositionLost | Cause::SetPointsLost | Cause::BatteryLow);
+            let others = matches!(
+                cause,
+                Cause::RotorFailure | Cause::PositionLost | Cause::SetPointsLost | Cause::BatteryLow
+            );
             !others && self.conduct.failsafe.action(**cause) > Action::Warn
         };
         self.failsafe
@@ -118,20 +121,16 @@ impl Vehicle {
     /// Whether a user may choose a mode now.
     ///
     /// # Errors
-    /// [`Refusal::TemporarilyRejected`] while a cause leaves no choice.
+    /// [`Refusal::TemporarilyRejected`] while the place is not known.
     pub(in crate::vehicle) fn may_enter(&self, mode: Mode) -> Result<(), Refusal> {
         let flying = self.armed && self.steering.kind() != SteeringKind::Idle;
         if !flying || mode == Mode::Land {
             return Ok(());
         }
-        for cause in [Cause::RotorFailure, Cause::PositionLost] {
-            if self.failsafe.is_present(cause) && self.conduct.failsafe.action(cause) >= Action::Land {
-                let name = self.identity.mode_name(mode);
-                return Err(Refusal::later(format!(
-                    "{name} rejected: {}, only landing is left",
-                    lower(cause)
-                )));
-            }
+        let lost = self.failsafe.is_present(Cause::PositionLost);
+        if lost && self.conduct.failsafe.position_lost >= Action::Land {
+            let name = self.identity.mode_name(mode);
+            return Err(Refusal::later(format!("{name} rejected: position lost, only landing is left")));
         }
         Ok(())
     }
