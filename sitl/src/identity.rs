@@ -24,6 +24,15 @@ const fn px4(main: u32, sub: u32) -> u32 {
 }
 
 impl Identity {
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Px4 => "PX4",
+            Self::ArduPilot => "ArduPilot",
+            Self::Generic => "generic",
+        }
+    }
+
     /// MAV_AUTOPILOT.
     pub fn autopilot(self) -> u8 {
         match self {

@@ -22,9 +22,9 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
         many => format!("{} simulated quadrotors", many.len()),
     };
     let mut text = format!(
-        "lmpc-sitl {}: {what}, as {:?}, at {:.6}, {:.6}, {:.0} m\n",
+        "lmpc-sitl {}: {what}, as {}, at {:.6}, {:.6}, {:.0} m\n",
         env!("CARGO_PKG_VERSION"),
-        first.autopilot().identity(),
+        first.autopilot().identity().name(),
         origin.latitude_deg,
         origin.longitude_deg,
         origin.altitude_m,
@@ -96,9 +96,9 @@ fn ways(links: &Links, specifications: &[LinkSpecification]) -> String {
                 "      MAVSDK: udpin://0.0.0.0:{port}; pymavlink: mavlink_connection('udpin:127.0.0.1:{port}')\n"
             ),
             Endpoint::UdpIn { .. } => format!("      pymavlink: mavlink_connection('udpout:{address}')\n"),
-            Endpoint::TcpIn { .. } => {
-                format!("      pymavlink: mavlink_connection('tcp:{address}'); MAVSDK: tcpout://{address}\n")
-            }
+            Endpoint::TcpIn { .. } => format!(
+                "      pymavlink: mavlink_connection('tcp:{address}'); MAVSDK: tcpout://{address}; MAVProxy: --master=tcp:{address}\n"
+            ),
             Endpoint::Serial { .. } => String::new(),
         });
     }
