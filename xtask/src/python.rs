@@ -59,7 +59,7 @@ pub fn environment(workspace: &Workspace, progress: &Progress) -> Result<Python,
         return Ok(python);
     }
 
-    progress.step("Making the Python environment (once; downloads about 190 MB)");
+    progress.step("Making the Python environment (once; downloads about 175 MB)");
     files::remove_folder(&folder)?;
     let mut make = Command::new(&interpreter);
     make.args(["-m", "venv"]).arg(&folder);
