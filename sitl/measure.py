@@ -1,5 +1,5 @@
 """Measures the program: start to first heartbeat and to armable, memory, share of a core, highest speed, and the latency
-from a set-point to the motors.
+from a set-point to the motors; prints rows of the README's table.
 
     cargo build --release -p sitl
     python sitl/measure.py target/release/lmpc-sitl
@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 os.environ.setdefault("MAVLINK20", "1")
@@ -62,30 +63,51 @@ def starts(program, times: int):
     return beats, armable
 
 
-def at_real_time(program, seconds: float):
-    """Share of a core and resident memory, MB, with the default two links, hovering."""
+@contextmanager
+def flying(program, *links):
+    """The process and a connection to the last of its links."""
     with tempfile.TemporaryDirectory() as folder:
         ready = Path(folder) / "ready"
-        links = [option for link in ("udpout:127.0.0.1:9", "udpout:127.0.0.1:10,onboard", "udpin:0") for option in ("--link", link)]
-        process = subprocess.Popen([program, "--ready-file", ready, *links], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while not ready.exists():
-            time.sleep(0.01)
-        connection = connect(json.loads(ready.read_text())["addresses"][2])
-        command(connection, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-        command(connection, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
-        time.sleep(3)
+        options = [option for link in links for option in ("--link", link)]
+        process = subprocess.Popen([program, "--ready-file", ready, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            while not ready.exists():
+                if process.poll() is not None:
+                    raise SystemExit(f"{program} did not start")
+                time.sleep(0.01)
+            yield process, connect(json.loads(ready.read_text())["addresses"][-1])
+        finally:
+            process.terminate()
+            process.wait()
+
+
+def resident(process) -> float:
+    """MB."""
+    return int(Path(f"/proc/{process.pid}/status").read_text().split("VmRSS:")[1].split()[0]) / 1024
+
+
+def at_real_time(program, seconds: float):
+    """Share of a core, hovering with the default two links and one more; and resident memory in MB after the start, after the
+    flight, and after ten more simulated minutes as fast as it goes."""
+    with flying(program, "udpout:127.0.0.1:9", "udpout:127.0.0.1:10,onboard", "udpin:0") as (process, connection):
+        memory = [resident(process)]
+        take_off(connection)
 
         def used():
             fields = Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
             return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
-        before = used()
-        time.sleep(seconds)
-        share = (used() - before) / seconds
-        status = Path(f"/proc/{process.pid}/status").read_text()
-        memory = int(status.split("VmRSS:")[1].split()[0]) / 1024
-        process.terminate()
-        process.wait()
+        before, begin = used(), time.monotonic()
+        while time.monotonic() - begin < seconds:
+            connection.recv_match(blocking=True, timeout=1)  # an answer is not to drown in what is unread
+        share = (used() - before) / (time.monotonic() - begin)
+        command(connection, mavlink.MAV_CMD_NAV_LAND)
+        wait(connection, "HEARTBEAT", lambda beat: not beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+        memory.append(resident(process))
+        end = wait(connection, "LOCAL_POSITION_NED").time_boot_ms + 600_000
+        connection.mav.param_set_send(1, 1, b"SIM_SPEEDUP", 1000, mavlink.MAV_PARAM_TYPE_REAL32)
+        wait(connection, "LOCAL_POSITION_NED", lambda place: place.time_boot_ms >= end)
+        memory.append(resident(process))
     return share, memory
 
 
@@ -108,53 +130,86 @@ def command(connection, number, *parameters):
     assert ack.result == 0, ack
 
 
-def latencies(program, count: int):
-    """ms of the wall clock from sending a thrust to the first SERVO_OUTPUT_RAW that differs."""
+def wait(connection, kind: str, condition=lambda message: True, seconds: float = 60):
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        message = connection.recv_match(type=kind, blocking=True, timeout=left)
+        if message is not None and condition(message):
+            return message
+    raise SystemExit(f"no such {kind} within {seconds} s")
+
+
+def take_off(connection):
+    command(connection, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    command(connection, mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
+    wait(connection, "LOCAL_POSITION_NED", lambda place: abs(place.z + 2.5) < 0.05 and abs(place.vz) < 0.02)
+
+
+def round_trips(program, count: int):
+    """ms of the wall clock from sending a PING to its answer: what transport costs, there and back."""
     found = []
-    with tempfile.TemporaryDirectory() as folder:
-        ready = Path(folder) / "ready"
-        process = subprocess.Popen([program, "--ready-file", ready, "--link", "udpin:0,onboard"],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while not ready.exists():
-            time.sleep(0.01)
-        connection = connect(json.loads(ready.read_text())["addresses"][0])
-        send = lambda thrust: connection.mav.set_attitude_target_send(0, 1, 1, 0b111, [1, 0, 0, 0], 0, 0, 0, thrust)  # noqa: E731
+    with flying(program, "udpin:0,onboard") as (_, connection):
+        for number in range(count):
+            time.sleep(0.0037)
+            begin = time.perf_counter()
+            connection.mav.ping_send(0, number, 0, 0)
+            wait(connection, "PING", lambda ping: ping.seq == number and ping.target_system)
+            found.append((time.perf_counter() - begin) * 1e3)
+    return found
+
+
+def latencies(program, count: int):
+    """ms of the wall clock from sending another thrust to the first SERVO_OUTPUT_RAW, sent every millisecond, that differs. The
+    times of sending are spread over the samples of the attitude controller."""
+    found = []
+    with flying(program, "udpin:0,onboard") as (_, connection):
         command(connection, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW, 1000)
-        send(0.05)
+        send_thrust(connection.mav, 0)
         command(connection, mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
         command(connection, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-        # On the ground, too weak to lift off: only the motors change.
         for number in range(count):
-            for _ in range(8):
-                send(0.1 + 0.1 * (number % 2))
-                time.sleep(0.05)
-            time.sleep(0.0007 * (number % 15))
+            end = time.monotonic() + 0.4 + 0.0007 * (number % 15)
+            while (left := end - time.monotonic()) > 0:
+                send_thrust(connection.mav, number % 2)
+                time.sleep(min(0.05, left))
             while connection.recv_match(blocking=False) is not None:
                 pass
-            settled = connection.recv_match(type="SERVO_OUTPUT_RAW", blocking=True, timeout=1).servo1_raw
+            settled = wait(connection, "SERVO_OUTPUT_RAW", seconds=1).servo1_raw
             begin = time.perf_counter()
-            send(0.1 + 0.1 * ((number + 1) % 2))
-            while abs(connection.recv_match(type="SERVO_OUTPUT_RAW", blocking=True, timeout=1).servo1_raw - settled) < 2:
-                pass
+            send_thrust(connection.mav, (number + 1) % 2)
+            wait(connection, "SERVO_OUTPUT_RAW", lambda servo: abs(servo.servo1_raw - settled) >= 2, seconds=1)
             found.append((time.perf_counter() - begin) * 1e3)
-        process.terminate()
-        process.wait()
     return found
+
+
+def send_thrust(mav, which: int):
+    """Level, too weak to lift off: only the motors change."""
+    mav.set_attitude_target_send(0, 1, 1, 0b111, [1, 0, 0, 0], 0, 0, 0, (0.1, 0.2)[which])
+
+
+def percentiles(values) -> str:
+    values = sorted(values)
+    return f"p50 {values[len(values) // 2]:.1f} ms, p99 {values[int(len(values) * 0.99)]:.1f} ms"
 
 
 def main():
     program = sys.argv[1]
     beats, armable = starts(program, 20)
-    share, memory = at_real_time(program, 20)
-    latency = sorted(latencies(program, 100))
+    share, memory = at_real_time(program, 10)
     quiet = highest_speed(program, ["--link", "tcpin:0"])
     loud = highest_speed(program, ["--link", "udpout:127.0.0.1:9", "--link", "udpout:127.0.0.1:10,onboard"])
-    print(f"start to first heartbeat      median {statistics.median(beats):6.1f} ms   worst {max(beats):6.1f} ms")
-    print(f"start to armable (SYS_STATUS) median {statistics.median(armable):6.1f} ms   worst {max(armable):6.1f} ms")
-    print(f"resident memory               {memory:.1f} MB")
-    print(f"share of a core at real time  {100 * share:.1f} %")
-    print(f"highest speed                 {quiet:.0f} times real time without a client, {loud:.0f} with two UDP links")
-    print(f"set-point to motor telemetry  p50 {latency[len(latency) // 2]:.1f} ms   p99 {latency[int(len(latency) * 0.99)]:.1f} ms")
+    rows = {
+        "start of the process to the first heartbeat": f"{statistics.median(beats):.1f} ms, worst of 20 {max(beats):.1f} ms",
+        'start to "armable" in SYS_STATUS': f"{statistics.median(armable):.1f} ms, worst of 20 {max(armable):.1f} ms",
+        "resident memory after the start, a flight, ten more minutes": ", ".join(f"{each:.1f}" for each in memory) + " MB",
+        "size of the program": f"{os.path.getsize(program) / 2**20:.1f} MB",
+        "share of one core at real time, hovering, three links": f"{100 * share:.1f} %",
+        "highest speed, no client; ground-station and onboard link": f"{quiet:.0f}; {loud:.0f} times real time",
+        "PING to its answer: transport there and back": percentiles(round_trips(program, 200)),
+        "thrust set-point to changed motors, sampled every 10 ms": percentiles(latencies(program, 60)),
+    }
+    for row in rows.items():
+        print("| {} | {} |".format(*row))
 
 
 if __name__ == "__main__":
