@@ -153,3 +153,13 @@ fn the_same_controls_are_the_same_flight() {
     assert_eq!(flight(0.56), flight(0.56));
     assert_ne!(flight(0.56), flight(0.560_001));
 }
+
+/// SET_MESSAGE_INTERVAL: whole steps, zero for the default, none.
+#[test]
+fn the_truth_comes_as_often_as_asked() {
+    let mut rig = rig(Mount::X);
+    for (interval_us, expected) in [(Some(5_000), 125), (Some(1), 250), (Some(0), 50), (None, 0)] {
+        rig.set_truth_interval(interval_us);
+        assert_eq!(fly(&mut rig, 1.0, None).truths.len(), expected, "{interval_us:?}");
+    }
+}

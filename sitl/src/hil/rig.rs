@@ -90,10 +90,12 @@ impl Rig {
         self.controlled_us = Some(self.time_us);
     }
 
-    /// Asks for HIL_STATE_QUATERNION in an interval, µs, in whole steps; `None` for none.
+    /// Asks for HIL_STATE_QUATERNION in an interval, µs, in whole steps; zero for the usual one, `None` for none.
     pub fn set_truth_interval(&mut self, interval_us: Option<u64>) {
-        self.truth_us =
-            interval_us.map(|interval_us| interval_us.div_ceil(STEP_US).max(1).saturating_mul(STEP_US));
+        self.truth_us = interval_us.map(|interval_us| match interval_us {
+            0 => TRUTH_US,
+            _ => interval_us.div_ceil(STEP_US).saturating_mul(STEP_US),
+        });
     }
 
     /// Flies one step on. What the autopilot is told after it.
