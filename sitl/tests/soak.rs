@@ -6,11 +6,12 @@ mod run;
 
 #[test]
 fn vehicles_hold_what_must_hold_under_clients_that_come_and_go() {
-    let options = run::Options { vehicles: 3, end_us: 240_000_000, seed: 7, loss: 0.02 };
+    let options = run::Options { vehicles: 5, end_us: 240_000_000, seed: 7, loss: 0.02 };
     let figures = run::run(&options);
     assert!(figures.violations.is_empty(), "{figures}");
     // It has done what it is for.
     assert!(figures.flights >= 3 && figures.clients >= 9 && figures.rests >= 3, "{figures}");
+    assert!(figures.missions >= 1 && figures.uploads >= 2 && figures.downloads >= 2, "{figures}");
     assert!(figures.parameter_lists >= 3 && figures.parameters_set >= 3 && figures.lost > 1000, "{figures}");
 }
 

@@ -47,7 +47,10 @@ impl HilSettings {
             ("record", arguments.record.is_some()),
             ("tlog", arguments.tlog.is_some()),
             ("sensors", arguments.sensors.is_some()),
+            ("noise", arguments.noise.is_some()),
+            ("kalman", arguments.kalman.is_some()),
             ("fault", arguments.fault.is_some()),
+            ("mission", arguments.mission.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
         ] {
             if given {

@@ -22,6 +22,7 @@ pub struct Figures {
     pub lost: u64,
     pub clients: u64,
     pub flights: u64,
+    pub missions: u64,
     pub abandoned: u64,
     pub parameter_lists: u64,
     pub parameters_set: u64,
@@ -102,8 +103,8 @@ impl fmt::Display for Figures {
         )?;
         writeln!(
             formatter,
-            "clients: {}; flights: {} ended, {} handed over to the next pilot",
-            self.clients, self.flights, self.abandoned
+            "clients: {}; flights: {} by commands, {} by missions, {} handed over to the next pilot",
+            self.clients, self.flights, self.missions, self.abandoned
         )?;
         writeln!(
             formatter,

@@ -14,6 +14,10 @@ use super::task::Step;
 
 const HOLD: [f32; 3] = [1.0, 4.0, 3.0];
 const OFFBOARD: [f32; 3] = [1.0, 6.0, 0.0];
+/// Waypoints of a mission that is flown; longer ones are only carried there and back.
+const LONGEST_FLOWN: usize = 8;
+/// So near to a waypoint, m, the next one begins.
+const ACCEPTANCE_M: f32 = 1.0;
 
 /// A flight, or the rest of one that somebody has left.
 pub fn pilot(autopilot: &Autopilot, chance: &mut Chance) -> VecDeque<Step> {
@@ -25,7 +29,15 @@ pub fn pilot(autopilot: &Autopilot, chance: &mut Chance) -> VecDeque<Step> {
             return [command(target, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, &[0.0]), pause(2.0)].into();
         }
         if chance.share() < 0.5 {
-            steps.extend([Step::Upload(mission(autopilot, chance)), Step::Download]);
+            let (places, items) = mission(autopilot, chance);
+            let short = places.len() <= LONGEST_FLOWN;
+            steps.extend([Step::Upload(items), Step::Download]);
+            if short {
+                steps.push_back(command(target, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, &[1.0]));
+                steps.push_back(command(target, MavCmd::MAV_CMD_MISSION_START, &[]));
+                steps.extend([Step::Mission { places }, pause(chance.within(1.0, 20.0))]);
+                return steps;
+            }
         }
         let altitude = vehicle.frame().origin().altitude_m + chance.within(2.0, 12.0);
         let takeoff = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, altitude as f32];
@@ -140,9 +152,9 @@ fn reposition(autopilot: &Autopilot, place: [f64; 3]) -> Step {
     }
 }
 
-/// A takeoff, some waypoints and a landing.
-fn mission(autopilot: &Autopilot, chance: &mut Chance) -> Vec<MISSION_ITEM_INT_DATA> {
-    let waypoints = chance.one_of(&[1_u16, 5, 20, 60]);
+/// A takeoff, some waypoints and a landing; and where the waypoints are.
+fn mission(autopilot: &Autopilot, chance: &mut Chance) -> (Vec<[f64; 3]>, Vec<MISSION_ITEM_INT_DATA>) {
+    let waypoints = chance.one_of(&[1_u16, 3, 5, 8, 60]);
     let item = |seq: u16, command, place| {
         let (x, y, _) = scaled(autopilot, place);
         MISSION_ITEM_INT_DATA {
@@ -159,10 +171,15 @@ fn mission(autopilot: &Autopilot, chance: &mut Chance) -> Vec<MISSION_ITEM_INT_D
         }
     };
     let mut items = vec![item(0, MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0, -5.0])];
+    let mut places = Vec::new();
     for seq in 1..=waypoints {
         let place = [chance.within(-50.0, 50.0), chance.within(-50.0, 50.0), chance.within(-20.0, -3.0)];
-        items.push(item(seq, MavCmd::MAV_CMD_NAV_WAYPOINT, place));
+        places.push(place);
+        items.push(MISSION_ITEM_INT_DATA {
+            param2: ACCEPTANCE_M,
+            ..item(seq, MavCmd::MAV_CMD_NAV_WAYPOINT, place)
+        });
     }
     items.push(item(waypoints + 1, MavCmd::MAV_CMD_NAV_LAND, [0.0; 3]));
-    items
+    (places, items)
 }

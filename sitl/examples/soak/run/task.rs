@@ -9,7 +9,9 @@ use mavlink::dialects::common::{
     PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA, PositionTargetTypemask,
     SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
+use nalgebra::Vector3;
 use sitl::Autopilot;
+use sitl::estimation::SensorModel;
 use sitl::vehicle::LandedState;
 
 use super::figures::Figures;
@@ -30,6 +32,10 @@ pub enum Step {
     Stream {
         goal: [f64; 3],
         for_us: u64,
+    },
+    /// Wait until it has passed all of these places in turn, has landed and is disarmed.
+    Mission {
+        places: Vec<[f64; 3]>,
     },
     ReadParameters,
     SetParameter {
@@ -57,6 +63,11 @@ const TAKEOFF_US: u64 = 40_000_000;
 /// A way home and a landing, µs.
 const LANDING_US: u64 = 240_000_000;
 const STREAM_US: u64 = 50_000;
+/// A mission, µs.
+const MISSION_US: u64 = 500_000_000;
+/// A waypoint was passed nearer than this, m: its acceptance radius, and what gusts or the receiver do to it.
+const PASSED_M: f64 = 2.0;
+const PASSED_BY_INSTRUMENTS_M: f64 = 14.0;
 
 pub struct Task {
     pub step: Rc<Step>,
@@ -66,6 +77,7 @@ pub struct Task {
     values: BTreeMap<u16, String>,
     count: Option<u16>,
     items: Vec<MISSION_ITEM_INT_DATA>,
+    passed: usize,
 }
 
 /// What a task may look at, and where it leaves what it wants to send.
@@ -82,7 +94,16 @@ pub struct Surroundings<'a> {
 impl Task {
     pub fn new(step: Step, now_us: u64) -> Self {
         let (values, items) = (BTreeMap::new(), Vec::new());
-        Self { step: Rc::new(step), began_us: now_us, due_us: now_us, tries: 0, values, count: None, items }
+        Self {
+            step: Rc::new(step),
+            began_us: now_us,
+            due_us: now_us,
+            tries: 0,
+            values,
+            count: None,
+            items,
+            passed: 0,
+        }
     }
 
     /// A moment of it; `None` while it goes on.
@@ -101,6 +122,7 @@ impl Task {
                 }
                 (elapsed_us >= *for_us).then_some(Outcome::Done)
             }
+            Step::Mission { places } => self.mission(places, elapsed_us, with),
             Step::ReadParameters => self.read_parameters(with),
             Step::SetParameter { name, value } => self.set_parameter(name, *value, with),
             Step::Upload(items) => self.upload(items, with),
@@ -149,6 +171,33 @@ impl Task {
             }
         }
         None
+    }
+
+    fn mission(
+        &mut self,
+        places: &[[f64; 3]],
+        elapsed_us: u64,
+        with: &mut Surroundings<'_>,
+    ) -> Option<Outcome> {
+        let vehicle = with.autopilot.vehicle();
+        let realistic = with.autopilot.settings().sensors.model == SensorModel::Realistic;
+        let near_m = if realistic { PASSED_BY_INSTRUMENTS_M } else { PASSED_M };
+        if let Some(place) = places.get(self.passed) {
+            let away = vehicle.truth().position_m - Vector3::from(*place);
+            self.passed += usize::from(away.norm() < near_m);
+        }
+        let down = vehicle.landed_state() == LandedState::OnGround && !vehicle.is_armed();
+        if down && self.passed == places.len() {
+            with.figures.missions += 1;
+            return Some(Outcome::Done);
+        }
+        // The command to begin may have come when it was about to disarm for want of one.
+        if down && self.passed == 0 && elapsed_us > 15_000_000 {
+            return Some(Outcome::Dropped);
+        }
+        let late = format!("{:?}: passed {} of {} waypoints", vehicle.mode(), self.passed, places.len());
+        let dropped = down && self.passed > 0;
+        (dropped || elapsed_us > MISSION_US).then_some(Outcome::Failed(late))
     }
 
     fn read_parameters(&mut self, with: &mut Surroundings<'_>) -> Option<Outcome> {
