@@ -1,0 +1,39 @@
+"""Loses the front rotor in flight, and watches the vehicle come down without yaw control."""
+
+import math
+import sys
+
+from flight import Flight, arguments, verdict
+from pymavlink.dialects.v20 import common as mavlink
+
+START = (0.0, 0.0, -20.0)
+ROTOR = 1
+
+options = arguments(__doc__, "failure.png")
+flight = Flight(options.connect)
+flight.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000)
+flight.take_off()
+flight.go_to(START)
+
+broken_at = flight.now
+flight.command(mavlink.MAV_CMD_INJECT_FAILURE, mavlink.FAILURE_UNIT_SYSTEM_MOTOR, mavlink.FAILURE_TYPE_OFF, ROTOR)
+tilts, spins, sinks, drifts = [], [], [], []
+
+
+def watch():
+    attitude = flight.connection.messages.get("ATTITUDE")
+    if attitude is not None and flight.position[2] < -0.3:
+        tilts.append(math.degrees(math.acos(math.cos(attitude.roll) * math.cos(attitude.pitch))))
+        spins.append(abs(attitude.yawspeed))
+        sinks.append(flight.velocity[2])
+        drifts.append(math.dist(flight.position[:2], START[:2]))
+
+
+armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+flight.until(lambda: not flight.connection.messages["HEARTBEAT"].base_mode & armed, 60, "coming down", watch)
+print(f"down in {flight.now - broken_at:.1f} s, {drifts[-1]:.1f} m away, spinning with {spins[-1]:.1f} rad/s")
+missed = verdict("largest tilt", max(tilts), 40, "degrees")
+missed |= verdict("sink rate at touch-down", sinks[-1], 1, "m/s")
+missed |= verdict("largest drift", max(drifts), 30, "m")
+flight.plot(options.plot, f"without rotor {ROTOR}")
+sys.exit(missed)
