@@ -138,3 +138,55 @@ impl Spoil for MagnetometerReading {
         Self { field_gauss: self.field_gauss + error, ..self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::{Axes, Defect};
+    use crate::fault::{Sensor, SensorFault};
+
+    /// What is told of readings every 10 ms, whose first axis is their number; the fault begins with the 100th.
+    fn told(sensor: Sensor, fault: SensorFault) -> Vec<(u64, Option<Axes>)> {
+        let mut defect = Defect::new(sensor, 1);
+        let reading =
+            |number: u64| Axes { time_us: number * 10_000, axes: Vector3::new(number as f64, 0.0, 0.0) };
+        (0..400)
+            .map(|number| (number, defect.tell(reading(number), (number >= 100).then_some(fault))))
+            .skip(100)
+            .collect()
+    }
+
+    #[test]
+    fn each_fault_leaves_what_its_name_says() {
+        use SensorFault::{Delayed, Garbage, Intermittent, Off, Slow, Stuck, Wrong};
+        let sensor = Sensor::Magnetometer;
+        assert!(told(sensor, Off).iter().all(|(_, told)| told.is_none()));
+        for (number, told) in told(sensor, Stuck) {
+            let told = told.expect("it repeats");
+            assert_eq!((told.time_us, told.axes.x), (number * 10_000, 99.0));
+        }
+        for (number, told) in told(sensor, Wrong) {
+            let error = told.expect("a reading").axes - Vector3::new(number as f64, 0.0, 0.0);
+            assert!((error - Vector3::repeat(0.2)).norm() < 1e-9, "{error}");
+        }
+        let slow = told(sensor, Slow);
+        assert_eq!(slow.iter().filter(|(_, told)| told.is_some()).count(), 60);
+        for (number, told) in told(sensor, Delayed) {
+            // Half a second is 50 readings, and until the first arrives there is none.
+            let expected = (number >= 150).then(|| ((number * 10_000), (number - 50) as f64));
+            assert_eq!(told.map(|told| (told.time_us, told.axes.x)), expected);
+        }
+        // A second by turns: silent from 2 to 3 s, and from the start of the fault at 1 s it speaks.
+        for (number, told) in told(sensor, Intermittent) {
+            assert_eq!(told.is_some(), !(200..300).contains(&number), "{number}");
+        }
+        let garbage = told(sensor, Garbage);
+        let squares = garbage.iter().filter_map(|(_, told)| *told).map(|told| told.axes.y.powi(2));
+        let deviation = (squares.sum::<f64>() / 300.0).sqrt();
+        assert!((deviation / 0.5 - 1.0).abs() < 5.0 / (2.0_f64 * 300.0).sqrt(), "{deviation}");
+        // To the north only.
+        let off = told(Sensor::Gps, Wrong)[0].1.expect("a reading").axes;
+        assert_eq!(off, Vector3::new(110.0, 0.0, 0.0));
+    }
+}

@@ -20,9 +20,9 @@ use super::tuning;
 /// samples of the controllers.
 const PREDICTION_US: u64 = 5_000;
 /// How fast the controllers are told that the vehicle is elsewhere, m/s, and moves otherwise, m/s²: after 15 s without
-/// fixes they then lean by no more than 0.3 rad.
-const POSITION_RELEASE_M_S: f64 = 0.3;
-const VELOCITY_RELEASE_M_S2: f64 = 0.3;
+/// fixes they then lean by a tenth of a radian.
+const POSITION_RELEASE_M_S: f64 = 0.5;
+const VELOCITY_RELEASE_M_S2: f64 = 0.5;
 /// The antenna sits on the inertial unit.
 const NO_LEVER: [f32; 3] = [0.0; 3];
 
@@ -233,9 +233,12 @@ impl Estimator {
         let state = self.filter.state();
         let q = state.attitude.body_to_ned();
         let attitude = Quaternion::new(q.w.into(), q.x.into(), q.y.into(), q.z.into());
+        let held_velocity = self.velocity_release.step(dt_s);
+        // The position that is told goes on with the velocity that is told.
+        self.position_release.hold(&(held_velocity * dt_s));
         let body = &mut self.estimate.body;
         body.position_m = double(state.position.to_array()) - self.position_release.step(dt_s);
-        body.velocity_m_s = double(state.velocity.to_array()) - self.velocity_release.step(dt_s);
+        body.velocity_m_s = double(state.velocity.to_array()) - held_velocity;
         body.attitude = UnitQuaternion::new_normalize(attitude).into_inner();
         body.body_rate_rad_s = reading.body_rate_rad_s - double(state.gyro_bias.to_array());
         let aided = state.status != Status::DeadReckoning;

@@ -8,17 +8,18 @@ const RELEASE_S: f64 = 0.25;
 const LONGEST_S: f64 = 10.0;
 
 /// What a filter has corrected but not yet told. A measurement moves its state at once, after a loss of the receiver by
-/// metres; controllers that saw the leap would lean into it.
+/// metres; controllers that saw the leap, or an abrupt motion instead of it, would lean into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Release {
     held: Vector3<f64>,
+    pace_per_s: f64,
     fastest_per_s: f64,
 }
 
 impl Release {
-    /// Nothing held; releases no faster than this per second, unless it is very much.
+    /// Nothing held; releases no faster than this per second, unless it is very much, and is so fast after a second.
     pub fn new(fastest_per_s: f64) -> Self {
-        Self { held: Vector3::zeros(), fastest_per_s }
+        Self { held: Vector3::zeros(), pace_per_s: 0.0, fastest_per_s }
     }
 
     /// Holds a correction back.
@@ -29,10 +30,13 @@ impl Release {
     /// Goes on by `dt_s` and returns what is still held.
     pub fn step(&mut self, dt_s: f64) -> Vector3<f64> {
         let size = self.held.norm();
+        let fastest_per_s = self.fastest_per_s.max(size / LONGEST_S);
+        // What comes to rest when nothing is left, v²/2a with half of the change of pace that is allowed.
+        let resting_per_s = libm::sqrt(fastest_per_s * size);
+        let wanted_per_s = (size / RELEASE_S).min(fastest_per_s).min(resting_per_s);
+        self.pace_per_s = wanted_per_s.min(self.pace_per_s + fastest_per_s * dt_s);
         if size > 0.0 {
-            let pace_per_s = self.fastest_per_s.max(size / LONGEST_S);
-            let released = (size / RELEASE_S).min(pace_per_s) * dt_s;
-            self.held *= 1.0 - (released / size).min(1.0);
+            self.held *= 1.0 - (self.pace_per_s * dt_s / size).min(1.0);
         }
         self.held
     }
@@ -44,22 +48,27 @@ mod tests {
 
     use super::Release;
 
-    #[test]
-    fn a_large_correction_is_released_at_its_pace_and_a_small_one_at_once() {
-        let mut release = Release::new(1.0);
-        release.hold(&Vector3::new(3.0, 0.0, 4.0));
-        let mut held = 5.0;
-        for step in 1..=1000 {
+    /// Largest change of the pace of a release from one step to the next, per s², and what is held after some seconds.
+    fn released(correction_m: f64, seconds: f64) -> (f64, f64) {
+        let mut release = Release::new(0.3);
+        release.hold(&Vector3::new(0.6, 0.0, 0.8).map(|part: f64| part * correction_m));
+        let (mut before, mut pace, mut jerk) = (correction_m, 0.0, 0.0_f64);
+        for _ in 0..(seconds / 0.005) as usize {
             let now = release.step(0.005).norm();
-            assert!(held - now <= 0.005 + 1e-12, "step {step}");
-            held = now;
+            let faster = (before - now) / 0.005;
+            jerk = jerk.max((faster - pace) / 0.005);
+            (before, pace) = (now, faster);
+            assert!(pace <= 0.300_001_f64.max(before / 9.9), "{pace} with {before} left");
         }
-        assert!((0.0..0.3).contains(&held), "{held}");
-        let mut release = Release::new(1.0);
-        release.hold(&Vector3::new(0.01, 0.0, 0.0));
-        for _ in 0..200 {
-            held = release.step(0.005).norm();
-        }
-        assert!((held / 0.01 - (-4.0_f64).exp()).abs() < 0.01, "{held}");
+        (jerk, before)
+    }
+
+    #[test]
+    fn a_correction_is_released_at_its_pace_without_a_jerk() {
+        let (jerk, left) = released(3.0, 15.0);
+        assert!(jerk < 0.31 && left < 0.01, "{jerk} {left}");
+        // A small one within a second, a very large one within a minute.
+        assert!(released(0.01, 1.0).1 < 0.001, "{:?}", released(0.01, 1.0));
+        assert!(released(100.0, 60.0).1 < 1.0, "{:?}", released(100.0, 60.0));
     }
 }

@@ -125,7 +125,6 @@ impl Vehicle {
         configuration.reference.shaping = true;
         configuration.initial.attitude_rad[2] = settings.heading_rad;
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
-            believe_estimate(&mut configuration);
             let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
         });
@@ -376,15 +375,4 @@ impl Vehicle {
             result => result,
         }
     }
-}
-
-/// Standard deviations of an estimate from one sample of the controllers to the next, m and rad: its predictor of
-/// disturbances takes what is beyond for a push.
-const ESTIMATE_NOISE: (f64, f64) = (0.02, 0.003);
-
-/// Lets the predictor of disturbances count with the errors of an estimate.
-fn believe_estimate(configuration: &mut Configuration) {
-    let sensors = &mut configuration.sensors;
-    sensors.position_noise_m = sensors.position_noise_m.max(ESTIMATE_NOISE.0);
-    sensors.attitude_noise_rad = sensors.attitude_noise_rad.max(ESTIMATE_NOISE.1);
 }
