@@ -26,6 +26,8 @@ const SMALL: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shaper {
     start_us: u64,
+    /// The heading is planned by itself: one that keeps turning does not disturb the way.
+    yaw_start_us: u64,
     /// The goal that was planned for.
     goal: PositionReference,
     limits: Limits,
@@ -45,6 +47,7 @@ impl Shaper {
         let rest = |position| MotionProfile::constant(Motion::at(position));
         Self {
             start_us: time_us,
+            yaw_start_us: time_us,
             goal: PositionReference::goal((*position_m).into(), yaw_rad),
             limits: *limits,
             offset_m: Vector3::zeros(),
@@ -71,7 +74,7 @@ impl Shaper {
             axes: [motion(0), motion(1), motion(2)],
             yaw: MotionProfile::constant(yaw),
             // None that can be asked for: the update below always plans.
-            goal: PositionReference { yaw_rate_rad_s: f64::NAN, ..at_rest.goal },
+            goal: PositionReference { velocity_m_s: Vector3::repeat(f64::NAN), ..at_rest.goal },
             ..at_rest
         };
         shaper.update(
@@ -80,14 +83,14 @@ impl Shaper {
             time_us,
         );
         // Without a plan the motion would go on for ever.
-        if shaper.goal.yaw_rate_rad_s.is_nan() { at_rest } else { shaper }
+        if shaper.goal.velocity_m_s.x.is_nan() { at_rest } else { shaper }
     }
 
     /// The shaped reference at `time_us`.
     pub fn reference(&self, time_us: u64) -> PositionReference {
-        let time_s = self.elapsed_s(time_us);
+        let time_s = seconds(self.start_us, time_us);
         let motions = self.axes.map(|axis| axis.at(time_s));
-        let yaw = self.yaw.at(time_s);
+        let yaw = self.yaw.at(seconds(self.yaw_start_us, time_us));
         let turn = Rotation2::new(self.bearing_rad);
         let world = |part: fn(&Motion) -> f64| {
             let [along, across, down] = motions.each_ref().map(part);
@@ -103,19 +106,26 @@ impl Shaper {
         }
     }
 
-    /// Plans anew if the goal or the limits have changed. A problem that has no solution leaves the old
-    /// plan in force.
+    /// Plans anew if the goal or the limits have changed, and only the heading if only that has. A problem that has no
+    /// solution leaves the old plan in force.
     pub fn update(&mut self, goal: &PositionReference, limits: &Limits, time_us: u64) {
         let moved = goal.position_m - self.goal.position_m;
         let turned = wrapped(goal.yaw_rad - self.goal.yaw_rad);
-        let same_motion =
-            goal.velocity_m_s == self.goal.velocity_m_s && goal.yaw_rate_rad_s == self.goal.yaw_rate_rad_s;
-        if same_motion && *limits == self.limits && moved.norm() <= SMALL && turned.abs() <= SMALL {
-            (self.offset_m, self.yaw_offset_rad) = (moved, turned);
+        let same_way = goal.velocity_m_s == self.goal.velocity_m_s && moved.norm() <= SMALL;
+        let same_yaw = goal.yaw_rate_rad_s == self.goal.yaw_rate_rad_s && turned.abs() <= SMALL;
+        let now = self.reference(time_us);
+        let yaw_now = Motion { position: now.yaw_rad, ..self.yaw.at(seconds(self.yaw_start_us, time_us)) };
+        if same_way && *limits == self.limits {
+            self.offset_m = moved;
+            if same_yaw {
+                self.yaw_offset_rad = turned;
+            } else if let Some([yaw]) = plan_yaw(&yaw_now, goal, limits) {
+                self.goal.yaw_rad = goal.yaw_rad;
+                self.goal.yaw_rate_rad_s = goal.yaw_rate_rad_s;
+                (self.yaw, self.yaw_start_us, self.yaw_offset_rad) = (yaw, time_us, 0.0);
+            }
             return;
         }
-        let now = self.reference(time_us);
-        let yaw_now = Motion { position: now.yaw_rad, ..self.yaw.at(self.elapsed_s(time_us)) };
         let way = (goal.position_m - now.position_m).xy();
         let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
         let axes = plan_position(&now, goal, limits, bearing_rad);
@@ -123,6 +133,7 @@ impl Shaper {
         if let (Some(axes), Some([yaw])) = (axes, yaw) {
             *self = Self {
                 start_us: time_us,
+                yaw_start_us: time_us,
                 goal: *goal,
                 limits: *limits,
                 offset_m: Vector3::zeros(),
@@ -133,10 +144,10 @@ impl Shaper {
             };
         }
     }
+}
 
-    fn elapsed_s(&self, time_us: u64) -> f64 {
-        time_us.saturating_sub(self.start_us) as f64 / 1e6
-    }
+fn seconds(since_us: u64, time_us: u64) -> f64 {
+    time_us.saturating_sub(since_us) as f64 / 1e6
 }
 
 /// Along the bearing, across it and down, from a state to a goal.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use quadrotor::{Configuration, InputSignal};
+use quadrotor::{Configuration, InputSignal, Inputs, PositionReference, Simulation};
 
 mod common;
 use common::{Extremes, GOAL_M, distance, fly, goal, overshoot, smooth_flight, unshaped};
@@ -211,4 +211,31 @@ fn grossly_wrong_masses_still_hold_their_place() {
         let left = distance(&simulation.outputs(), [1.0, 1.0, -5.0]);
         assert!(left < bound_m, "mass factor {mass_factor}: {left} m");
     }
+}
+
+/// A heading that keeps turning is planned by itself: the way is the same, bit for bit.
+#[test]
+fn a_turning_heading_does_not_disturb_the_way() {
+    let configuration = Configuration::default();
+    let flown = |rate_rad_s: f64| {
+        let inputs = |time_us: u64| {
+            let angle_rad = rate_rad_s * time_us as f64 / 1e6;
+            let mut reference = PositionReference::goal([30.0, 10.0, -12.0], angle_rad);
+            reference.velocity_m_s = Vector3::new(2.0, 0.0, 0.0);
+            reference.yaw_rate_rad_s = rate_rad_s;
+            Inputs { reference, ..Inputs::default() }
+        };
+        let mut simulation = Simulation::new(&configuration, &inputs(0)).expect("defaults");
+        let mut way = Vec::new();
+        for tenth in 1..120 {
+            simulation.advance_to(tenth * 100_000, &inputs).expect("flight");
+            way.push(simulation.outputs().setpoint.position_m);
+        }
+        (way, simulation.outputs().setpoint.yaw_rad)
+    };
+    let (straight, _) = flown(0.0);
+    let (turning, yaw_rad) = flown(0.2);
+    assert_eq!(straight, turning);
+    // Chased at the limits of turning, it stays behind a little.
+    assert!((yaw_rad - 0.2 * 11.9).abs() < 0.25, "{yaw_rad}");
 }

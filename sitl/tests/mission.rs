@@ -593,8 +593,11 @@ proptest::proptest! {
     fn any_way_is_flown(
         places in proptest::collection::vec(
             ([-40.0..40.0_f64, -40.0..40.0, -30.0..-4.0], 0.3..6.0_f64), 2..6),
+        look in proptest::bool::ANY,
     ) {
-        let mut items = vec![takeoff()];
+        // A place to look at keeps the heading turning.
+        let region = if look { command::DO_SET_ROI_LOCATION } else { command::DO_SET_ROI_NONE };
+        let mut items = vec![takeoff(), at(region, [0.0; 4], [3.0, -5.0, 0.0])];
         items.extend(places.iter().map(|(place, radius)| {
             at(command::NAV_WAYPOINT, [0.0, *radius, 0.0, NAN], *place)
         }));
@@ -603,13 +606,14 @@ proptest::proptest! {
         proptest::prop_assert_eq!(flight.order(), order);
         let mut from_s = flight.time_of(0);
         for (index, (place, radius)) in places.iter().enumerate() {
-            let until_s = flight.time_of(index as u16 + 1) + 2.0;
+            let item = index as u16 + 2;
+            let until_s = flight.time_of(item) + 2.0;
             let nearest = flight
                 .between(from_s, until_s)
                 .map(|(_, at, _)| (at - Vector3::from(*place)).norm())
                 .fold(f64::INFINITY, f64::min);
-            proptest::prop_assert!(nearest <= *radius, "item {}: {} m beside {:?}", index + 1, nearest, places[index]);
-            from_s = flight.time_of(index as u16 + 1) - 2.0;
+            proptest::prop_assert!(nearest <= *radius, "item {}: {} m beside {:?}", item, nearest, places[index]);
+            from_s = flight.time_of(item) - 2.0;
         }
         for pair in flight.track.windows(2) {
             let velocity = (pair[1].1 - pair[0].1) / 0.01;
