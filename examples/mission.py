@@ -1,0 +1,91 @@
+"""Uploads a mission around a field and flies it: climb, three corners passed without a stop, a look at its middle, and back to land."""
+
+import math
+import sys
+
+from flight import Flight, arguments, mavlink, verdict
+
+RADIUS = 2.0  # within which a corner is passed, m
+HEIGHT = 8.0
+CORNERS = [(30, 0, HEIGHT), (30, 30, HEIGHT + 4), (0, 30, HEIGHT)]  # north, east, up, m
+MIDDLE = (15, 15)
+EARTH = 6_378_137.0
+
+
+def item(command, parameters=(0, 0, 0, math.nan), place=(0, 0), height=0.0):
+    """An item with a place in metres from home, which goes as latitude and longitude."""
+    return command, parameters, place, height
+
+
+MISSION = [
+    item(mavlink.MAV_CMD_NAV_TAKEOFF, height=HEIGHT),
+    item(mavlink.MAV_CMD_DO_CHANGE_SPEED, (1, 5, -1, 0)),
+    item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, place=MIDDLE),
+    *(item(mavlink.MAV_CMD_NAV_WAYPOINT, (0, RADIUS, 0, math.nan), (north, east), height) for north, east, height in CORNERS),
+    item(mavlink.MAV_CMD_NAV_LAND, place=(0.01, 0)),
+]
+
+
+def upload(flight: Flight, home):
+    """Answers the vehicle's requests until it has the whole mission."""
+    flight.mav.mission_count_send(*flight.target, len(MISSION))
+    while True:
+        message = flight.connection.recv_match(type=["MISSION_REQUEST_INT", "MISSION_ACK"], blocking=True, timeout=5)
+        if message is None:
+            raise SystemExit("the vehicle does not ask for the mission")
+        if message.get_type() == "MISSION_ACK":
+            if message.type != mavlink.MAV_MISSION_ACCEPTED:
+                raise SystemExit(f"the mission was refused: {mavlink.enums['MAV_MISSION_RESULT'][message.type].name}")
+            return
+        command, parameters, (north, east), height = MISSION[message.seq]
+        placed = (north, east) != (0, 0)
+        latitude = home.latitude + round(math.degrees(north / EARTH) * 1e7) if placed else 0
+        longitude = home.longitude + round(math.degrees(east / EARTH / math.cos(math.radians(home.latitude / 1e7))) * 1e7)
+        flight.mav.mission_item_int_send(
+            *flight.target, message.seq, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 0, 1, *parameters, latitude,
+            longitude if placed else 0, height)
+
+
+def beside(position, start, end) -> float:
+    """Horizontal distance from the line of a leg."""
+    way = (end[0] - start[0], end[1] - start[1])
+    off = (position[0] - start[0], position[1] - start[1])
+    return abs(way[0] * off[1] - way[1] * off[0]) / math.hypot(*way)
+
+
+options = arguments(__doc__, "mission.png")
+flight = Flight(options.connect)
+flight.mav.command_long_send(*flight.target, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, mavlink.MAVLINK_MSG_ID_HOME_POSITION, *[0] * 6)
+home = flight.connection.recv_match(type="HOME_POSITION", blocking=True, timeout=5)
+upload(flight, home)
+flight.command(mavlink.MAV_CMD_MISSION_START)
+
+# The corners with the time at which each was passed.
+passed = []
+
+
+def watch():
+    reached = flight.connection.messages.get("MISSION_ITEM_REACHED")
+    corner = reached.seq - 3 if reached else -1
+    if len(passed) == corner < len(CORNERS):
+        north, east, up = CORNERS[corner]
+        passed.append(flight.now)
+        flight.asked.append((flight.now, (north, east, -up), None))
+        print(f"corner {corner + 1} after {flight.now - begin:.1f} s")
+
+
+begin = flight.now
+flight.until(lambda: flight.connection.messages["MISSION_CURRENT"].mission_state == mavlink.MISSION_STATE_COMPLETE, 120,
+             "mission", watch)
+flight.until(lambda: not flight.connection.messages["HEARTBEAT"].base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED, 20, "landing")
+
+nearest = [min(math.dist(position, (north, east, -up)) for _, position, _ in flight.flown) for north, east, up in CORNERS]
+missed = verdict("farthest from a corner", max(nearest), RADIUS, "m")
+# Between two corners, clear of both.
+sides = [(position, start, end)
+         for (start, end), (left, right) in zip(zip(CORNERS, CORNERS[1:]), zip(passed, passed[1:]))
+         for at, position, _ in flight.flown if left + 3 < at < right - 1.5]
+missed |= verdict("beside a leg", 100 * max(beside(*side) for side in sides), 20, "cm")
+missed |= verdict("landed from home", 100 * math.hypot(*flight.position[:2]), 20, "cm")
+flight.plot(options.plot, "mission: around a field")
+sys.exit(missed)
