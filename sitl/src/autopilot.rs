@@ -7,11 +7,13 @@ use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
 use quadrotor::{ConfigurationError, SimulationError};
 
 use crate::codec::{Frame, Message, id, target_of};
+use crate::files::{FileStore, Nothing};
 use crate::identity::Identity;
 use crate::parameters::{Host, ParameterTable, SPEED_PARAMETER, SetError, Speed, Value, View};
 use crate::service::command::Retries;
 use crate::service::file_transfer::FileServer;
 use crate::service::heartbeat::Heartbeat;
+use crate::service::log::LogServer;
 use crate::service::message_interval::Streams;
 use crate::service::mission::Uploads;
 use crate::service::status_text::StatusTexts;
@@ -39,6 +41,7 @@ pub struct Autopilot {
     settings: VehicleSettings,
     speed: Speed,
     parameters_changed: bool,
+    initial_parameters: Vec<Value>,
     outbox: Vec<Outgoing>,
     greeted: VecDeque<PeerId>,
     pub(crate) vehicle: Vehicle,
@@ -50,6 +53,8 @@ pub struct Autopilot {
     pub(crate) files: FileServer,
     pub(crate) uploads: Uploads,
     pub(crate) mission_told: Option<MissionStatus>,
+    pub(crate) store: Box<dyn FileStore>,
+    pub(crate) logs: LogServer,
 }
 
 impl Autopilot {
@@ -70,6 +75,7 @@ impl Autopilot {
             settings: settings.clone(),
             speed,
             parameters_changed: false,
+            initial_parameters: Vec::new(),
             outbox: Vec::new(),
             greeted: VecDeque::new(),
             vehicle: Vehicle::new(settings)?,
@@ -81,7 +87,12 @@ impl Autopilot {
             files: FileServer::default(),
             uploads: Uploads::default(),
             mission_told: None,
+            store: Box::new(Nothing),
+            logs: LogServer::default(),
         };
+        let parameters = 0..autopilot.table.entries().len();
+        autopilot.initial_parameters =
+            parameters.filter_map(|index| autopilot.parameter_value(index)).collect();
         heartbeat::update(&mut autopilot);
         status_text::send(&mut autopilot, Severity::Info, INTRODUCTION);
         Ok(autopilot)
@@ -119,7 +130,10 @@ impl Autopilot {
             }
             id::FILE_TRANSFER_PROTOCOL => file_transfer::handle(self, origin, frame),
             id::TIMESYNC => time_synchronization::timesync(self, origin, frame),
-            id::LOG_REQUEST_LIST => log::answer(self, origin),
+            id::LOG_REQUEST_LIST => log::request_list(self, origin, frame),
+            id::LOG_REQUEST_DATA => log::request_data(self, origin, frame),
+            id::LOG_REQUEST_END => log::request_end(self, origin),
+            id::LOG_ERASE => log::erase(self, origin),
             _ => {}
         }
         self.tell_changes();
@@ -161,6 +175,22 @@ impl Autopilot {
     /// A heartbeat beside the regular ones: a link must not look dead while simulation time stands still.
     pub fn keep_alive(&mut self) {
         heartbeat::beat(self);
+    }
+
+    /// Lines for the pilot since the last call, with their times, µs.
+    pub fn take_texts(&mut self) -> Vec<(u64, Severity, String)> {
+        self.status_texts.take_unlogged()
+    }
+
+    /// Gives clients files to reach. They change nothing of the flight.
+    pub fn share(&mut self, store: Box<dyn FileStore>) {
+        self.store = store;
+    }
+
+    /// Sends up to this many messages of logs that are being downloaded, to peers that have room for them (`None`: the
+    /// peer is gone). How fast they go is a matter of links and wall clocks, not of the flight.
+    pub fn send_logs(&mut self, messages: usize, has_room: impl Fn(PeerId) -> Option<bool>) {
+        log::send(self, messages, has_room);
     }
 
     /// Tells everyone what has happened around the vehicle. It changes nothing of the flight.
@@ -251,6 +281,11 @@ impl Autopilot {
 
     pub(crate) fn parameter_value(&self, index: usize) -> Option<Value> {
         self.table.value(index, &self.view())
+    }
+
+    /// Parameters as they were at the start, in the order of the table.
+    pub(crate) fn initial_parameters(&self) -> &[Value] {
+        &self.initial_parameters
     }
 
     pub(crate) fn parameter_hash(&self) -> u32 {

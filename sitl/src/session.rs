@@ -81,6 +81,7 @@ impl Session {
                 behind |= clock.advance(&mut fleet, now, several)?;
             }
             fleet.keep_links_alive(now)?;
+            fleet.keep_logs(now)?;
             fleet.flush()?;
             status.update(now, &fleet);
             if !behind {

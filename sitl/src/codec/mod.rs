@@ -83,6 +83,12 @@ pub mod id {
     pub const TIMESYNC: u32 = 111;
     /// LOG_REQUEST_LIST
     pub const LOG_REQUEST_LIST: u32 = 117;
+    /// LOG_REQUEST_DATA
+    pub const LOG_REQUEST_DATA: u32 = 119;
+    /// LOG_ERASE
+    pub const LOG_ERASE: u32 = 121;
+    /// LOG_REQUEST_END
+    pub const LOG_REQUEST_END: u32 = 122;
     /// RADIO_STATUS
     pub const RADIO_STATUS: u32 = 109;
     /// SETUP_SIGNING

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use super::{Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
 use crate::estimation::SensorModel;
+use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::identity::Identity;
 use crate::link::LinkSpecification;
@@ -171,6 +172,31 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_TLOG", value_name = "FILE")]
     pub tlog: Option<PathBuf>,
 
+    /// Folder of flight logs (ULog, for Flight Review, PlotJuggler and pyulog); made if it is not there. Clients download
+    /// them
+    #[arg(long, env = "LMPC_SITL_LOG_DIR", value_name = "DIR")]
+    pub log_dir: Option<PathBuf>,
+
+    /// When a log begins: `arm` (one per flight) or `boot` (one per run) [default: arm]
+    #[arg(long, env = "LMPC_SITL_LOG_START", value_name = "arm|boot")]
+    pub log_start: Option<LogStart>,
+
+    /// A flight or traffic log goes on in another file at this size, MB [default: 100]
+    #[arg(long, env = "LMPC_SITL_LOG_SIZE", value_name = "MB", allow_hyphen_values = true)]
+    pub log_size: Option<f64>,
+
+    /// Flight logs, and files of the traffic log, that are kept; the oldest go [default: 100]
+    #[arg(long, env = "LMPC_SITL_LOG_COUNT", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub log_count: Option<u32>,
+
+    /// Folder that clients see as /files by MAVLink FTP, to be read
+    #[arg(long, env = "LMPC_SITL_FTP_ROOT", value_name = "DIR")]
+    pub ftp_root: Option<PathBuf>,
+
+    /// Let clients change what is in --ftp-root, up to 64 MB [default: false]
+    #[arg(long, env = "LMPC_SITL_FTP_WRITE", num_args = 0..=1, default_missing_value = "true", value_name = "true|false")]
+    pub ftp_write: Option<bool>,
+
     /// Key to sign and verify all messages with (MAVLink 2): 64 hexadecimal digits or 32 bytes, mode 0600; timestamps are
     /// kept beside it. An empty file waits for SETUP_SIGNING, which is accepted on local links only
     #[arg(long, env = "LMPC_SITL_SIGNING_KEY", value_name = "FILE")]
@@ -219,6 +245,12 @@ impl Arguments {
             hil: self.hil.or(file.hil),
             hil_mount: self.hil_mount.or(file.hil_mount),
             tlog: self.tlog.or(file.tlog),
+            log_dir: self.log_dir.or(file.log_dir),
+            log_start: self.log_start.or(file.log_start),
+            log_size: self.log_size.or(file.log_size),
+            log_count: self.log_count.or(file.log_count),
+            ftp_root: self.ftp_root.or(file.ftp_root),
+            ftp_write: self.ftp_write.or(file.ftp_write),
             signing_key: self.signing_key.or(file.signing_key),
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),

@@ -10,6 +10,7 @@ use super::{Arguments, Clocks, Ports};
 use crate::estimation::{SensorModel, SensorSettings};
 use crate::failure::Failure;
 use crate::fault::ScheduledFault;
+use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
 use crate::plan::{self, Plans, Site};
@@ -36,6 +37,10 @@ pub struct Settings {
     pub record: Option<PathBuf>,
     /// Traffic log.
     pub tlog: Option<PathBuf>,
+    /// Flight logs, and sizes and numbers of files of the traffic log.
+    pub logs: LogSettings,
+    /// Folder that clients see, and whether they may change it.
+    pub ftp_root: Option<(PathBuf, bool)>,
     /// Key to sign with.
     pub signing_key: Option<PathBuf>,
     /// File that tells that clients can connect.
@@ -82,6 +87,8 @@ impl Settings {
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
+            logs: log_settings(arguments)?,
+            ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments)?,
@@ -229,6 +236,23 @@ fn named_parameters(arguments: &Arguments, number: usize) -> Result<Vec<String>,
 fn noise_seed(arguments: &Arguments, number: usize) -> u32 {
     let seed = arguments.seed.unwrap_or(1).wrapping_add(number as u64);
     ((seed ^ seed >> 31 ^ seed >> 62) & 0x7fff_ffff) as u32
+}
+
+fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
+    const MEGABYTE: f64 = 1e6;
+    const COUNT: u32 = 100;
+    if arguments.ftp_write == Some(true) && arguments.ftp_root.is_none() {
+        let reason = "there is no --ftp-root to write to".to_owned();
+        return Err(Failure::Value { name: "--ftp-write".to_owned(), reason });
+    }
+    let megabytes = within("log-size", arguments.log_size.unwrap_or(100.0), 0.1, 4000.0)?;
+    let count = within("log-count", f64::from(arguments.log_count.unwrap_or(COUNT)), 1.0, 10_000.0)?;
+    Ok(LogSettings {
+        folder: arguments.log_dir.clone(),
+        start: arguments.log_start.unwrap_or_default(),
+        most_bytes: (megabytes * MEGABYTE) as u64,
+        most_files: count as usize,
+    })
 }
 
 fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Failure> {

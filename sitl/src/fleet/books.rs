@@ -1,5 +1,7 @@
 //! What is written down of the traffic: the record to be replayed, and the log for ground stations.
 
+use std::time::Instant;
+
 use super::Member;
 use crate::codec::Frame;
 use crate::configuration::Settings;
@@ -26,7 +28,10 @@ impl Books {
             Some(path) => Some(Recorder::create(path, &Header::new(settings.speed, participants))?),
             None => None,
         };
-        let traffic = settings.tlog.as_deref().map(TrafficLog::create).transpose()?;
+        let traffic = match &settings.tlog {
+            Some(path) => Some(TrafficLog::create(path, settings.logs.most_bytes, settings.logs.most_files)?),
+            None => None,
+        };
         Ok(Self { recorder, traffic, unix_start_us })
     }
 
@@ -52,6 +57,11 @@ impl Books {
             Some(recorder) => recorder.ground_station(member, time_us, heard),
             None => Ok(()),
         }
+    }
+
+    /// What was written reaches the disk, however slow simulation time is.
+    pub fn keep_up(&mut self, now: Instant) -> Result<(), Failure> {
+        self.traffic.as_mut().map_or(Ok(()), |traffic| traffic.keep_up(now))
     }
 
     /// Ends the files.

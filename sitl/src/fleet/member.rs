@@ -6,11 +6,18 @@ use std::time::{Duration, Instant};
 use crate::autopilot::Autopilot;
 use crate::codec::{Frame, id};
 use crate::failure::Failure;
+use crate::files::Disk;
+use crate::flight_log::FlightLog;
 use crate::parameters::Speed;
 use crate::record::{Digest, Participant};
 
 /// A client must hear a heartbeat this often, however slow simulation time is.
 const HEARTBEAT: Duration = Duration::from_millis(1_100);
+
+/// Messages of logs that are downloaded, per second of the wall clock: 225 kB.
+const LOG_MESSAGES_PER_S: f64 = 2_500.0;
+/// Of one look at the links.
+const MOST_LOG_MESSAGES: u64 = 50;
 
 /// A vehicle, what is known of its flight, and where it is reached.
 #[derive(Debug)]
@@ -22,6 +29,9 @@ pub struct Member {
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
     parameters: Option<PathBuf>,
+    log: Option<FlightLog>,
+    started: Instant,
+    log_messages: u64,
 }
 
 impl Member {
@@ -41,7 +51,17 @@ impl Member {
             ground_station: None,
             digest: Digest::default(),
             parameters,
+            log: None,
+            started: Instant::now(),
+            log_messages: 0,
         })
+    }
+
+    /// Gives clients files to reach, and the flight a log.
+    pub(super) fn keep(mut self, files: Disk, log: Option<FlightLog>) -> Self {
+        self.autopilot.share(Box::new(files));
+        self.log = log;
+        self
     }
 
     /// The vehicle with its services.
@@ -65,9 +85,12 @@ impl Member {
     }
 
     /// One tick on.
-    pub(super) fn tick(&mut self) -> Result<(), Failure> {
+    pub(super) fn tick(&mut self, now: Instant) -> Result<(), Failure> {
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
+        if let Some(log) = &mut self.log {
+            log.tick(&mut self.autopilot, now);
+        }
         Ok(())
     }
 
@@ -87,6 +110,24 @@ impl Member {
         let (last, told) = self.ground_station.as_mut()?;
         let heard = now.saturating_duration_since(*last).as_secs_f64() <= timeout_s;
         (std::mem::replace(told, heard) != heard).then_some(heard)
+    }
+
+    /// What is logged reaches the disk. How many messages of logs may be sent to those who download them.
+    pub(super) fn keep_log(&mut self, now: Instant) -> u64 {
+        if let Some(log) = &mut self.log {
+            log.keep_up(&mut self.autopilot, now);
+        }
+        let elapsed_s = now.saturating_duration_since(self.started).as_secs_f64();
+        let allowed = (elapsed_s * LOG_MESSAGES_PER_S) as u64;
+        let news = allowed.saturating_sub(std::mem::replace(&mut self.log_messages, allowed));
+        news.min(MOST_LOG_MESSAGES)
+    }
+
+    /// Ends its log.
+    pub(super) fn finish_log(&mut self) {
+        if let Some(log) = &mut self.log {
+            log.finish(&mut self.autopilot);
+        }
     }
 
     /// Whether its links would look dead, because simulation time is slow.

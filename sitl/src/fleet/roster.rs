@@ -7,6 +7,8 @@ use super::books::Books;
 use crate::codec::target_of;
 use crate::configuration::Settings;
 use crate::failure::Failure;
+use crate::files::Disk;
+use crate::flight_log::{FlightLog, LogFolder};
 use crate::link::Links;
 use crate::signing::SigningKeeper;
 
@@ -27,13 +29,18 @@ impl Fleet {
     /// [`Failure`] of the first thing that cannot be used.
     pub fn open(settings: &Settings, unix_start_us: u64) -> Result<Self, Failure> {
         let participants = settings.participants();
+        let folder = settings.logs.folder.as_deref().map(LogFolder::open).transpose()?;
         let members = participants
             .iter()
             .zip(&settings.vehicles)
             .map(|(participant, own)| {
-                Member::new(participant, settings.speed, own.hub, own.parameters.clone(), unix_start_us)
+                let parameters = own.parameters.clone();
+                let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
+                let files = Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?;
+                let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
+                Ok(member.keep(files, log))
             })
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, Failure>>()?;
         let mut hubs: Vec<Links> = (0..)
             .zip(&settings.hubs)
             .map(|(hub, links)| {
@@ -115,7 +122,7 @@ impl Fleet {
     /// A tick of one vehicle.
     pub(super) fn tick(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
         if let Some(member) = self.members.get_mut(number) {
-            member.tick()?;
+            member.tick(now)?;
         }
         self.send(number, now)
     }
@@ -156,6 +163,21 @@ impl Fleet {
         Ok(())
     }
 
+    /// What is logged reaches the disk, and what is downloaded the links.
+    pub(crate) fn keep_logs(&mut self, now: Instant) -> Result<(), Failure> {
+        self.books.keep_up(now)?;
+        for number in 0..self.members.len() {
+            let Some(member) = self.members.get_mut(number) else { continue };
+            for _ in 0..member.keep_log(now) {
+                let (Some(member), hubs) = (self.members.get_mut(number), &self.hubs) else { break };
+                let hub = member.hub;
+                member.autopilot.send_logs(1, |peer| hubs.get(hub).and_then(|links| links.has_room(peer)));
+                self.send(number, now)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Sends what waits in the links, and writes changed parameters.
     pub(crate) fn flush(&mut self) -> Result<(), Failure> {
         self.hubs.iter_mut().for_each(Links::flush);
@@ -164,6 +186,7 @@ impl Fleet {
 
     /// Ends the files and returns the vehicles as they are.
     pub(crate) fn finish(mut self) -> Result<Vec<Member>, Failure> {
+        self.members.iter_mut().for_each(Member::finish_log);
         for (keeper, links) in self.signing.iter().zip(&mut self.hubs) {
             keeper.finish(links)?;
         }

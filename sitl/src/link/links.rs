@@ -227,6 +227,12 @@ impl Links {
         sent
     }
 
+    /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
+    pub fn has_room(&self, peer: PeerId) -> Option<bool> {
+        let link = self.links.get(peer.link)?;
+        link.peers.contains_key(&peer.number).then(|| link.transport.has_room(peer.number))
+    }
+
     /// Sends what is waiting.
     pub fn flush(&mut self) {
         for link in &mut self.links {

@@ -15,6 +15,8 @@ use super::transport::{Event, Transport};
 const PEER: u64 = 1;
 /// Frames that have to wait longer than this many bytes are lost.
 const MOST_WAITING: usize = 1 << 15;
+/// With more than this many bytes waiting, downloads wait.
+const BUSY: usize = 1 << 10;
 /// Bytes of one look.
 const MOST_READ: usize = 1 << 14;
 
@@ -77,6 +79,10 @@ impl Transport for Serial {
         if self.waiting.len() + bytes.len() <= MOST_WAITING {
             self.waiting.extend_from_slice(bytes);
         }
+    }
+
+    fn has_room(&self, _peer: u64) -> bool {
+        self.waiting.len() < BUSY
     }
 
     fn flush(&mut self) {

@@ -11,6 +11,8 @@ use super::udp::resolve;
 
 /// A client that lets this many bytes wait is too slow to be served: a frame more is lost.
 const MOST_WAITING: usize = 1 << 18;
+/// With more than this many bytes waiting for a client, downloads wait.
+const BUSY: usize = 1 << 14;
 /// Clients at the same time.
 const MOST_CLIENTS: usize = 32;
 /// Bytes of one look at one client.
@@ -118,6 +120,10 @@ impl Transport for Tcp {
                 client.waiting.extend_from_slice(bytes);
             }
         }
+    }
+
+    fn has_room(&self, peer: u64) -> bool {
+        self.clients.get(&peer).is_some_and(|client| client.waiting.len() < BUSY)
     }
 
     fn flush(&mut self) {

@@ -21,6 +21,11 @@ pub trait Transport: std::fmt::Debug {
     /// Sends a whole frame to a peer. A peer that cannot take it loses it.
     fn send(&mut self, peer: u64, bytes: &[u8]);
 
+    /// Whether a peer takes more than the telemetry without losing it.
+    fn has_room(&self, _peer: u64) -> bool {
+        true
+    }
+
     /// Sends what is waiting.
     fn flush(&mut self) {}
 

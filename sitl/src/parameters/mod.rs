@@ -1,6 +1,7 @@
 //! Parameters by MAVLink identifiers: those of the closed loop and the vehicle's own.
 
 mod conduct_parameters;
+mod description;
 mod entry;
 mod file;
 mod identifier;
@@ -10,6 +11,7 @@ mod table;
 mod value;
 
 pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
+pub use description::Description;
 pub use entry::Entry;
 pub use file::{ParameterFileError, parse, render};
 pub use identifier::identifier;

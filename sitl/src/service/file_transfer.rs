@@ -1,230 +1,168 @@
-//! MAVLink FTP: the parameters as a file, and a prompt refusal of everything else.
+//! MAVLink FTP: files that are made when they are read, and those of a store.
 
+mod message;
 mod parameter_pack;
+mod root;
+mod sessions;
 
-use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
+use std::collections::VecDeque;
 
+use self::message::{DATA, Nak, Reply, Request, opcode};
+use self::sessions::{Client, Content, Sessions};
 use super::{Destination, Origin};
 use crate::autopilot::Autopilot;
-use crate::codec::{Frame, Payload};
+use crate::codec::Frame;
+use crate::files::Access;
 
-/// The one file.
-const PARAMETER_FILE: &str = "@PARAM/param.pck";
-/// Its directory.
-const PARAMETER_DIRECTORY: &str = "@PARAM";
-/// Data bytes of one message.
-const DATA: usize = 239;
-/// Messages of one answer to a burst.
-const BURST: usize = 64;
-/// Open files at the same time; the oldest makes room.
-const SESSIONS: usize = 8;
+/// Requests that have changed something and are remembered.
+const REMEMBERED: usize = 32;
+/// For this long, µs of simulation time.
+const REMEMBERED_US: u64 = 2_000_000;
+/// Bytes of the largest file whose checksum is computed: it takes a tenth of a second.
+const LARGEST_CHECKED: u32 = 256 << 20;
 
-mod opcode {
-    pub const NONE: u8 = 0;
-    pub const TERMINATE_SESSION: u8 = 1;
-    pub const RESET_SESSIONS: u8 = 2;
-    pub const LIST_DIRECTORY: u8 = 3;
-    pub const OPEN_FILE_RO: u8 = 4;
-    pub const READ_FILE: u8 = 5;
-    pub const CALC_FILE_CRC32: u8 = 14;
-    pub const BURST_READ_FILE: u8 = 15;
-    pub const ACK: u8 = 128;
-    pub const NAK: u8 = 129;
+/// A request that has changed something, and its answer: a retry is answered again, not carried out again.
+#[derive(Debug)]
+struct Done {
+    client: Client,
+    request: Request,
+    reply: Reply,
+    time_us: u64,
 }
 
-mod nak {
-    pub const INVALID_SESSION: u8 = 4;
-    pub const END_OF_FILE: u8 = 6;
-    pub const UNKNOWN_COMMAND: u8 = 7;
-    pub const FILE_NOT_FOUND: u8 = 10;
-}
-
-/// An open file: its bytes as they were when it was opened.
-#[derive(Clone, Debug)]
-struct Session {
-    number: u8,
-    client: (u8, u8),
-    content: Vec<u8>,
-}
-
-/// Open files.
-#[derive(Clone, Debug, Default)]
+/// Open files, and what was done lately.
+#[derive(Debug, Default)]
 pub struct FileServer {
-    sessions: Vec<Session>,
+    sessions: Sessions,
+    done: VecDeque<Done>,
 }
 
-/// A request: header of 12 bytes, then data.
-struct Request<'a> {
-    sequence: u16,
-    session: u8,
-    opcode: u8,
-    size: u8,
-    offset: u32,
-    payload: Payload<'a>,
-}
-
-impl Request<'_> {
-    /// First byte of the header in the message.
-    const HEADER: usize = 3;
-
-    fn path(&self) -> String {
-        let bytes: [u8; DATA] = self.payload.bytes(Self::HEADER + 12);
-        let used =
-            bytes.iter().take(usize::from(self.size)).take_while(|byte| **byte != 0).copied().collect();
-        String::from_utf8(used).unwrap_or_default()
+impl FileServer {
+    fn answer(&self, client: Client, request: &Request, time_us: u64) -> Option<Reply> {
+        let recent = |done: &&Done| time_us < done.time_us + REMEMBERED_US;
+        let same = |done: &&Done| done.client == client && done.request == *request;
+        self.done.iter().filter(recent).find(same).map(|done| done.reply.clone())
     }
-}
 
-/// An answer.
-struct Reply {
-    result: Result<Vec<u8>, u8>,
-    session: u8,
-    offset: u32,
-    burst_complete: bool,
+    fn remember(&mut self, done: Done) {
+        if self.done.len() >= REMEMBERED {
+            self.done.pop_front();
+        }
+        self.done.push_back(done);
+    }
 }
 
 /// Answers a request.
 pub fn handle(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let payload = frame.payload();
-    let at = Request::HEADER;
-    let request = Request {
-        sequence: payload.u16(at),
-        session: payload.u8(at + 2),
-        opcode: payload.u8(at + 3),
-        size: payload.u8(at + 4),
-        offset: payload.u32(at + 8),
-        payload,
-    };
+    let request = Request::read(frame);
     // What is an answer is none of ours: two servers would talk for ever.
     if request.opcode >= opcode::ACK {
         return;
     }
     let mut sequence = request.sequence;
-    for reply in replies(autopilot, origin, &request) {
+    for reply in replies(autopilot, (origin.system, origin.component), &request) {
         sequence = sequence.wrapping_add(1);
-        let message = encode(origin, &request, &reply, sequence);
+        let message = reply.encode(origin, request.opcode, sequence);
         autopilot.send(Destination::Peer(origin.peer), message);
     }
 }
 
-fn replies(autopilot: &mut Autopilot, origin: &Origin, request: &Request<'_>) -> Vec<Reply> {
-    let client = (origin.system, origin.component);
-    let reply = |result| {
-        vec![Reply { result, session: request.session, offset: request.offset, burst_complete: false }]
-    };
+fn replies(autopilot: &mut Autopilot, client: Client, request: &Request) -> Vec<Reply> {
+    let time_us = autopilot.vehicle.time_us();
+    if matches!(request.opcode, opcode::READ_FILE | opcode::BURST_READ_FILE) {
+        return autopilot.files.sessions.read(client, request, time_us);
+    }
+    let changes = matches!(
+        request.opcode,
+        opcode::CREATE_FILE
+            | opcode::REMOVE_FILE
+            | opcode::CREATE_DIRECTORY
+            | opcode::REMOVE_DIRECTORY
+            | opcode::OPEN_FILE_WO
+            | opcode::TRUNCATE_FILE
+            | opcode::RENAME
+    );
+    if changes && let Some(reply) = autopilot.files.answer(client, request, time_us) {
+        return vec![reply];
+    }
+    let result = carry_out(autopilot, client, request, time_us);
+    // The offset of an answer to an open file is nothing's.
+    let reply = Reply::to(request, result);
+    if changes {
+        autopilot.files.remember(Done { client, request: request.clone(), reply: reply.clone(), time_us });
+    }
+    vec![reply]
+}
+
+fn carry_out(
+    autopilot: &mut Autopilot,
+    client: Client,
+    request: &Request,
+    time_us: u64,
+) -> Result<Vec<u8>, Nak> {
+    let path = || root::writable(request.text()?);
     match request.opcode {
-        opcode::NONE => reply(Ok(Vec::new())),
-        opcode::TERMINATE_SESSION => {
-            autopilot.files.sessions.retain(|open| open.number != request.session || open.client != client);
-            reply(Ok(Vec::new()))
-        }
+        opcode::NONE => {}
+        opcode::TERMINATE_SESSION => autopilot.files.sessions.close(client, request.session),
         opcode::RESET_SESSIONS => {
-            autopilot.files.sessions.retain(|open| open.client != client);
-            reply(Ok(Vec::new()))
+            autopilot.files.sessions.reset(client);
+            autopilot.files.done.retain(|done| done.client != client);
         }
-        opcode::LIST_DIRECTORY => reply(list(&request.path(), request.offset)),
-        opcode::OPEN_FILE_RO => vec![open(autopilot, client, request)],
-        opcode::CALC_FILE_CRC32 => reply(match file(autopilot, &request.path()) {
-            Some(content) => Ok(checksum(&content).to_le_bytes().to_vec()),
-            None => Err(nak::FILE_NOT_FOUND),
-        }),
-        opcode::READ_FILE | opcode::BURST_READ_FILE => {
-            let sessions = &autopilot.files.sessions;
-            match sessions.iter().find(|open| open.number == request.session && open.client == client) {
-                Some(session) => read(session, request),
-                None => reply(Err(nak::INVALID_SESSION)),
-            }
+        opcode::LIST_DIRECTORY => return root::list(autopilot, request.text()?, request.offset, DATA),
+        opcode::OPEN_FILE_RO => return open(autopilot, client, request, Access::Read, time_us),
+        opcode::CREATE_FILE => return open(autopilot, client, request, Access::Create, time_us),
+        opcode::OPEN_FILE_WO => return open(autopilot, client, request, Access::Write, time_us),
+        opcode::WRITE_FILE => return autopilot.files.sessions.write(client, request, time_us),
+        opcode::REMOVE_FILE => autopilot.store.remove_file(&path()?)?,
+        opcode::CREATE_DIRECTORY => autopilot.store.create_folder(&path()?)?,
+        opcode::REMOVE_DIRECTORY => autopilot.store.remove_folder(&path()?)?,
+        opcode::TRUNCATE_FILE => autopilot.store.truncate(&path()?, u64::from(request.offset))?,
+        opcode::RENAME => {
+            let (from, to) = request.two_texts()?;
+            autopilot.store.rename(&root::writable(from)?, &root::writable(to)?)?;
         }
-        _ => reply(Err(nak::UNKNOWN_COMMAND)),
+        opcode::CALC_FILE_CRC32 => {
+            let content = root::open(autopilot, request.text()?, Access::Read)?;
+            return Ok(checksum_of(content)?.to_le_bytes().to_vec());
+        }
+        _ => return Err(Nak::UnknownCommand),
     }
+    Ok(Vec::new())
 }
 
-fn open(autopilot: &mut Autopilot, client: (u8, u8), request: &Request<'_>) -> Reply {
-    let refused =
-        |code| Reply { result: Err(code), session: request.session, offset: 0, burst_complete: false };
-    let Some(content) = file(autopilot, &request.path()) else { return refused(nak::FILE_NOT_FOUND) };
-    let files = &mut autopilot.files;
-    // The number is the client's choice, and each has its own: some clients tell their transfers apart by it. A second
-    // request under the same number is a retry whose answer was lost.
-    files.sessions.retain(|open| (open.client, open.number) != (client, request.session));
-    if files.sessions.len() >= SESSIONS {
-        // Somebody has left without closing.
-        files.sessions.remove(0);
-    }
-    let size = content.len() as u32;
-    files.sessions.push(Session { number: request.session, client, content });
-    Reply {
-        result: Ok(size.to_le_bytes().to_vec()),
-        session: request.session,
-        offset: 0,
-        burst_complete: false,
-    }
+/// Opens a file and tells its size.
+fn open(
+    autopilot: &mut Autopilot,
+    client: Client,
+    request: &Request,
+    access: Access,
+    time_us: u64,
+) -> Result<Vec<u8>, Nak> {
+    let content = root::open(autopilot, request.text()?, access)?;
+    let size = content.size()?;
+    autopilot.files.sessions.open(client, request.session, content, time_us)?;
+    Ok(size.to_le_bytes().to_vec())
 }
 
-/// Pieces of a file from the offset on: one, or a burst of them.
-fn read(session: &Session, request: &Request<'_>) -> Vec<Reply> {
-    let size = usize::from(request.size).clamp(1, DATA);
-    let start = request.offset as usize;
-    let rest = session.content.get(start..).unwrap_or_default();
-    if rest.is_empty() {
-        let result = Err(nak::END_OF_FILE);
-        return vec![Reply {
-            result,
-            session: session.number,
-            offset: request.offset,
-            burst_complete: false,
-        }];
+fn checksum_of(mut content: Content) -> Result<u32, Nak> {
+    if content.size()? > LARGEST_CHECKED {
+        return Err(Nak::Fail);
     }
-    let burst = request.opcode == opcode::BURST_READ_FILE;
-    let count = if burst { BURST } else { 1 };
-    let pieces: Vec<&[u8]> = rest.chunks(size).take(count).collect();
-    let last = pieces.len() - 1;
-    let reply = |(index, piece): (usize, &&[u8])| Reply {
-        result: Ok(piece.to_vec()),
-        session: session.number,
-        offset: (start + index * size) as u32,
-        burst_complete: burst && index == last,
-    };
-    pieces.iter().enumerate().map(reply).collect()
-}
-
-fn list(path: &str, offset: u32) -> Result<Vec<u8>, u8> {
-    if path.trim_end_matches('/') != PARAMETER_DIRECTORY {
-        return Err(nak::FILE_NOT_FOUND);
+    let mut hasher = crc32fast::Hasher::new_with_initial(u32::MAX);
+    let (mut piece, mut offset) = (vec![0; 1 << 16], 0);
+    loop {
+        let read = content.read_at(offset, &mut piece)?;
+        if read == 0 {
+            return Ok(!hasher.finalize());
+        }
+        hasher.update(piece.get(..read).unwrap_or_default());
+        offset += read as u64;
     }
-    if offset == 0 { Ok(b"Fparam.pck\t0\0".to_vec()) } else { Err(nak::END_OF_FILE) }
-}
-
-/// The content of a file. Paths are compared, never opened: nothing on the disk can be reached.
-fn file(autopilot: &Autopilot, path: &str) -> Option<Vec<u8>> {
-    let name = path.split('?').next().unwrap_or_default();
-    (name == PARAMETER_FILE).then(|| parameter_pack::pack(autopilot))
 }
 
 /// CRC-32 of the protocol: begins with zero and is not inverted.
-fn checksum(content: &[u8]) -> u32 {
+pub fn checksum(content: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new_with_initial(u32::MAX);
     hasher.update(content);
     !hasher.finalize()
-}
-
-fn encode(origin: &Origin, request: &Request<'_>, reply: &Reply, sequence: u16) -> MavMessage {
-    let (kind, data) = match &reply.result {
-        Ok(data) => (opcode::ACK, data.clone()),
-        Err(code) => (opcode::NAK, vec![*code]),
-    };
-    let [low, high] = sequence.to_le_bytes();
-    let [a, b, c, d] = reply.offset.to_le_bytes();
-    let complete = u8::from(reply.burst_complete);
-    let header = [low, high, reply.session, kind, data.len() as u8, request.opcode, complete, 0, a, b, c, d];
-    let mut payload = [0; 251];
-    for (byte, given) in payload.iter_mut().zip(header.iter().chain(&data)) {
-        *byte = *given;
-    }
-    MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
-        target_network: 0,
-        target_system: origin.system,
-        target_component: origin.component,
-        payload,
-    })
 }

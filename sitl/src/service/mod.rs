@@ -2,6 +2,7 @@
 //! into the outbox; none owns a socket or reads a clock.
 
 pub(crate) mod command;
+pub(crate) mod component_metadata;
 mod envelope;
 pub(crate) mod file_transfer;
 pub(crate) mod heartbeat;

@@ -12,12 +12,23 @@ const CHUNK: usize = 50;
 const REPEAT_US: u64 = 1_000_000;
 /// Lines that are remembered for that.
 const REMEMBERED: usize = 8;
+/// Lines that wait for a log.
+const MOST_UNLOGGED: usize = 64;
 
 /// What was said lately.
 #[derive(Clone, Debug, Default)]
 pub struct StatusTexts {
     said: Vec<(String, u64)>,
     next_id: u16,
+    /// For the log: time, µs, importance and line.
+    unlogged: Vec<(u64, Severity, String)>,
+}
+
+impl StatusTexts {
+    /// Lines since the last call, as many as are remembered.
+    pub fn take_unlogged(&mut self) -> Vec<(u64, Severity, String)> {
+        std::mem::take(&mut self.unlogged)
+    }
 }
 
 /// Sends the vehicle's notices.
@@ -37,6 +48,10 @@ pub fn send(autopilot: &mut Autopilot, severity: Severity, text: &str) {
     texts.said.retain(|(said, when_us)| said != text && time_us < when_us + REPEAT_US);
     texts.said.truncate(REMEMBERED - 1);
     texts.said.push((text.to_owned(), time_us));
+    if texts.unlogged.len() >= MOST_UNLOGGED {
+        texts.unlogged.remove(0);
+    }
+    texts.unlogged.push((time_us, severity, text.to_owned()));
     let system = autopilot.system_id();
     match severity {
         Severity::Info => tracing::info!(system, "{text}"),

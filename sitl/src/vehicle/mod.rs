@@ -40,7 +40,7 @@ mod state;
 mod steering;
 mod sticks;
 
-pub use battery::Battery;
+pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryPolicy, Cause, Failsafe, FailsafeSettings};
 pub use fence::FenceRecord;

@@ -13,6 +13,18 @@ pub enum Severity {
     Info,
 }
 
+impl Severity {
+    /// Its number in syslog.
+    pub fn level(self) -> u8 {
+        match self {
+            Self::Critical => 2,
+            Self::Error => 3,
+            Self::Warning => 4,
+            Self::Info => 6,
+        }
+    }
+}
+
 /// A line for the pilot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {

@@ -65,7 +65,7 @@ def test_identity_and_modes(start, connect):
     bodies = [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(6)]
     names = {body[11:].rstrip(b"\0") for body in bodies}
     assert names == {b"Loiter", b"Guided", b"Auto", b"RTL", b"Land", b"Brake"}
-    client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 397, result=mavlink.MAV_RESULT_UNSUPPORTED)
+    client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 395, result=mavlink.MAV_RESULT_UNSUPPORTED)
     # An integer of ArduPilot travels as a number.
     assert client.set_parameter("COM_OBL_RC_ACT", 3.0, mavlink.MAV_PARAM_TYPE_INT32).param_value == 3.0
     # Nobody is kept waiting.
@@ -150,4 +150,5 @@ def test_file_transfer(start, connect):
     assert ask(3, 5, 200, size) == (129, bytes([6]))
     for other in (b"/etc/passwd", b"../../etc/passwd", b"@PARAM/../param.pck", b""):
         assert ask(4, 4, len(other), data=other) == (129, bytes([10]))
-    assert ask(5, 7, 5, data=b"a.txt") == (129, bytes([7]))
+    assert ask(5, 7, 5, data=b"a.txt") == (129, bytes([9]))
+    assert ask(6, 77) == (129, bytes([7]))

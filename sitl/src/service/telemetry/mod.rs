@@ -12,7 +12,9 @@ mod truth;
 use mavlink::dialects::common::MavMessage;
 
 use crate::autopilot::Autopilot;
-use crate::service::{heartbeat, identification, mission, standard_mode, time_synchronization};
+use crate::service::{
+    component_metadata, heartbeat, identification, mission, standard_mode, time_synchronization,
+};
 
 /// A message by its id; `None` if there is none.
 pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
@@ -50,6 +52,7 @@ pub fn message(autopilot: &Autopilot, message_id: u32) -> Option<MavMessage> {
         245 => status::extended_sys_state(vehicle),
         300 => identification::protocol_version(),
         331 => position::odometry(vehicle),
+        397 => component_metadata::message(autopilot),
         436 => standard_mode::current(vehicle),
         _ => return None,
     })

@@ -1,0 +1,13 @@
+//! Files that clients can reach: what a service may ask for, and folders of the disk that nothing leads out of.
+//!
+//! ```text
+//!  service ──► FileStore ◄── Disk: `logs`, `files` ──► cap-std: a folder and what is below it, nothing else
+//! ```
+
+mod disk;
+mod mount;
+mod store;
+
+pub use disk::Disk;
+pub use mount::Mount;
+pub use store::{Access, FileError, FileStore, Listed, Nothing, OpenFile};

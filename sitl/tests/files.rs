@@ -1,0 +1,615 @@
+//! MAVLink FTP and the download of logs: what may be reached, what not, and both over a channel that loses.
+
+mod common;
+
+use std::path::Path;
+
+use common::Bench;
+use common::channel::Lossy;
+use mavlink::dialects::common::{
+    FILE_TRANSFER_PROTOCOL_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA,
+    LOG_REQUEST_LIST_DATA, MavMessage,
+};
+use sitl::codec::Message;
+use sitl::files::Disk;
+use sitl::flight_log::LogFolder;
+use sitl::identity::Identity;
+use tempfile::TempDir;
+
+const TERMINATE: u8 = 1;
+const RESET: u8 = 2;
+const LIST: u8 = 3;
+const OPEN: u8 = 4;
+const READ: u8 = 5;
+const CREATE: u8 = 6;
+const WRITE: u8 = 7;
+const REMOVE: u8 = 8;
+const MAKE_FOLDER: u8 = 9;
+const REMOVE_FOLDER: u8 = 10;
+const OPEN_TO_WRITE: u8 = 11;
+const TRUNCATE: u8 = 12;
+const RENAME: u8 = 13;
+const CHECKSUM: u8 = 14;
+const BURST: u8 = 15;
+
+const FAIL: u8 = 1;
+const ERRNO: u8 = 2;
+const INVALID_SESSION: u8 = 4;
+const END: u8 = 6;
+const UNKNOWN: u8 = 7;
+const EXISTS: u8 = 8;
+const PROTECTED: u8 = 9;
+const NOT_FOUND: u8 = 10;
+
+/// An answer: its sequence, its session, its offset, whether it ends a burst, and data or an error.
+#[derive(Clone, Debug, PartialEq)]
+struct Answer {
+    sequence: u16,
+    opcode: u8,
+    offset: u32,
+    last: bool,
+    result: Result<Vec<u8>, u8>,
+}
+
+fn request(sequence: u16, opcode: u8, session: u8, size: u8, offset: u32, data: &[u8]) -> MavMessage {
+    let mut payload = [0; 251];
+    let [low, high] = sequence.to_le_bytes();
+    let [a, b, c, d] = offset.to_le_bytes();
+    let header = [low, high, session, opcode, size, 0, 0, 0, a, b, c, d];
+    for (byte, given) in payload.iter_mut().zip(header.iter().chain(data)) {
+        *byte = *given;
+    }
+    let (target_system, target_component) = (1, 1);
+    MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
+        target_network: 0,
+        target_system,
+        target_component,
+        payload,
+    })
+}
+
+fn answers(heard: &[Message]) -> Vec<Answer> {
+    let answer = |message: &Message| match message {
+        Message::Typed(MavMessage::FILE_TRANSFER_PROTOCOL(answer)) => {
+            let [low, high, _, kind, size, opcode, last, _, a, b, c, d] =
+                *answer.payload.first_chunk::<12>().expect("a header");
+            let data = answer.payload[12..12 + usize::from(size)].to_vec();
+            Some(Answer {
+                sequence: u16::from_le_bytes([low, high]),
+                opcode,
+                offset: u32::from_le_bytes([a, b, c, d]),
+                last: last == 1,
+                result: if kind == 128 { Ok(data) } else { Err(data[0]) },
+            })
+        }
+        _ => None,
+    };
+    heard.iter().filter_map(answer).collect()
+}
+
+/// A client of a vehicle that shares a folder.
+struct Client {
+    bench: Bench,
+    sequence: u16,
+}
+
+impl Client {
+    fn of(files: Disk) -> Self {
+        let mut bench = Bench::new(Identity::Px4);
+        bench.autopilot.share(Box::new(files));
+        Self { bench, sequence: 0 }
+    }
+
+    fn sharing(folder: &Path, writable: bool) -> Self {
+        Self::of(Disk::open(None, Some(&(folder.to_owned(), writable))).expect("a folder"))
+    }
+
+    fn ask(&mut self, opcode: u8, offset: u32, data: &[u8]) -> Result<Vec<u8>, u8> {
+        self.sequence = self.sequence.wrapping_add(2);
+        self.bench.heard.clear();
+        self.bench.send(request(self.sequence, opcode, 0, data.len() as u8, offset, data));
+        let answers = answers(&self.bench.heard);
+        assert_eq!(answers.len(), 1, "{answers:?}");
+        assert_eq!((answers[0].sequence, answers[0].opcode), (self.sequence + 1, opcode));
+        answers[0].result.clone()
+    }
+
+    fn on(&mut self, opcode: u8, path: &str) -> Result<Vec<u8>, u8> {
+        self.ask(opcode, 0, path.as_bytes())
+    }
+
+    /// All of a file, as small clients read it.
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, u8> {
+        let size = self.on(OPEN, path)?;
+        let size = u32::from_le_bytes(size.try_into().expect("a size"));
+        let mut content = Vec::new();
+        loop {
+            let piece = [0; 100];
+            match self.ask(READ, content.len() as u32, &piece) {
+                Ok(piece) => content.extend(piece),
+                Err(END) => break,
+                Err(code) => return Err(code),
+            }
+        }
+        assert_eq!(content.len(), size as usize);
+        self.ask(TERMINATE, 0, &[])?;
+        Ok(content)
+    }
+
+    fn list(&mut self, path: &str) -> Result<Vec<String>, u8> {
+        let mut entries = Vec::new();
+        loop {
+            match self.ask(LIST, entries.len() as u32, path.as_bytes()) {
+                Ok(data) => {
+                    let text = String::from_utf8(data).expect("text");
+                    entries.extend(text.split_terminator('\0').map(str::to_owned));
+                }
+                Err(END) => return Ok(entries),
+                Err(code) => return Err(code),
+            }
+        }
+    }
+}
+
+/// A folder with something in it, beside a secret.
+fn shared() -> (TempDir, std::path::PathBuf) {
+    let place = tempfile::tempdir().expect("a folder");
+    let root = place.path().join("root");
+    std::fs::create_dir_all(root.join("below/deeper")).expect("folders");
+    std::fs::write(place.path().join("secret"), "secret").expect("written");
+    std::fs::write(root.join("hello.txt"), "hello").expect("written");
+    std::fs::write(root.join("below/there.txt"), vec![7; 1000]).expect("written");
+    (place, root)
+}
+
+#[test]
+fn the_root_shows_what_there_is_and_files_read_as_they_are() {
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, false);
+    assert_eq!(client.list("/"), Ok(["D@PARAM", "Dmetadata", "Dfiles"].map(str::to_owned).to_vec()));
+    assert_eq!(client.list(""), client.list("/"));
+    let listed = ["Dbelow", "Fhello.txt\t5"].map(str::to_owned).to_vec();
+    assert_eq!(client.list("/files"), Ok(listed.clone()));
+    assert_eq!(client.list("files/./"), Ok(listed));
+    assert_eq!(client.read("/files/hello.txt"), Ok(b"hello".to_vec()));
+    assert_eq!(client.read("files//below/there.txt"), Ok(vec![7; 1000]));
+    // The protocol's checksum of "hello": CRC-32 from zero, not inverted.
+    let crc = client.on(CHECKSUM, "/files/hello.txt").expect("a checksum");
+    assert_eq!(u32::from_le_bytes(crc.try_into().expect("four bytes")), crc32("hello".as_bytes()));
+    let general = String::from_utf8(client.read("/metadata/general.json").expect("there")).expect("text");
+    let parameters = client.read("metadata/parameters.json").expect("there");
+    assert!(general.contains(&format!("\"fileCrc\":{}", crc32(&parameters))), "{general}");
+    assert_eq!(client.read("/files/hello.txt/x"), Err(NOT_FOUND));
+    assert_eq!(client.read("/files/below"), Err(NOT_FOUND));
+    assert_eq!(client.on(99, "/"), Err(UNKNOWN));
+    assert_eq!(client.ask(READ, 0, &[0; 10]), Err(INVALID_SESSION));
+    // Without anything shared there is nothing to be found.
+    let mut bare = Client::of(Disk::default());
+    assert_eq!(bare.list("/files"), Err(NOT_FOUND));
+    assert_eq!(bare.list("/"), Ok(["D@PARAM", "Dmetadata"].map(str::to_owned).to_vec()));
+}
+
+/// Bit by bit, as the polynomial says.
+fn crc32(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(0, |crc, byte| {
+        (0..8).fold(
+            crc ^ u32::from(*byte),
+            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
+        )
+    })
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_leads_out_of_the_root() {
+    use std::os::unix::fs::symlink;
+
+    let (place, root) = shared();
+    let secret = place.path().join("secret");
+    symlink(&secret, root.join("absolute")).expect("a link");
+    symlink("../secret", root.join("relative")).expect("a link");
+    symlink("..", root.join("up")).expect("a link");
+    symlink("/", root.join("slash")).expect("a link");
+    symlink("hello.txt", root.join("inside")).expect("a link");
+    symlink("loop", root.join("loop")).expect("a link");
+    symlink("/dev/zero", root.join("zero")).expect("a link");
+    let pipe = rustix::fs::mknodat(
+        rustix::fs::CWD,
+        root.join("pipe"),
+        rustix::fs::FileType::Fifo,
+        rustix::fs::Mode::from_raw_mode(0o600),
+        0,
+    );
+    pipe.expect("a pipe");
+    let mut client = Client::sharing(&root, true);
+    let before = std::fs::read_dir(place.path()).expect("a folder").count();
+    let long = format!("/files/{}", "x".repeat(230));
+    let outside = [
+        "/files/../secret",
+        "/files/below/../../secret",
+        "/files/absolute",
+        "/files/relative",
+        "/files/up/secret",
+        "/files/slash/etc/passwd",
+        "/files/loop",
+        "/files/zero",
+        "/files/pipe",
+        "/etc/passwd",
+        "../secret",
+        "/files/..",
+        "files/\u{202e}",
+        "/files/up",
+        "/secret",
+        "\\files\\hello.txt",
+        "/files/hello.txt\\..\\x",
+        "/proc/self/environ",
+        "@PARAM/../../etc/passwd",
+        "/metadata/../secret",
+        &long,
+    ];
+    for path in outside {
+        for opcode in [OPEN, CHECKSUM] {
+            let refused = client.on(opcode, path);
+            assert!(matches!(refused, Err(NOT_FOUND | FAIL)), "{path}: {refused:?}");
+        }
+        // To be changed: not there, not allowed, or (a folder of that name) not empty.
+        for opcode in [CREATE, OPEN_TO_WRITE, TRUNCATE, MAKE_FOLDER] {
+            let refused = client.on(opcode, path);
+            if path.ends_with('\u{202e}') && refused.is_ok() {
+                // A strange name, but one inside.
+                continue;
+            }
+            assert!(refused.is_err(), "{opcode} {path}: {refused:?}");
+        }
+        let refused = client.on(RENAME, &format!("/files/hello.txt\0{path}"));
+        assert!(refused.is_err() || path.ends_with('\u{202e}'), "{path}: {refused:?}");
+    }
+    assert_eq!(std::fs::read(&secret).expect("still there"), b"secret");
+    assert_eq!(std::fs::read_dir(place.path()).expect("a folder").count(), before);
+    // A link that stays inside is as good as its target; one that does not is not even listed.
+    assert_eq!(client.read("/files/inside"), Ok(b"hello".to_vec()));
+    let listed = client.list("/files").expect("a list");
+    assert!(listed.contains(&"Finside\t5".to_owned()), "{listed:?}");
+    for hidden in ["absolute", "relative", "up", "slash", "loop", "zero", "pipe"] {
+        assert!(!listed.iter().any(|entry| entry[1..].split('\t').next() == Some(hidden)), "{hidden}");
+    }
+    // To remove a link is not to remove what it leads to.
+    assert_eq!(client.on(REMOVE, "/files/relative"), Ok(vec![]));
+    assert_eq!(std::fs::read(&secret).expect("still there"), b"secret");
+    // A path that is no text.
+    assert_eq!(client.ask(OPEN, 0, b"/files/\xff\xfe"), Err(NOT_FOUND));
+}
+
+#[test]
+fn what_may_only_be_read_is_protected() {
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, false);
+    for path in ["/files/new", "/files/hello.txt", "/@PARAM/param.pck", "/metadata/general.json", "/", ""] {
+        for opcode in [CREATE, OPEN_TO_WRITE, REMOVE, MAKE_FOLDER, REMOVE_FOLDER, TRUNCATE] {
+            assert_eq!(client.on(opcode, path), Err(PROTECTED), "{opcode} {path}");
+        }
+        assert_eq!(client.on(RENAME, &format!("/files/hello.txt\0{path}")), Err(PROTECTED), "{path}");
+    }
+    assert_eq!(client.read("/files/hello.txt"), Ok(b"hello".to_vec()));
+    client.on(OPEN, "/files/hello.txt").expect("readable");
+    assert_eq!(client.ask(WRITE, 0, b"x"), Err(PROTECTED));
+    client.on(OPEN, "/@PARAM/param.pck").expect("readable");
+    assert_eq!(client.ask(WRITE, 0, b"x"), Err(PROTECTED));
+}
+
+#[test]
+fn files_are_written_moved_and_removed() {
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, true);
+    assert_eq!(client.on(CREATE, "/files/new.bin"), Ok(0_u32.to_le_bytes().to_vec()));
+    for at in (0..1000_u32).step_by(200) {
+        assert_eq!(client.ask(WRITE, at, &[at as u8; 200]), Ok(200_u32.to_le_bytes().to_vec()));
+    }
+    client.ask(RESET, 0, &[]).expect("closed");
+    assert_eq!(client.read("/files/new.bin").expect("there")[400..600], [144; 200]);
+    assert_eq!(client.on(RENAME, "/files/new.bin\0/files/below/moved.bin"), Ok(vec![]));
+    assert_eq!(client.read("/files/new.bin"), Err(NOT_FOUND));
+    assert_eq!(client.on(RENAME, "/files/hello.txt\0/files/below/moved.bin"), Err(EXISTS));
+    assert_eq!(client.ask(TRUNCATE, 3, b"/files/below/moved.bin"), Ok(vec![]));
+    assert_eq!(client.read("/files/below/moved.bin"), Ok(vec![0; 3]));
+    assert_eq!(client.on(REMOVE_FOLDER, "/files/below"), Err(EXISTS));
+    assert_eq!(client.on(MAKE_FOLDER, "/files/other"), Ok(vec![]));
+    assert_eq!(client.on(MAKE_FOLDER, "/files/other"), Err(EXISTS));
+    assert_eq!(client.on(REMOVE_FOLDER, "/files/other"), Ok(vec![]));
+    assert_eq!(client.on(REMOVE, "/files/other"), Err(NOT_FOUND));
+    assert_eq!(client.on(REMOVE, "/files/below/moved.bin"), Ok(vec![]));
+    assert_eq!(client.on(REMOVE_FOLDER, "/files"), Err(PROTECTED));
+    assert_eq!(client.on(RENAME, "/files/hello.txt"), Err(3));
+    assert_eq!(client.read("/files/hello.txt"), Ok(b"hello".to_vec()));
+}
+
+#[test]
+fn a_retry_is_answered_again_and_not_carried_out_again() {
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, true);
+    let path = b"/files/once";
+    let make = request(500, MAKE_FOLDER, 0, path.len() as u8, 0, path);
+    for _ in 0..3 {
+        client.bench.heard.clear();
+        client.bench.send(make.clone());
+        assert_eq!(answers(&client.bench.heard)[0].result, Ok(vec![]));
+    }
+    // Another request is another one, and so is the same long after.
+    assert_eq!(client.on(MAKE_FOLDER, "/files/once"), Err(EXISTS));
+    client.bench.fly(2.5);
+    client.bench.heard.clear();
+    client.bench.send(make);
+    assert_eq!(answers(&client.bench.heard)[0].result, Err(EXISTS));
+}
+
+#[test]
+fn quotas_hold_and_say_so() {
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, true);
+    // 16 MB a file, 64 MB in all: by truncation, which costs nothing here.
+    assert_eq!(client.on(CREATE, "/files/big"), Ok(0_u32.to_le_bytes().to_vec()));
+    assert_eq!(client.ask(TRUNCATE, (16 << 20) + 1, b"/files/big"), Err(ERRNO));
+    assert_eq!(client.ask(TRUNCATE, 16 << 20, b"/files/big"), Ok(vec![]));
+    assert_eq!(client.ask(WRITE, 16 << 20, b"x"), Err(ERRNO));
+    assert_eq!(client.ask(WRITE, u32::MAX, b"x"), Err(ERRNO));
+    for name in ["b", "c"] {
+        let path = format!("/files/{name}");
+        client.on(CREATE, &path).expect("room");
+        assert_eq!(client.ask(TRUNCATE, 16 << 20, path.as_bytes()), Ok(vec![]));
+    }
+    client.on(CREATE, "/files/d").expect("room");
+    assert_eq!(client.ask(TRUNCATE, 16 << 20, b"/files/d"), Err(ERRNO));
+    assert_eq!(client.ask(TRUNCATE, 15 << 20, b"/files/d"), Ok(vec![]));
+    client.on(REMOVE, "/files/big").expect("removed");
+    assert_eq!(client.ask(TRUNCATE, 16 << 20, b"/files/d"), Ok(vec![]));
+    // Names, too.
+    let (fits, long) = (format!("/files/{}", "n".repeat(128)), format!("/files/{}", "n".repeat(129)));
+    assert_eq!(client.on(MAKE_FOLDER, &fits), Ok(vec![]));
+    assert_eq!(client.on(MAKE_FOLDER, &long), Err(FAIL));
+
+    // Open files: a client's own oldest makes room; a fifth client waits until one is idle.
+    let open = |bench: &mut Bench, system: u8, session: u8| {
+        bench.heard.clear();
+        let message = request(u16::from(session) * 2, OPEN, session, 16, 0, b"/files/hello.txt");
+        let frame =
+            sitl::codec::Frame::encode(&message.into(), sitl::codec::Version::Two, session, (system, 190));
+        let peer = sitl::service::PeerId { link: 0, number: u64::from(system) };
+        let origin = sitl::service::Origin { peer, system, component: 190 };
+        bench.autopilot.receive(&origin, &frame.expect("a frame"));
+        bench.listen();
+        answers(&bench.heard)[0].result.clone().map(|_| ())
+    };
+    let mut bench = client.bench;
+    bench.fly(11.0);
+    for system in 10..14 {
+        for session in 0..6 {
+            assert_eq!(open(&mut bench, system, session), Ok(()), "{system} {session}");
+        }
+    }
+    assert_eq!(open(&mut bench, 14, 0), Err(5));
+    bench.fly(11.0);
+    assert_eq!(open(&mut bench, 14, 0), Ok(()));
+}
+
+/// Bytes in which every place is different from its neighbours.
+fn noise(length: usize) -> Vec<u8> {
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 56) as u8
+    };
+    (0..length).map(|_| next()).collect()
+}
+
+/// Asks until it is answered.
+fn ask(
+    lossy: &mut Lossy,
+    sequence: u16,
+    opcode: u8,
+    size: u8,
+    offset: u32,
+    data: &[u8],
+) -> Result<Vec<u8>, u8> {
+    for _ in 0..20 {
+        lossy.send(request(sequence, opcode, 3, size, offset, data));
+        for _ in 0..200 {
+            let heard = lossy.step();
+            let answer =
+                answers(&heard).into_iter().find(|answer| answer.sequence == sequence.wrapping_add(1));
+            if let Some(answer) = answer {
+                return answer.result;
+            }
+        }
+    }
+    panic!("request {sequence} was never answered");
+}
+
+/// A file down in bursts, whose gaps are read again, and another up: both whole, on every seed.
+#[test]
+fn files_arrive_whole_over_a_lossy_channel() {
+    for seed in 1..=4 {
+        let (_place, root) = shared();
+        let content = noise(50_000);
+        std::fs::write(root.join("noise"), &content).expect("written");
+        let mut lossy = Lossy::new(seed);
+        let files = Disk::open(None, Some(&(root.clone(), true))).expect("a folder");
+        lossy.bench.autopilot.share(Box::new(files));
+        ask(&mut lossy, 10, OPEN, 12, 0, b"/files/noise").expect("it is there");
+        let mut got: Vec<Option<u8>> = vec![None; content.len()];
+        let mut sequence = 100;
+        while let Some(gap) = got.iter().position(Option::is_none) {
+            sequence += 500;
+            lossy.send(request(sequence, BURST, 3, 239, gap as u32, &[]));
+            let mut silent_ms = 0;
+            while silent_ms < 150 {
+                let pieces = answers(&lossy.step());
+                silent_ms = if pieces.is_empty() { silent_ms + 1 } else { 0 };
+                for piece in pieces.iter().filter(|piece| piece.opcode == BURST) {
+                    let Ok(bytes) = &piece.result else { continue };
+                    for (place, byte) in got[piece.offset as usize..].iter_mut().zip(bytes) {
+                        *place = Some(*byte);
+                    }
+                }
+                if pieces.iter().any(|piece| piece.last) {
+                    break;
+                }
+            }
+            assert!(lossy.now_ms < 60_000, "seed {seed}: stuck at {gap}");
+        }
+        assert!(
+            got.into_iter().map(|byte| byte.expect("complete")).eq(content.iter().copied()),
+            "seed {seed}"
+        );
+
+        ask(&mut lossy, 20, RESET, 0, 0, &[]).expect("closed");
+        ask(&mut lossy, 22, CREATE, 9, 0, b"/files/up").expect("made");
+        for (number, piece) in (0_u16..).zip(content.chunks(239)) {
+            let offset = u32::from(number) * 239;
+            ask(&mut lossy, 100 + 2 * number, WRITE, piece.len() as u8, offset, piece).expect("written");
+        }
+        ask(&mut lossy, 30, TERMINATE, 0, 0, &[]).expect("closed");
+        assert_eq!(std::fs::read(root.join("up")).expect("there"), content, "seed {seed}");
+        ask(&mut lossy, 40, RENAME, 24, 0, b"/files/up\0/files/renamed")
+            .expect("renamed, however often asked");
+        assert!(root.join("renamed").exists() && lossy.up.lost > 0 && lossy.down.lost > 0);
+    }
+}
+
+fn list_logs() -> MavMessage {
+    let (target_system, target_component) = (1, 1);
+    MavMessage::LOG_REQUEST_LIST(LOG_REQUEST_LIST_DATA {
+        start: 0,
+        end: u16::MAX,
+        target_system,
+        target_component,
+    })
+}
+
+fn request_log(id: u16, ofs: u32, count: u32) -> MavMessage {
+    let (target_system, target_component) = (1, 1);
+    MavMessage::LOG_REQUEST_DATA(LOG_REQUEST_DATA_DATA { ofs, count, id, target_system, target_component })
+}
+
+fn entries(heard: Vec<Message>) -> Vec<LOG_ENTRY_DATA> {
+    let entry = |message| match message {
+        Message::Typed(MavMessage::LOG_ENTRY(entry)) => Some(entry),
+        _ => None,
+    };
+    heard.into_iter().filter_map(entry).collect()
+}
+
+fn pieces(heard: Vec<Message>) -> Vec<LOG_DATA_DATA> {
+    let piece = |message| match message {
+        Message::Typed(MavMessage::LOG_DATA(piece)) => Some(piece),
+        _ => None,
+    };
+    heard.into_iter().filter_map(piece).collect()
+}
+
+/// A folder with two logs of flights that are over, and one that is being written.
+fn logs() -> (TempDir, LogFolder, Vec<Vec<u8>>) {
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = LogFolder::open(place.path()).expect("a folder");
+    let mut contents = Vec::new();
+    for length in [20_007, 90, 50] {
+        let (name, _) = folder.create(1, 10).expect("a log");
+        contents.push(noise(length));
+        std::fs::write(place.path().join(&name), &contents[contents.len() - 1]).expect("written");
+        if length != 50 {
+            folder.finish(&name);
+        }
+    }
+    (place, folder, contents)
+}
+
+#[test]
+fn logs_arrive_whole_over_a_lossy_channel() {
+    for seed in 1..=4 {
+        let (_place, folder, contents) = logs();
+        let mut lossy = Lossy::new(seed);
+        lossy.bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+        // As clients do: ask again until all have come.
+        let mut listed = std::collections::BTreeMap::new();
+        while listed.len() < contents.len() {
+            lossy.send(list_logs());
+            for _ in 0..100 {
+                listed.extend(
+                    entries(lossy.step()).into_iter().map(|entry| (entry.id, (entry.size, entry.num_logs))),
+                );
+            }
+            assert!(lossy.now_ms < 10_000, "seed {seed}: {listed:?}");
+        }
+        let sizes: Vec<usize> = listed.values().map(|(size, _)| *size as usize).collect();
+        assert_eq!(sizes, [20_007, 90, 50]);
+        assert!(listed.values().all(|(_, count)| *count == 3));
+
+        for (id, content) in (0..).zip(&contents) {
+            let mut got: Vec<Option<u8>> = vec![None; content.len()];
+            let mut ask = (0, u32::MAX);
+            while let Some(gap) = got.iter().position(Option::is_none) {
+                lossy.send(request_log(id, ask.0, ask.1));
+                let mut silent_ms = 0;
+                while silent_ms < 150 {
+                    // Two pieces a millisecond, to a peer that is there.
+                    lossy.bench.autopilot.send_logs(2, |_| Some(true));
+                    let pieces = pieces(lossy.step());
+                    silent_ms = if pieces.is_empty() { silent_ms + 1 } else { 0 };
+                    for piece in pieces {
+                        assert_eq!(piece.id, id);
+                        let bytes = &piece.data[..usize::from(piece.count)];
+                        for (place, byte) in got[piece.ofs as usize..].iter_mut().zip(bytes) {
+                            *place = Some(*byte);
+                        }
+                    }
+                }
+                let gap = got.iter().position(Option::is_none).unwrap_or(gap);
+                ask = (gap as u32, 90);
+                assert!(lossy.now_ms < 120_000, "seed {seed}: stuck at {gap}");
+            }
+            assert!(got.into_iter().map(|byte| byte.expect("complete")).eq(content.iter().copied()));
+        }
+        assert!(lossy.down.lost > 0);
+    }
+}
+
+#[test]
+fn a_download_waits_for_room_and_ends_when_told() {
+    let (place, folder, contents) = logs();
+    let mut bench = Bench::new(Identity::Px4);
+    bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+    let sent = |bench: &mut Bench, most: usize, room: Option<bool>| {
+        bench.heard.clear();
+        bench.autopilot.send_logs(most, |_| room);
+        bench.listen();
+        pieces(std::mem::take(&mut bench.heard))
+    };
+    bench.send(request_log(0, 0, u32::MAX));
+    assert!(sent(&mut bench, 10, Some(false)).is_empty());
+    let first = sent(&mut bench, 3, Some(true));
+    assert_eq!(first.iter().map(|piece| piece.ofs).collect::<Vec<_>>(), [0, 90, 180]);
+    assert_eq!(first[1].data, contents[0][90..180]);
+    let end = mavlink::dialects::common::LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 };
+    bench.send(MavMessage::LOG_REQUEST_END(end));
+    assert!(sent(&mut bench, 10, Some(true)).is_empty());
+    // The end of a file of whole pieces is an empty one, and so is what is not there.
+    bench.send(request_log(1, 0, u32::MAX));
+    assert_eq!(sent(&mut bench, 10, Some(true)).iter().map(|piece| piece.count).collect::<Vec<_>>(), [90, 0]);
+    bench.heard.clear();
+    bench.send(request_log(77, 0, 90));
+    assert_eq!(pieces(std::mem::take(&mut bench.heard))[0].count, 0);
+    // Who is gone gets nothing more, not even when it comes back.
+    bench.send(request_log(0, 0, u32::MAX));
+    assert!(sent(&mut bench, 10, None).is_empty());
+    assert!(sent(&mut bench, 10, Some(true)).is_empty());
+    // FTP reads them, too, and removes none.
+    let mut client = Client { bench, sequence: 0 };
+    assert_eq!(client.list("/logs").expect("a list").len(), 3);
+    assert_eq!(client.read("/logs/flight_00002_id1.ulg"), Ok(contents[1].clone()));
+    assert_eq!(client.on(REMOVE, "/logs/flight_00002_id1.ulg"), Err(PROTECTED));
+    // Erasing leaves the log that is being written, and what is no log.
+    std::fs::write(place.path().join("notes.txt"), "mine").expect("written");
+    client.bench.send(MavMessage::LOG_ERASE(LOG_ERASE_DATA { target_system: 1, target_component: 1 }));
+    assert!(client.bench.texts().iter().any(|text| text == "Logs erased by 255/190"));
+    let left = client.list("/logs").expect("a list");
+    assert_eq!(left, ["Fflight_00003_id1.ulg\t50", "Fnotes.txt\t4"].map(str::to_owned).to_vec());
+}
