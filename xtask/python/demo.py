@@ -63,9 +63,9 @@ def main() -> int:
     messages = []
     for name in vehicle.FLIGHTS:
         progress(f"Flying the MAVLink vehicle from examples/{name}.py")
-        lines, plot, met = vehicle.fly(name, arguments.vehicle, arguments.root / "examples", arguments.out)
+        lines, drawn, met = vehicle.fly(name, arguments.vehicle, arguments.root / "examples", arguments.out)
         messages.append((name, lines, met))
-        files.append(plot)
+        files += drawn
     progress("Flown")
 
     print_errors(table)

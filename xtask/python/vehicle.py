@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import flight_log
+
 #: The examples to fly, and what their plots show.
 FLIGHTS = ("position_target", "circle")
 
@@ -16,26 +18,36 @@ FLIGHTS = ("position_target", "circle")
 SPEED = 4
 
 
-def fly(name: str, program: Path, examples: Path, folder: Path) -> tuple[list[str], Path, bool]:
-    """Flies an example on a vehicle of its own; returns the lines that it prints, its plot, and whether it met its goals."""
+def fly(name: str, program: Path, examples: Path, folder: Path) -> tuple[list[str], list[Path], bool]:
+    """Flies an example on a vehicle of its own; returns the lines that it prints, its plot, the vehicle's log and what that shows,
+    and whether it met its goals."""
     plot = folder / f"mavlink-{name.replace('_', '-')}.png"
-    with running(program) as address:
+    logs = folder / "logs"
+    before = set(logs.glob("*.ulg"))
+    with running(program, logs) as address:
         done = subprocess.run(
             [sys.executable, examples / f"{name}.py", "--connect", f"udpout:{address}", "--plot", plot],
             stdout=subprocess.PIPE, text=True, timeout=300,
         )
     lines = [line for line in done.stdout.splitlines() if not line.startswith("wrote ")]
-    return lines, plot, done.returncode == 0
+    files = [plot]
+    for log in sorted(set(logs.glob("*.ulg")) - before):
+        kept = log.replace(plot.with_suffix(".ulg"))
+        drawn = plot.with_name(f"{plot.stem}-log.png")
+        flight_log.draw(kept, drawn, f"{name.replace('_', ' ')}, from the vehicle's log")
+        files += [kept, drawn]
+    return lines, files, done.returncode == 0
 
 
 @contextmanager
-def running(program: Path):
-    """A vehicle on a free port of this machine, and its address; it is ended afterwards."""
+def running(program: Path, logs: Path):
+    """A vehicle on a free port of this machine that logs its flights, and its address; it is ended afterwards."""
     with TemporaryDirectory() as folder:
         ready = Path(folder) / "ready.json"
         settings = {name: value for name, value in os.environ.items() if not name.startswith("LMPC_SITL_")}
         process = subprocess.Popen(
-            [program, "--link", "udpin:0", "--speed", str(SPEED), "--log", "warn", "--ready-file", ready],
+            [program, "--link", "udpin:0", "--speed", str(SPEED), "--log", "warn", "--log-dir", logs,
+             "--ready-file", ready],
             stdout=subprocess.DEVNULL, env=settings,
         )
         try:

@@ -93,7 +93,7 @@ def test_pymavlink_both_ways(start, connect, tmp_path):
     signed(client.connection)
     client.beat()
     assert not client.wait("HEARTBEAT").base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-    refused(client, "1 replayed")
+    assert "1 replayed" in vehicle.output()
     packed = mavlink.MAVLink_command_long_message(1, 1, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0).pack(client.mav)
     client.connection.write(packed)
     client.wait("COMMAND_ACK")
@@ -106,7 +106,7 @@ def test_pymavlink_both_ways(start, connect, tmp_path):
     signed(other.connection, link_id=7)
     other.beat()
     assert not other.wait("HEARTBEAT").base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-    refused(other, "1 replayed")
+    assert "1 replayed" in again.output()
     assert oct(os.stat(f"{path}.timestamps").st_mode)[-3:] == "600"
 
 
