@@ -30,7 +30,7 @@ def draw(file: Path, picture: Path, title: str) -> None:
         panels[3].plot(_seconds(status), status[f"{controller}_active_constraints"], color=colour, label=controller)
     panels[3].set(ylabel="active limits", xlabel="time of the vehicle, s")
     for panel in panels:
-        panel.legend(loc="upper right", ncols=4)
+        panel.legend(loc="upper left", bbox_to_anchor=(1, 1))
     figure.suptitle(title)
     figure.savefig(picture, dpi=110)
     plt.close(figure)

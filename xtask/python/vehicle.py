@@ -36,6 +36,7 @@ def fly(name: str, program: Path, examples: Path, folder: Path) -> tuple[list[st
         drawn = plot.with_name(f"{plot.stem}-log.png")
         flight_log.draw(kept, drawn, f"{name.replace('_', ' ')}, from the vehicle's log")
         files += [kept, drawn]
+    logs.rmdir()
     return lines, files, done.returncode == 0
 
 
