@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 
+use super::motion::Motion;
 use super::notice::{Refusal, Severity};
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::state::Vehicle;
@@ -11,10 +12,17 @@ use super::steering::Steering;
 use crate::fence::{Breach, Fence, route_m, zones};
 use crate::plan::{MissionItem, PlanFault, PlanKind};
 
-/// Between seeing a breach ahead and braking fully, s: the attitude has to lean back first.
-const REACTION_S: f64 = 0.4;
-/// By so much more it may overshoot, m.
-const MARGIN_M: f64 = 0.3;
+/// An attitude that leads outside is left this late, s.
+const REACTION_S: f64 = 0.5;
+/// By so much more than its reference it may overshoot, m.
+const MARGIN_M: f64 = 0.5;
+/// How often the way to a stop is predicted, µs, and in which steps, s.
+const PREDICTION_PERIOD_US: u64 = 20_000;
+const STEP_S: f64 = 0.02;
+/// Longest stop, s.
+const LONGEST_STOP_S: f64 = 10.0;
+/// Slower than this, m/s, it stands.
+const STANDING_M_S: f64 = 0.1;
 
 /// What has become of the fence, for clients.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -57,8 +65,11 @@ impl Vehicle {
 
     /// Looks whether the vehicle is, or cannot help coming, where it must not be.
     pub(super) fn watch_fence(&mut self) {
-        let now =
-            self.breach_at(&self.outputs.position_m).or_else(|| self.breach_at(&self.stopping_place_m()));
+        let here = self.breach_at(&self.outputs.position_m);
+        if here.is_none() && !self.time_us().is_multiple_of(PREDICTION_PERIOD_US) {
+            return;
+        }
+        let now = here.or_else(|| self.breach_at(&self.stopping_place_m()));
         if let (Some(breach), None) = (now, self.fence_record.now) {
             self.fence_record.count = self.fence_record.count.saturating_add(1);
             self.fence_record.latest = Some((breach, self.time_us()));
@@ -72,30 +83,28 @@ impl Vehicle {
         self.fence.breach(place_m, &self.home.position_m, settings.fence_radius_m, settings.fence_height_m)
     }
 
-    /// Where it comes to rest if it brakes now. On its way to a goal it is where it is: the shaper stops at the goal, which
-    /// was looked at before.
+    /// Where it comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal it is where
+    /// it is: the shaper stops at the goal, which was looked at before.
     fn stopping_place_m(&self) -> Vector3<f64> {
         let position_m = self.outputs.position_m;
         if !self.armed || matches!(self.steering, Steering::Goal(_) | Steering::Idle { .. }) {
             return position_m;
         }
+        let mut motion = self.steering.present(&self.outputs);
+        if !matches!(self.steering, Steering::Motion(_)) {
+            motion.position_m += motion.velocity_m_s * REACTION_S;
+        }
+        let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
         let limits = &self.simulation.configuration().limits;
-        // v² / 2a, with the time that the jerk takes to build the deceleration up.
-        let way_m = |speed: f64, acceleration: f64, jerk: f64| {
-            if speed < 0.1 {
-                return 0.0;
+        let mut braking = Motion::from(motion, PositionSetPoint::HOLD, 0);
+        for _ in 0..(LONGEST_STOP_S / STEP_S) as usize {
+            braking.step(limits, STEP_S);
+            motion = braking.reference(0);
+            if motion.velocity_m_s.norm() < STANDING_M_S {
+                break;
             }
-            speed * speed / (2.0 * acceleration) + speed * (acceleration / jerk / 2.0 + REACTION_S) + MARGIN_M
-        };
-        let velocity = self.outputs.velocity_m_s;
-        let speed = velocity.xy().norm();
-        let horizontal =
-            way_m(speed, limits.acceleration_horizontal_m_s2, limits.jerk_horizontal_m_s3) / speed.max(1e-9);
-        let vertical = libm::copysign(
-            way_m(velocity.z.abs(), limits.acceleration_vertical_m_s2, limits.jerk_vertical_m_s3),
-            velocity.z,
-        );
-        position_m + Vector3::new(velocity.x * horizontal, velocity.y * horizontal, vertical)
+        }
+        motion.position_m + ahead * MARGIN_M
     }
 
     /// Refuses a goal, NED, m, that the fence forbids.

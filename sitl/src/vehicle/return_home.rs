@@ -6,6 +6,7 @@ use super::mode::Mode;
 use super::notice::Severity;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 use super::state::Vehicle;
+use super::steering::SteeringKind;
 
 /// Part of the way home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +86,10 @@ impl Vehicle {
     /// One tick of a descent, above a place or wherever it comes to rest.
     pub(super) fn descend(&mut self, above: Option<[f64; 2]>) {
         if self.landed.is_landed() {
+            // The blind one ends here, too.
+            if self.steering.kind() == SteeringKind::Attitude {
+                self.idle();
+            }
             return;
         }
         if !self.validity().horizontal_position {

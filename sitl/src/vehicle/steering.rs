@@ -100,7 +100,7 @@ impl Steering {
     }
 
     /// The motion to take over: that of the reference, or of the vehicle if it does not follow one.
-    fn present(&self, outputs: &Outputs) -> PositionReference {
+    pub(super) fn present(&self, outputs: &Outputs) -> PositionReference {
         match self {
             Self::Goal(_) | Self::Motion(_) => outputs.setpoint,
             Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => PositionReference {
