@@ -1,0 +1,197 @@
+//! The fence and the safe points: ahead of a flight, and during it.
+
+mod common;
+
+use common::{Bench, settings};
+use mavlink::dialects::common::*;
+use nalgebra::Vector3;
+use sitl::identity::Identity;
+use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
+use sitl::vehicle::{Mode, VehicleSettings};
+
+const DENIED: u8 = 2;
+
+fn item(settings: &VehicleSettings, command: u16, parameter: f64, [north, east]: [f64; 2]) -> MissionItem {
+    let place = sitl::world::LocalFrame::new(settings.origin).to_geodetic(&Vector3::new(north, east, 0.0));
+    MissionItem {
+        frame: frame::GLOBAL_RELATIVE_INT,
+        command,
+        parameters: [parameter, 0.0, 0.0, 0.0],
+        position: [place.latitude_deg, place.longitude_deg, 0.0],
+        autocontinue: true,
+    }
+}
+
+fn polygon(settings: &VehicleSettings, inclusion: bool, corners: &[[f64; 2]]) -> Vec<MissionItem> {
+    let command = if inclusion {
+        command::NAV_FENCE_POLYGON_VERTEX_INCLUSION
+    } else {
+        command::NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+    };
+    corners.iter().map(|corner| item(settings, command, corners.len() as f64, *corner)).collect()
+}
+
+fn square(settings: &VehicleSettings, half_m: f64) -> Vec<MissionItem> {
+    polygon(settings, true, &[[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]])
+}
+
+/// A vehicle with plans that hovers 10 m up.
+fn hovering(start: &VehicleSettings, fence: Vec<MissionItem>, rally: Vec<MissionItem>) -> Bench {
+    let mut start = start.clone();
+    start.plans.set(PlanKind::Fence, Plan::new(fence));
+    start.plans.set(PlanKind::Rally, Plan::new(rally));
+    let mut bench = Bench::of(&start);
+    bench.arm();
+    let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0, "{:?}", bench.texts());
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    bench
+}
+
+fn go_to(bench: &mut Bench, north: f64, east: f64) -> u8 {
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(north, east, 0.0));
+    let message = MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+        command: MavCmd::MAV_CMD_DO_REPOSITION,
+        target_system: 1,
+        target_component: 1,
+        frame: MavFrame::MAV_FRAME_GLOBAL,
+        param1: -1.0,
+        param4: f32::NAN,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: f32::NAN,
+        ..COMMAND_INT_DATA::default()
+    });
+    bench.heard.clear();
+    bench.send(message);
+    bench.acks().last().expect("an answer").result
+}
+
+fn there(bench: &mut Bench, north: f64, east: f64) {
+    assert_eq!(go_to(bench, north, east), 0, "{:?}", bench.texts());
+    bench.fly_until("there", 60.0, |bench| {
+        let [x, y, _] = bench.position();
+        (x - north).hypot(y - east) < 0.3 && Vector3::from(bench.velocity()).norm() < 0.1
+    });
+}
+
+fn forward(bench: &mut Bench) {
+    let stick = MANUAL_CONTROL_DATA { target: 1, x: 1000, z: 500, ..MANUAL_CONTROL_DATA::default() };
+    bench.send(MavMessage::MANUAL_CONTROL(stick));
+}
+
+/// With full stick towards the border it comes to rest in front of it, and again when the pilot insists.
+#[test]
+fn it_stops_in_front_of_the_border() {
+    let start = settings(Identity::Px4);
+    let mut bench = hovering(&start, square(&start, 30.0), Vec::new());
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let (mut farthest, mut fastest): (f64, f64) = (0.0, 0.0);
+    bench.stream(20.0, |bench| {
+        forward(bench);
+        farthest = farthest.max(bench.autopilot.vehicle().truth().position_m.x);
+        fastest = fastest.max(bench.velocity()[0]);
+    });
+    assert!(fastest > 3.0, "{fastest} m/s");
+    assert!((26.0..30.0).contains(&farthest), "{farthest} m");
+    assert_eq!(bench.mode(), Mode::Hold);
+    assert!(
+        bench.texts().iter().any(|text| text == "Failsafe: Fence breached (outside the fence): hold"),
+        "{:?}",
+        bench.texts()
+    );
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    bench.stream(5.0, |bench| {
+        forward(bench);
+        farthest = farthest.max(bench.autopilot.vehicle().truth().position_m.x);
+    });
+    assert!(farthest < 30.0, "{farthest} m");
+    there(&mut bench, 0.0, 0.0);
+}
+
+#[test]
+fn an_exclusion_and_the_height_are_kept() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.failsafe.fence_height_m = 20.0;
+    let circle = item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, 8.0, [25.0, 0.0]);
+    let mut bench = hovering(&start, vec![circle], Vec::new());
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut farthest: f64 = 0.0;
+    bench.stream(15.0, |bench| {
+        forward(bench);
+        farthest = farthest.max(bench.position()[0]);
+    });
+    assert!((13.0..17.0).contains(&farthest), "{farthest} m");
+    bench.fly(2.0);
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut highest: f64 = 0.0;
+    bench.stream(15.0, |bench| {
+        let up = MANUAL_CONTROL_DATA { target: 1, z: 1000, ..MANUAL_CONTROL_DATA::default() };
+        bench.send(MavMessage::MANUAL_CONTROL(up));
+        highest = highest.max(-bench.position()[2]);
+    });
+    assert!((18.0..20.0).contains(&highest), "{highest} m");
+}
+
+#[test]
+fn what_leads_outside_is_refused_with_the_reason() {
+    let start = settings(Identity::Px4);
+    let wall = polygon(&start, false, &[[5.0, -5.0], [8.0, -5.0], [8.0, 5.0], [5.0, 5.0]]);
+    let fence = [square(&start, 30.0), wall].concat();
+    let mut bench = hovering(&start, fence, Vec::new());
+    for (north, why) in
+        [(31.0, "Reposition denied: outside the fence"), (6.0, "Reposition denied: in an exclusion zone")]
+    {
+        assert_eq!(go_to(&mut bench, north, 0.0), DENIED);
+        assert!(bench.texts().iter().any(|text| text == why), "{north}: {:?}", bench.texts());
+    }
+    // Set-points that lead outside count as none.
+    let mut target = SET_POSITION_TARGET_LOCAL_NED_DATA {
+        target_system: 1,
+        target_component: 1,
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1111_1000),
+        x: -5.0,
+        z: -10.0,
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+    };
+    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone()));
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    target.x = -40.0;
+    bench.stream(8.0, |bench| bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone())));
+    let [x, y, _] = bench.position();
+    assert!((-6.0..-2.0).contains(&x) && y.abs() < 0.1, "{x} {y}");
+    assert_eq!(bench.mode(), Mode::Hold, "refused ones are none");
+}
+
+#[test]
+fn a_return_goes_round_an_exclusion_to_the_nearest_allowed_point() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.return_height_m = 12.0;
+    // A wall between the vehicle and home, and a rally point inside it.
+    let wall = polygon(&start, false, &[[10.0, -15.0], [20.0, -15.0], [20.0, 15.0], [10.0, 15.0]]);
+    let inside = item(&start, command::NAV_RALLY_POINT, 0.0, [15.0, 0.0]);
+    let mut bench = hovering(&start, wall.clone(), vec![inside]);
+    there(&mut bench, 0.0, 25.0);
+    there(&mut bench, 30.0, 25.0);
+    there(&mut bench, 30.0, 5.0);
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        let [x, y, _] = bench.position();
+        assert!(!((10.0..20.0).contains(&x) && (-15.0..15.0).contains(&y)), "inside the wall at {x}, {y}");
+        assert!(bench.autopilot.vehicle().time_us() < 250_000_000, "not home: {:?}", bench.position());
+    }
+    let [x, y, _] = bench.position();
+    assert!(x.hypot(y) < 0.3, "{x} {y}");
+
+    // With a rally point on this side of the wall it goes there.
+    let near = item(&start, command::NAV_RALLY_POINT, 0.0, [35.0, 0.0]);
+    let mut bench = hovering(&start, wall, vec![inside, near]);
+    there(&mut bench, 0.0, 25.0);
+    there(&mut bench, 30.0, 25.0);
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    bench.fly_until("landed", 120.0, |bench| !bench.autopilot.vehicle().is_armed());
+    let [x, y, _] = bench.position();
+    assert!((x - 35.0).hypot(y) < 0.3, "{x} {y}");
+}
