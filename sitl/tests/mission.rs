@@ -624,3 +624,37 @@ proptest::proptest! {
         proptest::prop_assert!((Vector3::new(x, y, z) - Vector3::from(end)).norm() < 0.6);
     }
 }
+
+/// By instruments with the noise of real ones, in wind: the true way keeps to the plan as well as a GPS receiver lets it.
+#[test]
+fn a_square_is_flown_by_instruments() {
+    let mut settings = common::settings(Identity::Px4);
+    settings.sensors.model = sitl::estimation::SensorModel::Realistic;
+    settings.wind = sitl::world::WindSettings { speed_m_s: 4.0, from_rad: 0.7, gusts_m_s: 1.0, seed: 11 };
+    settings.configuration.airframe.drag_n_s_m = [0.15; 3];
+    let mut bench = Bench::of(&settings);
+    bench.fly(5.0);
+    let mut items = vec![takeoff()];
+    items.extend(SQUARE.map(waypoint));
+    assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+    bench.arm();
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    let mut nearest = [f64::INFINITY; 4];
+    let mut off = 0.0_f64;
+    for _ in 0..12_000 {
+        bench.fly(0.01);
+        let place = bench.autopilot.vehicle().truth().position_m;
+        for (nearest, corner) in nearest.iter_mut().zip(SQUARE) {
+            *nearest = nearest.min((place - Vector3::from(corner)).norm());
+        }
+        let sides = (0..4).map(|side| off_line(&place, SQUARE[(side + 3) % 4], SQUARE[side]));
+        if place.z < -9.0 {
+            off = off.max(sides.fold(f64::INFINITY, f64::min));
+        }
+        if bench.autopilot.vehicle().mission_status().state == MissionState::Complete {
+            break;
+        }
+    }
+    assert_eq!(bench.autopilot.vehicle().mission_status().state, MissionState::Complete);
+    assert!(nearest.iter().all(|nearest| *nearest < 2.0) && off < 2.5, "{nearest:?} {off}");
+}

@@ -16,6 +16,8 @@ pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED

@@ -58,6 +58,8 @@ def test_identity_and_modes(start, connect):
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
     version = client.wait("AUTOPILOT_VERSION")
     assert version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    plans = ["MISSION_FLOAT", "MISSION_INT", "MISSION_FENCE", "MISSION_RALLY"]
+    assert all(version.capabilities & getattr(mavlink, f"MAV_PROTOCOL_CAPABILITY_{plan}") for plan in plans)
     assert version.vendor_id and not any(version.flight_custom_version)
     client.command(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1)
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 435, 0)
