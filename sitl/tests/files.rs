@@ -14,6 +14,7 @@ use sitl::codec::Message;
 use sitl::files::Disk;
 use sitl::flight_log::LogFolder;
 use sitl::identity::Identity;
+use sitl::plan::{MissionItem, Plan, PlanKind};
 use tempfile::TempDir;
 
 const TERMINATE: u8 = 1;
@@ -166,7 +167,10 @@ fn shared() -> (TempDir, std::path::PathBuf) {
 fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     let (_place, root) = shared();
     let mut client = Client::sharing(&root, false);
-    assert_eq!(client.list("/"), Ok(["D@PARAM", "Dmetadata", "Dfiles"].map(str::to_owned).to_vec()));
+    assert_eq!(
+        client.list("/"),
+        Ok(["D@PARAM", "Dmetadata", "Dplans", "Dfiles"].map(str::to_owned).to_vec())
+    );
     assert_eq!(client.list(""), client.list("/"));
     let listed = ["Dbelow", "Fhello.txt\t5"].map(str::to_owned).to_vec();
     assert_eq!(client.list("/files"), Ok(listed.clone()));
@@ -186,7 +190,41 @@ fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     // Without anything shared there is nothing to be found.
     let mut bare = Client::of(Disk::default());
     assert_eq!(bare.list("/files"), Err(NOT_FOUND));
-    assert_eq!(bare.list("/"), Ok(["D@PARAM", "Dmetadata"].map(str::to_owned).to_vec()));
+    assert_eq!(bare.list("/"), Ok(["D@PARAM", "Dmetadata", "Dplans"].map(str::to_owned).to_vec()));
+}
+
+/// What is downloaded is what `--mission` reads.
+#[test]
+fn the_mission_is_a_file_that_reads_as_the_mission() {
+    let item = |frame, command, parameters, position| MissionItem {
+        frame,
+        command,
+        parameters,
+        position,
+        autocontinue: true,
+    };
+    let items = vec![
+        item(3, 22, [0.0, 0.0, 0.0, f64::NAN], [47.397_742, 8.545_594, 10.0]),
+        item(6, 16, [1.5, 2.0, 0.0, f64::NAN], [47.398_1, 8.545_7, 12.25]),
+        item(2, 177, [1.0, 2.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        item(2, 20, [0.0; 4], [0.0, 0.0, 0.0]),
+    ];
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut settings = common::settings(identity);
+        settings.plans.set(PlanKind::Mission, Plan::new(items.clone()));
+        let mut client = Client { bench: Bench::of(&settings), sequence: 0 };
+        let text = client.read("/plans/mission.waypoints").expect("there");
+        let place = tempfile::tempdir().expect("a folder");
+        let file = place.path().join("mission.waypoints");
+        std::fs::write(&file, &text).expect("written");
+        let site = client.bench.autopilot.vehicle().site();
+        let read = sitl::plan::file::read(&file, &site).expect("a plan");
+        let (read, text) = (read.get(PlanKind::Mission).items(), String::from_utf8_lossy(&text));
+        let flown = client.bench.autopilot.vehicle().plans().get(PlanKind::Mission).items();
+        assert_eq!(&read[read.len() - 3..], &flown[flown.len() - 3..], "{text}");
+        assert_eq!(client.read("/plans/rally.waypoints"), Ok(b"QGC WPL 110\n".to_vec()));
+        assert_eq!(client.on(CREATE, "/plans/mission.waypoints"), Err(PROTECTED));
+    }
 }
 
 /// Bit by bit, as the polynomial says.

@@ -2,6 +2,7 @@
 
 mod message;
 mod parameter_pack;
+mod plan_text;
 mod root;
 mod sessions;
 

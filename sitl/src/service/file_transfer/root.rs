@@ -4,20 +4,26 @@
 //! /@PARAM/param.pck             parameters, packed
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
+//! /plans/mission.waypoints      the mission as a text, and fence and rally points beside it
 //! /logs/                        flights, to be read
 //! /files/                       what the user shares
 //! ```
 
 use super::message::Nak;
 use super::parameter_pack;
+use super::plan_text;
 use super::sessions::Content;
 use crate::autopilot::Autopilot;
 use crate::files::{Access, Listed};
+use crate::plan::PlanKind;
 use crate::service::component_metadata;
 
 /// Folders of files that are made, and their files.
-const MADE: [(&str, &[&str]); 2] =
-    [("@PARAM", &["param.pck"]), ("metadata", &["general.json", "parameters.json"])];
+const MADE: [(&str, &[&str]); 3] = [
+    ("@PARAM", &["param.pck"]),
+    ("metadata", &["general.json", "parameters.json"]),
+    ("plans", &["mission.waypoints", "fence.waypoints", "rally.waypoints"]),
+];
 
 /// The path in its plain form. Nothing leads up: a path with `..` is no path.
 pub fn plain(path: &str) -> Result<String, Nak> {
@@ -56,6 +62,9 @@ pub fn open(autopilot: &mut Autopilot, path: &str, access: Access) -> Result<Con
         "@PARAM/param.pck" => parameter_pack::pack(autopilot),
         "metadata/general.json" => component_metadata::general(autopilot),
         "metadata/parameters.json" => component_metadata::parameters(autopilot),
+        "plans/mission.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Mission),
+        "plans/fence.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Fence),
+        "plans/rally.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Rally),
         other => return Ok(Content::Stored(autopilot.store.open(other, Access::Read)?)),
     };
     Ok(Content::Made(made))
