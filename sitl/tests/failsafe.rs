@@ -203,6 +203,23 @@ fn who_lands_is_not_called_back() {
     assert_eq!(bench.mode(), Mode::Land);
 }
 
+#[test]
+fn without_a_position_it_comes_down_level_and_softly() {
+    let mut bench = hovering(Cause::PositionLost);
+    spoil(&mut bench, Cause::PositionLost);
+    bench.fly(0.5);
+    assert_eq!(bench.mode(), Mode::Land);
+    assert_eq!(bench.set_mode(Mode::Hold), TEMPORARILY_REJECTED);
+    let mut fastest: f64 = 0.0;
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
+        assert!(bench.autopilot.vehicle().time_us() < 90_000_000, "still up: {:?}", bench.position());
+    }
+    assert!(fastest < 3.0, "{fastest} m/s");
+    assert!(bench.position()[2].abs() < 0.05);
+}
+
 /// Ends of modes, which are no failures.
 const ENDS: [(&str, &str); 5] = [
     ("Takeoff --> Hold", "height reached"),

@@ -23,7 +23,7 @@ pub enum ReturnPhase {
 const REACHED_M: f64 = 0.5;
 const SLOW_M_S: f64 = 0.5;
 /// Share of the weight per error of the sink rate, s/m.
-const SINK_GAIN: f64 = 0.3;
+const SINK_GAIN: f64 = 0.5;
 
 impl Vehicle {
     /// Begins the way home.
