@@ -19,7 +19,7 @@ pub struct Topic {
     pub name: &'static str,
     /// Its fields behind `uint64_t timestamp;`.
     pub fields: &'static str,
-    /// How often it is sampled, µs: a multiple of [`GRID_US`].
+    /// How often it is sampled, µs: a multiple of the grid of the log.
     pub period_us: u64,
     /// Whether it is also logged whenever it changes.
     pub on_change: bool,
