@@ -11,6 +11,7 @@ use crate::files::{FileStore, Nothing};
 use crate::identity::Identity;
 use crate::parameters::{Host, ParameterTable, SPEED_PARAMETER, SetError, Speed, Value, View};
 use crate::service::command::Retries;
+use crate::service::command::calibration::Calibration;
 use crate::service::file_transfer::FileServer;
 use crate::service::heartbeat::Heartbeat;
 use crate::service::log::LogServer;
@@ -50,6 +51,7 @@ pub struct Autopilot {
     pub(crate) heartbeat: Heartbeat,
     pub(crate) status_texts: StatusTexts,
     pub(crate) retries: Retries,
+    pub(crate) calibration: Option<Calibration>,
     pub(crate) files: FileServer,
     pub(crate) uploads: Uploads,
     pub(crate) mission_told: Option<MissionStatus>,
@@ -84,6 +86,7 @@ impl Autopilot {
             heartbeat: Heartbeat::default(),
             status_texts: StatusTexts::default(),
             retries: Retries::default(),
+            calibration: None,
             files: FileServer::default(),
             uploads: Uploads::default(),
             mission_told: None,
@@ -123,6 +126,7 @@ impl Autopilot {
             id::REQUEST_DATA_STREAM => message_interval::request_data_stream(self, origin, frame),
             id::MANUAL_CONTROL => manual_control::manual_control(self, frame),
             id::RC_CHANNELS_OVERRIDE => manual_control::channels_override(self, frame),
+            id::COMMAND_CANCEL => command::calibration::cancel(self, frame),
             id::COMMAND_INT | id::COMMAND_LONG => command::handle(self, origin, frame),
             id::SET_ATTITUDE_TARGET => set_point::attitude(self, frame),
             id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT => {
@@ -162,6 +166,7 @@ impl Autopilot {
     pub fn tick(&mut self) -> Result<(), SimulationError> {
         self.vehicle.tick()?;
         mission::update(self);
+        command::calibration::step(self);
         self.tell_changes();
         message_interval::stream(self);
         Ok(())

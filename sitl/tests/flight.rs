@@ -177,6 +177,58 @@ fn a_retry_turns_once() {
     assert!((yaw - core::f64::consts::FRAC_PI_2).abs() < 0.02, "{yaw}");
 }
 
+/// Results with their progress.
+fn results(bench: &Bench) -> Vec<(u8, u8)> {
+    bench.acks().iter().map(|ack| (ack.result, ack.progress)).collect()
+}
+
+#[test]
+fn a_calibration_tells_its_progress_and_can_be_cancelled() {
+    const ACCEPTED: u8 = 0;
+    const FAILED: u8 = 4;
+    const IN_PROGRESS: u8 = 5;
+    const CANCELLED: u8 = 6;
+    let gyro = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let calibrate =
+        |bench: &mut Bench, parameters| bench.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, parameters);
+    let mut bench = Bench::new(Identity::Px4);
+    assert_eq!(calibrate(&mut bench, gyro), IN_PROGRESS);
+    bench.fly(1.0);
+    // A retry is told how far it is, another one to wait.
+    bench.send(common::command_long(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, gyro, 1));
+    let accelerometer = [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0];
+    bench.send(common::command_long(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, accelerometer, 0));
+    bench.fly(1.5);
+    let progress = [0, 20, 40].map(|percent| (IN_PROGRESS, percent));
+    let rest =
+        [(IN_PROGRESS, 40), (TEMPORARILY_REJECTED, 0), (IN_PROGRESS, 60), (IN_PROGRESS, 80), (ACCEPTED, 0)];
+    assert_eq!(results(&bench), [&progress[..], &rest].concat());
+    let texts = bench.texts();
+    assert!(texts.contains(&"[cal] calibration done: gyro".to_owned()), "{texts:?}");
+
+    // Cancelled, by its own message and by asking for nothing.
+    assert_eq!(calibrate(&mut bench, gyro), IN_PROGRESS);
+    let mut payload = vec![241, 0, 1, 1];
+    bench.receive(&raw_frame(80, &payload));
+    assert_eq!(results(&bench).last(), Some(&(CANCELLED, 0)));
+    bench.heard.clear();
+    bench.fly(3.0);
+    payload[0] = 22;
+    bench.receive(&raw_frame(80, &payload));
+    assert!(bench.acks().is_empty(), "nothing is under way");
+    assert_eq!(calibrate(&mut bench, accelerometer), IN_PROGRESS);
+    calibrate(&mut bench, [0.0; 7]);
+    assert_eq!(results(&bench), [(ACCEPTED, 0), (CANCELLED, 0)]);
+
+    // What moves, or cannot be calibrated, is not.
+    assert_eq!(calibrate(&mut bench, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), UNSUPPORTED);
+    assert_eq!(calibrate(&mut bench, gyro), IN_PROGRESS);
+    bench.arm();
+    bench.fly(0.1);
+    assert!(results(&bench).contains(&(FAILED, 0)), "{:?}", results(&bench));
+    assert_eq!(calibrate(&mut bench, gyro), TEMPORARILY_REJECTED);
+}
+
 #[test]
 fn heartbeats_come_every_second_and_at_once_after_a_change() {
     let mut bench = Bench::new(Identity::Px4);

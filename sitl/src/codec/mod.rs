@@ -67,6 +67,8 @@ pub mod id {
     pub const RC_CHANNELS_OVERRIDE: u32 = 70;
     /// MISSION_ITEM_INT
     pub const MISSION_ITEM_INT: u32 = 73;
+    /// COMMAND_CANCEL
+    pub const COMMAND_CANCEL: u32 = 80;
     /// COMMAND_INT
     pub const COMMAND_INT: u32 = 75;
     /// COMMAND_LONG

@@ -37,6 +37,7 @@ pub fn target_of(frame: &Frame) -> Target {
         id::MISSION_REQUEST_PARTIAL_LIST | id::MISSION_WRITE_PARTIAL_LIST => at(4),
         id::MISSION_ITEM | id::MISSION_ITEM_INT => at(32),
         id::COMMAND_LONG | id::COMMAND_INT => at(30),
+        id::COMMAND_CANCEL => at(2),
         id::PARAM_SET => at(4),
         id::SET_ATTITUDE_TARGET => at(36),
         id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT => at(50),

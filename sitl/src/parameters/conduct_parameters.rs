@@ -129,7 +129,6 @@ const FENCE_ACTIONS: &[(Action, i32)] = &[
     (Action::Land, 5),
 ];
 const POSITION_ACTIONS: &[(Action, i32)] = &[(Action::Warn, 0), (Action::Land, 1), (Action::Terminate, 2)];
-const ROTOR_ACTIONS: &[(Action, i32)] =
-    &[(Action::Warn, 0), (Action::Hold, 1), (Action::Land, 2), (Action::Return, 3), (Action::Terminate, 4)];
+const ROTOR_ACTIONS: &[(Action, i32)] = &[(Action::Land, 2), (Action::Terminate, 4)];
 const BATTERY_POLICIES: &[(BatteryPolicy, i32)] =
     &[(BatteryPolicy::Warn, 0), (BatteryPolicy::Land, 2), (BatteryPolicy::ReturnThenLand, 3)];

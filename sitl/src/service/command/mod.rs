@@ -1,6 +1,7 @@
 //! The command protocol: COMMAND_LONG and COMMAND_INT, and the older SET_MODE. Every command is answered.
 
 mod action;
+pub mod calibration;
 mod information;
 mod retry;
 
@@ -18,6 +19,8 @@ mod result {
     pub const DENIED: u8 = 2;
     pub const UNSUPPORTED: u8 = 3;
     pub const FAILED: u8 = 4;
+    pub const IN_PROGRESS: u8 = 5;
+    pub const CANCELLED: u8 = 6;
 }
 
 /// What becomes of a command: carried out, refused with a reason, or unknown (`None`).
@@ -33,6 +36,10 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         let code = code(&Some(outcome));
         acknowledge(autopilot, origin, command.number, code);
         autopilot.last_to(mark);
+        return;
+    }
+    if command.number == calibration::NUMBER {
+        calibration::handle(autopilot, origin, &command);
         return;
     }
     let time_us = autopilot.vehicle.time_us();
@@ -76,10 +83,19 @@ fn code(outcome: &Outcome) -> u8 {
 }
 
 fn acknowledge(autopilot: &mut Autopilot, origin: &Origin, command: u16, result: u8) {
+    send(autopilot, origin, command, result, 0);
+}
+
+/// How far a command is that takes time, percent.
+fn acknowledge_progress(autopilot: &mut Autopilot, origin: &Origin, command: u16, percent: u8) {
+    send(autopilot, origin, command, result::IN_PROGRESS, percent);
+}
+
+fn send(autopilot: &mut Autopilot, origin: &Origin, command: u16, result: u8, progress: u8) {
     let ack = CommandAck {
         command,
         result,
-        progress: 0,
+        progress,
         target_system: origin.system,
         target_component: origin.component,
     };
