@@ -195,3 +195,27 @@ fn a_return_goes_round_an_exclusion_to_the_nearest_allowed_point() {
     let [x, y, _] = bench.position();
     assert!((x - 35.0).hypot(y) < 0.3, "{x} {y}");
 }
+
+/// A wall that is thinner than the way to a stop: goals and missions behind it are refused, a stick stops before it.
+#[test]
+fn nothing_leads_through_a_thin_wall() {
+    let start = settings(Identity::Px4);
+    let wall = polygon(&start, false, &[[20.0, -40.0], [20.0, 40.0], [20.5, 40.0], [20.5, -40.0]]);
+    let mut bench = hovering(&start, wall, Vec::new());
+    assert_eq!(go_to(&mut bench, 40.0, 0.0), DENIED);
+    assert!(
+        bench.texts().iter().any(|text| text.contains("through an exclusion zone")),
+        "{:?}",
+        bench.texts()
+    );
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut farthest: f64 = 0.0;
+    bench.stream(15.0, |bench| {
+        forward(bench);
+        farthest = farthest.max(bench.autopilot.vehicle().truth().position_m.x);
+    });
+    assert!((15.0..20.0).contains(&farthest), "{farthest} m");
+    // On a goal beside it nothing is in the way.
+    there(&mut bench, 18.5, 20.0);
+    there(&mut bench, 0.0, 0.0);
+}

@@ -17,6 +17,8 @@ pub enum Breach {
     Outside,
     /// Inside of the area to stay out of with this number.
     Inside(usize),
+    /// The way leads through the area to stay out of with this number.
+    Through(usize),
 }
 
 impl fmt::Display for Breach {
@@ -26,6 +28,7 @@ impl fmt::Display for Breach {
             Self::Distance(most_m) => write!(formatter, "farther than {most_m:.0} m from home"),
             Self::Outside => write!(formatter, "outside the fence"),
             Self::Inside(_) => write!(formatter, "in an exclusion zone"),
+            Self::Through(_) => write!(formatter, "through an exclusion zone"),
         }
     }
 }
@@ -67,5 +70,19 @@ impl Fence {
         let mut inclusions = zones.iter().filter(|zone| zone.inclusion).peekable();
         let bounded = inclusions.peek().is_some();
         (bounded && inclusions.all(|zone| zone.forbids(point))).then_some(Breach::Outside)
+    }
+
+    /// The area to stay out of that the straight way between two places, NED, m, leads through. One that it begins in does not
+    /// count: it has to be left anyway.
+    pub fn breach_between(&self, from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<Breach> {
+        if !self.enabled {
+            return None;
+        }
+        let way = ([from_m.x, from_m.y], [to_m.x, to_m.y]);
+        let zones = self.zones.zones.iter();
+        let number = zones
+            .map(|zone| !zone.inclusion && !zone.forbids(way.0) && zone.shape.is_entered_by(&way))
+            .position(|entered| entered)?;
+        Some(Breach::Through(number))
     }
 }

@@ -8,7 +8,7 @@ use super::motion::Motion;
 use super::notice::{Refusal, Severity};
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::state::Vehicle;
-use super::steering::Steering;
+use super::steering::{Steering, SteeringKind};
 use crate::fence::{Breach, Fence, route_m, zones};
 use crate::plan::{MissionItem, PlanFault, PlanKind};
 
@@ -69,7 +69,7 @@ impl Vehicle {
         if here.is_none() && !self.time_us().is_multiple_of(PREDICTION_PERIOD_US) {
             return;
         }
-        let now = here.or_else(|| self.breach_at(&self.stopping_place_m()));
+        let now = here.or_else(|| self.breach_to(&self.stopping_place_m()));
         if let (Some(breach), None) = (now, self.fence_record.now) {
             self.fence_record.count = self.fence_record.count.saturating_add(1);
             self.fence_record.latest = Some((breach, self.time_us()));
@@ -83,15 +83,20 @@ impl Vehicle {
         self.fence.breach(place_m, &self.home.position_m, settings.fence_radius_m, settings.fence_height_m)
     }
 
-    /// Where it comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal it is where
-    /// it is: the shaper stops at the goal, which was looked at before.
+    /// What of the fence forbids a place or the straight way to it.
+    fn breach_to(&self, place_m: &Vector3<f64>) -> Option<Breach> {
+        self.breach_at(place_m).or_else(|| self.fence.breach_between(&self.outputs.position_m, place_m))
+    }
+
+    /// Where it comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is not
+    /// beyond the goal, where the shaper stops.
     fn stopping_place_m(&self) -> Vector3<f64> {
         let position_m = self.outputs.position_m;
-        if !self.armed || matches!(self.steering, Steering::Goal(_) | Steering::Idle { .. }) {
+        if !self.armed || self.steering.kind() == SteeringKind::Idle {
             return position_m;
         }
         let mut motion = self.steering.present(&self.outputs);
-        if !matches!(self.steering, Steering::Motion(_)) {
+        if !matches!(self.steering, Steering::Motion(_) | Steering::Goal(_)) {
             motion.position_m += motion.velocity_m_s * REACTION_S;
         }
         let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
@@ -104,15 +109,21 @@ impl Vehicle {
                 break;
             }
         }
-        motion.position_m + ahead * MARGIN_M
+        match &self.steering {
+            Steering::Goal(goal) => {
+                let left_m = (goal.position_m - position_m).norm();
+                position_m + ahead * (motion.position_m - position_m).norm().min(left_m)
+            }
+            _ => motion.position_m + ahead * MARGIN_M,
+        }
     }
 
-    /// Refuses a goal, NED, m, that the fence forbids.
+    /// Refuses a goal, NED, m, that the fence forbids, or the straight way to it.
     ///
     /// # Errors
     /// [`Refusal::Denied`] that says what of it.
     pub(super) fn check_fence(&self, what: &str, goal_m: &Vector3<f64>) -> Result<(), Refusal> {
-        match self.breach_at(goal_m) {
+        match self.breach_to(goal_m) {
             Some(breach) => Err(Refusal::denied(format!("{what} denied: {breach}"))),
             None => Ok(()),
         }

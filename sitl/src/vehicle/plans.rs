@@ -52,7 +52,7 @@ impl Vehicle {
         check::plan(kind, &items, &self.site())?;
         match kind {
             PlanKind::Fence => self.take_fence(&items)?,
-            PlanKind::Mission | PlanKind::Rally => self.check_places(&items)?,
+            PlanKind::Mission | PlanKind::Rally => self.check_places(kind, &items)?,
         }
         self.plans.set(kind, Plan::new(items));
         if kind == PlanKind::Mission {
@@ -61,15 +61,20 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Refuses items whose places the fence forbids.
-    fn check_places(&self, items: &[MissionItem]) -> Result<(), PlanFault> {
+    /// Refuses items whose places the fence forbids, or the straight ways between them.
+    fn check_places(&self, kind: PlanKind, items: &[MissionItem]) -> Result<(), PlanFault> {
         let site = self.site();
         let now = self.home.position_m;
+        let mut before_m = now;
         for (index, item) in items.iter().enumerate() {
             let Some(place) = site.place(item) else { continue };
             let Some([x, y]) = place.horizontal_m else { continue };
             let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));
-            if let Some(breach) = self.breach_at(&place_m) {
+            // Where there are ways, each leads from the last place to the next.
+            let way =
+                (kind == PlanKind::Mission).then(|| self.fence.breach_between(&before_m, &place_m)).flatten();
+            before_m = place_m;
+            if let Some(breach) = self.breach_at(&place_m).or(way) {
                 return Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string()));
             }
         }
