@@ -26,6 +26,7 @@ TRAJECTORY = 0b100000000000  # position, velocity, acceleration and yaw
 
 OFFBOARD = (1, 6)  # PX4's custom mode: base mode "custom", main mode
 INTERVAL = 0.02  # of telemetry and set-points, s
+EARTH = 6_378_137.0  # radius, m
 
 
 class Flight:
@@ -123,6 +124,28 @@ class Flight:
         self.offboard()
         self.until(lambda: self.rests_at(goal), seconds, f"flying to {goal}", lambda: self.set_point(POSITION, goal))
 
+    def upload(self, items, kind: int = mavlink.MAV_MISSION_TYPE_MISSION):
+        """Answers the vehicle's requests until it has a plan; items are command, four parameters, north and east of home in m, height."""
+        self.mav.command_long_send(*self.target, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, mavlink.MAVLINK_MSG_ID_HOME_POSITION, *[0] * 6)
+        home = self.connection.recv_match(type="HOME_POSITION", blocking=True, timeout=5)
+        self.mav.mission_count_send(*self.target, len(items), kind)
+        while True:
+            message = self.connection.recv_match(type=["MISSION_REQUEST_INT", "MISSION_ACK"], blocking=True, timeout=5)
+            if message is None:
+                raise SystemExit("the vehicle does not ask for the plan")
+            if message.get_type() == "MISSION_ACK":
+                if message.type != mavlink.MAV_MISSION_ACCEPTED:
+                    raise SystemExit(f"the plan was refused: {mavlink.enums['MAV_MISSION_RESULT'][message.type].name}")
+                return
+            command, parameters, (north, east), height = items[message.seq]
+            # Both zero mean "here".
+            placed = (north, east) != (0, 0)
+            latitude = home.latitude + round(math.degrees(north / EARTH) * 1e7)
+            longitude = home.longitude + round(math.degrees(east / EARTH / math.cos(math.radians(home.latitude / 1e7))) * 1e7)
+            self.mav.mission_item_int_send(
+                *self.target, message.seq, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 0, 1, *parameters,
+                latitude if placed else 0, longitude if placed else 0, height, kind)
+
     def land(self):
         self.command(mavlink.MAV_CMD_NAV_LAND)
         armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
@@ -132,8 +155,8 @@ class Flight:
         """What has been flown since a time."""
         return [report for report in self.flown if report[0] >= start]
 
-    def plot(self, path: str, title: str):
-        """Draws set-points against the flight."""
+    def plot(self, path: str, title: str, borders=()):
+        """Draws set-points against the flight, and lines of north and east from above."""
         import matplotlib
 
         matplotlib.use("Agg")
@@ -154,6 +177,8 @@ class Flight:
                 axes[name].plot([p[across] for p in points], [p[along] for p in points], label="set-point", **mark)
             axes[name].plot(*[[flown[0][1][axis]] for axis in (across, along)], "o", color="#333333", markersize=4)
             axes[name].set(xlabel="east, m", aspect="equal", adjustable="datalim")
+        for border in borders:
+            axes["above"].plot([east for _, east in border], [north for north, _ in border], color="#cc3311", linewidth=1.2)
         axes["above"].set(ylabel="north, m", title="from above")
         axes["side"].set(ylabel="up, m", title="from the south")
         axes["above"].legend(loc="upper right")

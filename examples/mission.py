@@ -9,7 +9,6 @@ RADIUS = 2.0  # within which a corner is passed, m
 HEIGHT = 8.0
 CORNERS = [(30, 0, HEIGHT), (30, 30, HEIGHT + 4), (0, 30, HEIGHT)]  # north, east, up, m
 MIDDLE = (15, 15)
-EARTH = 6_378_137.0
 
 
 def item(command, parameters=(0, 0, 0, math.nan), place=(0, 0), height=0.0):
@@ -26,26 +25,6 @@ MISSION = [
 ]
 
 
-def upload(flight: Flight, home):
-    """Answers the vehicle's requests until it has the whole mission."""
-    flight.mav.mission_count_send(*flight.target, len(MISSION))
-    while True:
-        message = flight.connection.recv_match(type=["MISSION_REQUEST_INT", "MISSION_ACK"], blocking=True, timeout=5)
-        if message is None:
-            raise SystemExit("the vehicle does not ask for the mission")
-        if message.get_type() == "MISSION_ACK":
-            if message.type != mavlink.MAV_MISSION_ACCEPTED:
-                raise SystemExit(f"the mission was refused: {mavlink.enums['MAV_MISSION_RESULT'][message.type].name}")
-            return
-        command, parameters, (north, east), height = MISSION[message.seq]
-        placed = (north, east) != (0, 0)
-        latitude = home.latitude + round(math.degrees(north / EARTH) * 1e7) if placed else 0
-        longitude = home.longitude + round(math.degrees(east / EARTH / math.cos(math.radians(home.latitude / 1e7))) * 1e7)
-        flight.mav.mission_item_int_send(
-            *flight.target, message.seq, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 0, 1, *parameters, latitude,
-            longitude if placed else 0, height)
-
-
 def beside(position, start, end) -> float:
     """Horizontal distance from the line of a leg."""
     way = (end[0] - start[0], end[1] - start[1])
@@ -55,9 +34,7 @@ def beside(position, start, end) -> float:
 
 options = arguments(__doc__, "mission.png")
 flight = Flight(options.connect)
-flight.mav.command_long_send(*flight.target, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, mavlink.MAVLINK_MSG_ID_HOME_POSITION, *[0] * 6)
-home = flight.connection.recv_match(type="HOME_POSITION", blocking=True, timeout=5)
-upload(flight, home)
+flight.upload(MISSION)
 flight.command(mavlink.MAV_CMD_MISSION_START)
 
 # The corners with the time at which each was passed.

@@ -1,0 +1,57 @@
+"""Flies against a fence: a square to stay in, a circle to stay out of. It brakes in front of both, and is refused what lies behind."""
+
+import math
+import sys
+
+from flight import POSITION, VELOCITY, Flight, arguments, mavlink, verdict
+
+HALF = 25.0  # of the square's side, m
+CENTRE, RADIUS = (0.0, 14.0), 5.0  # of the circle, m
+SQUARE = [(HALF, HALF), (HALF, -HALF), (-HALF, -HALF), (-HALF, HALF)]
+FENCE = [
+    *((mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, (len(SQUARE), 0, 0, 0), corner, 0.0) for corner in SQUARE),
+    (mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, (RADIUS, 0, 0, 0), CENTRE, 0.0),
+]
+HOLD = (4, 3)  # PX4's auto mode, loiter
+
+
+def holds() -> bool:
+    mode = flight.connection.messages["HEARTBEAT"].custom_mode
+    return (mode >> 16 & 0xFF, mode >> 24) == HOLD
+
+
+def against(velocity) -> tuple:
+    """Flies at a velocity until the fence takes over, and returns where it comes to rest."""
+    flight.set_point(VELOCITY, velocity=velocity)
+    flight.offboard()
+    flight.until(lambda: not holds(), 5, "offboard mode")
+    flight.until(holds, 30, "the fence", lambda: flight.set_point(VELOCITY, velocity=velocity))
+    flight.until(lambda: math.hypot(*flight.velocity) < 0.05, 10, "rest")
+    print("at rest at north {:.1f}, east {:.1f} m".format(*flight.position))
+    return flight.position
+
+
+options = arguments(__doc__, "fence.png")
+flight = Flight(options.connect)
+flight.upload(FENCE, mavlink.MAV_MISSION_TYPE_FENCE)
+flight.take_off()
+
+north, _, _ = against((4, 0, 0))
+missed = verdict("beyond the square", max(north - HALF, 0), 0, "m") | verdict("short of it", HALF - north, 5, "m")
+flight.go_to((0.0, 0.0, -3.0))
+place = against((0, 4, 0))
+gap = math.dist(place[:2], CENTRE) - RADIUS
+missed |= verdict("into the circle", max(-gap, 0), 0, "m") | verdict("short of it", gap, 5, "m")
+
+# A goal behind the square is refused: the vehicle stays.
+flight.set_point(POSITION, (2 * HALF, 0.0, -3.0))
+flight.asked.pop()  # not for the plot
+text = flight.connection.recv_match(type="STATUSTEXT", condition="'denied' in STATUSTEXT.text", blocking=True, timeout=5)
+print(f"refused: {text.text if text else 'nothing'}")
+missed |= text is None
+flight.land()
+
+circle = [(CENTRE[0] + RADIUS * math.cos(angle), CENTRE[1] + RADIUS * math.sin(angle))
+          for angle in (2 * math.pi * index / 60 for index in range(61))]
+flight.plot(options.plot, "flying against a fence", [[*SQUARE, SQUARE[0]], circle])
+sys.exit(missed)
