@@ -15,7 +15,7 @@ import flight_log
 FLIGHTS = ("position_target", "circle")
 
 #: Simulated seconds per second.
-SPEED = 4
+SPEED = 2
 
 
 def fly(name: str, program: Path, examples: Path, folder: Path) -> tuple[list[str], list[Path], bool]:

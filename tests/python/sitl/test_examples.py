@@ -14,7 +14,9 @@ NAMES = sorted(file.stem for file in EXAMPLES.glob("*.py") if file.stem != "flig
 @pytest.mark.parametrize("name", NAMES)
 def test_example(start, tmp_path, name):
     fleet = ("--vehicles", "5", "--ports", "shared", "--formation", "circle,6") if name == "five_vehicles" else ()
-    vehicle = start("--speed", "8", *fleet)
+    # Set-points that are streamed come late when the machine is busy, and the later the faster the vehicle's time.
+    speed = "3" if name == "circle" else "8"
+    vehicle = start("--speed", speed, *fleet)
     plot = tmp_path / "flight.png"
     done = subprocess.run(
         [sys.executable, EXAMPLES / f"{name}.py", "--connect", f"udpout:{vehicle.addresses[0]}", "--plot", plot],
