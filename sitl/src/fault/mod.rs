@@ -9,13 +9,13 @@
 mod battery;
 mod faults;
 mod injection;
+mod rotors;
 mod schedule;
 mod sensor;
-mod unit;
 
 pub use battery::BatteryFault;
 pub use faults::Faults;
 pub use injection::{Fault, Meaningless};
+pub use rotors::Rotors;
 pub use schedule::ScheduledFault;
 pub use sensor::{Sensor, SensorFault};
-pub use unit::Rotors;
