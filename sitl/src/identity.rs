@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::vehicle::Mode;
+use crate::mode::Mode;
 
 /// Conventions that clients know a vehicle by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize, clap::ValueEnum)]
@@ -137,7 +137,7 @@ impl Identity {
 #[cfg(test)]
 mod tests {
     use super::Identity;
-    use crate::vehicle::Mode;
+    use crate::mode::Mode;
 
     #[test]
     fn every_selectable_mode_is_found_by_its_number() {

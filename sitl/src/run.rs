@@ -6,12 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use tracing_subscriber::EnvFilter;
 
-use crate::configuration::{Arguments, HilSettings, Settings};
+use crate::configuration::{Arguments, Settings};
 use crate::failure::Failure;
-use crate::hil::Simulator;
+use crate::hil::{HilSettings, Simulator};
 use crate::ready;
 use crate::record::replay;
-use crate::session::{Session, Summary};
+use crate::session::Session;
+use crate::summary::Summary;
 use crate::terminal::{LogLines, banner, hil_banner};
 
 /// Does what the arguments say.

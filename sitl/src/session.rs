@@ -8,30 +8,11 @@ use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::fleet::{Clock, Fleet};
 use crate::ready;
+use crate::summary::{Flight, Summary};
 use crate::terminal::StatusLine;
 
 /// Longest rest between two looks at the links.
 const REST: Duration = Duration::from_millis(1);
-
-/// How a run ended.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Summary {
-    /// Time of the wall clock.
-    pub wall: Duration,
-    /// The flight of each vehicle.
-    pub flights: Vec<Flight>,
-}
-
-/// How the flight of a vehicle ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Flight {
-    /// System id.
-    pub system_id: u8,
-    /// Simulated time, µs.
-    pub time_us: u64,
-    /// Digest.
-    pub digest: u64,
-}
 
 /// A fleet with its clocks.
 #[derive(Debug)]

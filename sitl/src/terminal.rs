@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
-use crate::configuration::{HilSettings, Settings};
+use crate::configuration::Settings;
 use crate::fleet::{Fleet, Member};
-use crate::hil::Mount;
+use crate::hil::{HilSettings, Mount};
 use crate::link::{Endpoint, LinkSpecification, Links};
 use crate::service::LinkProfile;
 

@@ -11,8 +11,7 @@ use mavlink::dialects::common::{
     LOG_REQUEST_LIST_DATA, MavMessage,
 };
 use sitl::codec::Message;
-use sitl::files::Disk;
-use sitl::flight_log::LogFolder;
+use sitl::files::{Disk, LogFolder};
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, Plan, PlanKind};
 use tempfile::TempDir;

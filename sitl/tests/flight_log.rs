@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use common::Bench;
 use mavlink::dialects::common::MavCmd;
-use sitl::flight_log::{FlightLog, LogFolder, LogSettings, LogStart, Row, TOPICS};
+use sitl::files::LogFolder;
+use sitl::flight_log::{FlightLog, LogSettings, LogStart, Row, TOPICS};
 use sitl::identity::Identity;
 use sitl::record::Digest;
 

@@ -1,35 +1,11 @@
 //! `--hil HOST:PORT`: the plant alone, for an external autopilot.
 
-use std::path::PathBuf;
-
 use super::Arguments;
 use super::settings::{end_us, first_system_id, vehicle};
 use crate::failure::Failure;
-use crate::hil::Mount;
+use crate::hil::HilSettings;
 use crate::link::{Endpoint, LinkSpecification};
 use crate::parameters::Speed;
-use crate::vehicle::VehicleSettings;
-
-/// What the simulator of an external autopilot does.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HilSettings {
-    /// Address to listen on.
-    pub host: String,
-    /// Port to listen on; 0: any.
-    pub port: u16,
-    /// How the autopilot sits on the airframe.
-    pub mount: Mount,
-    /// Airframe, start and wind.
-    pub vehicle: VehicleSettings,
-    /// MAVLink system id of the simulator.
-    pub system_id: u8,
-    /// Pace.
-    pub speed: Speed,
-    /// File that tells that the autopilot can connect.
-    pub ready_file: Option<PathBuf>,
-    /// End, µs of simulation time.
-    pub end_us: Option<u64>,
-}
 
 impl HilSettings {
     /// Resolves arguments that ask for it.

@@ -11,7 +11,6 @@ mod wind;
 
 pub use arguments::Arguments;
 pub use formation::{Formation, Shape};
-pub use hil::HilSettings;
 pub use home::HomePosition;
 pub use noise::MeasurementNoise;
 pub use settings::{MemberSettings, Settings};

@@ -15,4 +15,4 @@ pub use breach::{Breach, Fence};
 pub use polygon::{Polygon, PolygonFault};
 pub use route::route_m;
 pub use zone::{Shape, Zone};
-pub use zones::{Zones, zones};
+pub use zones::Zones;

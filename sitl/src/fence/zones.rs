@@ -1,88 +1,12 @@
-//! Zones out of the items of a fence plan.
+//! All areas together.
 
-use super::{Polygon, Shape, Zone};
-use crate::plan::{FaultCode, MissionItem, PlanFault, Site, command};
+use super::Zone;
 
-/// Largest radius of a circle, m.
-const LARGEST_RADIUS_M: f64 = 100_000.0;
-
-/// What a fence plan says.
+/// What a fence consists of.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Zones {
     /// The areas.
     pub zones: Vec<Zone>,
     /// Where to return to when the fence is breached, north and east, m.
     pub return_m: Option<[f64; 2]>,
-}
-
-/// The zones of the items of a plan. The corners of a polygon follow one another; each tells how many there are.
-///
-/// # Errors
-/// [`PlanFault`] that names the item.
-pub fn zones(items: &[MissionItem], site: &Site) -> Result<Zones, PlanFault> {
-    let mut zones = Zones::default();
-    let mut index = 0;
-    while let Some(item) = items.get(index) {
-        match item.command {
-            command::NAV_FENCE_RETURN_POINT => {
-                zones.return_m = Some(point(index, item, site)?);
-                index += 1;
-            }
-            command::NAV_FENCE_CIRCLE_INCLUSION | command::NAV_FENCE_CIRCLE_EXCLUSION => {
-                zones.zones.push(circle(index, item, site)?);
-                index += 1;
-            }
-            _ => {
-                let count = corner_count(index, item)?;
-                zones.zones.push(polygon(index, count, items, site)?);
-                index += count;
-            }
-        }
-    }
-    Ok(zones)
-}
-
-fn point(index: usize, item: &MissionItem, site: &Site) -> Result<[f64; 2], PlanFault> {
-    let place = site.place(item).and_then(|place| place.horizontal_m);
-    place.ok_or_else(|| PlanFault::of_item(index, FaultCode::InvalidParameter(5), "it needs a place"))
-}
-
-fn circle(index: usize, item: &MissionItem, site: &Site) -> Result<Zone, PlanFault> {
-    let radius_m = item.parameter(1);
-    // NaN is in no range.
-    if !(radius_m > 0.0 && radius_m <= LARGEST_RADIUS_M) {
-        let reason = format!("radius {radius_m} m is outside (0, {LARGEST_RADIUS_M}]");
-        return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
-    }
-    let shape = Shape::Circle { centre_m: point(index, item, site)?, radius_m };
-    Ok(Zone { shape, inclusion: item.command == command::NAV_FENCE_CIRCLE_INCLUSION })
-}
-
-fn corner_count(index: usize, item: &MissionItem) -> Result<usize, PlanFault> {
-    let count = item.parameter(1);
-    // NaN is in no range.
-    if (3.0..=1000.0).contains(&count) && libm::trunc(count) == count {
-        Ok(count as usize)
-    } else {
-        let reason = format!("{count} corners, needs a whole number of at least 3");
-        Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason))
-    }
-}
-
-fn polygon(first: usize, count: usize, items: &[MissionItem], site: &Site) -> Result<Zone, PlanFault> {
-    let of_first = items.get(first).map(|item| item.command);
-    let mut corners = Vec::with_capacity(count);
-    for index in first..first + count {
-        let corner = items.get(index).filter(|item| Some(item.command) == of_first);
-        let Some(item) = corner.filter(|item| item.parameter(1) == count as f64) else {
-            let reason = format!("the polygon from item {first} on needs {count} corners of the same kind");
-            return Err(PlanFault::of_item(index.min(items.len() - 1), FaultCode::Invalid, reason));
-        };
-        corners.push(point(index, item, site)?);
-    }
-    let polygon = Polygon::new(corners).map_err(|fault| {
-        PlanFault::of_item(first, FaultCode::Invalid, format!("the polygon here: {fault}"))
-    })?;
-    let inclusion = of_first == Some(command::NAV_FENCE_POLYGON_VERTEX_INCLUSION);
-    Ok(Zone { shape: Shape::Polygon(polygon), inclusion })
 }

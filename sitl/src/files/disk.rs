@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::log_folder::LogFolder;
 use super::mount::Mount;
-use super::store::{Access, FileError, FileStore, Listed, OpenFile};
+use super::store::{Access, FileError, FileStore, LOGS, Listed, OpenFile};
 use crate::failure::Failure;
-use crate::flight_log::LogFolder;
 
-/// Name of the folder of logs.
-const LOGS: &str = "logs";
 /// Name of the folder that the user shares.
 const FILES: &str = "files";
 

@@ -5,9 +5,11 @@
 //! ```
 
 mod disk;
+mod log_folder;
 mod mount;
 mod store;
 
 pub use disk::Disk;
+pub use log_folder::LogFolder;
 pub use mount::Mount;
-pub use store::{Access, FileError, FileStore, Listed, Nothing, OpenFile};
+pub use store::{Access, FileError, FileStore, LOGS, Listed, Nothing, OpenFile};

@@ -1,5 +1,8 @@
 //! What a service may ask of files.
 
+/// The folder of logs in a store.
+pub const LOGS: &str = "logs";
+
 /// Why a file operation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileError {

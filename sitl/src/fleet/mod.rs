@@ -13,6 +13,7 @@ mod books;
 mod clock;
 mod member;
 mod roster;
+mod signing_keeper;
 
 pub use clock::Clock;
 pub use member::Member;

@@ -4,13 +4,13 @@ use std::time::Instant;
 
 use super::Member;
 use super::books::Books;
+use super::signing_keeper::SigningKeeper;
 use crate::codec::target_of;
 use crate::configuration::Settings;
 use crate::failure::Failure;
-use crate::files::Disk;
-use crate::flight_log::{FlightLog, LogFolder};
+use crate::files::{Disk, LogFolder};
+use crate::flight_log::FlightLog;
 use crate::link::Links;
-use crate::signing::SigningKeeper;
 
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]

@@ -4,13 +4,13 @@ use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
 
-use super::folder::LogFolder;
 use super::log_file::LogFile;
 use super::row::Row;
 use super::settings::{LogSettings, LogStart};
 use super::topics::{GRID_US, TOPICS};
 use super::ulog::{self, Definitions};
 use crate::autopilot::Autopilot;
+use crate::files::LogFolder;
 use crate::parameters::Value;
 use crate::vehicle::Severity;
 

@@ -1,14 +1,13 @@
 //! The log of a flight, in PX4's ULog format, which Flight Review, PlotJuggler and pyulog read.
 //!
 //! ```text
-//!  Autopilot ──► topics ──► ulog (bytes) ──► LogFile (flushed each second) ──► LogFolder (numbers, how many)
+//!  Autopilot ──► topics ──► ulog (bytes) ──► LogFile (flushed each second) ──► LogFolder (numbers, how many; in files/)
 //!                  └──────────── FlightLog: when one begins and ends ───────────────┘
 //! ```
 //!
 //! Logging reads the vehicle and changes nothing of it: with it or without, the flight is the same.
 
 mod flight;
-mod folder;
 mod log_file;
 mod row;
 mod settings;
@@ -16,7 +15,6 @@ mod topics;
 mod ulog;
 
 pub use flight::FlightLog;
-pub use folder::LogFolder;
 pub use log_file::LogFile;
 pub use row::Row;
 pub use settings::{LogSettings, LogStart};

@@ -17,9 +17,11 @@ mod instruments;
 mod messages;
 mod mount;
 mod rig;
+mod settings;
 mod simulator;
 
 pub use actuator_controls::ActuatorControls;
 pub use mount::Mount;
 pub use rig::{Rig, STEP_US};
+pub use settings::HilSettings;
 pub use simulator::Simulator;

@@ -9,13 +9,13 @@ use super::actuator_controls::ActuatorControls;
 use super::client::{Client, Gone};
 use super::messages;
 use super::rig::{Rig, STEP_US};
+use super::settings::HilSettings;
 use crate::codec::{Command, CommandAck, Frame, Message, id};
-use crate::configuration::HilSettings;
 use crate::failure::Failure;
 use crate::link::{LinkError, resolve};
 use crate::pace::Pace;
 use crate::parameters::Speed;
-use crate::session::{Flight, Summary};
+use crate::summary::{Flight, Summary};
 
 /// Between two looks for a connection, and longest rest of the pace.
 const REST: Duration = Duration::from_millis(1);

@@ -14,9 +14,11 @@ mod item;
 mod kind;
 mod site;
 mod store;
+mod zones;
 
 pub use fault::{FaultCode, PlanFault};
 pub use item::{MissionItem, command};
 pub use kind::PlanKind;
 pub use site::{Place, Site, frame};
 pub use store::{Plan, Plans};
+pub use zones::zones;

@@ -6,7 +6,7 @@ use super::{Digest, Entry, Participant, read};
 use crate::autopilot::Autopilot;
 use crate::failure::Failure;
 use crate::parameters::Speed;
-use crate::session::Flight;
+use crate::summary::Flight;
 use crate::vehicle::TICK_US;
 
 /// Flies every vehicle of a record again, each alone and as fast as possible, and compares the flights. Returns them:

@@ -5,11 +5,9 @@ use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA, MavMessage};
 use super::{Destination, Origin, PeerId};
 use crate::autopilot::Autopilot;
 use crate::codec::Frame;
-use crate::files::{Access, Listed, OpenFile};
+use crate::files::{Access, LOGS, Listed, OpenFile};
 use crate::vehicle::Severity;
 
-/// The folder of logs in the store.
-const FOLDER: &str = "logs";
 /// Bytes of a piece.
 const PIECE: usize = 90;
 /// Downloads at the same time; the oldest makes room.
@@ -34,7 +32,7 @@ pub struct LogServer {
 
 /// Looks at what there is. Ids count from zero, as clients expect, and stay until somebody asks for the list again.
 fn look(autopilot: &mut Autopilot) {
-    let listed = autopilot.store.list(FOLDER).unwrap_or_default();
+    let listed = autopilot.store.list(LOGS).unwrap_or_default();
     autopilot.logs.listed = listed.into_iter().filter(|log| log.size.is_some()).collect();
 }
 
@@ -81,7 +79,7 @@ pub fn request_data(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
             .logs
             .listed
             .get(usize::from(id))
-            .and_then(|log| autopilot.store.open(&format!("{FOLDER}/{}", log.name), Access::Read).ok()),
+            .and_then(|log| autopilot.store.open(&format!("{LOGS}/{}", log.name), Access::Read).ok()),
     };
     // Who asks for what is not there gets an empty piece: the end.
     let Some(file) = file else {

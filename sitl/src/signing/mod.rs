@@ -7,16 +7,14 @@
 //!                          └── KeyFile ◄────┘  before anything that was accepted takes effect
 //! ```
 //!
-//! [`Signing`] decides, and owns neither file nor clock; [`KeyFile`] keeps; [`SigningKeeper`] brings them together.
+//! [`Signing`] decides, and owns neither file nor clock; [`KeyFile`] keeps; `fleet/` brings them together.
 
 mod guard;
-mod keeper;
 mod kept;
 mod key;
 mod key_file;
 
 pub use guard::{Counts, Refusal, Signing};
-pub use keeper::SigningKeeper;
 pub use kept::{Kept, Stream};
 pub use key::SecretKey;
 pub use key_file::KeyFile;

@@ -9,8 +9,8 @@ use super::notice::{Refusal, Severity};
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::state::Vehicle;
 use super::steering::{Steering, SteeringKind};
-use crate::fence::{Breach, Fence, route_m, zones};
-use crate::plan::{MissionItem, PlanFault, PlanKind};
+use crate::fence::{Breach, Fence, route_m};
+use crate::plan::{MissionItem, PlanFault, PlanKind, zones};
 
 /// An attitude that leads outside is left this late, s.
 const REACTION_S: f64 = 0.5;

@@ -26,7 +26,6 @@ mod flight;
 mod injection;
 mod landed;
 mod mission;
-mod mode;
 mod motion;
 mod notice;
 mod offboard;
@@ -39,6 +38,8 @@ mod set_point;
 mod state;
 mod steering;
 mod sticks;
+
+use crate::mode;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;

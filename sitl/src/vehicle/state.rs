@@ -24,9 +24,9 @@ use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
-use crate::fence::{Fence, zones};
+use crate::fence::Fence;
 use crate::identity::Identity;
-use crate::plan::{PlanKind, Plans, Site};
+use crate::plan::{PlanKind, Plans, Site, zones};
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.

@@ -1,6 +1,6 @@
 //! What is taken into a fence.
 
-use super::super::{MissionItem, PlanFault, Site, command};
+use super::super::{MissionItem, PlanFault, Site, command, zones};
 use super::{ItemFault, one_of, place};
 
 const COMMANDS: [u16; 5] = [
@@ -19,5 +19,5 @@ pub fn item(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
 
 /// Checks how the items belong together.
 pub fn whole(items: &[MissionItem], site: &Site) -> Result<(), PlanFault> {
-    crate::fence::zones(items, site).map(drop)
+    zones(items, site).map(drop)
 }

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::{Counts, KeyFile, Signing, timestamp};
 use crate::failure::Failure;
 use crate::link::{Links, SigningSetup};
+use crate::signing::{Counts, KeyFile, Signing, timestamp};
 use crate::vehicle::Severity;
 
 /// Refused frames are told this often.

@@ -1,0 +1,23 @@
+//! How a run ended.
+
+use std::time::Duration;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Time of the wall clock.
+    pub wall: Duration,
+    /// The flight of each vehicle.
+    pub flights: Vec<Flight>,
+}
+
+/// How the flight of a vehicle ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flight {
+    /// System id.
+    pub system_id: u8,
+    /// Simulated time, µs.
+    pub time_us: u64,
+    /// Digest of the flight, see [`crate::record::Digest`].
+    pub digest: u64,
+}
