@@ -2,18 +2,14 @@
 
 mod common;
 
-use common::{Bench, GROUND_STATION, settings};
+use common::recording::Recording;
+use common::{Bench, settings};
 use mavlink::dialects::common::{
     MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use quadrotor::{Inputs, PositionReference, Simulation};
-use sitl::codec::{Frame, Message};
 use sitl::identity::Identity;
-use sitl::parameters::Speed;
-use sitl::record::{Digest, Header, Participant, Recorder, replay};
-use sitl::service::LinkProfile;
 use sitl::vehicle::Mode;
-use sitl::{Autopilot, Failure, Flight};
 
 fn place(x: f32, y: f32, z: f32, yaw: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
@@ -95,53 +91,32 @@ fn a_record_replays_bit_for_bit() {
     let mut vehicle = settings(Identity::Px4);
     vehicle.wind = sitl::world::WindSettings { speed_m_s: 4.0, from_rad: 1.0, gusts_m_s: 1.5, seed: 5 };
     vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("flight.record");
-    let links = vec![LinkProfile::Ground];
-    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
-    let header = Header::new(Speed::Factor(1.0), vec![participant]);
-    let mut recorder = Recorder::create(&path, &header).expect("a file");
-    let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 77).expect("settings");
-    let mut digest = Digest::default();
+    let mut recording = Recording::of(&vehicle);
     let arm =
         common::command_long(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);
     let offboard = common::command_long(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, 6.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);
-    let mut sequence = 0;
     for millisecond in 0..20_000_u32 {
-        let mut say = |autopilot: &mut Autopilot, message: MavMessage| {
-            sequence = u8::wrapping_add(sequence, 1);
-            let frame =
-                Frame::encode(&Message::from(message), sitl::codec::Version::Two, sequence, GROUND_STATION)
-                    .expect("v2");
-            recorder.frame(0, autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
-            autopilot.receive(&Bench::origin(), &frame);
-        };
         if millisecond >= 1_000 && millisecond % 37 == 0 {
-            say(&mut autopilot, place(millisecond as f32 / 2000.0, 3.0, -6.0, 0.3));
+            recording.send(place(millisecond as f32 / 2000.0, 3.0, -6.0, 0.3));
         }
         match millisecond {
-            1_500 => say(&mut autopilot, arm.clone()),
-            1_600 => say(&mut autopilot, offboard.clone()),
+            1_500 => recording.send(arm.clone()),
+            1_600 => recording.send(offboard.clone()),
             _ => {}
         }
-        autopilot.tick().expect("flight");
-        digest.update(autopilot.vehicle());
+        recording.step();
     }
-    assert!(autopilot.vehicle().outputs().position_m.z < -5.0);
-    recorder.end(0, autopilot.vehicle().time_us(), digest).expect("written");
-    recorder.finish().expect("written");
-    let replayed = replay(&path).expect("the same flight");
-    let flight = Flight { system_id: 1, time_us: 20_000_000, digest: digest.value() };
-    assert_eq!(replayed, [flight]);
+    assert!(recording.bench.position()[2] < -5.0);
+    let record = recording.finish();
+    assert_eq!(record.flight.time_us, 20_000_000);
+    record.assert_same();
 
-    // One set-point comes a millisecond later.
-    let text = std::fs::read_to_string(&path).expect("readable");
+    // One set-point comes twenty milliseconds later.
+    let text = record.text();
     let line = text.lines().find(|line| line.starts_with("frame 50")).expect("a frame at 5 s");
     let time = line.split(' ').nth(1).expect("a time");
     let later = line.replacen(time, &(time.parse::<u64>().expect("a time") + 20_000).to_string(), 1);
-    std::fs::write(&path, text.replacen(line, &later, 1)).expect("written");
-    assert!(matches!(replay(&path), Err(Failure::Differs { .. })));
+    record.assert_depends_on(line, &later);
     // What is no record is refused by its line.
-    std::fs::write(&path, text.replacen("frame ", "fame ", 1)).expect("written");
-    assert!(replay(&path).expect_err("no record").to_string().contains("line 2"));
+    assert!(record.changed("frame ", "fame ").expect_err("no record").to_string().contains("line 2"));
 }

@@ -2,17 +2,14 @@
 
 mod common;
 
+use common::recording::Recording;
 use common::{Bench, settings};
 use mavlink::dialects::common::{MavCmd, MavMessage};
-use sitl::codec::{Frame, Message, Version};
+use sitl::codec::Message;
 use sitl::estimation::SensorModel;
 use sitl::identity::Identity;
-use sitl::parameters::Speed;
-use sitl::record::{Digest, Header, Participant, Recorder, replay};
-use sitl::service::LinkProfile;
 use sitl::vehicle::{LandedState, Mode};
 use sitl::world::WindSettings;
-use sitl::{Autopilot, Failure};
 
 /// MAV_RESULT.
 const TEMPORARILY_REJECTED: u8 = 1;
@@ -229,42 +226,23 @@ fn broken_flights_replay_bit_for_bit() {
     vehicle.faults = ["2:gps=slow", "9:barometer=garbage", "12:rotor4=weak:0.8", "16:rotor2=off"]
         .map(|text| text.parse().expect("a fault"))
         .to_vec();
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("flight.record");
-    let links = vec![LinkProfile::Ground];
-    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
-    let header = Header::new(Speed::Factor(1.0), vec![participant]);
-    let mut recorder = Recorder::create(&path, &header).expect("a file");
-    let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 0).expect("settings");
-    let mut digest = Digest::default();
+    let mut recording = Recording::of(&vehicle);
     let messages = [
         (4_000, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
         (4_100, MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]),
         (10_500, MavCmd::MAV_CMD_INJECT_FAILURE, [2.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ];
     for millisecond in 0..30_000 {
-        for (sequence, (at, command, parameters)) in (0..).zip(messages) {
-            if at == millisecond {
-                let message = Message::from(common::command_long(command, parameters, 0));
-                let frame =
-                    Frame::encode(&message, Version::Two, sequence, common::GROUND_STATION).expect("v2");
-                recorder.frame(0, autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
-                autopilot.receive(&Bench::origin(), &frame);
-            }
+        for (_, command, parameters) in messages.into_iter().filter(|(at, ..)| *at == millisecond) {
+            recording.send(common::command_long(command, parameters, 0));
         }
         if millisecond == 16_100 {
-            assert_eq!(autopilot.vehicle().lost_rotor(), Some(1));
+            assert_eq!(recording.bench.autopilot.vehicle().lost_rotor(), Some(1));
         }
-        autopilot.tick().expect("flight");
-        digest.update(autopilot.vehicle());
+        recording.step();
     }
-    recorder.end(0, autopilot.vehicle().time_us(), digest).expect("written");
-    recorder.finish().expect("written");
-    assert_eq!(replay(&path).expect("the same flight")[0].digest, digest.value());
+    let record = recording.finish();
+    record.assert_same();
     // Without one of the faults it is another one.
-    let text = std::fs::read_to_string(&path).expect("readable");
-    let sound = text.replacen("16000000", "26000000", 1);
-    assert_ne!(text, sound);
-    std::fs::write(&path, sound).expect("written");
-    assert!(matches!(replay(&path), Err(Failure::Differs { .. })));
+    record.assert_depends_on("16000000", "26000000");
 }

@@ -1,155 +1,14 @@
-//! MAVLink FTP and the download of logs: what may be reached, what not, and both over a channel that loses.
+//! MAVLink FTP: what may be reached, what not, and files over a channel that loses.
 
 mod common;
 
-use std::path::Path;
-
 use common::Bench;
 use common::channel::Lossy;
-use mavlink::dialects::common::{
-    FILE_TRANSFER_PROTOCOL_DATA, LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA,
-    LOG_REQUEST_LIST_DATA, MavMessage,
-};
-use sitl::codec::Message;
-use sitl::files::{Disk, LogFolder};
+use common::ftp_client::*;
+use sitl::files::Disk;
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, Plan, PlanKind};
 use tempfile::TempDir;
-
-const TERMINATE: u8 = 1;
-const RESET: u8 = 2;
-const LIST: u8 = 3;
-const OPEN: u8 = 4;
-const READ: u8 = 5;
-const CREATE: u8 = 6;
-const WRITE: u8 = 7;
-const REMOVE: u8 = 8;
-const MAKE_FOLDER: u8 = 9;
-const REMOVE_FOLDER: u8 = 10;
-const OPEN_TO_WRITE: u8 = 11;
-const TRUNCATE: u8 = 12;
-const RENAME: u8 = 13;
-const CHECKSUM: u8 = 14;
-const BURST: u8 = 15;
-
-const FAIL: u8 = 1;
-const ERRNO: u8 = 2;
-const INVALID_SESSION: u8 = 4;
-const END: u8 = 6;
-const UNKNOWN: u8 = 7;
-const EXISTS: u8 = 8;
-const PROTECTED: u8 = 9;
-const NOT_FOUND: u8 = 10;
-
-/// An answer: its sequence, its session, its offset, whether it ends a burst, and data or an error.
-#[derive(Clone, Debug, PartialEq)]
-struct Answer {
-    sequence: u16,
-    opcode: u8,
-    offset: u32,
-    last: bool,
-    result: Result<Vec<u8>, u8>,
-}
-
-fn request(sequence: u16, opcode: u8, session: u8, size: u8, offset: u32, data: &[u8]) -> MavMessage {
-    let mut payload = [0; 251];
-    let [low, high] = sequence.to_le_bytes();
-    let [a, b, c, d] = offset.to_le_bytes();
-    let header = [low, high, session, opcode, size, 0, 0, 0, a, b, c, d];
-    for (byte, given) in payload.iter_mut().zip(header.iter().chain(data)) {
-        *byte = *given;
-    }
-    let (target_system, target_component) = (1, 1);
-    MavMessage::FILE_TRANSFER_PROTOCOL(FILE_TRANSFER_PROTOCOL_DATA {
-        target_network: 0,
-        target_system,
-        target_component,
-        payload,
-    })
-}
-
-fn answers(heard: &[Message]) -> Vec<Answer> {
-    let answer = |message: &Message| match message {
-        Message::Typed(MavMessage::FILE_TRANSFER_PROTOCOL(answer)) => {
-            let [low, high, _, kind, size, opcode, last, _, a, b, c, d] =
-                *answer.payload.first_chunk::<12>().expect("a header");
-            let data = answer.payload[12..12 + usize::from(size)].to_vec();
-            Some(Answer {
-                sequence: u16::from_le_bytes([low, high]),
-                opcode,
-                offset: u32::from_le_bytes([a, b, c, d]),
-                last: last == 1,
-                result: if kind == 128 { Ok(data) } else { Err(data[0]) },
-            })
-        }
-        _ => None,
-    };
-    heard.iter().filter_map(answer).collect()
-}
-
-/// A client of a vehicle that shares a folder.
-struct Client {
-    bench: Bench,
-    sequence: u16,
-}
-
-impl Client {
-    fn of(files: Disk) -> Self {
-        let mut bench = Bench::new(Identity::Px4);
-        bench.autopilot.share(Box::new(files));
-        Self { bench, sequence: 0 }
-    }
-
-    fn sharing(folder: &Path, writable: bool) -> Self {
-        Self::of(Disk::open(None, Some(&(folder.to_owned(), writable))).expect("a folder"))
-    }
-
-    fn ask(&mut self, opcode: u8, offset: u32, data: &[u8]) -> Result<Vec<u8>, u8> {
-        self.sequence = self.sequence.wrapping_add(2);
-        self.bench.heard.clear();
-        self.bench.send(request(self.sequence, opcode, 0, data.len() as u8, offset, data));
-        let answers = answers(&self.bench.heard);
-        assert_eq!(answers.len(), 1, "{answers:?}");
-        assert_eq!((answers[0].sequence, answers[0].opcode), (self.sequence + 1, opcode));
-        answers[0].result.clone()
-    }
-
-    fn on(&mut self, opcode: u8, path: &str) -> Result<Vec<u8>, u8> {
-        self.ask(opcode, 0, path.as_bytes())
-    }
-
-    /// All of a file, as small clients read it.
-    fn read(&mut self, path: &str) -> Result<Vec<u8>, u8> {
-        let size = self.on(OPEN, path)?;
-        let size = u32::from_le_bytes(size.try_into().expect("a size"));
-        let mut content = Vec::new();
-        loop {
-            let piece = [0; 100];
-            match self.ask(READ, content.len() as u32, &piece) {
-                Ok(piece) => content.extend(piece),
-                Err(END) => break,
-                Err(code) => return Err(code),
-            }
-        }
-        assert_eq!(content.len(), size as usize);
-        self.ask(TERMINATE, 0, &[])?;
-        Ok(content)
-    }
-
-    fn list(&mut self, path: &str) -> Result<Vec<String>, u8> {
-        let mut entries = Vec::new();
-        loop {
-            match self.ask(LIST, entries.len() as u32, path.as_bytes()) {
-                Ok(data) => {
-                    let text = String::from_utf8(data).expect("text");
-                    entries.extend(text.split_terminator('\0').map(str::to_owned));
-                }
-                Err(END) => return Ok(entries),
-                Err(code) => return Err(code),
-            }
-        }
-    }
-}
 
 /// A folder with something in it, beside a secret.
 fn shared() -> (TempDir, std::path::PathBuf) {
@@ -236,14 +95,37 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
+/// Paths to what is outside, or is no file.
 #[cfg(unix)]
-#[test]
-fn nothing_leads_out_of_the_root() {
+const OUTSIDE: [&str; 20] = [
+    "/files/../secret",
+    "/files/below/../../secret",
+    "/files/absolute",
+    "/files/relative",
+    "/files/up/secret",
+    "/files/slash/etc/passwd",
+    "/files/loop",
+    "/files/zero",
+    "/files/pipe",
+    "/etc/passwd",
+    "../secret",
+    "/files/..",
+    "files/\u{202e}",
+    "/files/up",
+    "/secret",
+    "\\files\\hello.txt",
+    "/files/hello.txt\\..\\x",
+    "/proc/self/environ",
+    "@PARAM/../../etc/passwd",
+    "/metadata/../secret",
+];
+
+/// Links out of the root and inside of it, and what is neither file nor folder.
+#[cfg(unix)]
+fn make_traps(secret: &std::path::Path, root: &std::path::Path) {
     use std::os::unix::fs::symlink;
 
-    let (place, root) = shared();
-    let secret = place.path().join("secret");
-    symlink(&secret, root.join("absolute")).expect("a link");
+    symlink(secret, root.join("absolute")).expect("a link");
     symlink("../secret", root.join("relative")).expect("a link");
     symlink("..", root.join("up")).expect("a link");
     symlink("/", root.join("slash")).expect("a link");
@@ -258,33 +140,18 @@ fn nothing_leads_out_of_the_root() {
         0,
     );
     pipe.expect("a pipe");
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_leads_out_of_the_root() {
+    let (place, root) = shared();
+    let secret = place.path().join("secret");
+    make_traps(&secret, &root);
     let mut client = Client::sharing(&root, true);
     let before = std::fs::read_dir(place.path()).expect("a folder").count();
     let long = format!("/files/{}", "x".repeat(230));
-    let outside = [
-        "/files/../secret",
-        "/files/below/../../secret",
-        "/files/absolute",
-        "/files/relative",
-        "/files/up/secret",
-        "/files/slash/etc/passwd",
-        "/files/loop",
-        "/files/zero",
-        "/files/pipe",
-        "/etc/passwd",
-        "../secret",
-        "/files/..",
-        "files/\u{202e}",
-        "/files/up",
-        "/secret",
-        "\\files\\hello.txt",
-        "/files/hello.txt\\..\\x",
-        "/proc/self/environ",
-        "@PARAM/../../etc/passwd",
-        "/metadata/../secret",
-        &long,
-    ];
-    for path in outside {
+    for path in OUTSIDE.into_iter().chain([long.as_str()]) {
         for opcode in [OPEN, CHECKSUM] {
             let refused = client.on(opcode, path);
             assert!(matches!(refused, Err(NOT_FOUND | FAIL)), "{path}: {refused:?}");
@@ -428,16 +295,6 @@ fn quotas_hold_and_say_so() {
     assert_eq!(open(&mut bench, 14, 0), Ok(()));
 }
 
-/// Bytes in which every place is different from its neighbours.
-fn noise(length: usize) -> Vec<u8> {
-    let mut state = 1_u64;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (state >> 56) as u8
-    };
-    (0..length).map(|_| next()).collect()
-}
-
 /// Asks until it is answered.
 fn ask(
     lossy: &mut Lossy,
@@ -510,143 +367,4 @@ fn files_arrive_whole_over_a_lossy_channel() {
             .expect("renamed, however often asked");
         assert!(root.join("renamed").exists() && lossy.up.lost > 0 && lossy.down.lost > 0);
     }
-}
-
-fn list_logs() -> MavMessage {
-    let (target_system, target_component) = (1, 1);
-    MavMessage::LOG_REQUEST_LIST(LOG_REQUEST_LIST_DATA {
-        start: 0,
-        end: u16::MAX,
-        target_system,
-        target_component,
-    })
-}
-
-fn request_log(id: u16, ofs: u32, count: u32) -> MavMessage {
-    let (target_system, target_component) = (1, 1);
-    MavMessage::LOG_REQUEST_DATA(LOG_REQUEST_DATA_DATA { ofs, count, id, target_system, target_component })
-}
-
-fn entries(heard: Vec<Message>) -> Vec<LOG_ENTRY_DATA> {
-    let entry = |message| match message {
-        Message::Typed(MavMessage::LOG_ENTRY(entry)) => Some(entry),
-        _ => None,
-    };
-    heard.into_iter().filter_map(entry).collect()
-}
-
-fn pieces(heard: Vec<Message>) -> Vec<LOG_DATA_DATA> {
-    let piece = |message| match message {
-        Message::Typed(MavMessage::LOG_DATA(piece)) => Some(piece),
-        _ => None,
-    };
-    heard.into_iter().filter_map(piece).collect()
-}
-
-/// A folder with two logs of flights that are over, and one that is being written.
-fn logs() -> (TempDir, LogFolder, Vec<Vec<u8>>) {
-    let place = tempfile::tempdir().expect("a folder");
-    let folder = LogFolder::open(place.path()).expect("a folder");
-    let mut contents = Vec::new();
-    for length in [20_007, 90, 50] {
-        let (name, _) = folder.create(1, 10).expect("a log");
-        contents.push(noise(length));
-        std::fs::write(place.path().join(&name), &contents[contents.len() - 1]).expect("written");
-        if length != 50 {
-            folder.finish(&name);
-        }
-    }
-    (place, folder, contents)
-}
-
-#[test]
-fn logs_arrive_whole_over_a_lossy_channel() {
-    for seed in 1..=4 {
-        let (_place, folder, contents) = logs();
-        let mut lossy = Lossy::new(seed);
-        lossy.bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
-        // As clients do: ask again until all have come.
-        let mut listed = std::collections::BTreeMap::new();
-        while listed.len() < contents.len() {
-            lossy.send(list_logs());
-            for _ in 0..100 {
-                listed.extend(
-                    entries(lossy.step()).into_iter().map(|entry| (entry.id, (entry.size, entry.num_logs))),
-                );
-            }
-            assert!(lossy.now_ms < 10_000, "seed {seed}: {listed:?}");
-        }
-        let sizes: Vec<usize> = listed.values().map(|(size, _)| *size as usize).collect();
-        assert_eq!(sizes, [20_007, 90, 50]);
-        assert!(listed.values().all(|(_, count)| *count == 3));
-
-        for (id, content) in (0..).zip(&contents) {
-            let mut got: Vec<Option<u8>> = vec![None; content.len()];
-            let mut ask = (0, u32::MAX);
-            while let Some(gap) = got.iter().position(Option::is_none) {
-                lossy.send(request_log(id, ask.0, ask.1));
-                let mut silent_ms = 0;
-                while silent_ms < 150 {
-                    // Two pieces a millisecond, to a peer that is there.
-                    lossy.bench.autopilot.send_logs(2, |_| Some(true));
-                    let pieces = pieces(lossy.step());
-                    silent_ms = if pieces.is_empty() { silent_ms + 1 } else { 0 };
-                    for piece in pieces {
-                        assert_eq!(piece.id, id);
-                        let bytes = &piece.data[..usize::from(piece.count)];
-                        for (place, byte) in got[piece.ofs as usize..].iter_mut().zip(bytes) {
-                            *place = Some(*byte);
-                        }
-                    }
-                }
-                let gap = got.iter().position(Option::is_none).unwrap_or(gap);
-                ask = (gap as u32, 90);
-                assert!(lossy.now_ms < 120_000, "seed {seed}: stuck at {gap}");
-            }
-            assert!(got.into_iter().map(|byte| byte.expect("complete")).eq(content.iter().copied()));
-        }
-        assert!(lossy.down.lost > 0);
-    }
-}
-
-#[test]
-fn a_download_waits_for_room_and_ends_when_told() {
-    let (place, folder, contents) = logs();
-    let mut bench = Bench::new(Identity::Px4);
-    bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
-    let sent = |bench: &mut Bench, most: usize, room: Option<bool>| {
-        bench.heard.clear();
-        bench.autopilot.send_logs(most, |_| room);
-        bench.listen();
-        pieces(std::mem::take(&mut bench.heard))
-    };
-    bench.send(request_log(0, 0, u32::MAX));
-    assert!(sent(&mut bench, 10, Some(false)).is_empty());
-    let first = sent(&mut bench, 3, Some(true));
-    assert_eq!(first.iter().map(|piece| piece.ofs).collect::<Vec<_>>(), [0, 90, 180]);
-    assert_eq!(first[1].data, contents[0][90..180]);
-    let end = mavlink::dialects::common::LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 };
-    bench.send(MavMessage::LOG_REQUEST_END(end));
-    assert!(sent(&mut bench, 10, Some(true)).is_empty());
-    // The end of a file of whole pieces is an empty one, and so is what is not there.
-    bench.send(request_log(1, 0, u32::MAX));
-    assert_eq!(sent(&mut bench, 10, Some(true)).iter().map(|piece| piece.count).collect::<Vec<_>>(), [90, 0]);
-    bench.heard.clear();
-    bench.send(request_log(77, 0, 90));
-    assert_eq!(pieces(std::mem::take(&mut bench.heard))[0].count, 0);
-    // Who is gone gets nothing more, not even when it comes back.
-    bench.send(request_log(0, 0, u32::MAX));
-    assert!(sent(&mut bench, 10, None).is_empty());
-    assert!(sent(&mut bench, 10, Some(true)).is_empty());
-    // FTP reads them, too, and removes none.
-    let mut client = Client { bench, sequence: 0 };
-    assert_eq!(client.list("/logs").expect("a list").len(), 3);
-    assert_eq!(client.read("/logs/flight_00002_id1.ulg"), Ok(contents[1].clone()));
-    assert_eq!(client.on(REMOVE, "/logs/flight_00002_id1.ulg"), Err(PROTECTED));
-    // Erasing leaves the log that is being written, and what is no log.
-    std::fs::write(place.path().join("notes.txt"), "mine").expect("written");
-    client.bench.send(MavMessage::LOG_ERASE(LOG_ERASE_DATA { target_system: 1, target_component: 1 }));
-    assert!(client.bench.texts().iter().any(|text| text == "Logs erased by 255/190"));
-    let left = client.list("/logs").expect("a list");
-    assert_eq!(left, ["Fflight_00003_id1.ulg\t50", "Fnotes.txt\t4"].map(str::to_owned).to_vec());
 }

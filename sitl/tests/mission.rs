@@ -1,129 +1,18 @@
-//! Missions that are flown.
-
-#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+//! The ways of missions: legs, corners, heights, headings, loiters and landings.
 
 mod common;
 
 use core::f64::consts::{PI, TAU};
 
 use common::Bench;
-use common::plan_client::{count_message, item_message, result, upload};
-use mavlink::dialects::common::*;
+use common::mission_flight::{Flight, NAN, SQUARE, at, simple, takeoff, waypoint};
+use common::plan_client::{result, upload};
+use mavlink::dialects::common::MavMessage;
 use nalgebra::Vector3;
 use sitl::codec::Message;
 use sitl::identity::Identity;
-use sitl::parameters::Speed;
-use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
-use sitl::record::{Digest, Header, Participant, Recorder, replay};
-use sitl::service::LinkProfile;
+use sitl::plan::{MissionItem, PlanKind, command, frame};
 use sitl::vehicle::{LandedState, MissionState, Mode};
-
-const NAN: f64 = f64::NAN;
-
-/// An item at a place of the local frame.
-fn at(command: u16, parameters: [f64; 4], position: [f64; 3]) -> MissionItem {
-    MissionItem { frame: frame::LOCAL_NED, command, parameters, position, autocontinue: true }
-}
-
-/// An item without a place.
-fn simple(command: u16, parameters: [f64; 4]) -> MissionItem {
-    MissionItem { frame: frame::MISSION, command, parameters, position: [0.0; 3], autocontinue: true }
-}
-
-fn waypoint(position: [f64; 3]) -> MissionItem {
-    at(command::NAV_WAYPOINT, [0.0, 2.0, 0.0, NAN], position)
-}
-
-fn takeoff() -> MissionItem {
-    at(command::NAV_TAKEOFF, [0.0, 0.0, 0.0, NAN], [0.0, 0.0, -10.0])
-}
-
-/// A flight of a mission and what was seen of it.
-struct Flight {
-    bench: Bench,
-    /// Items in the order in which they were reached, with the time, s.
-    reached: Vec<(u16, f64)>,
-    /// Positions and times, s, and headings, every 10 ms.
-    track: Vec<(f64, Vector3<f64>, f64)>,
-}
-
-impl Flight {
-    fn of(identity: Identity, items: &[MissionItem]) -> Self {
-        let mut bench = Bench::new(identity);
-        let heard = upload(&mut bench, PlanKind::Mission, items);
-        assert_eq!(result(&heard), Some(0), "{heard:?}");
-        Self { bench, reached: Vec::new(), track: Vec::new() }
-    }
-
-    fn new(items: &[MissionItem]) -> Self {
-        let mut flight = Self::of(Identity::Px4, items);
-        flight.bench.arm();
-        assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
-        flight
-    }
-
-    fn now_s(&self) -> f64 {
-        self.bench.autopilot.vehicle().time_us() as f64 / 1e6
-    }
-
-    fn state(&self) -> MissionState {
-        self.bench.autopilot.vehicle().mission_status().state
-    }
-
-    fn current(&self) -> usize {
-        self.bench.autopilot.vehicle().mission_status().current
-    }
-
-    fn step(&mut self) {
-        self.bench.heard.clear();
-        self.bench.fly(0.01);
-        let outputs = *self.bench.autopilot.vehicle().outputs();
-        let now_s = self.now_s();
-        self.track.push((now_s, outputs.position_m, outputs.attitude_rad.z));
-        for message in &self.bench.heard {
-            if let Message::Typed(MavMessage::MISSION_ITEM_REACHED(item)) = message {
-                self.reached.push((item.seq, now_s));
-            }
-        }
-    }
-
-    fn fly_until(&mut self, what: &str, seconds: f64, condition: impl Fn(&Self) -> bool) {
-        for _ in 0..(seconds * 100.0) as usize {
-            if condition(self) {
-                return;
-            }
-            self.step();
-        }
-        panic!("not within {seconds} s: {what}; reached {:?}, at {:?}", self.reached, self.bench.position());
-    }
-
-    fn complete(mut self, seconds: f64) -> Self {
-        self.fly_until("complete", seconds, |flight| flight.state() == MissionState::Complete);
-        self
-    }
-
-    fn order(&self) -> Vec<u16> {
-        self.reached.iter().map(|(item, _)| *item).collect()
-    }
-
-    fn time_of(&self, item: u16) -> f64 {
-        self.reached.iter().find(|(reached, _)| *reached == item).expect("reached").1
-    }
-
-    /// The nearest that the vehicle came to a place, m.
-    fn nearest(&self, place: [f64; 3]) -> f64 {
-        self.track.iter().map(|(_, at, _)| (at - Vector3::from(place)).norm()).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Samples between two times, s.
-    fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &(f64, Vector3<f64>, f64)> {
-        self.track.iter().filter(move |(time_s, ..)| (from_s..=to_s).contains(time_s))
-    }
-
-    fn heading_deg(&self) -> f64 {
-        self.bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees()
-    }
-}
 
 /// Distance from the line of a leg, m.
 fn off_line(place: &Vector3<f64>, from: [f64; 3], to: [f64; 3]) -> f64 {
@@ -132,9 +21,6 @@ fn off_line(place: &Vector3<f64>, from: [f64; 3], to: [f64; 3]) -> f64 {
     let way = place - from;
     (way - along * way.dot(&along).clamp(0.0, (to - from).norm())).norm()
 }
-
-const SQUARE: [[f64; 3]; 4] =
-    [[40.0, 0.0, -10.0], [40.0, 40.0, -10.0], [0.0, 40.0, -10.0], [0.0, 0.0, -10.0]];
 
 /// Corners are passed without a stop and within the acceptance radius; the legs are straight.
 #[test]
@@ -285,79 +171,6 @@ fn it_lands_waits_and_takes_off_again() {
 }
 
 #[test]
-fn speeds_change_and_come_back() {
-    let items = [
-        takeoff(),
-        simple(command::DO_CHANGE_SPEED, [1.0, 3.0, -1.0, 0.0]),
-        waypoint([60.0, 0.0, -10.0]),
-        simple(command::DO_CHANGE_SPEED, [1.0, 6.0, -1.0, 0.0]),
-        waypoint([160.0, 0.0, -10.0]),
-    ];
-    let flight = Flight::new(&items).complete(120.0);
-    assert_eq!(flight.order(), [0, 1, 2, 3, 4]);
-    let fastest = |from: u16, to: u16| {
-        let places: Vec<_> = flight.between(flight.time_of(from), flight.time_of(to)).collect();
-        places.windows(2).map(|pair| (pair[1].1 - pair[0].1).norm() / 0.01).fold(0.0, f64::max)
-    };
-    assert!((fastest(0, 2) - 3.0).abs() < 0.15, "{}", fastest(0, 2));
-    assert!((fastest(2, 4) - 6.0).abs() < 0.3, "{}", fastest(2, 4));
-    let limits = flight.bench.autopilot.vehicle().simulation().configuration().limits;
-    assert_eq!(limits, quadrotor::Limits::default(), "the mission's speeds go with it");
-}
-
-#[test]
-fn jumps_repeat_what_they_should() {
-    let items = [
-        takeoff(),
-        waypoint([5.0, 0.0, -10.0]),
-        waypoint([0.0, 0.0, -10.0]),
-        simple(command::DO_JUMP, [1.0, 2.0, 0.0, 0.0]),
-        waypoint([0.0, 5.0, -10.0]),
-    ];
-    let mut flight = Flight::new(&items).complete(120.0);
-    assert_eq!(flight.order(), [0, 1, 2, 3, 1, 2, 3, 1, 2, 4]);
-    // Started again it jumps again.
-    flight.reached.clear();
-    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), 0);
-    let flight = flight.complete(120.0);
-    assert_eq!(flight.order(), [0, 1, 2, 3, 1, 2, 3, 1, 2, 4]);
-}
-
-#[test]
-fn conditions_delay_what_follows_them() {
-    let items = [
-        takeoff(),
-        simple(command::CONDITION_DELAY, [2.0, 0.0, 0.0, 0.0]),
-        simple(command::DO_SET_HOME, [1.0, 0.0, 0.0, 0.0]),
-        simple(command::CONDITION_DISTANCE, [75.0, 0.0, 0.0, 0.0]),
-        simple(command::DO_CHANGE_SPEED, [1.0, 2.0, 0.0, 0.0]),
-        simple(command::CONDITION_YAW, [90.0, 20.0, -1.0, 0.0]),
-        simple(command::CONDITION_DELAY, [600.0, 0.0, 0.0, 0.0]),
-        simple(command::DO_CHANGE_SPEED, [1.0, 1.0, 0.0, 0.0]),
-        waypoint([120.0, 0.0, -10.0]),
-        waypoint([120.0, 10.0, -10.0]),
-    ];
-    let mut flight = Flight::new(&items);
-    flight.fly_until("distance", 60.0, |flight| flight.order().contains(&4));
-    assert_eq!(flight.order(), [0, 1, 2, 3, 4]);
-    assert!((flight.time_of(1) - flight.time_of(0) - 2.0).abs() < 0.03);
-    let [x, ..] = flight.bench.position();
-    assert!((x - 45.0).abs() < 0.2, "75 m before the end: {x}");
-    let home = flight.bench.autopilot.vehicle().home();
-    assert!(home.set_by_user && home.position_m.x > 0.5, "{home:?}");
-    flight.fly_until("turned", 60.0, |flight| flight.order().contains(&5));
-    // The long way round, as told: over south and west.
-    assert!((flight.heading_deg() - 90.0).abs() < 4.0, "{}", flight.heading_deg());
-    let (begin_s, end_s) = (flight.time_of(4), flight.time_of(5));
-    assert!(flight.between(begin_s, end_s).any(|(_, _, yaw)| (yaw.to_degrees() + 90.0).abs() < 10.0));
-    let rate = 270.0 / (end_s - begin_s);
-    assert!((14.0..21.0).contains(&rate), "{rate} deg/s");
-    // The last condition is not fulfilled when the leg ends: what follows it is dropped.
-    let flight = flight.complete(90.0);
-    assert_eq!(flight.order(), [0, 1, 2, 3, 4, 5, 8, 9]);
-}
-
-#[test]
 fn the_nose_points_at_the_region_of_interest() {
     let roi = |command: u16, kind: f64, position: [f64; 3]| at(command, [kind, 0.0, 0.0, 0.0], position);
     let items = [
@@ -393,82 +206,6 @@ fn the_nose_points_at_the_region_of_interest() {
     assert!(worst < 15.0, "{worst}");
 }
 
-#[test]
-fn a_pause_goes_on_with_the_same_item() {
-    for identity in [Identity::Px4, Identity::ArduPilot] {
-        let mut items = vec![takeoff(), waypoint([60.0, 0.0, -10.0]), waypoint([60.0, 20.0, -10.0])];
-        if identity.is_ardupilot() {
-            // Home.
-            items.insert(0, waypoint([0.0, 0.0, 0.0]));
-        }
-        let leg = items.len() - 2;
-        let mut flight = Flight::of(identity, &items);
-        flight.bench.arm();
-        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), 0);
-        flight.fly_until("under way", 60.0, |flight| flight.bench.position()[0] > 20.0);
-        assert_eq!((flight.state(), flight.current()), (MissionState::Active, leg));
-        let continued = |go_on: f32| [go_on, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, continued(0.0)), 0);
-        assert_eq!((flight.state(), flight.current()), (MissionState::Paused, leg));
-        let mode = if identity.is_ardupilot() { Mode::Mission } else { Mode::Hold };
-        assert_eq!(flight.bench.mode(), mode);
-        flight.bench.fly(15.0);
-        let [x, ..] = flight.bench.position();
-        assert!(x < 50.0 && flight.bench.velocity()[0].abs() < 0.1, "{x}");
-        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, continued(1.0)), 0);
-        let flight = flight.complete(60.0);
-        assert_eq!(flight.order().last(), Some(&(leg as u16 + 1)));
-        assert!(flight.nearest([60.0, 0.0, -10.0]) < 2.0);
-        assert_eq!(flight.state(), MissionState::Complete);
-    }
-}
-
-#[test]
-fn the_current_item_can_be_set_and_is_told() {
-    let mut items = vec![takeoff()];
-    items.extend(SQUARE.map(waypoint));
-    let mut flight = Flight::new(&items);
-    flight.fly_until("under way", 60.0, |flight| flight.current() == 1);
-    flight.bench.heard.clear();
-    flight.bench.send(MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA {
-        seq: 3,
-        target_system: 1,
-        target_component: 1,
-    }));
-    let told = flight.bench.heard.iter().find_map(|message| match message {
-        Message::Typed(MavMessage::MISSION_CURRENT(current)) => Some(current.clone()),
-        _ => None,
-    });
-    let told = told.expect("told at once");
-    assert_eq!((told.seq, told.total, told.mission_mode), (3, 5, 1));
-    assert_eq!(told.mission_state as u32, 3);
-    assert_ne!(told.mission_id, 0);
-    let seek = |item: f32| [item, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(4.0)), 0);
-    assert_eq!(flight.current(), 4);
-    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(5.0)), 2);
-    assert!(flight.bench.texts().iter().any(|text| text.contains("no item 5")), "{:?}", flight.bench.texts());
-    let flight = flight.complete(60.0);
-    assert_eq!(flight.order(), [0, 4]);
-}
-
-#[test]
-fn without_a_takeoff_item_it_climbs_first_and_without_a_mission_nothing_starts() {
-    let mut bench = Bench::new(Identity::Px4);
-    assert_eq!(bench.set_mode(Mode::Mission), 1, "there is no mission");
-    let flight = Flight::new(&[waypoint([10.0, 0.0, -5.0])]).complete(60.0);
-    let low = flight.track.iter().find(|(_, at, _)| at.x > 0.5).unwrap().1;
-    assert!((low.z + 5.0).abs() < 0.5, "up, then there: {low}");
-    assert!(flight.nearest([10.0, 0.0, -5.0]) < 0.5);
-    // The mission is taken away in flight.
-    let mut flight = Flight::new(&[takeoff(), waypoint([100.0, 0.0, -10.0])]);
-    flight.fly_until("under way", 60.0, |flight| flight.bench.position()[0] > 10.0);
-    assert_eq!(result(&upload(&mut flight.bench, PlanKind::Mission, &[])), Some(0));
-    assert_eq!((flight.bench.mode(), flight.state()), (Mode::Hold, MissionState::None));
-    flight.bench.fly(10.0);
-    assert!(flight.bench.velocity()[0].abs() < 0.1);
-}
-
 /// What is NaN stays open: a waypoint keeps its height, a takeoff has the parameter's.
 #[test]
 fn what_is_not_given_stays_as_it_is() {
@@ -481,17 +218,6 @@ fn what_is_not_given_stays_as_it_is() {
     assert!(flight.nearest([10.0, 0.0, -2.5]) < 0.5);
     let [x, y, z] = flight.bench.position();
     assert!((x - 10.0).abs() < 0.3 && y.abs() < 0.3 && (z + 6.0).abs() < 0.5, "{x} {y} {z}");
-}
-
-/// An item that does not continue by itself waits for the pilot.
-#[test]
-fn an_item_can_wait_for_the_pilot() {
-    let wait = MissionItem { autocontinue: false, ..waypoint([10.0, 0.0, -10.0]) };
-    let mut flight = Flight::new(&[takeoff(), wait, waypoint([20.0, 0.0, -10.0])]);
-    flight.fly_until("waits", 60.0, |flight| flight.bench.mode() == Mode::Hold);
-    assert_eq!((flight.state(), flight.order()), (MissionState::Paused, vec![0, 1]));
-    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
-    assert_eq!(flight.complete(60.0).order(), [0, 1, 2]);
 }
 
 /// NAV_CONTROLLER_OUTPUT tells how well the controllers follow, measured from outside.
@@ -524,65 +250,6 @@ fn tracking_errors_are_told() {
     assert!(seen.len() >= 8, "twice a second");
     assert!(seen.iter().any(|error| *error > 0.005), "the gusts are felt: {seen:?}");
     assert!(seen.iter().all(|error| *error < 1.0), "and held: {seen:?}");
-}
-
-/// A plan of the start, one of the messages and a pause: replayed it is the same flight, and it depends on the plan.
-#[test]
-fn a_mission_replays_bit_for_bit() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("mission.record");
-    let mut vehicle = common::settings(Identity::Px4);
-    vehicle.wind = sitl::world::WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 1.0, seed: 5 };
-    vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
-    let roi = at(command::DO_SET_ROI_LOCATION, [0.0; 4], [20.0, 20.0, 0.0]);
-    vehicle.plans.set(
-        PlanKind::Mission,
-        Plan::new(vec![takeoff(), roi, waypoint([30.0, 0.0, -12.0]), waypoint([30.0, 30.0, -8.0])]),
-    );
-    let links = vec![LinkProfile::Ground];
-    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
-    let header = Header::new(Speed::Factor(1.0), vec![participant]);
-    let mut recorder = Recorder::create(&path, &header).expect("a file");
-    let mut bench = Bench::of(&vehicle);
-    let mut digest = Digest::default();
-    let changed = [waypoint([10.0, -10.0, -10.0]), simple(command::NAV_RETURN_TO_LAUNCH, [0.0; 4])];
-    for millisecond in 0..40_000_u32 {
-        let messages: Vec<Message> = match millisecond {
-            500 => vec![common::command_long(MavCmd::MAV_CMD_MISSION_START, [0.0; 7], 0).into()],
-            12_000 => vec![common::command_long(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, [0.0; 7], 0).into()],
-            15_000 => vec![
-                common::command_long(
-                    MavCmd::MAV_CMD_DO_PAUSE_CONTINUE,
-                    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-                    0,
-                )
-                .into(),
-            ],
-            17_000 => vec![count_message(PlanKind::Mission, 2).into()],
-            // The second request is waited for, and the item comes late.
-            17_020 => vec![item_message(PlanKind::Mission, 0, changed[0], true)],
-            17_900 => vec![item_message(PlanKind::Mission, 1, changed[1], true)],
-            _ => Vec::new(),
-        };
-        for message in messages {
-            let frame = bench.frame(message);
-            let time_us = bench.autopilot.vehicle().time_us();
-            recorder.frame(0, time_us, &Bench::origin(), &frame).expect("written");
-            bench.receive(&frame);
-        }
-        bench.fly(0.001);
-        digest.update(bench.autopilot.vehicle());
-    }
-    assert_eq!(bench.mode(), Mode::Return, "{:?}", bench.texts());
-    recorder.end(0, bench.autopilot.vehicle().time_us(), digest).expect("written");
-    recorder.finish().expect("written");
-    let replayed = replay(&path).expect("the same flight");
-    assert_eq!(replayed[0].digest, digest.value());
-    // Another place in the plan of the start is another flight.
-    let text = std::fs::read_to_string(&path).expect("readable");
-    assert!(text.contains("[30.0,0.0,-12.0]"));
-    std::fs::write(&path, text.replacen("[30.0,0.0,-12.0]", "[30.0,0.0,-12.5]", 1)).expect("written");
-    assert!(matches!(replay(&path), Err(sitl::Failure::Differs { .. })));
 }
 
 proptest::proptest! {

@@ -2,20 +2,17 @@
 
 mod common;
 
-use common::{Bench, GROUND_STATION, settings};
+use common::recording::Recording;
+use common::{Bench, settings};
 use mavlink::dialects::common::{
     EstimatorStatusFlags, GpsFixType, MavCmd, MavFrame, MavMessage, MavSysStatusSensor,
     PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use nalgebra::Vector3;
-use sitl::codec::{Frame, Message, Version};
+use sitl::codec::Message;
 use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::identity::Identity;
-use sitl::parameters::Speed;
-use sitl::record::{Digest, Header, Participant, Recorder, replay};
-use sitl::service::LinkProfile;
 use sitl::vehicle::{Action, Mode, VehicleSettings};
-use sitl::{Autopilot, Failure};
 
 const NOTHING: [f32; 7] = [0.0; 7];
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -235,37 +232,22 @@ fn a_seed_changes_only_realistic_sensors() {
 /// A flight by instruments, recorded and flown again from its record alone.
 #[test]
 fn a_record_with_realistic_sensors_replays_bit_for_bit() {
-    let vehicle = realistic(6);
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("flight.record");
-    let links = vec![LinkProfile::Ground];
-    let participant = Participant { system_id: 1, links: links.clone(), vehicle: vehicle.clone() };
-    let header = Header::new(Speed::Factor(1.0), vec![participant]);
-    let mut recorder = Recorder::create(&path, &header).expect("a file");
-    let mut autopilot = Autopilot::new(&vehicle, 1, Speed::Factor(1.0), &links, 77).expect("settings");
-    let mut digest = Digest::default();
+    let mut recording = Recording::of(&realistic(6));
     let commands = [
         (2_500, common::command_long(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM, 0)),
         (2_600, common::command_long(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7], 0)),
     ];
     for millisecond in 0..8_000_u32 {
-        for (sequence, (_, message)) in (1..).zip(commands.iter().filter(|(at, _)| *at == millisecond)) {
-            let frame = Frame::encode(&message.clone().into(), Version::Two, sequence, GROUND_STATION);
-            let frame = frame.expect("a message of MAVLink 2");
-            recorder.frame(0, autopilot.vehicle().time_us(), &Bench::origin(), &frame).expect("written");
-            autopilot.receive(&Bench::origin(), &frame);
+        for (_, message) in commands.iter().filter(|(at, _)| *at == millisecond) {
+            recording.send(message.clone());
         }
-        autopilot.tick().expect("flight");
-        digest.update(autopilot.vehicle());
+        recording.step();
     }
-    assert!(autopilot.vehicle().truth().position_m.z < -1.5, "it has flown");
-    recorder.end(0, autopilot.vehicle().time_us(), digest).expect("written");
-    recorder.finish().expect("written");
-    assert_eq!(replay(&path).expect("the same flight")[0].digest, digest.value());
+    assert!(recording.bench.autopilot.vehicle().truth().position_m.z < -1.5, "it has flown");
+    let record = recording.finish();
+    record.assert_same();
     // The digest sees the seed.
-    let text = std::fs::read_to_string(&path).expect("readable");
-    std::fs::write(&path, text.replacen("\"seed\":6", "\"seed\":7", 1)).expect("written");
-    assert!(matches!(replay(&path), Err(Failure::Differs { .. })));
+    record.assert_depends_on("\"seed\":6", "\"seed\":7");
 }
 
 /// FAILURE_UNIT and FAILURE_TYPE.

@@ -3,7 +3,10 @@
 #![allow(dead_code)] // Each test uses a part of it.
 
 pub mod channel;
+pub mod ftp_client;
+pub mod mission_flight;
 pub mod plan_client;
+pub mod recording;
 
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use sitl::Autopilot;
@@ -45,8 +48,14 @@ impl Bench {
     }
 
     pub fn of(settings: &VehicleSettings) -> Self {
+        Self::started_at(settings, 0)
+    }
+
+    /// Started when the wall clock showed a time, µs since 1970.
+    pub fn started_at(settings: &VehicleSettings, unix_us: u64) -> Self {
         let links = [LinkProfile::Ground];
-        let autopilot = Autopilot::new(settings, 1, Speed::Factor(1.0), &links, 0).expect("valid settings");
+        let autopilot =
+            Autopilot::new(settings, 1, Speed::Factor(1.0), &links, unix_us).expect("valid settings");
         let mut bench = Self { autopilot, heard: Vec::new(), sequence: 0 };
         bench.listen();
         bench

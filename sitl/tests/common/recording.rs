@@ -1,0 +1,88 @@
+//! A flight that is recorded, and its record.
+
+use sitl::codec::Message;
+use sitl::parameters::Speed;
+use sitl::record::{Digest, Header, Participant, Recorder, replay};
+use sitl::service::LinkProfile;
+use sitl::vehicle::VehicleSettings;
+use sitl::{Failure, Flight};
+use tempfile::TempDir;
+
+use super::Bench;
+
+/// A vehicle whose every received frame goes into a record.
+pub struct Recording {
+    pub bench: Bench,
+    folder: TempDir,
+    recorder: Recorder,
+    digest: Digest,
+}
+
+/// A complete record.
+pub struct Record {
+    folder: TempDir,
+    /// The flight that was recorded.
+    pub flight: Flight,
+}
+
+const NAME: &str = "flight.record";
+
+impl Recording {
+    pub fn of(settings: &VehicleSettings) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let links = vec![LinkProfile::Ground];
+        let participant = Participant { system_id: 1, links, vehicle: settings.clone() };
+        let header = Header::new(Speed::Factor(1.0), vec![participant]);
+        let recorder = Recorder::create(&folder.path().join(NAME), &header).expect("a file");
+        // Replays start at another time of the wall clock.
+        let bench = Bench::started_at(settings, 77);
+        Self { bench, folder, recorder, digest: Digest::default() }
+    }
+
+    pub fn send(&mut self, message: impl Into<Message>) {
+        let frame = self.bench.frame(message);
+        let time_us = self.bench.autopilot.vehicle().time_us();
+        self.recorder.frame(0, time_us, &Bench::origin(), &frame).expect("written");
+        self.bench.receive(&frame);
+    }
+
+    /// One millisecond.
+    pub fn step(&mut self) {
+        self.bench.fly(0.001);
+        self.digest.update(self.bench.autopilot.vehicle());
+    }
+
+    pub fn finish(mut self) -> Record {
+        let time_us = self.bench.autopilot.vehicle().time_us();
+        self.recorder.end(0, time_us, self.digest).expect("written");
+        self.recorder.finish().expect("written");
+        let flight = Flight { system_id: 1, time_us, digest: self.digest.value() };
+        Record { folder: self.folder, flight }
+    }
+}
+
+impl Record {
+    pub fn text(&self) -> String {
+        std::fs::read_to_string(self.folder.path().join(NAME)).expect("readable")
+    }
+
+    /// Fails unless the replayed flight is the recorded one, bit for bit.
+    pub fn assert_same(&self) {
+        assert_eq!(replay(&self.folder.path().join(NAME)).expect("the same flight"), [self.flight]);
+    }
+
+    /// Replays the record with one text in it replaced by another.
+    pub fn changed(&self, from: &str, to: &str) -> Result<Vec<Flight>, Failure> {
+        let text = self.text();
+        assert!(text.contains(from), "the record has no `{from}`");
+        let path = self.folder.path().join("changed.record");
+        std::fs::write(&path, text.replacen(from, to, 1)).expect("written");
+        replay(&path)
+    }
+
+    /// Fails unless such a change makes another flight.
+    pub fn assert_depends_on(&self, from: &str, to: &str) {
+        let replayed = self.changed(from, to);
+        assert!(matches!(replayed, Err(Failure::Differs { .. })), "{from}: {replayed:?}");
+    }
+}

@@ -1,0 +1,218 @@
+//! What decides how a mission goes on: jumps, conditions, speeds, the current item, pauses and the pilot.
+
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
+mod common;
+
+use common::Bench;
+use common::mission_flight::{Flight, SQUARE, at, simple, takeoff, waypoint};
+use common::plan_client::{count_message, item_message, result, upload};
+use common::recording::Recording;
+use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage};
+use sitl::codec::Message;
+use sitl::identity::Identity;
+use sitl::plan::{MissionItem, Plan, PlanKind, command};
+use sitl::vehicle::{MissionState, Mode};
+
+#[test]
+fn speeds_change_and_come_back() {
+    let items = [
+        takeoff(),
+        simple(command::DO_CHANGE_SPEED, [1.0, 3.0, -1.0, 0.0]),
+        waypoint([60.0, 0.0, -10.0]),
+        simple(command::DO_CHANGE_SPEED, [1.0, 6.0, -1.0, 0.0]),
+        waypoint([160.0, 0.0, -10.0]),
+    ];
+    let flight = Flight::new(&items).complete(120.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4]);
+    let fastest = |from: u16, to: u16| {
+        let places: Vec<_> = flight.between(flight.time_of(from), flight.time_of(to)).collect();
+        places.windows(2).map(|pair| (pair[1].1 - pair[0].1).norm() / 0.01).fold(0.0, f64::max)
+    };
+    assert!((fastest(0, 2) - 3.0).abs() < 0.15, "{}", fastest(0, 2));
+    assert!((fastest(2, 4) - 6.0).abs() < 0.3, "{}", fastest(2, 4));
+    let limits = flight.bench.autopilot.vehicle().simulation().configuration().limits;
+    assert_eq!(limits, quadrotor::Limits::default(), "the mission's speeds go with it");
+}
+
+#[test]
+fn jumps_repeat_what_they_should() {
+    let items = [
+        takeoff(),
+        waypoint([5.0, 0.0, -10.0]),
+        waypoint([0.0, 0.0, -10.0]),
+        simple(command::DO_JUMP, [1.0, 2.0, 0.0, 0.0]),
+        waypoint([0.0, 5.0, -10.0]),
+    ];
+    let mut flight = Flight::new(&items).complete(120.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 1, 2, 3, 1, 2, 4]);
+    // Started again it jumps again.
+    flight.reached.clear();
+    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), 0);
+    let flight = flight.complete(120.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 1, 2, 3, 1, 2, 4]);
+}
+
+#[test]
+fn conditions_delay_what_follows_them() {
+    let items = [
+        takeoff(),
+        simple(command::CONDITION_DELAY, [2.0, 0.0, 0.0, 0.0]),
+        simple(command::DO_SET_HOME, [1.0, 0.0, 0.0, 0.0]),
+        simple(command::CONDITION_DISTANCE, [75.0, 0.0, 0.0, 0.0]),
+        simple(command::DO_CHANGE_SPEED, [1.0, 2.0, 0.0, 0.0]),
+        simple(command::CONDITION_YAW, [90.0, 20.0, -1.0, 0.0]),
+        simple(command::CONDITION_DELAY, [600.0, 0.0, 0.0, 0.0]),
+        simple(command::DO_CHANGE_SPEED, [1.0, 1.0, 0.0, 0.0]),
+        waypoint([120.0, 0.0, -10.0]),
+        waypoint([120.0, 10.0, -10.0]),
+    ];
+    let mut flight = Flight::new(&items);
+    flight.fly_until("distance", 60.0, |flight| flight.order().contains(&4));
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4]);
+    assert!((flight.time_of(1) - flight.time_of(0) - 2.0).abs() < 0.03);
+    let [x, ..] = flight.bench.position();
+    assert!((x - 45.0).abs() < 0.2, "75 m before the end: {x}");
+    let home = flight.bench.autopilot.vehicle().home();
+    assert!(home.set_by_user && home.position_m.x > 0.5, "{home:?}");
+    flight.fly_until("turned", 60.0, |flight| flight.order().contains(&5));
+    // The long way round, as told: over south and west.
+    assert!((flight.heading_deg() - 90.0).abs() < 4.0, "{}", flight.heading_deg());
+    let (begin_s, end_s) = (flight.time_of(4), flight.time_of(5));
+    assert!(flight.between(begin_s, end_s).any(|(_, _, yaw)| (yaw.to_degrees() + 90.0).abs() < 10.0));
+    let rate = 270.0 / (end_s - begin_s);
+    assert!((14.0..21.0).contains(&rate), "{rate} deg/s");
+    // The last condition is not fulfilled when the leg ends: what follows it is dropped.
+    let flight = flight.complete(90.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4, 5, 8, 9]);
+}
+
+#[test]
+fn a_pause_goes_on_with_the_same_item() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut items = vec![takeoff(), waypoint([60.0, 0.0, -10.0]), waypoint([60.0, 20.0, -10.0])];
+        if identity.is_ardupilot() {
+            // Home.
+            items.insert(0, waypoint([0.0, 0.0, 0.0]));
+        }
+        let leg = items.len() - 2;
+        let mut flight = Flight::of(identity, &items);
+        flight.bench.arm();
+        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), 0);
+        flight.fly_until("under way", 60.0, |flight| flight.bench.position()[0] > 20.0);
+        assert_eq!((flight.state(), flight.current()), (MissionState::Active, leg));
+        let continued = |go_on: f32| [go_on, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, continued(0.0)), 0);
+        assert_eq!((flight.state(), flight.current()), (MissionState::Paused, leg));
+        let mode = if identity.is_ardupilot() { Mode::Mission } else { Mode::Hold };
+        assert_eq!(flight.bench.mode(), mode);
+        flight.bench.fly(15.0);
+        let [x, ..] = flight.bench.position();
+        assert!(x < 50.0 && flight.bench.velocity()[0].abs() < 0.1, "{x}");
+        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, continued(1.0)), 0);
+        let flight = flight.complete(60.0);
+        assert_eq!(flight.order().last(), Some(&(leg as u16 + 1)));
+        assert!(flight.nearest([60.0, 0.0, -10.0]) < 2.0);
+        assert_eq!(flight.state(), MissionState::Complete);
+    }
+}
+
+#[test]
+fn the_current_item_can_be_set_and_is_told() {
+    let mut items = vec![takeoff()];
+    items.extend(SQUARE.map(waypoint));
+    let mut flight = Flight::new(&items);
+    flight.fly_until("under way", 60.0, |flight| flight.current() == 1);
+    flight.bench.heard.clear();
+    flight.bench.send(MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA {
+        seq: 3,
+        target_system: 1,
+        target_component: 1,
+    }));
+    let told = flight.bench.heard.iter().find_map(|message| match message {
+        Message::Typed(MavMessage::MISSION_CURRENT(current)) => Some(current.clone()),
+        _ => None,
+    });
+    let told = told.expect("told at once");
+    assert_eq!((told.seq, told.total, told.mission_mode), (3, 5, 1));
+    assert_eq!(told.mission_state as u32, 3);
+    assert_ne!(told.mission_id, 0);
+    let seek = |item: f32| [item, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(4.0)), 0);
+    assert_eq!(flight.current(), 4);
+    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(5.0)), 2);
+    assert!(flight.bench.texts().iter().any(|text| text.contains("no item 5")), "{:?}", flight.bench.texts());
+    let flight = flight.complete(60.0);
+    assert_eq!(flight.order(), [0, 4]);
+}
+
+#[test]
+fn without_a_takeoff_item_it_climbs_first_and_without_a_mission_nothing_starts() {
+    let mut bench = Bench::new(Identity::Px4);
+    assert_eq!(bench.set_mode(Mode::Mission), 1, "there is no mission");
+    let flight = Flight::new(&[waypoint([10.0, 0.0, -5.0])]).complete(60.0);
+    let low = flight.track.iter().find(|(_, at, _)| at.x > 0.5).unwrap().1;
+    assert!((low.z + 5.0).abs() < 0.5, "up, then there: {low}");
+    assert!(flight.nearest([10.0, 0.0, -5.0]) < 0.5);
+    // The mission is taken away in flight.
+    let mut flight = Flight::new(&[takeoff(), waypoint([100.0, 0.0, -10.0])]);
+    flight.fly_until("under way", 60.0, |flight| flight.bench.position()[0] > 10.0);
+    assert_eq!(result(&upload(&mut flight.bench, PlanKind::Mission, &[])), Some(0));
+    assert_eq!((flight.bench.mode(), flight.state()), (Mode::Hold, MissionState::None));
+    flight.bench.fly(10.0);
+    assert!(flight.bench.velocity()[0].abs() < 0.1);
+}
+
+/// An item that does not continue by itself waits for the pilot.
+#[test]
+fn an_item_can_wait_for_the_pilot() {
+    let wait = MissionItem { autocontinue: false, ..waypoint([10.0, 0.0, -10.0]) };
+    let mut flight = Flight::new(&[takeoff(), wait, waypoint([20.0, 0.0, -10.0])]);
+    flight.fly_until("waits", 60.0, |flight| flight.bench.mode() == Mode::Hold);
+    assert_eq!((flight.state(), flight.order()), (MissionState::Paused, vec![0, 1]));
+    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+    assert_eq!(flight.complete(60.0).order(), [0, 1, 2]);
+}
+
+/// A plan of the start, one of the messages and a pause: replayed it is the same flight, and it depends on the plan.
+#[test]
+fn a_mission_replays_bit_for_bit() {
+    let mut vehicle = common::settings(Identity::Px4);
+    vehicle.wind = sitl::world::WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 1.0, seed: 5 };
+    vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
+    let roi = at(command::DO_SET_ROI_LOCATION, [0.0; 4], [20.0, 20.0, 0.0]);
+    vehicle.plans.set(
+        PlanKind::Mission,
+        Plan::new(vec![takeoff(), roi, waypoint([30.0, 0.0, -12.0]), waypoint([30.0, 30.0, -8.0])]),
+    );
+    let mut recording = Recording::of(&vehicle);
+    let changed = [waypoint([10.0, -10.0, -10.0]), simple(command::NAV_RETURN_TO_LAUNCH, [0.0; 4])];
+    for millisecond in 0..40_000_u32 {
+        let messages: Vec<Message> = match millisecond {
+            500 => vec![common::command_long(MavCmd::MAV_CMD_MISSION_START, [0.0; 7], 0).into()],
+            12_000 => vec![common::command_long(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, [0.0; 7], 0).into()],
+            15_000 => vec![
+                common::command_long(
+                    MavCmd::MAV_CMD_DO_PAUSE_CONTINUE,
+                    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+                    0,
+                )
+                .into(),
+            ],
+            17_000 => vec![count_message(PlanKind::Mission, 2).into()],
+            // The second request is waited for, and the item comes late.
+            17_020 => vec![item_message(PlanKind::Mission, 0, changed[0], true)],
+            17_900 => vec![item_message(PlanKind::Mission, 1, changed[1], true)],
+            _ => Vec::new(),
+        };
+        for message in messages {
+            recording.send(message);
+        }
+        recording.step();
+    }
+    assert_eq!(recording.bench.mode(), Mode::Return, "{:?}", recording.bench.texts());
+    let record = recording.finish();
+    record.assert_same();
+    // Another place in the plan of the start is another flight.
+    record.assert_depends_on("[30.0,0.0,-12.0]", "[30.0,0.0,-12.5]");
+}
