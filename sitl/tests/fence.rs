@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::plan_client::{result, upload};
 use common::{Bench, settings};
 use mavlink::dialects::common::*;
 use nalgebra::Vector3;
@@ -218,4 +219,31 @@ fn nothing_leads_through_a_thin_wall() {
     // On a goal beside it nothing is in the way.
     there(&mut bench, 18.5, 20.0);
     there(&mut bench, 0.0, 0.0);
+}
+
+/// What is looked at or remembered is not flown to, and ArduPilot's first item is home, wherever it was planned.
+#[test]
+fn what_is_only_looked_at_may_lie_outside() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut start = settings(identity);
+        start.plans.set(PlanKind::Fence, Plan::new(square(&start, 30.0)));
+        let mut bench = Bench::of(&start);
+        let far = |command: u16| item(&start, command, 0.0, [100.0, 0.0]);
+        let mut mission = vec![
+            item(&start, command::NAV_WAYPOINT, 0.0, [10.0, 0.0]),
+            far(command::DO_SET_ROI_LOCATION),
+            MissionItem { parameters: [3.0, 0.0, 0.0, 0.0], ..far(command::DO_SET_ROI) },
+            MissionItem { position: [5.0, 5.0, 45.0], ..far(command::DO_SET_ROI_WPNEXT_OFFSET) },
+            far(command::DO_SET_HOME),
+            item(&start, command::NAV_WAYPOINT, 0.0, [20.0, 0.0]),
+        ];
+        if identity.is_ardupilot() {
+            mission.insert(0, far(command::NAV_WAYPOINT));
+        }
+        let heard = upload(&mut bench, PlanKind::Mission, &mission);
+        assert_eq!(result(&heard), Some(0), "{identity:?}: {heard:?}");
+        mission.push(far(command::NAV_LOITER_UNLIM));
+        let heard = upload(&mut bench, PlanKind::Mission, &mission);
+        assert_eq!(result(&heard), Some(14), "{identity:?}: {heard:?}");
+    }
 }

@@ -66,7 +66,12 @@ impl Vehicle {
         let site = self.site();
         let now = self.home.position_m;
         let mut before_m = now;
-        for (index, item) in items.iter().enumerate() {
+        // In ArduPilot's convention the first item is home, which is the vehicle's own.
+        let first = if kind == PlanKind::Mission { self.first_mission_item() } else { 0 };
+        for (index, item) in items.iter().enumerate().skip(first) {
+            if kind == PlanKind::Mission && !check::is_flown_to(item) {
+                continue;
+            }
             let Some(place) = site.place(item) else { continue };
             let Some([x, y]) = place.horizontal_m else { continue };
             let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));

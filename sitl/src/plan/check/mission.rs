@@ -78,6 +78,13 @@ static RULES: &[Rule] = &[
         (1, "kind", 0.0, 3.0)] },
 ];
 
+/// Whether an item of a mission has a place that is flown to, in contrast to one that is looked at or remembered.
+pub fn is_flown_to(item: &MissionItem) -> bool {
+    RULES
+        .iter()
+        .any(|rule| rule.command == item.command && matches!(rule.place, PlaceRule::Goal | PlaceRule::Ground))
+}
+
 /// Checks an item by itself. In ArduPilot's convention the first one is home, whatever it says.
 pub fn item(index: usize, item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
     if site.identity.is_ardupilot() && index == 0 {

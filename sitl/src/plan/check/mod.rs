@@ -6,6 +6,8 @@ mod rally;
 
 use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site};
 
+pub use mission::is_flown_to;
+
 /// Checks an item by itself.
 ///
 /// # Errors
