@@ -8,7 +8,7 @@ use common::Bench;
 use common::mission_flight::{Flight, SQUARE, at, simple, takeoff, waypoint};
 use common::plan_client::{count_message, item_message, result, upload};
 use common::recording::Recording;
-use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage};
+use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
 use sitl::codec::Message;
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, Plan, PlanKind, command};
@@ -33,6 +33,55 @@ fn speeds_change_and_come_back() {
     assert!((fastest(2, 4) - 6.0).abs() < 0.3, "{}", fastest(2, 4));
     let limits = flight.bench.autopilot.vehicle().simulation().configuration().limits;
     assert_eq!(limits, quadrotor::Limits::default(), "the mission's speeds go with it");
+}
+
+/// Speeds that hold for a while are none of the parameters: a file that keeps those keeps no mission's.
+#[test]
+fn speeds_of_a_flight_are_not_kept() {
+    let kept = |flight: &mut Flight| flight.bench.autopilot.take_changed_parameters();
+    let flown = |flight: &Flight| flight.bench.autopilot.vehicle().simulation().configuration().limits;
+    let change = |flight: &mut Flight, kind: f32, speed_m_s: f32| {
+        let parameters = [kind, speed_m_s, -1.0, 0.0, 0.0, 0.0, 0.0];
+        flight.bench.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, parameters)
+    };
+    let items = [
+        takeoff(),
+        simple(command::DO_CHANGE_SPEED, [1.0, 3.0, -1.0, 0.0]),
+        waypoint([30.0, 0.0, -10.0]),
+        at(command::NAV_LAND, [0.0, 0.0, 0.0, f64::NAN], [32.0, 0.0, 0.0]),
+    ];
+    let mut flight = Flight::new(&items);
+    flight.fly_until("on the way", 60.0, |flight| flight.bench.position()[0] > 5.0);
+    assert_eq!(flown(&flight).speed_horizontal_m_s, 3.0);
+    flight.bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
+        param_value: 3.5,
+        target_system: 1,
+        target_component: 1,
+        param_id: "LIM_SPEED_UP".into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    }));
+    let text = kept(&mut flight).expect("one has changed");
+    assert!(text.contains("LIM_SPEED_H 8\n") && text.contains("LIM_SPEED_UP 3.5\n"), "{text}");
+    assert_eq!(flown(&flight).speed_horizontal_m_s, 3.0);
+    // A command goes before the mission's, and one that cannot be changes nothing.
+    assert_eq!(change(&mut flight, 1.0, 4.0), 0);
+    assert_eq!((change(&mut flight, 1.0, 60.0), change(&mut flight, 7.0, 4.0)), (2, 2));
+    assert_eq!((change(&mut flight, 2.0, 2.0), change(&mut flight, 2.0, -1.0)), (0, 0));
+    assert_eq!((flown(&flight).speed_horizontal_m_s, flown(&flight).speed_up_m_s), (4.0, 2.0));
+    assert_eq!(change(&mut flight, 2.0, -2.0), 0);
+    assert_eq!(flown(&flight).speed_up_m_s, 3.5);
+    // It holds in the next mode, too, and ends with the flight.
+    assert_eq!(flight.bench.set_mode(Mode::Hold), 0);
+    assert_eq!(flown(&flight).speed_horizontal_m_s, 4.0);
+    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+    flight.fly_until("landed", 60.0, |flight| !flight.bench.autopilot.vehicle().is_armed());
+    assert_eq!(flown(&flight).speed_horizontal_m_s, 8.0);
+    assert_eq!(kept(&mut flight), None, "commands and missions set no parameter");
+    // The next flight of the mission begins without the speed that this one ended with.
+    flight.bench.arm();
+    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+    flight.step();
+    assert_eq!(flown(&flight).speed_horizontal_m_s, 8.0);
 }
 
 #[test]

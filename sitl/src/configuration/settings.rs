@@ -311,7 +311,7 @@ fn set_parameters(
         table.set(&id, value, &mut host)?;
     }
     settings.conduct = *vehicle.conduct();
-    settings.configuration = *vehicle.simulation().configuration();
+    settings.configuration = vehicle.kept_configuration();
     Ok(())
 }
 

@@ -35,7 +35,7 @@ impl Entry {
     /// Present value.
     pub(super) fn value(&self, view: &View<'_>) -> Value {
         match self.source {
-            Source::Loop(parameter) => read(parameter, view.vehicle.simulation().configuration()),
+            Source::Loop(parameter) => read(parameter, &view.vehicle.kept_configuration()),
             Source::Conduct(parameter, scale) => {
                 let value = (parameter.get)(view.vehicle.conduct());
                 if parameter.integer {

@@ -180,7 +180,7 @@ impl ParameterTable {
 }
 
 fn set_loop(id: &str, parameter: &Parameter, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
-    let mut configuration = *vehicle.simulation().configuration();
+    let mut configuration = vehicle.kept_configuration();
     write(id, parameter, value, &mut configuration)?;
     vehicle.reconfigure(&configuration).map_err(|source| match source {
         ConfigurationError::Fixed { .. } => SetError::Armed(id.to_owned()),

@@ -35,6 +35,7 @@ mod requests;
 mod return_home;
 mod rotor_loss;
 mod set_point;
+mod speeds;
 mod state;
 mod steering;
 mod sticks;

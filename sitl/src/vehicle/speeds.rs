@@ -1,87 +1,138 @@
-//! Speeds that a mission asks for: they hold while it is flown, and go with it.
+//! Speeds that hold for a while instead of the limits that the parameters set: those of a mission while it is flown, those of a
+//! command until the rotors stop. The parameters stay as they are.
 
-use quadrotor::Limits;
+use quadrotor::{Configuration, ConfigurationError, Limits};
 
-use super::super::notice::Severity;
-use super::super::state::Vehicle;
+use super::notice::{Refusal, Severity};
+use super::state::Vehicle;
 
-/// Kinds of speed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Horizontal,
-    Up,
-    Down,
+/// Limits of speed, m/s: horizontally, up, down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Speeds {
+    /// Of the parameters.
+    kept_m_s: [f64; 3],
+    by_command_m_s: [Option<f64>; 3],
+    by_mission_m_s: [Option<f64>; 3],
+    /// Whether the mission is flown.
+    in_mission: bool,
 }
 
-const KINDS: [Kind; 3] = [Kind::Horizontal, Kind::Up, Kind::Down];
+/// Speeds that DO_CHANGE_SPEED has for "as it is" and "as the parameter has it".
+const KEEP: f64 = -1.0;
+const DEFAULT: f64 = -2.0;
 
-/// What the mission asks for, and what there was before, m/s.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Speeds {
-    asked_m_s: [Option<f64>; 3],
-    before_m_s: [Option<f64>; 3],
-}
-
-fn of(limits: &mut Limits, kind: Kind) -> &mut f64 {
-    match kind {
-        Kind::Horizontal => &mut limits.speed_horizontal_m_s,
-        Kind::Up => &mut limits.speed_up_m_s,
-        Kind::Down => &mut limits.speed_down_m_s,
+impl Speeds {
+    /// The parameters' alone.
+    pub fn new(limits: &Limits) -> Self {
+        Self { kept_m_s: of(limits), by_command_m_s: [None; 3], by_mission_m_s: [None; 3], in_mission: false }
     }
+
+    /// Parameters have been set: those that have changed hold at once.
+    fn keep(&mut self, limits: &Limits) {
+        for (axis, limit) in of(limits).into_iter().enumerate() {
+            if self.kept_m_s[axis] != limit {
+                self.kept_m_s[axis] = limit;
+                (self.by_command_m_s[axis], self.by_mission_m_s[axis]) = (None, None);
+            }
+        }
+    }
+
+    fn in_force(&self) -> [f64; 3] {
+        core::array::from_fn(|axis| {
+            let by_mission = self.by_mission_m_s[axis].filter(|_| self.in_mission);
+            by_mission.or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
+        })
+    }
+}
+
+fn of(limits: &Limits) -> [f64; 3] {
+    [limits.speed_horizontal_m_s, limits.speed_up_m_s, limits.speed_down_m_s]
+}
+
+/// A configuration with other limits of speed.
+fn with(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Configuration {
+    let limits = &mut configuration.limits;
+    [limits.speed_horizontal_m_s, limits.speed_up_m_s, limits.speed_down_m_s] = speeds_m_s;
+    configuration
+}
+
+/// Place of a SPEED_TYPE: 0 (through the air) and 1 (over the ground) are horizontal, 2 is up, 3 is down.
+fn axis(kind: f64) -> Option<usize> {
+    [0.0, 1.0, 2.0, 3.0].iter().position(|number| *number == kind).map(|number| number.saturating_sub(1))
 }
 
 impl Vehicle {
-    /// DO_CHANGE_SPEED: kinds 0 and 1 horizontally, 2 up, 3 down; −1 keeps it, −2 takes it back.
-    pub(super) fn change_mission_speed(&mut self, kind: f64, speed_m_s: f64) {
-        const KEEP: f64 = -1.0;
-        let index = if kind < 2.0 { 0 } else { kind as usize - 1 };
+    /// The parameters of the closed loop, whatever speeds hold for now.
+    pub fn kept_configuration(&self) -> Configuration {
+        with(*self.simulation.configuration(), self.speeds.kept_m_s)
+    }
+
+    /// Changes the closed loop's parameters. Tunable ones change in flight, without a bump; the others only while it is
+    /// disarmed on the ground.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`]; nothing has changed then.
+    pub fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
+        let mut speeds = self.speeds;
+        speeds.keep(&kept.limits);
+        self.configure(&with(*kept, speeds.in_force()))?;
+        self.speeds = speeds;
+        Ok(())
+    }
+
+    /// Changes a limit of speed until the rotors stop: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it). In
+    /// a mission it goes before the mission's own, until that changes it again.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a type or a speed that there is not.
+    pub fn change_speed(&mut self, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
+        let axis = axis(kind).ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
         if speed_m_s == KEEP {
-            return;
+            return Ok(());
         }
-        self.restore_speeds();
-        if let Some(asked) = self.mission.speeds.asked_m_s.get_mut(index) {
-            *asked = Some(speed_m_s).filter(|speed| *speed > 0.0);
-        }
-        self.apply_speeds();
+        let mut speeds = self.speeds;
+        speeds.by_command_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
+        speeds.by_mission_m_s[axis] = speeds.by_mission_m_s[axis].filter(|_| !speeds.in_mission);
+        self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
     }
 
-    /// Puts the mission's speeds in force.
-    pub(super) fn apply_speeds(&mut self) {
-        let mut configuration = *self.simulation.configuration();
-        let mut speeds = self.mission.speeds;
-        for (index, kind) in KINDS.into_iter().enumerate() {
-            let limit = of(&mut configuration.limits, kind);
-            if let (Some(asked), None) = (speeds.asked_m_s[index], speeds.before_m_s[index]) {
-                speeds.before_m_s[index] = Some(*limit);
-                *limit = asked;
-            }
-        }
-        self.set_speeds(&configuration, speeds);
+    /// DO_CHANGE_SPEED of a mission.
+    pub(super) fn change_mission_speed(&mut self, kind: f64, speed_m_s: f64) {
+        let Some(axis) = axis(kind).filter(|_| speed_m_s != KEEP) else { return };
+        let mut speeds = self.speeds;
+        speeds.by_mission_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
+        self.use_mission_speeds(speeds);
     }
 
-    /// Takes the mission's speeds back, unless somebody has changed them meanwhile.
-    pub(super) fn restore_speeds(&mut self) {
-        let mut configuration = *self.simulation.configuration();
-        let mut speeds = self.mission.speeds;
-        for (index, kind) in KINDS.into_iter().enumerate() {
-            let limit = of(&mut configuration.limits, kind);
-            if let Some(before) =
-                speeds.before_m_s[index].take().filter(|_| speeds.asked_m_s[index] == Some(*limit))
-            {
-                *limit = before;
-            }
-        }
-        self.set_speeds(&configuration, speeds);
+    /// The mission's speeds hold while it is flown.
+    pub(super) fn apply_mission_speeds(&mut self, in_mission: bool) {
+        self.use_mission_speeds(Speeds { in_mission, ..self.speeds });
     }
 
-    fn set_speeds(&mut self, configuration: &quadrotor::Configuration, speeds: Speeds) {
-        if configuration.limits == self.simulation.configuration().limits {
-            self.mission.speeds = speeds;
-            return;
+    /// Another mission, or the same from its beginning, has asked for no speed yet.
+    pub(super) fn forget_mission_speeds(&mut self) {
+        self.use_mission_speeds(Speeds { by_mission_m_s: [None; 3], ..self.speeds });
+    }
+
+    /// With the flight ends what commands have asked for.
+    pub(super) fn forget_command_speeds(&mut self) {
+        self.use_mission_speeds(Speeds { by_command_m_s: [None; 3], ..self.speeds });
+    }
+
+    fn use_mission_speeds(&mut self, speeds: Speeds) {
+        if let Err(error) = self.use_speeds(speeds) {
+            self.say(Severity::Warning, format!("Speed not changed: {error}"));
         }
-        match self.reconfigure(configuration) {
-            Ok(()) => self.mission.speeds = speeds,
-            Err(error) => self.say(Severity::Warning, format!("Mission: speed not changed: {error}")),
+    }
+
+    fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ConfigurationError> {
+        let present = *self.simulation.configuration();
+        let configuration = with(present, speeds.in_force());
+        if configuration.limits != present.limits {
+            self.configure(&configuration)?;
+            self.replan_leg();
         }
+        self.speeds = speeds;
+        Ok(())
     }
 }

@@ -20,6 +20,7 @@ use super::offboard::SetPoints;
 use super::return_home::ReturnPhase;
 use super::rotor_loss::RotorWatch;
 use super::set_point::PositionSetPoint;
+use super::speeds::Speeds;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
@@ -112,6 +113,7 @@ pub struct Vehicle {
     /// The way of a return: north and east, m, the place to land at last.
     pub(super) return_way_m: VecDeque<[f64; 2]>,
     pub(super) mission: Mission,
+    pub(super) speeds: Speeds,
 }
 
 impl Vehicle {
@@ -166,6 +168,7 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
             mission: Mission::default(),
+            speeds: Speeds::new(&configuration.limits),
             simulation,
             outputs,
             truth: outputs,
@@ -359,12 +362,8 @@ impl Vehicle {
         }
     }
 
-    /// Changes the closed loop's parameters. Tunable ones change in flight, without a bump; the others only while it is
-    /// disarmed on the ground.
-    ///
-    /// # Errors
-    /// [`ConfigurationError`]; nothing has changed then.
-    pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+    /// Changes the closed loop, what is fixed in flight only while it is disarmed on the ground.
+    pub(super) fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
         match self.simulation.reconfigure(configuration) {
             Err(ConfigurationError::Fixed { .. }) if !self.armed && self.landed.is_landed() => {
                 self.simulation = Simulation::from_state(configuration, *self.simulation.state())?;

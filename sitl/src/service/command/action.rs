@@ -6,7 +6,7 @@ use super::{Outcome, altitude_frame};
 use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
-use crate::service::{Origin, message_interval, mission, parameter, set_point, standard_mode};
+use crate::service::{Origin, message_interval, mission, set_point, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
 
@@ -48,7 +48,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::NAV_GUIDED_ENABLE => vehicle.set_mode(Mode::Hold),
         number::CONDITION_YAW => turn(vehicle, command),
         number::DO_SET_MODE => set_mode(autopilot, command),
-        number::DO_CHANGE_SPEED => change_speed(autopilot, command.parameter(1), command.parameter(2)),
+        number::DO_CHANGE_SPEED => vehicle.change_speed(command.parameter(1), command.parameter(2)),
         number::DO_SET_HOME => set_home(vehicle, command),
         number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => vehicle.disarm(true),
         number::DO_FLIGHTTERMINATION => Ok(()),
@@ -165,24 +165,6 @@ pub fn set_custom_mode(autopilot: &mut Autopilot, custom_mode: u32) -> Result<()
     }
 }
 
-/// Sets the limit of speed of the shaper: 0 and 1 horizontally, 2 up, 3 down; m/s.
-fn change_speed(autopilot: &mut Autopilot, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
-    const NO_CHANGE: f64 = -1.0;
-    let name = match kind {
-        0.0 | 1.0 => "limits.speed.horizontal",
-        2.0 => "limits.speed.up",
-        3.0 => "limits.speed.down",
-        other => return Err(Refusal::denied(format!("No speed of type {other}"))),
-    };
-    if speed_m_s == NO_CHANGE {
-        return Ok(());
-    }
-    let id = crate::parameters::identifier(name);
-    autopilot.set_parameter(&id, speed_m_s).map_err(|error| Refusal::denied(error.to_string()))?;
-    parameter::tell(autopilot, &id);
-    Ok(())
-}
-
 fn place(command: &Command, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {
     let altitude_m = vehicle.frame().origin().altitude_m;
     let place = Geodetic { latitude_deg: command.x, longitude_deg: command.y, altitude_m };
@@ -220,7 +202,7 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
     autopilot.vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
-    if speed_m_s > 0.0 { change_speed(autopilot, 1.0, speed_m_s) } else { Ok(()) }
+    if speed_m_s > 0.0 { autopilot.vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
 }
 
 /// 0 reads, 1 writes, 2 resets the parameters.

@@ -81,7 +81,6 @@ impl Vehicle {
         match item.command {
             command::DO_CHANGE_SPEED => {
                 self.change_mission_speed(item.parameter_or(1, 0.0), item.parameter_or(2, -1.0));
-                self.replan_leg();
             }
             command::DO_SET_HOME => self.set_mission_home(item),
             command::DO_SET_ROI_LOCATION

@@ -95,7 +95,7 @@ impl Vehicle {
     pub(in super::super) fn mission_has_changed(&mut self, amended: bool) {
         if !amended {
             let reached = std::mem::take(&mut self.mission.reached);
-            self.restore_speeds();
+            self.forget_mission_speeds();
             self.mission = Mission { reached, current: self.first_mission_item(), ..Mission::default() };
         }
         self.suspend();
@@ -123,7 +123,7 @@ impl Vehicle {
     pub(in super::super) fn leave_mission(&mut self) {
         self.mission.paused = false;
         self.suspend();
-        self.restore_speeds();
+        self.apply_mission_speeds(false);
     }
 
     /// Gives up what is being done for the current item, to be begun again.
@@ -137,6 +137,7 @@ impl Vehicle {
         self.drop_conditions();
         self.mission.jumps.clear();
         self.mission.region = None;
+        self.forget_mission_speeds();
         self.mission.progress = Progress::NotStarted;
         self.mission.current = self.first_mission_item();
         self.take_over();
@@ -150,7 +151,7 @@ impl Vehicle {
             _ => self.outputs.position_m,
         };
         self.mission.heading_rad = self.outputs.attitude_rad.z;
-        self.apply_speeds();
+        self.apply_mission_speeds(true);
         self.hold();
     }
 

@@ -18,7 +18,6 @@ mod heading;
 mod leg;
 mod path;
 mod sequence;
-mod speed;
 mod status;
 mod task;
 
@@ -29,7 +28,6 @@ use nalgebra::Vector3;
 use action::Condition;
 use heading::{RegionOfInterest, Turn};
 use leg::Carry;
-use speed::Speeds;
 use task::Task;
 
 pub use status::{MissionState, MissionStatus};
@@ -68,7 +66,6 @@ pub(super) struct Mission {
     turn: Option<Turn>,
     /// Heading of the present item, rad.
     heading_rad: f64,
-    speeds: Speeds,
     /// Whether it waits in its own mode.
     paused: bool,
     /// Items that were reached since the last look.

@@ -136,7 +136,7 @@ impl Vehicle {
     }
 
     /// Plans the corner of the present leg again: limits of speed have changed, or what comes behind it.
-    pub(super) fn replan_leg(&mut self) {
+    pub(in super::super) fn replan_leg(&mut self) {
         let Some(Task::Leg(leg, then)) = self.mission.task else { return };
         let again = self.plan_leg(leg.from_m, leg.to_m, None);
         self.mission.task = Some(Task::Leg(leg.with_corner(again.corner()), then));
