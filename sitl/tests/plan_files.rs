@@ -20,31 +20,7 @@ fn read(name: &str, text: &str, identity: Identity) -> Result<Plans, String> {
     file::read(&path, &site(identity)).map_err(|error| error.to_string())
 }
 
-const PLAN: &str = r#"{
-    "fileType": "Plan", "version": 1, "groundStation": "QGroundControl",
-    "geoFence": {
-        "version": 2,
-        "circles": [{"circle": {"center": [47.3977, 8.5456], "radius": 120.5}, "inclusion": true, "version": 1}],
-        "polygons": [{"polygon": [[47.398, 8.545], [47.399, 8.545], [47.399, 8.547]], "inclusion": false, "version": 1}],
-        "breachReturn": [47.3977, 8.5456, 30]
-    },
-    "rallyPoints": {"version": 2, "points": [[47.3978, 8.5457, 20]]},
-    "mission": {
-        "version": 2, "firmwareType": 12, "vehicleType": 2, "cruiseSpeed": 15, "hoverSpeed": 5,
-        "plannedHomePosition": [47.397742, 8.545594, 488],
-        "items": [
-            {"type": "SimpleItem", "autoContinue": true, "command": 22, "doJumpId": 1, "frame": 3,
-             "AMSLAltAboveTerrain": null, "Altitude": 12, "AltitudeMode": 1,
-             "params": [0, 0, 0, null, 47.397742, 8.545594, 12]},
-            {"type": "SimpleItem", "autoContinue": true, "command": 16, "doJumpId": 5, "frame": 3,
-             "params": [1.5, 0, 0, null, 47.398, 8.5457, 15]},
-            {"type": "SimpleItem", "autoContinue": true, "command": 177, "doJumpId": 7, "frame": 2,
-             "params": [5, 2, 0, 0, 0, 0, 0]},
-            {"type": "SimpleItem", "autoContinue": true, "command": 20, "doJumpId": 8, "frame": 2,
-             "params": [0, 0, 0, 0, 0, 0, 0]}
-        ]
-    }
-}"#;
+const PLAN: &str = include_str!("corpus/mission.plan");
 
 #[test]
 fn a_plan_of_qgroundcontrol_is_read_with_fence_and_rally_points() {
@@ -68,14 +44,7 @@ fn a_plan_of_qgroundcontrol_is_read_with_fence_and_rally_points() {
     assert_eq!(mission[3].parameter(1), 2.0);
 }
 
-const TEXT: &str = "QGC WPL 110
-# with a remark
-0\t1\t0\t16\t0\t0\t0\t0\t47.397742\t8.545594\t488.0\t1
-1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t10\t1
-2\t0\t3\t16\t0\t0\t0\t0\t47.398\t8.5457\t10\t1
-3\t0\t2\t177\t2\t3\t0\t0\t0\t0\t0\t1
-4\t0\t3\t21\t0\t0\t0\t0\t0\t0\t0\t0
-";
+const TEXT: &str = include_str!("corpus/mission.waypoints");
 
 #[test]
 fn a_waypoint_text_is_read_and_its_home_is_no_item_of_px4() {
