@@ -5,7 +5,7 @@
 
 use nalgebra::{Rotation2, Vector2, Vector3};
 use rsruckig::prelude::{
-    DataArrayOrVec, InputParameter, Ruckig, Synchronization, ThrowErrorHandler, Trajectory,
+    ControlInterface, DataArrayOrVec, InputParameter, Ruckig, Synchronization, ThrowErrorHandler, Trajectory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -117,7 +117,7 @@ impl Shaper {
         let yaw_now = Motion { position: now.yaw_rad, ..self.yaw.at(seconds(self.yaw_start_us, time_us)) };
         if same_way && *limits == self.limits {
             self.offset_m = moved;
-            if same_yaw {
+            if same_yaw && goal.yaw_rate_rad_s == 0.0 {
                 self.yaw_offset_rad = turned;
             } else if let Some([yaw]) = plan_yaw(&yaw_now, goal, limits) {
                 self.goal.yaw_rad = goal.yaw_rad;
@@ -174,6 +174,7 @@ fn plan_position(
     min_velocity[2] = -limits.speed_up_m_s;
     let target_velocity = local(&goal.velocity_m_s);
     Request {
+        interface: ControlInterface::Position,
         from: core::array::from_fn(|axis| Motion {
             position: local(&from.position_m)[axis],
             velocity: local(&from.velocity_m_s)[axis],
@@ -192,13 +193,18 @@ fn plan_position(
     .solve()
 }
 
-/// The heading, the short way round.
+/// The heading, the short way round. One that keeps turning is followed by its rate: to arrive at it with that rate would take a
+/// run-up, away from it.
 fn plan_yaw(from: &Motion, goal: &PositionReference, limits: &Limits) -> Option<[MotionProfile; 1]> {
     let rate = limits.yaw_rate_rad_s;
+    let turns = goal.yaw_rate_rad_s != 0.0;
+    let left = wrapped(goal.yaw_rad - from.position);
+    let wanted = if turns { goal.yaw_rate_rad_s + closing_rate(left, limits) } else { 0.0 };
     Request {
+        interface: if turns { ControlInterface::Velocity } else { ControlInterface::Position },
         from: [*from],
-        target_position: [from.position + wrapped(goal.yaw_rad - from.position)],
-        target_velocity: [goal.yaw_rate_rad_s.clamp(-rate, rate)],
+        target_position: [from.position + left],
+        target_velocity: [wanted.clamp(-rate, rate)],
         max_velocity: [rate],
         min_velocity: [-rate],
         max_acceleration: [limits.yaw_acceleration_rad_s2],
@@ -207,8 +213,19 @@ fn plan_yaw(from: &Motion, goal: &PositionReference, limits: &Limits) -> Option<
     .solve()
 }
 
+/// Rate that closes a heading error, rad/s: proportional to a small one, and of a large one what is braked in time with the room
+/// that the jerk needs.
+fn closing_rate(left_rad: f64, limits: &Limits) -> f64 {
+    const PER_S: f64 = 1.0;
+    const BRAKING: f64 = 0.3;
+    let braked = libm::sqrt(2.0 * BRAKING * limits.yaw_acceleration_rad_s2 * left_rad.abs());
+    libm::copysign(braked.min(PER_S * left_rad.abs()), left_rad)
+}
+
 /// A state-to-state problem for `DOF` axes that arrive together.
 struct Request<const DOF: usize> {
+    /// Whether they arrive at positions with velocities, or only at velocities.
+    interface: ControlInterface,
     from: [Motion; DOF],
     target_position: [f64; DOF],
     target_velocity: [f64; DOF],
@@ -222,6 +239,7 @@ impl<const DOF: usize> Request<DOF> {
     fn solve(&self) -> Option<[MotionProfile; DOF]> {
         let mut input = InputParameter::<DOF>::new(None);
         input.synchronization = Synchronization::Time;
+        input.control_interface = self.interface;
         input.current_position = stack(self.from.map(|motion| motion.position));
         input.current_velocity = stack(self.from.map(|motion| motion.velocity));
         input.current_acceleration = stack(self.from.map(|motion| motion.acceleration));

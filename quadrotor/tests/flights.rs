@@ -239,3 +239,28 @@ fn a_turning_heading_does_not_disturb_the_way() {
     // Chased at the limits of turning, it stays behind a little.
     assert!((yaw_rad - 0.2 * 11.9).abs() < 0.25, "{yaw_rad}");
 }
+
+/// A heading that begins to turn is followed from where it is: no run-up against it and no lag that stays.
+#[test]
+fn a_heading_that_turns_is_followed_forwards() {
+    const RATE_RAD_S: f64 = 0.3;
+    const END_S: f64 = 6.0;
+    let told = |time_s: f64| {
+        if time_s < END_S { (RATE_RAD_S * time_s, RATE_RAD_S) } else { (RATE_RAD_S * END_S, 0.0) }
+    };
+    let inputs = |time_us: u64| {
+        let mut reference = PositionReference::goal([0.0, 0.0, -5.0], 0.0);
+        (reference.yaw_rad, reference.yaw_rate_rad_s) = told(time_us as f64 / 1e6);
+        Inputs { reference, ..Inputs::default() }
+    };
+    let mut simulation = Simulation::new(&Configuration::default(), &inputs(0)).expect("defaults");
+    for hundredth in 1..1200 {
+        simulation.advance_to(hundredth * 10_000, &inputs).expect("flight");
+        let now = simulation.outputs().setpoint;
+        let (angle_rad, _) = told(hundredth as f64 / 100.0);
+        assert!(hundredth > 600 || now.yaw_rate_rad_s > -0.02, "{hundredth}: {} rad/s", now.yaw_rate_rad_s);
+        assert!((now.yaw_rad - angle_rad).abs() < 0.3, "{hundredth}: {} rad", now.yaw_rad);
+        let settled = (400..600).contains(&hundredth) || hundredth > 1000;
+        assert!(!settled || (now.yaw_rad - angle_rad).abs() < 0.02, "{hundredth}: {} rad", now.yaw_rad);
+    }
+}
