@@ -89,6 +89,7 @@ impl Vehicle {
         self.failsafe.see(Cause::SetPointsLost, false);
         self.takeoff_z_m = None;
         self.forget_command_speeds();
+        self.region = None;
         self.idle();
         // A mode that ends on the ground is not one to be armed in.
         if self.mode == Mode::Mission {

@@ -30,6 +30,9 @@ impl Vehicle {
             Mode::Land => self.descend(None),
             Mode::Return => self.return_home(),
         }
+        if self.chooses_its_heading() {
+            self.turn_to_region();
+        }
         self.disarm_on_the_ground();
     }
 

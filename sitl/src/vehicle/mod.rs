@@ -31,6 +31,7 @@ mod notice;
 mod offboard;
 mod perception;
 mod plans;
+mod region;
 mod requests;
 mod return_home;
 mod rotor_loss;

@@ -39,6 +39,11 @@ impl Motion {
         (self.set_point, self.since_us) = (set_point, time_us);
     }
 
+    /// Asks for another heading on the same way.
+    pub fn turn_to(&mut self, yaw: YawTarget) {
+        self.set_point.yaw = yaw;
+    }
+
     /// The reference at `time_us`: points of trajectories run on, the rest is where [`Motion::step`] has brought it.
     pub fn reference(&mut self, time_us: u64) -> PositionReference {
         let t = time_us.saturating_sub(self.since_us) as f64 / 1e6;
@@ -152,9 +157,13 @@ impl Motion {
             YawTarget::Track(..) => return,
             YawTarget::Hold => 0.0,
             YawTarget::Rate(rate) => rate,
-            YawTarget::Angle(angle) => {
+            YawTarget::Angle(angle) | YawTarget::Follow(angle, _) => {
                 approach(wrapped(angle - state.yaw_rad), POSITION_RATE, BRAKING_SHARE * strongest)
             }
+        };
+        let wanted = match self.set_point.yaw {
+            YawTarget::Follow(_, rate) => wanted + rate,
+            _ => wanted,
         };
         let change = wanted.clamp(-fastest, fastest) - state.yaw_rate_rad_s;
         let before = state.yaw_rate_rad_s;

@@ -124,6 +124,8 @@ impl Vehicle {
         self.failsafe.release();
         self.enter(self.holding_mode());
         let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
+        // A heading that is asked for goes before what was looked at.
+        self.region = self.region.filter(|_| goal.yaw_rad.is_none());
         self.follow(&PositionSetPoint { axes: target.data.0[0].map(AxisTarget::Position), yaw });
         self.set_points = super::offboard::SetPoints::default();
         Ok(())

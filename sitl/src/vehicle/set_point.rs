@@ -35,6 +35,8 @@ pub enum YawTarget {
     Hold,
     /// Turn to an angle, rad, the short way.
     Angle(f64),
+    /// Turn to an angle, rad, that changes at a rate, rad/s, the short way.
+    Follow(f64, f64),
     /// Keep turning, rad/s.
     Rate(f64),
     /// A point of a trajectory: angle, rad, and rate, rad/s.

@@ -17,6 +17,7 @@ use super::mission::Mission;
 use super::mode::Mode;
 use super::notice::{Notice, Severity};
 use super::offboard::SetPoints;
+use super::region::RegionOfInterest;
 use super::return_home::ReturnPhase;
 use super::rotor_loss::RotorWatch;
 use super::set_point::PositionSetPoint;
@@ -114,6 +115,7 @@ pub struct Vehicle {
     pub(super) return_way_m: VecDeque<[f64; 2]>,
     pub(super) mission: Mission,
     pub(super) speeds: Speeds,
+    pub(super) region: Option<RegionOfInterest>,
 }
 
 impl Vehicle {
@@ -169,6 +171,7 @@ impl Vehicle {
             return_way_m: VecDeque::new(),
             mission: Mission::default(),
             speeds: Speeds::new(&configuration.limits),
+            region: None,
             simulation,
             outputs,
             truth: outputs,

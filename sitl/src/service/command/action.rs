@@ -6,6 +6,7 @@ use super::{Outcome, altitude_frame};
 use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
+use crate::plan::MissionItem;
 use crate::service::{Origin, message_interval, mission, set_point, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
@@ -22,6 +23,10 @@ mod number {
     pub const DO_SET_HOME: u16 = 179;
     pub const DO_FLIGHTTERMINATION: u16 = 185;
     pub const DO_REPOSITION: u16 = 192;
+    pub const DO_SET_ROI_LOCATION: u16 = 195;
+    pub const DO_SET_ROI_WPNEXT_OFFSET: u16 = 196;
+    pub const DO_SET_ROI_NONE: u16 = 197;
+    pub const DO_SET_ROI: u16 = 201;
     pub const DO_FENCE_ENABLE: u16 = 207;
     pub const DO_PAUSE_CONTINUE: u16 = 193;
     pub const PREFLIGHT_STORAGE: u16 = 245;
@@ -53,6 +58,10 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => vehicle.disarm(true),
         number::DO_FLIGHTTERMINATION => Ok(()),
         number::DO_REPOSITION => reposition(autopilot, command),
+        number::DO_SET_ROI_LOCATION
+        | number::DO_SET_ROI_WPNEXT_OFFSET
+        | number::DO_SET_ROI_NONE
+        | number::DO_SET_ROI => vehicle.look(&as_item(command)),
         number::DO_FENCE_ENABLE => enable_fence(vehicle, command),
         number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.pause(),
         number::DO_PAUSE_CONTINUE => vehicle.continue_mission(),
@@ -203,6 +212,17 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
     autopilot.vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
     if speed_m_s > 0.0 { autopilot.vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
+}
+
+/// The same as an item of a mission.
+fn as_item(command: &Command) -> MissionItem {
+    MissionItem {
+        frame: altitude_frame(command),
+        command: command.number,
+        parameters: command.parameters,
+        position: [command.x, command.y, command.z],
+        autocontinue: true,
+    }
 }
 
 /// 0 reads, 1 writes, 2 resets the parameters.

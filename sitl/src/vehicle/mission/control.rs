@@ -96,6 +96,7 @@ impl Vehicle {
         if !amended {
             let reached = std::mem::take(&mut self.mission.reached);
             self.forget_mission_speeds();
+            self.region = None;
             self.mission = Mission { reached, current: self.first_mission_item(), ..Mission::default() };
         }
         self.suspend();
@@ -136,7 +137,7 @@ impl Vehicle {
         self.suspend();
         self.drop_conditions();
         self.mission.jumps.clear();
-        self.mission.region = None;
+        self.region = None;
         self.forget_mission_speeds();
         self.mission.progress = Progress::NotStarted;
         self.mission.current = self.first_mission_item();
@@ -158,6 +159,7 @@ impl Vehicle {
     /// One tick of the mission.
     pub(in super::super) fn fly_mission(&mut self) {
         if self.mission.paused || self.mission.progress == Progress::Complete {
+            self.turn_to_region();
             return;
         }
         // An attitude that was left behind, or a stick: the mission flies by position.

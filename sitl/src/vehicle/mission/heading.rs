@@ -2,22 +2,11 @@
 
 use core::f64::consts::TAU;
 
-use nalgebra::Vector3;
-
 use super::super::motion::wrapped;
 use super::super::state::{TICK_US, Vehicle};
 use super::super::steering::Steering;
 use super::task::Task;
-use crate::plan::{MissionItem, command};
-
-/// What is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum RegionOfInterest {
-    /// A place, NED, m.
-    Place(Vector3<f64>),
-    /// Where the leg leads, plus an angle, rad.
-    NextWaypoint(f64),
-}
+use crate::plan::MissionItem;
 
 /// A turn at a rate in a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,8 +20,6 @@ pub struct Turn {
 
 /// So near to its angle, rad, a turn is done.
 const TURNED_RAD: f64 = 0.05;
-/// Nearer than this, m, there is no direction to a place.
-const TOO_NEAR_M: f64 = 0.5;
 
 impl Turn {
     /// CONDITION_YAW from a heading, rad: angle, rate (0: as fast as `fastest_rad_s`), direction (0: the short way; a relative
@@ -68,39 +55,15 @@ impl Turn {
 }
 
 impl Vehicle {
-    /// DO_SET_ROI and its successors.
-    pub(super) fn look_at(&mut self, item: &MissionItem) {
-        let place = |vehicle: &Self, item: &MissionItem| {
-            let anchor_m = vehicle.mission.anchor_m;
-            vehicle.site().place(item).map(|place| {
-                let [x, y] = place.horizontal_m.unwrap_or([anchor_m.x, anchor_m.y]);
-                RegionOfInterest::Place(Vector3::new(x, y, place.down_m.unwrap_or(0.0)))
-            })
-        };
-        self.mission.region = match (item.command, item.parameter_or(1, 0.0) as i64) {
-            (command::DO_SET_ROI_LOCATION, _) | (command::DO_SET_ROI, 3) => place(self, item),
-            (command::DO_SET_ROI_WPNEXT_OFFSET, _) => {
-                Some(RegionOfInterest::NextWaypoint(item.parameter_or(7, 0.0).to_radians()))
-            }
-            (command::DO_SET_ROI, 1) => Some(RegionOfInterest::NextWaypoint(0.0)),
-            (command::DO_SET_ROI, 2) => {
-                let index = item.parameter(2) as usize;
-                self.mission_items().get(index).copied().and_then(|item| place(self, &item))
-            }
-            // ArduPilot's clients send the place without saying that it is one.
-            (command::DO_SET_ROI, 0) if item.position.iter().any(|value| *value != 0.0) => place(self, item),
-            _ => None,
-        };
-    }
-
     /// Turns the shaper's goal to where the vehicle is to look.
     pub(super) fn turn_on_the_way(&mut self) {
         if let Some(turn) = &mut self.mission.turn {
             turn.step(TICK_US as f64 / 1e6);
         }
         let (heading_rad, rate_rad_s) = self.mission_heading();
-        if let Steering::Goal(goal) = &mut self.steering {
-            (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);
+        match &mut self.steering {
+            Steering::Goal(goal) => (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s),
+            _ => self.turn_to_region(),
         }
     }
 
@@ -111,24 +74,14 @@ impl Vehicle {
             let rate_rad_s = if turn.left_rad == 0.0 { 0.0 } else { turn.rate_rad_s };
             return (turn.at_rad, libm::copysign(rate_rad_s, turn.left_rad));
         }
-        // ψ = atan2(w_y, w_x),  ψ̇ = (w_y v_x − w_x v_y) / (w_x² + w_y²)
-        let bearing_to = |place_m: &Vector3<f64>| {
-            let reference = &self.outputs.setpoint;
-            let (way, v) = ((place_m - reference.position_m).xy(), reference.velocity_m_s);
-            let rate_rad_s = (way.y * v.x - way.x * v.y) / way.norm_squared();
-            (way.norm() > TOO_NEAR_M).then(|| (libm::atan2(way.y, way.x), rate_rad_s))
-        };
-        let looked = match (&mission.region, &mission.task) {
-            (Some(RegionOfInterest::Place(place_m)), _) => bearing_to(place_m),
-            (Some(RegionOfInterest::NextWaypoint(offset)), Some(Task::Leg(leg, _))) => {
-                bearing_to(&leg.to_m).map(|(bearing, rate)| (bearing + offset, rate))
-            }
+        let next_m = match &mission.task {
+            Some(Task::Leg(leg, _)) => Some(leg.to_m),
             _ => None,
         };
-        match (looked, &self.steering) {
+        match (self.heading_to_region(next_m), &self.steering) {
             (Some(looked), _) => looked,
             // What is too near to be looked at does not turn the vehicle.
-            (None, Steering::Goal(goal)) if mission.region.is_some() => (goal.yaw_rad, 0.0),
+            (None, Steering::Goal(goal)) if self.region.is_some() => (goal.yaw_rad, 0.0),
             _ => (mission.heading_rad, 0.0),
         }
     }

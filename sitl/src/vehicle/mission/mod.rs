@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, VecDeque};
 use nalgebra::Vector3;
 
 use action::Condition;
-use heading::{RegionOfInterest, Turn};
+use heading::Turn;
 use leg::Carry;
 use task::Task;
 
@@ -62,7 +62,6 @@ pub(super) struct Mission {
     condition: Option<Condition>,
     /// How often each jump has been made.
     jumps: BTreeMap<usize, u32>,
-    region: Option<RegionOfInterest>,
     turn: Option<Turn>,
     /// Heading of the present item, rad.
     heading_rad: f64,

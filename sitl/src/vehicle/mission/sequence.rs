@@ -51,7 +51,7 @@ pub fn next_from(items: &[MissionItem], from: usize, made: &mut BTreeMap<usize, 
 
 impl Vehicle {
     /// The mission's items.
-    pub(super) fn mission_items(&self) -> &[MissionItem] {
+    pub(in super::super) fn mission_items(&self) -> &[MissionItem] {
         self.plans.get(PlanKind::Mission).items()
     }
 
