@@ -38,7 +38,6 @@ const MOST_GREETED: usize = 256;
 #[derive(Debug)]
 pub struct Autopilot {
     system_id: u8,
-    unix_start_us: u64,
     settings: VehicleSettings,
     speed: Speed,
     parameters_changed: bool,
@@ -73,7 +72,6 @@ impl Autopilot {
     ) -> Result<Self, ConfigurationError> {
         let mut autopilot = Self {
             system_id,
-            unix_start_us,
             settings: settings.clone(),
             speed,
             parameters_changed: false,
@@ -93,6 +91,7 @@ impl Autopilot {
             store: Box::new(Nothing),
             logs: LogServer::default(),
         };
+        autopilot.vehicle.set_unix_start_us(unix_start_us);
         let parameters = 0..autopilot.table.entries().len();
         autopilot.initial_parameters =
             parameters.filter_map(|index| autopilot.parameter_value(index)).collect();
@@ -267,7 +266,7 @@ impl Autopilot {
 
     /// Time of the wall clock at the start, µs since 1970.
     pub(crate) fn unix_start_us(&self) -> u64 {
-        self.unix_start_us
+        self.vehicle.unix_start_us()
     }
 
     /// What it was started with.

@@ -24,8 +24,9 @@ impl Books {
         participants: Vec<Participant>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
+        let header = Header::new(settings.speed, participants).started_at(unix_start_us);
         let recorder = match &settings.record {
-            Some(path) => Some(Recorder::create(path, &Header::new(settings.speed, participants))?),
+            Some(path) => Some(Recorder::create(path, &header)?),
             None => None,
         };
         let traffic = match &settings.tlog {

@@ -34,6 +34,9 @@ pub struct Header {
     pub program: String,
     /// Pace at the start; it does not change the flights.
     pub speed: Speed,
+    /// Time of the start since 1970, µs.
+    #[serde(default)]
+    pub unix_start_us: u64,
     /// The vehicles.
     pub vehicles: Vec<Participant>,
 }
@@ -110,7 +113,12 @@ impl Header {
     /// A header of this program.
     pub fn new(speed: Speed, vehicles: Vec<Participant>) -> Self {
         let program = env!("CARGO_PKG_VERSION").to_owned();
-        Self { format: FORMAT.to_owned(), program, speed, vehicles }
+        Self { format: FORMAT.to_owned(), program, speed, unix_start_us: 0, vehicles }
+    }
+
+    /// The same with the time of the start since 1970, µs.
+    pub fn started_at(self, unix_start_us: u64) -> Self {
+        Self { unix_start_us, ..self }
     }
 }
 

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::{Digest, Entry, Participant, read};
+use super::{Digest, Entry, Header, Participant, read};
 use crate::autopilot::Autopilot;
 use crate::failure::Failure;
-use crate::parameters::Speed;
 use crate::summary::Flight;
 use crate::vehicle::TICK_US;
 
@@ -26,16 +25,16 @@ pub fn replay(path: &Path) -> Result<Vec<Flight>, Failure> {
     let each = header.vehicles.iter().zip(flights);
     each.map(|(participant, entries)| {
         let no_end = || wrong(format!("the flight of system {} has no end", participant.system_id));
-        fly(participant, header.speed, entries)?.ok_or_else(no_end)
+        fly(participant, &header, entries)?.ok_or_else(no_end)
     })
     .collect()
 }
 
 /// One vehicle's flight; `None` if its end is missing.
-fn fly(participant: &Participant, speed: Speed, entries: Vec<Entry>) -> Result<Option<Flight>, Failure> {
+fn fly(participant: &Participant, header: &Header, entries: Vec<Entry>) -> Result<Option<Flight>, Failure> {
     let Participant { system_id, links, vehicle } = participant;
     let system_id = *system_id;
-    let mut autopilot = Autopilot::new(vehicle, system_id, speed, links, 0)?;
+    let mut autopilot = Autopilot::new(vehicle, system_id, header.speed, links, header.unix_start_us)?;
     let mut digest = Digest::default();
     for entry in entries {
         while autopilot.vehicle().time_us() + TICK_US <= entry.time_us() {

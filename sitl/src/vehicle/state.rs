@@ -85,6 +85,8 @@ pub struct Vehicle {
     pub(super) navigation: Option<Navigation>,
     pub(super) ideal_sensors: IdealSensors,
     pub(super) frame: LocalFrame,
+    /// Time of the start since 1970, µs.
+    pub(super) unix_start_us: u64,
     pub(super) wind: Wind,
     pub(super) wind_m_s: Vector3<f64>,
     pub(super) battery: Battery,
@@ -146,6 +148,7 @@ impl Vehicle {
             identity: settings.identity,
             conduct: settings.conduct,
             frame,
+            unix_start_us: 0,
             wind: Wind::new(settings.wind),
             wind_m_s: Vector3::zeros(),
             battery: Battery::default(),
@@ -274,6 +277,16 @@ impl Vehicle {
     /// Simulation time, µs after the start.
     pub fn time_us(&self) -> u64 {
         self.outputs.time_us
+    }
+
+    /// Tells what time it was at the start, µs since 1970.
+    pub fn set_unix_start_us(&mut self, unix_start_us: u64) {
+        self.unix_start_us = unix_start_us;
+    }
+
+    /// Time of the start, µs since 1970.
+    pub fn unix_start_us(&self) -> u64 {
+        self.unix_start_us
     }
 
     /// What the closed loop shows, as far as the vehicle knows its motion.

@@ -56,7 +56,7 @@ static RULES: &[Rule] = &[
     Rule { command: command::NAV_TAKEOFF, place: PlaceRule::Goal, needed: &[], ranges: &[
         (4, "yaw", ANGLE.0, ANGLE.1)] },
     Rule { command: command::NAV_DELAY, place: PlaceRule::None, needed: &[1], ranges: &[
-        (1, "delay", 0.0, LONGEST_S)] },
+        (1, "delay", -1.0, LONGEST_S), (2, "hour", -1.0, 23.0), (3, "minute", -1.0, 59.0), (4, "second", -1.0, 59.0)] },
     Rule { command: command::CONDITION_DELAY, place: PlaceRule::None, needed: &[1], ranges: &[
         (1, "delay", 0.0, LONGEST_S)] },
     Rule { command: command::CONDITION_DISTANCE, place: PlaceRule::None, needed: &[1], ranges: &[
@@ -113,6 +113,7 @@ fn particular(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
     let whole: &[u8] = match item.command {
         command::DO_JUMP => &[1, 2],
         command::DO_CHANGE_SPEED | command::DO_SET_ROI => &[1],
+        command::NAV_DELAY => &[2, 3, 4],
         _ => &[],
     };
     for number in whole {
@@ -124,6 +125,16 @@ fn particular(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
     let speed_m_s = item.parameter(2);
     if item.command == command::DO_CHANGE_SPEED && speed_m_s < 0.1 && speed_m_s != -1.0 && speed_m_s != -2.0 {
         return wrong(2, format!("speed {speed_m_s} is outside [0.1, {}]", SPEED.1));
+    }
+    let delay_s = item.parameter(1);
+    if item.command == command::NAV_DELAY && delay_s < 0.0 {
+        // −1 stands for the time of day behind it.
+        if delay_s != -1.0 {
+            return wrong(1, format!("delay {delay_s} is outside [0, {LONGEST_S}]"));
+        }
+        if [2, 3, 4].iter().all(|number| item.parameter_or(*number, -1.0) < 0.0) {
+            return wrong(2, "a delay until a time of day needs an hour, a minute or a second".to_owned());
+        }
     }
     let remembers = item.command == command::DO_SET_HOME && item.parameter_or(1, 0.0) == 0.0;
     if remembers && site.place(item).is_some_and(|place| place.horizontal_m.is_none()) {

@@ -20,6 +20,7 @@ mod path;
 mod sequence;
 mod status;
 mod task;
+mod time_of_day;
 
 use std::collections::{BTreeMap, VecDeque};
 

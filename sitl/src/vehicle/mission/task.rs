@@ -12,6 +12,7 @@ use super::circle::Circle;
 use super::leg::{Carry, Leg, LegProgress};
 use super::path::{Stop, first_corner};
 use super::sequence::next_from;
+use super::time_of_day::TimeOfDay;
 use crate::plan::{MissionItem, command};
 
 /// A task.
@@ -151,7 +152,7 @@ impl Vehicle {
             command::NAV_LAND if grounded => return TaskProgress::Done(None),
             command::NAV_DELAY => {
                 self.hold();
-                Task::Wait(Some(self.after_s(item.parameter_or(1, 0.0))))
+                Task::Wait(Some(self.delay_end_us(item)))
             }
             _ if grounded => self.climb_first(item),
             _ => match self.leg_end_m(item, &self.mission.anchor_m) {
@@ -164,6 +165,13 @@ impl Vehicle {
         };
         self.mission.task = Some(task);
         TaskProgress::Going
+    }
+
+    fn delay_end_us(&self, item: &MissionItem) -> u64 {
+        match TimeOfDay::of(item) {
+            Some(time) => self.time_us().saturating_add(time.wait_us(self.unix_start_us + self.time_us())),
+            None => self.after_s(item.parameter_or(1, 0.0)),
+        }
     }
 
     fn after_s(&self, seconds: f64) -> u64 {
