@@ -7,6 +7,7 @@ use common::{Bench, settings};
 use mavlink::dialects::common::{MavCmd, MavMessage};
 use sitl::codec::Message;
 use sitl::estimation::SensorModel;
+use sitl::fault::{Fault, ScheduledFault, Sensor, SensorFault};
 use sitl::identity::Identity;
 use sitl::vehicle::{LandedState, Mode};
 use sitl::world::WindSettings;
@@ -182,6 +183,85 @@ fn what_has_no_meaning_is_refused_with_the_reason() {
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
     }
     assert_eq!(*bench.autopilot.vehicle().faults(), sitl::fault::Faults::default());
+}
+
+/// Ideal sensors read the truth: what would change nothing is not accepted. Realistic ones take it all, and show it.
+#[test]
+fn what_would_change_nothing_is_refused() {
+    for model in [SensorModel::Ideal, SensorModel::Realistic] {
+        let mut start = settings(Identity::Px4);
+        start.sensors.model = model;
+        let mut bench = Bench::of(&start);
+        for unit in 0..=4 {
+            for kind in 0..=7 {
+                let reads = matches!(kind, 3..=6) && model == SensorModel::Ideal;
+                let expected = if reads { UNSUPPORTED } else { 0 };
+                assert_eq!(
+                    inject(&mut bench, unit as f32, kind as f32, 0.0),
+                    expected,
+                    "{model:?} {unit} {kind}"
+                );
+                let why = bench.texts().iter().any(|text| text.contains("start with --sensors realistic"));
+                assert_eq!(why, reads, "{model:?} {unit} {kind}: {:?}", bench.texts());
+            }
+            assert_eq!(inject(&mut bench, unit as f32, OK, 0.0), 0);
+        }
+    }
+}
+
+/// Standing, each fault shows in what the instrument reads: mean and spread of 2 s, and how many readings differ.
+#[test]
+fn broken_instruments_read_what_their_faults_say() {
+    let field = |bench: &Bench, sensor: Sensor| {
+        let readings = bench.autopilot.vehicle().readings();
+        match sensor {
+            Sensor::Gyroscope => readings.inertial.body_rate_rad_s.x,
+            Sensor::Accelerometer => readings.inertial.specific_force_m_s2.x,
+            Sensor::Magnetometer => readings.magnetometer.expect("a field").field_gauss.x,
+            Sensor::Barometer => readings.barometer.expect("a pressure").pressure_pa,
+            Sensor::Gps => readings.gps.expect("a fix").position_m.x,
+        }
+    };
+    let read = |sensor, fault: Option<SensorFault>| {
+        let mut start = settings(Identity::Px4);
+        start.sensors.model = SensorModel::Realistic;
+        let fault = Fault::Sensor(sensor, fault);
+        start.faults = vec![ScheduledFault { time_us: 3_000_000, fault }];
+        let mut bench = Bench::of(&start);
+        // At 3 s it begins, a delay is over after half a second.
+        bench.fly(3.6);
+        let mut values = Vec::new();
+        for _ in 0..2000 {
+            bench.fly(0.001);
+            values.push(field(&bench, sensor));
+        }
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let spread =
+            (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
+        let changes = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        (mean, spread, changes)
+    };
+    for sensor in Sensor::ALL {
+        let (mean, spread, changes) = read(sensor, None);
+        for silent in [SensorFault::Off, SensorFault::Stuck] {
+            assert_eq!(read(sensor, Some(silent)).2, 0, "{sensor:?} {silent:?}");
+        }
+        let (_, garbage, _) = read(sensor, Some(SensorFault::Garbage));
+        assert!((0.5..1.5).contains(&(garbage / sensor.garbage())), "{sensor:?}: {garbage}");
+        let (wrong, ..) = read(sensor, Some(SensorFault::Wrong));
+        assert!(((wrong - mean) / sensor.offset() - 1.0).abs() < 0.2, "{sensor:?}: {wrong} {mean}");
+        let (_, _, slow) = read(sensor, Some(SensorFault::Slow));
+        // A half of an inertial reading changes nothing until its other half has come.
+        let expected = changes / SensorFault::SLOWNESS as usize;
+        assert!(slow.abs_diff(expected) <= 2, "{sensor:?}: {slow} {expected}");
+        let (_, _, intermittent) = read(sensor, Some(SensorFault::Intermittent));
+        assert!(
+            (changes / 4..changes * 3 / 4).contains(&intermittent),
+            "{sensor:?}: {intermittent} {changes}"
+        );
+        let (delayed, delayed_spread, _) = read(sensor, Some(SensorFault::Delayed));
+        assert!((delayed - mean).abs() <= 3.0 * (spread + delayed_spread), "{sensor:?}: {delayed} {mean}");
+    }
 }
 
 #[test]

@@ -190,7 +190,10 @@ pub(super) fn vehicle(
             gusts_m_s,
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
-        faults: faults(arguments.fault.as_deref().unwrap_or_default())?,
+        faults: faults(
+            arguments.fault.as_deref().unwrap_or_default(),
+            arguments.sensors.unwrap_or_default(),
+        )?,
         sensors: SensorSettings {
             model: arguments.sensors.unwrap_or_default(),
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
@@ -263,9 +266,15 @@ fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Fai
     Err(Failure::Value { name: format!("--{name}"), reason })
 }
 
-fn faults(named: &[String]) -> Result<Vec<ScheduledFault>, Failure> {
-    let fault =
-        |text: &String| text.parse().map_err(|reason| Failure::Value { name: "--fault".to_owned(), reason });
+fn faults(named: &[String], sensors: SensorModel) -> Result<Vec<ScheduledFault>, Failure> {
+    let wrong = |reason| Failure::Value { name: "--fault".to_owned(), reason };
+    let fault = |text: &String| {
+        let scheduled: ScheduledFault = text.parse().map_err(wrong)?;
+        if sensors == SensorModel::Ideal && scheduled.fault.needs_readings() {
+            return Err(wrong(format!("`{text}` needs --sensors realistic: ideal ones only fall silent")));
+        }
+        Ok(scheduled)
+    };
     named.iter().map(fault).collect()
 }
 

@@ -93,6 +93,12 @@ impl Fault {
         }
     }
 
+    /// Whether it changes what an instrument reads: ideal ones read nothing, they only fall silent.
+    pub fn needs_readings(&self) -> bool {
+        use SensorFault::{Delayed, Garbage, Slow, Wrong};
+        matches!(self, Self::Sensor(_, Some(Garbage | Wrong | Slow | Delayed)))
+    }
+
     fn unit_name(&self) -> String {
         match self {
             Self::Sensor(sensor, _) => sensor.name().to_owned(),

@@ -13,10 +13,14 @@ impl Vehicle {
     /// Breaks a unit, or mends it, as a client asks.
     ///
     /// # Errors
-    /// [`Refusal::Denied`] while the parameter SYS_FAILURE_EN forbids it.
+    /// [`Refusal::Denied`] while the parameter SYS_FAILURE_EN forbids it, [`Refusal::Unsupported`] when it would change nothing.
     pub fn inject(&mut self, fault: &Fault) -> Result<(), Refusal> {
         if !self.conduct.failure_injection {
             return Err(Refusal::denied("Failure injection denied: SYS_FAILURE_EN is 0"));
+        }
+        if self.navigation.is_none() && fault.needs_readings() {
+            let reason = "ideal sensors only fall silent: start with --sensors realistic";
+            return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
         self.suffer(fault);
         Ok(())
