@@ -23,7 +23,11 @@ pub fn write(id: &str, parameter: &Parameter, value: f64, into: &mut Configurati
         }
     };
     let whole = || {
-        if value.fract() == 0.0 { Ok(()) } else { Err(SetError::Meaningless { id: id.to_owned(), value }) }
+        if value.fract() == 0.0 {
+            Ok(())
+        } else {
+            Err(SetError::Meaningless { id: id.to_owned(), value, meanings: "whole numbers".to_owned() })
+        }
     };
     match parameter.access {
         Access::Real { minimum, maximum, set, .. } => {

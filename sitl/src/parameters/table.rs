@@ -63,12 +63,14 @@ pub enum SetError {
         maximum: f64,
     },
     /// The value is none of those that mean something.
-    #[error("{id} = {value} has no meaning")]
+    #[error("{id} = {value} has no meaning here: {meanings}")]
     Meaningless {
         /// Identifier.
         id: String,
         /// Given value.
         value: f64,
+        /// Those that mean something, in words.
+        meanings: String,
     },
     /// It is fixed since the start.
     #[error("{0} is set by the command line")]
@@ -164,7 +166,7 @@ impl ParameterTable {
         }
         match entry.source {
             Source::Loop(parameter) => set_loop(id, parameter, value, host.vehicle),
-            Source::Conduct(parameter, scale) => set_conduct(id, parameter, value, scale, host.vehicle),
+            Source::Conduct(parameter, scale) => set_conduct(entry, parameter, value, scale, host.vehicle),
             Source::SystemId => Err(SetError::ReadOnly(id.to_owned())),
             Source::Speed => {
                 *host.speed = Speed::from_parameter(value).ok_or_else(|| SetError::OutOfRange {
@@ -189,7 +191,7 @@ fn set_loop(id: &str, parameter: &Parameter, value: f64, vehicle: &mut Vehicle) 
 }
 
 fn set_conduct(
-    id: &str,
+    entry: &Entry,
     parameter: &ConductParameter,
     value: f64,
     scale: f64,
@@ -198,11 +200,13 @@ fn set_conduct(
     let (minimum, maximum) = (parameter.minimum * scale, parameter.maximum * scale);
     // NaN is in no range.
     if !(minimum..=maximum).contains(&value) {
-        return Err(SetError::OutOfRange { id: id.to_owned(), value, minimum, maximum });
+        return Err(SetError::OutOfRange { id: entry.id.clone(), value, minimum, maximum });
     }
     let mut conduct = *vehicle.conduct();
     if !(parameter.set)(&mut conduct, value / scale) {
-        return Err(SetError::Meaningless { id: id.to_owned(), value });
+        let names = entry.describe().names;
+        let meanings: Vec<_> = names.into_iter().map(|(value, name)| format!("{value} {name}")).collect();
+        return Err(SetError::Meaningless { id: entry.id.clone(), value, meanings: meanings.join(", ") });
     }
     vehicle.set_conduct(conduct);
     Ok(())
