@@ -6,10 +6,12 @@ use common::plan_client::{result, upload};
 use common::{Bench, settings};
 use mavlink::dialects::common::*;
 use nalgebra::Vector3;
+use sitl::codec::Message;
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
-use sitl::vehicle::{Mode, VehicleSettings};
+use sitl::vehicle::{Action, Mode, VehicleSettings};
 
+const TEMPORARILY_REJECTED: u8 = 1;
 const DENIED: u8 = 2;
 
 fn item(settings: &VehicleSettings, command: u16, parameter: f64, [north, east]: [f64; 2]) -> MissionItem {
@@ -159,7 +161,10 @@ fn what_leads_outside_is_refused_with_the_reason() {
     bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone()));
     assert_eq!(bench.set_mode(Mode::Offboard), 0);
     target.x = -40.0;
+    bench.heard.clear();
     bench.stream(8.0, |bench| bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone())));
+    let told = "Set-point denied: outside the fence";
+    assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
     let [x, y, _] = bench.position();
     assert!((-6.0..-2.0).contains(&x) && y.abs() < 0.1, "{x} {y}");
     assert_eq!(bench.mode(), Mode::Hold, "refused ones are none");
@@ -195,6 +200,171 @@ fn a_return_goes_round_an_exclusion_to_the_nearest_allowed_point() {
     bench.fly_until("landed", 120.0, |bench| !bench.autopilot.vehicle().is_armed());
     let [x, y, _] = bench.position();
     assert!((x - 35.0).hypot(y) < 0.3, "{x} {y}");
+}
+
+fn fence_status(bench: &Bench) -> FENCE_STATUS_DATA {
+    let told = bench.heard.iter().rev().find_map(|message| match message {
+        Message::Typed(MavMessage::FENCE_STATUS(status)) => Some(status.clone()),
+        _ => None,
+    });
+    told.expect("FENCE_STATUS")
+}
+
+/// Full stick northwards against a circle of 20 m. Returns how far it came within some seconds.
+fn push(bench: &mut Bench, seconds: f64) -> f64 {
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut farthest: f64 = 0.0;
+    bench.stream(seconds, |bench| {
+        forward(bench);
+        farthest = farthest.max(bench.autopilot.vehicle().truth().position_m.x);
+    });
+    farthest
+}
+
+/// Every GF_ACTION, flown against the border, and what clients are told.
+#[test]
+fn each_action_is_taken_at_the_border() {
+    for action in [Action::None, Action::Warn, Action::Hold, Action::Return, Action::Terminate, Action::Land]
+    {
+        let mut start = settings(Identity::Px4);
+        start.conduct.failsafe.fence = action;
+        let circle = item(&start, command::NAV_FENCE_CIRCLE_INCLUSION, 20.0, [0.0, 0.0]);
+        let mut bench = hovering(&start, vec![circle], Vec::new());
+        bench.fly(2.0);
+        assert_eq!(
+            fence_status(&bench),
+            FENCE_STATUS_DATA {
+                breach_type: FenceBreach::FENCE_BREACH_NONE,
+                breach_mitigation: FenceMitigate::FENCE_MITIGATE_NONE,
+                ..FENCE_STATUS_DATA::default()
+            }
+        );
+        let farthest = push(&mut bench, 15.0);
+        // Terminated it falls across the border, which is another breach.
+        let fell = action == Action::Terminate;
+        let beyond = matches!(action, Action::None | Action::Warn | Action::Terminate);
+        assert_eq!(farthest > 20.0, beyond, "{action:?}: {farthest} m");
+        assert!(farthest > 16.0, "{action:?}: {farthest} m");
+        let status = fence_status(&bench);
+        // A breach that is only just prevented is one, and is over when it has been.
+        let expected = (if fell { 2 } else { 1 }, u8::from(beyond));
+        assert_eq!((status.breach_count, status.breach_status), expected, "{action:?}");
+        assert_eq!(status.breach_type, FenceBreach::FENCE_BREACH_BOUNDARY);
+        assert!((1000..bench.autopilot.vehicle().time_us() as u32 / 1000).contains(&status.breach_time));
+        let texts = bench.texts();
+        let told = texts.into_iter().filter(|text| text.starts_with("Failsafe: Fence"));
+        let told: Vec<_> = told.take(if fell { 1 } else { usize::MAX }).collect();
+        match action {
+            Action::None => assert!(told.is_empty(), "{told:?}"),
+            Action::Warn => assert_eq!(told, ["Failsafe: Fence breached (outside the fence)"]),
+            _ => {
+                let action = action.name();
+                assert_eq!(told, [format!("Failsafe: Fence breached (outside the fence): {action}")]);
+            }
+        }
+        match action {
+            Action::Return | Action::Land => {
+                bench.fly_until("landed", 120.0, |bench| !bench.autopilot.vehicle().is_armed());
+                let home = bench.position()[0].abs() < 0.3;
+                assert_eq!(home, action == Action::Return, "{action:?}: {:?}", bench.position());
+            }
+            Action::Terminate => assert!(!bench.autopilot.vehicle().is_armed()),
+            Action::Hold => assert_eq!(bench.mode(), Mode::Hold),
+            _ => assert_eq!(bench.mode(), Mode::Position),
+        }
+    }
+}
+
+/// Without GF_PREDICT it acts when it is beyond, not before.
+#[test]
+fn without_prediction_it_acts_beyond_the_border() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.failsafe.fence_ahead = false;
+    let circle = item(&start, command::NAV_FENCE_CIRCLE_INCLUSION, 20.0, [0.0, 0.0]);
+    let mut bench = hovering(&start, vec![circle], Vec::new());
+    let farthest = push(&mut bench, 8.0);
+    assert!((20.5..30.0).contains(&farthest), "{farthest} m");
+    assert_eq!(bench.mode(), Mode::Hold);
+    assert_eq!(fence_status(&bench).breach_status, 1);
+}
+
+/// SYS_STATUS tells whether there is a fence, whether it is on, and whether it holds.
+#[test]
+fn the_fence_is_part_of_the_health() {
+    let fence = MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE;
+    let told = |bench: &mut Bench| {
+        bench.heard.clear();
+        bench.fly(1.1);
+        let status = bench.heard.iter().rev().find_map(|message| match message {
+            Message::Typed(MavMessage::SYS_STATUS(status)) => Some(status.clone()),
+            _ => None,
+        });
+        let status = status.expect("SYS_STATUS");
+        [
+            status.onboard_control_sensors_present,
+            status.onboard_control_sensors_enabled,
+            status.onboard_control_sensors_health,
+        ]
+        .map(|bits| bits.contains(fence))
+    };
+    let start = settings(Identity::Px4);
+    let mut bench = Bench::of(&start);
+    assert_eq!(told(&mut bench), [false; 3]);
+    let circle = |radius_m| vec![item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, radius_m, [30.0, 0.0])];
+    bench.autopilot = with_fence(&start, circle(20.0));
+    assert_eq!(told(&mut bench), [true; 3]);
+    let disable = [0.0; 7];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, disable), 0);
+    assert_eq!(told(&mut bench), [true, false, true]);
+    bench.autopilot = with_fence(&start, circle(40.0));
+    assert_eq!(told(&mut bench), [true, true, false]);
+    // There it is not armed, either.
+    let arm = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm), TEMPORARILY_REJECTED);
+    assert!(bench.texts().iter().any(|text| text == "Arming denied: failsafe: fence breached"));
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, disable), 0);
+    bench.fly(1.1);
+    bench.arm();
+}
+
+fn with_fence(settings: &VehicleSettings, fence: Vec<MissionItem>) -> sitl::Autopilot {
+    let mut settings = settings.clone();
+    settings.plans.set(PlanKind::Fence, Plan::new(fence));
+    Bench::of(&settings).autopilot
+}
+
+/// A fence that comes after the mission: it is told at once, and the mission is not begun.
+#[test]
+fn a_mission_that_a_later_fence_forbids_is_not_begun() {
+    let mut start = settings(Identity::Px4);
+    let waypoint = |north| MissionItem {
+        position: {
+            let [latitude, longitude, _] = item(&start, command::NAV_WAYPOINT, 0.0, [north, 0.0]).position;
+            [latitude, longitude, 5.0]
+        },
+        ..item(&start, command::NAV_WAYPOINT, 0.0, [north, 0.0])
+    };
+    let takeoff = MissionItem { command: command::NAV_TAKEOFF, ..waypoint(0.0) };
+    let mission = vec![takeoff, waypoint(10.0), waypoint(40.0)];
+    start.plans.set(PlanKind::Mission, Plan::new(mission));
+    let mut bench = Bench::of(&start);
+    bench.heard = upload(&mut bench, PlanKind::Fence, &square(&start, 30.0));
+    assert_eq!(result(&bench.heard), Some(0));
+    let told = "Mission cannot be flown: item 2: outside the fence";
+    assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
+    let reason = "Mission denied: item 2: outside the fence";
+    assert_eq!(bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), DENIED);
+    assert!(bench.texts().iter().any(|text| text == reason), "{:?}", bench.texts());
+    assert_eq!(bench.set_mode(Mode::Mission), DENIED);
+    assert!(!bench.autopilot.vehicle().is_armed());
+    // In flight neither.
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    assert_eq!(bench.set_mode(Mode::Mission), DENIED);
+    assert_eq!(bench.mode(), Mode::Hold);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, [0.0; 7]), 0);
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
 }
 
 /// A wall that is thinner than the way to a stop: goals and missions behind it are refused, a stick stops before it.

@@ -208,6 +208,11 @@ impl Navigation {
         &self.readings
     }
 
+    /// What the receiver says, whether the estimator believes it or not, if it says anything new.
+    pub fn latest_fix(&self) -> Option<&GpsFix> {
+        self.readings.gps.as_ref().filter(|_| self.gps_watch.is_alive(self.time_us, FIX_PATIENCE_US))
+    }
+
     /// How much the accelerometers shake.
     pub fn vibration(&self) -> &Vibration {
         &self.vibration

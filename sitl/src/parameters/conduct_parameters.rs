@@ -65,6 +65,27 @@ macro_rules! choice {
     };
 }
 
+/// Off (0) or on (1).
+macro_rules! switch {
+    ($id:literal, $($field:ident).+) => {
+        ConductParameter {
+            id: $id,
+            ardupilot: None,
+            integer: true,
+            minimum: 0.0,
+            maximum: 1.0,
+            get: |conduct| f64::from(u8::from(conduct.$($field).+)),
+            set: |conduct, value| {
+                let means = value == 0.0 || value == 1.0;
+                if means {
+                    conduct.$($field).+ = value == 1.0;
+                }
+                means
+            },
+        }
+    };
+}
+
 /// The vehicle's own parameters.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
@@ -78,6 +99,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("BAT_EMERGEN_THR", None, 0.0..=0.9, failsafe.battery_emergency),
     choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence),
+    switch!("GF_PREDICT", failsafe.fence_ahead),
     real!("GF_MAX_HOR_DIST", Some(("FENCE_RADIUS", 1.0)), 0.0..=100_000.0, failsafe.fence_radius_m),
     real!("GF_MAX_VER_DIST", Some(("FENCE_ALT_MAX", 1.0)), 0.0..=10_000.0, failsafe.fence_height_m),
     real!("COM_WIND_MAX", None, -1.0..=50.0, failsafe.wind_m_s),
@@ -96,18 +118,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("COM_RC_LOSS_T", Some(("RC_FS_TIMEOUT", 1.0)), 0.1..=60.0, stick_timeout_s),
     real!("BAT1_CAPACITY", Some(("BATT_CAPACITY", 1.0)), 10.0..=1e6, battery_capacity_ah, 1000.0),
     real!("COM_ARM_BAT_MIN", None, 0.0..=0.9, battery_to_arm),
-    ConductParameter {
-        id: "SYS_FAILURE_EN",
-        ardupilot: None,
-        integer: true,
-        minimum: 0.0,
-        maximum: 1.0,
-        get: |conduct| f64::from(u8::from(conduct.failure_injection)),
-        set: |conduct, value| {
-            conduct.failure_injection = value == 1.0;
-            true
-        },
-    },
+    switch!("SYS_FAILURE_EN", failure_injection),
 ];
 
 /// PX4's numbers of the actions of each parameter.

@@ -48,6 +48,7 @@ const CONDUCT: &[(&str, &str, &str)] = &[
     ("BAT_EMERGEN_THR", "Remaining share at which the battery is all but empty", "norm"),
     ("COM_LOW_BAT_ACT", "What is done when the battery is critical", ""),
     ("GF_ACTION", "What is done at the fence", ""),
+    ("GF_PREDICT", "Whether it acts at the fence as soon as it could not stop before it", ""),
     ("GF_MAX_HOR_DIST", "Radius of the fence about home; 0: none", "m"),
     ("GF_MAX_VER_DIST", "Height of the fence above home; 0: none", "m"),
     ("COM_WIND_MAX", "Wind that is too high to fly in; negative: none is", "m/s"),
@@ -62,6 +63,7 @@ const CONDUCT: &[(&str, &str, &str)] = &[
 const NAMES: &[(&str, &[(i32, &str)])] = &[
     ("COM_OBL_RC_ACT", &[(0, "Position mode"), (3, "Return"), (4, "Land"), (5, "Hold"), (6, "Terminate")]),
     ("SYS_FAILURE_EN", &[(0, "Off"), (1, "On")]),
+    ("GF_PREDICT", &[(0, "Beyond the fence only"), (1, "Ahead of it")]),
     ("NAV_DLL_ACT", &[(0, "Nothing"), (1, "Hold"), (2, "Return"), (3, "Land"), (5, "Terminate")]),
     ("COM_LOW_BAT_ACT", &[(0, "Warn"), (2, "Land"), (3, "Return when critical, land when all but empty")]),
     ("GF_ACTION", &[(0, "Nothing"), (1, "Warn"), (2, "Hold"), (3, "Return"), (4, "Terminate"), (5, "Land")]),

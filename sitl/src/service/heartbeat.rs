@@ -52,12 +52,15 @@ pub fn message(vehicle: &Vehicle) -> MavMessage {
 }
 
 fn system_status(vehicle: &Vehicle) -> MavState {
+    if vehicle.is_terminated() {
+        return MavState::MAV_STATE_FLIGHT_TERMINATION;
+    }
     if !vehicle.is_armed() {
         return MavState::MAV_STATE_STANDBY;
     }
     let failsafe = vehicle.failsafe();
-    let acts = |cause: &&Cause| vehicle.conduct().failsafe.action(**cause) > Action::Warn;
-    if failsafe.present().iter().filter(acts).any(|cause| cause.is_emergency()) {
+    let acts = |cause: &Cause| vehicle.conduct().failsafe.action(*cause) > Action::Warn;
+    if failsafe.present().filter(acts).any(Cause::is_emergency) {
         MavState::MAV_STATE_EMERGENCY
     } else if failsafe.engaged().is_some() {
         MavState::MAV_STATE_CRITICAL

@@ -31,6 +31,9 @@ impl Vehicle {
                 obstacles.push(format!("not in {} mode", self.identity.mode_name(self.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
+            Mode::Mission => {
+                obstacles.extend(self.check_mission_places().err().map(|fault| format!("mission: {fault}")))
+            }
             Mode::Offboard if !self.identity.is_ardupilot() && !self.set_points_are_recent() => {
                 obstacles.push("no set-points".to_owned());
             }
@@ -53,6 +56,7 @@ impl Vehicle {
             return Err(Refusal::later(format!("Arming denied: {}", obstacles.join("; "))));
         }
         self.armed = true;
+        self.terminated = false;
         self.flown = !self.landed.is_landed();
         self.grounded_since_us = self.time_us();
         if !self.home.set_by_user && self.landed.is_landed() {
@@ -82,11 +86,24 @@ impl Vehicle {
         Ok(())
     }
 
+    /// Ends the flight at once: the rotors stop wherever it is.
+    pub fn terminate(&mut self) {
+        if self.armed {
+            self.terminated = true;
+            self.stop_rotors("Flight terminated");
+        }
+    }
+
+    /// Whether its last flight has been terminated.
+    pub fn is_terminated(&self) -> bool {
+        self.terminated
+    }
+
     pub(super) fn stop_rotors(&mut self, why: &str) {
         self.armed = false;
         self.flown = false;
         self.failsafe.release();
-        self.failsafe.see(Cause::SetPointsLost, false);
+        self.failsafe.forget(Cause::SetPointsLost);
         self.takeoff_z_m = None;
         self.forget_command_speeds();
         self.region = None;

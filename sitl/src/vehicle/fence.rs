@@ -46,6 +46,12 @@ impl Vehicle {
         &self.fence_record
     }
 
+    /// Whether there is anything that it must keep to: zones, a greatest distance or height.
+    pub fn has_fence(&self) -> bool {
+        let settings = &self.conduct.failsafe;
+        !self.fence.zones.zones.is_empty() || settings.fence_radius_m > 0.0 || settings.fence_height_m > 0.0
+    }
+
     /// Switches the fence on or off.
     pub fn enable_fence(&mut self, enabled: bool) {
         if self.fence.enabled != enabled {
@@ -69,12 +75,16 @@ impl Vehicle {
         if here.is_none() && !self.time_us().is_multiple_of(PREDICTION_PERIOD_US) {
             return;
         }
-        let now = here.or_else(|| self.breach_to(&self.stopping_place_m()));
-        if let (Some(breach), None) = (now, self.fence_record.now) {
-            self.fence_record.count = self.fence_record.count.saturating_add(1);
-            self.fence_record.latest = Some((breach, self.time_us()));
-        }
-        self.fence_record.now = now;
+        let ahead = || self.breach_to(&self.stopping_place_m());
+        self.fence_record.now =
+            here.or_else(|| if self.conduct.failsafe.fence_ahead { ahead() } else { None });
+    }
+
+    /// Counts the breach of now, which has begun.
+    pub(super) fn count_breach(&mut self) {
+        let Some(breach) = self.fence_record.now else { return };
+        self.fence_record.count = self.fence_record.count.saturating_add(1);
+        self.fence_record.latest = Some((breach, self.time_us()));
     }
 
     /// What of the fence forbids a place, NED, m.

@@ -6,6 +6,7 @@ use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
 use super::state::Vehicle;
 use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, TrueMotion, Validity};
+use crate::fault::Sensor;
 
 impl Vehicle {
     /// Looks at the motion that the last tick has led to.
@@ -45,6 +46,37 @@ impl Vehicle {
             Some(navigation) => navigation.estimate().validity,
             None => self.ideal_sensors.validity(),
         }
+    }
+
+    /// Whether it knows enough of its motion to hold a place and a height: not without its inertial unit, nor when neither the receiver
+    /// nor the barometer is left to correct the height.
+    pub(super) fn knows_its_place(&self) -> bool {
+        let (known, works) = (self.validity(), self.instrument_health());
+        let estimated = known.tilt && known.horizontal_position && known.vertical_position;
+        // Ideal sensors know the rest by themselves.
+        let ideal = self.navigation.is_none();
+        estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
+    }
+
+    /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
+    pub(super) fn sink_rate_m_s(&self) -> f64 {
+        let works = self.instrument_health();
+        let supported = works.accelerometer && (works.gps || works.barometer);
+        let fix = self.navigation.as_ref().and_then(Navigation::latest_fix).filter(|_| !supported);
+        fix.map_or(self.outputs.velocity_m_s.z, |fix| fix.velocity_m_s.z)
+    }
+
+    /// The instruments that do not work, by their names.
+    pub(super) fn failed_instruments(&self) -> Vec<&'static str> {
+        let works = self.instrument_health();
+        let instruments = [
+            (works.gyroscope, Sensor::Gyroscope),
+            (works.accelerometer, Sensor::Accelerometer),
+            (works.magnetometer, Sensor::Magnetometer),
+            (works.barometer, Sensor::Barometer),
+            (works.gps, Sensor::Gps),
+        ];
+        instruments.into_iter().filter(|(works, _)| !works).map(|(_, sensor)| sensor.name()).collect()
     }
 
     /// Which instruments work.

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::notice::Severity;
 use super::state::Vehicle;
 use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check, command, frame};
 
@@ -57,8 +58,15 @@ impl Vehicle {
         self.plans.set(kind, Plan::new(items));
         if kind == PlanKind::Mission {
             self.mission_has_changed(amended);
+        } else if let Err(fault) = self.check_mission_places() {
+            self.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
         }
         Ok(())
+    }
+
+    /// Refuses a mission that the fence of now forbids: it may have come after the mission.
+    pub(super) fn check_mission_places(&self) -> Result<(), PlanFault> {
+        self.check_places(PlanKind::Mission, self.plans.get(PlanKind::Mission).items())
     }
 
     /// Refuses items whose places the fence forbids, or the straight ways between them.

@@ -108,6 +108,7 @@ impl Vehicle {
         }
         self.may_enter(self.holding_mode())?;
         if goal.horizontal_m.is_none() && goal.down_m.is_none() && goal.yaw_rad.is_none() {
+            self.failsafe.release();
             self.enter(self.holding_mode());
             self.follow(&PositionSetPoint::HOLD);
             return Ok(());

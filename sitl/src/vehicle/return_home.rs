@@ -92,7 +92,7 @@ impl Vehicle {
             }
             return;
         }
-        if !self.validity().horizontal_position {
+        if !self.knows_its_place() {
             self.descend_blind();
             return;
         }
@@ -112,7 +112,7 @@ impl Vehicle {
     fn descend_blind(&mut self) {
         let airframe = self.simulation.configuration().airframe;
         let (_, strongest_n) = airframe.thrust_range_n();
-        let missing_m_s = self.outputs.velocity_m_s.z - self.conduct.land_speed_m_s;
+        let missing_m_s = self.sink_rate_m_s() - self.conduct.land_speed_m_s;
         let thrust_n = airframe.weight_n() * (1.0 + SINK_GAIN * missing_m_s).clamp(0.6, 1.4);
         let level = UnitQuaternion::from_euler_angles(0.0, 0.0, self.outputs.attitude_rad.z);
         let set_point = AttitudeSetPoint {

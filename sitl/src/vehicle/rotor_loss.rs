@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::{PositionReference, RotorFault, RotorMonitor};
 
-use super::mode::Mode;
+use super::failsafe::Action;
 use super::motion::at_rest;
 use super::notice::{Refusal, Severity};
 use super::state::Vehicle;
@@ -74,9 +74,11 @@ impl Vehicle {
             self.stop_rotors(&format!("Disarmed: rotor {number} failed"));
             return;
         }
-        self.say(Severity::Critical, format!("Rotor {number} lost: descending without yaw control"));
-        self.enter(Mode::Land);
+        let descends = self.conduct.failsafe.rotor_failure == Action::Land;
+        let what = if descends { ": descending without yaw control" } else { "" };
+        self.say(Severity::Critical, format!("Rotor {number} lost{what}"));
         let since_us = self.time_us();
+        // The failsafe sees it, and lands or terminates.
         self.rotors.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None });
     }
 

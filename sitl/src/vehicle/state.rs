@@ -97,6 +97,8 @@ pub struct Vehicle {
     pub(super) landed: LandedDetector,
     pub(super) home: Home,
     pub(super) armed: bool,
+    /// Whether the last flight was ended in the air; until it is armed again.
+    pub(super) terminated: bool,
     pub(super) mode: Mode,
     pub(super) steering: Steering,
     pub(super) set_points: SetPoints,
@@ -158,6 +160,7 @@ impl Vehicle {
             landed: LandedDetector::new(-outputs.position_m.z),
             home: Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false },
             armed: false,
+            terminated: false,
             mode: settings.identity.first_mode(),
             steering: Steering::Idle { yaw_rad: settings.heading_rad },
             set_points: SetPoints::default(),

@@ -55,7 +55,10 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::DO_SET_MODE => set_mode(autopilot, command),
         number::DO_CHANGE_SPEED => vehicle.change_speed(command.parameter(1), command.parameter(2)),
         number::DO_SET_HOME => set_home(vehicle, command),
-        number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => vehicle.disarm(true),
+        number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => {
+            vehicle.terminate();
+            Ok(())
+        }
         number::DO_FLIGHTTERMINATION => Ok(()),
         number::DO_REPOSITION => reposition(autopilot, command),
         number::DO_SET_ROI_LOCATION

@@ -29,9 +29,17 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let present =
+        if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
+    let enabled = if vehicle.fence().enabled {
+        present
+    } else {
+        present & !MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE
+    };
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
     let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
     let position = validity.horizontal_position && validity.horizontal_velocity;
+    let charged = vehicle.battery_remaining() >= vehicle.conduct().failsafe.battery_critical;
     let checks = [
         (instruments.gyroscope, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO),
         (instruments.accelerometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL),
@@ -41,6 +49,9 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (validity.tilt && validity.heading, MavSysStatusSensor::MAV_SYS_STATUS_AHRS),
         (validity.vertical_position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL),
         (position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL),
+        (vehicle.lost_rotor().is_none(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
+        (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
+        (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
@@ -48,13 +59,27 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
     let battery = vehicle.battery();
     MavMessage::SYS_STATUS(SYS_STATUS_DATA {
         onboard_control_sensors_present: present,
-        onboard_control_sensors_enabled: present,
+        onboard_control_sensors_enabled: enabled,
         onboard_control_sensors_health: health,
         voltage_battery: (battery.voltage_v() * 1e3).round() as u16,
         current_battery: (battery.current_a() * 1e2).round() as i16,
         battery_remaining: percent(vehicle),
         ..SYS_STATUS_DATA::default()
     })
+}
+
+/// By the thresholds at which the failsafe acts.
+fn charge_state(vehicle: &Vehicle) -> MavBatteryChargeState {
+    let (remaining, settings) = (vehicle.battery_remaining(), &vehicle.conduct().failsafe);
+    if remaining < settings.battery_emergency {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_EMERGENCY
+    } else if remaining < settings.battery_critical {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL
+    } else if remaining < settings.battery_low {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW
+    } else {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK
+    }
 }
 
 fn percent(vehicle: &Vehicle) -> i8 {
@@ -64,7 +89,6 @@ fn percent(vehicle: &Vehicle) -> i8 {
 /// BATTERY_STATUS.
 pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
     let battery = vehicle.battery();
-    let remaining = vehicle.battery_remaining();
     let cell_mv = (battery.voltage_v() / CELLS as f64 * 1e3).round() as u16;
     MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
         current_consumed: (battery.drawn_ah() * 1e3).round() as i32,
@@ -77,11 +101,7 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
         mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
         battery_remaining: percent(vehicle),
         time_remaining: battery.time_remaining_s(vehicle.conduct().battery_capacity_ah) as i32,
-        charge_state: match remaining {
-            ..=0.07 => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL,
-            ..=0.15 => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW,
-            _ => MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK,
-        },
+        charge_state: charge_state(vehicle),
         ..BATTERY_STATUS_DATA::default()
     })
 }

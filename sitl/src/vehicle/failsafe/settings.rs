@@ -23,6 +23,9 @@ pub struct FailsafeSettings {
     pub battery: BatteryPolicy,
     /// What the fence does (GF_ACTION).
     pub fence: Action,
+    /// Whether it acts as soon as the vehicle could not stop before the fence, not only beyond it (GF_PREDICT).
+    #[serde(default = "yes")]
+    pub fence_ahead: bool,
     /// Farthest from home, m; 0: anywhere (GF_MAX_HOR_DIST).
     pub fence_radius_m: f64,
     /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
@@ -35,6 +38,11 @@ pub struct FailsafeSettings {
     pub position_lost: Action,
     /// Whether it descends on the others when a rotor is lost, or stops them, too (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
+}
+
+/// Records of before it could be chosen have none.
+fn yes() -> bool {
+    true
 }
 
 /// What a weak battery does.
@@ -61,6 +69,7 @@ impl Default for FailsafeSettings {
             battery_emergency: 0.05,
             battery: BatteryPolicy::ReturnThenLand,
             fence: Action::Hold,
+            fence_ahead: true,
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
             wind_m_s: -1.0,

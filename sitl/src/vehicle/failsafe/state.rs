@@ -2,10 +2,21 @@
 
 use super::{Action, Cause};
 
+/// A cause must have been away for so long, µs, before it counts as over: one that flickers acts once.
+pub const HOLD_US: u64 = 1_000_000;
+
+/// A cause that is there, or has been a moment ago.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    cause: Cause,
+    /// When it will be over unless it comes back, µs; `None` while it is there.
+    over_us: Option<u64>,
+}
+
 /// State of the failsafe.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Failsafe {
-    present: Vec<Cause>,
+    seen: Vec<Seen>,
     engaged: Option<(Cause, Action)>,
     /// Whether a ground station is heard; `None` before the first one.
     pub(crate) ground_station: Option<bool>,
@@ -23,28 +34,42 @@ pub enum Change {
 }
 
 impl Failsafe {
-    /// Takes in whether a cause is there; returns what that changes.
-    pub fn see(&mut self, cause: Cause, present: bool) -> Option<Change> {
-        let before = self.is_present(cause);
-        match (before, present) {
-            (false, true) => self.present.push(cause),
-            (true, false) => self.present.retain(|seen| *seen != cause),
-            _ => return None,
+    /// Takes in whether a cause is there at a time, µs; returns what that changes.
+    pub fn see(&mut self, cause: Cause, present: bool, time_us: u64) -> Option<Change> {
+        let Some(seen) = self.seen.iter_mut().find(|seen| seen.cause == cause) else {
+            if !present {
+                return None;
+            }
+            self.seen.push(Seen { cause, over_us: None });
+            return Some(Change::Begun);
+        };
+        if present {
+            let was_over = seen.over_us.take().is_some_and(|over_us| over_us <= time_us);
+            return was_over.then_some(Change::Begun);
         }
-        if before && self.engaged.is_some_and(|(by, _)| by == cause) {
+        if *seen.over_us.get_or_insert(time_us + HOLD_US) > time_us {
+            return None;
+        }
+        self.forget(cause);
+        Some(Change::Ended)
+    }
+
+    /// A cause is over at once, and nobody needs to be told.
+    pub fn forget(&mut self, cause: Cause) {
+        self.seen.retain(|seen| seen.cause != cause);
+        if self.engaged.is_some_and(|(by, _)| by == cause) {
             self.engaged = None;
         }
-        Some(if present { Change::Begun } else { Change::Ended })
     }
 
-    /// Whether a cause is there.
+    /// Whether a cause is there, or not over yet.
     pub fn is_present(&self, cause: Cause) -> bool {
-        self.present.contains(&cause)
+        self.present().any(|seen| seen == cause)
     }
 
-    /// Causes that are there, in the order in which they came.
-    pub fn present(&self) -> &[Cause] {
-        &self.present
+    /// Causes that are there or not over yet, in the order in which they came.
+    pub fn present(&self) -> impl Iterator<Item = Cause> {
+        self.seen.iter().map(|seen| seen.cause)
     }
 
     /// What is being done, and why.
@@ -63,15 +88,19 @@ impl Failsafe {
         self.engaged = Some((cause, action));
     }
 
-    /// Somebody else decides again: a user has chosen a mode, or the flight is over.
+    /// Somebody else decides again: a user has chosen a mode, or the flight is over. What is not there any more is over then: it
+    /// acts again when it comes back.
     pub fn release(&mut self) {
         self.engaged = None;
+        for over_us in self.seen.iter_mut().filter_map(|seen| seen.over_us.as_mut()) {
+            *over_us = 0;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Action, Cause, Change, Failsafe};
+    use super::{Action, Cause, Change, Failsafe, HOLD_US};
 
     #[test]
     fn a_worse_action_goes_before_a_milder_one_and_never_the_other_way_round() {
@@ -89,14 +118,33 @@ mod tests {
     #[test]
     fn causes_come_and_go_once() {
         let mut failsafe = Failsafe::default();
-        assert_eq!(failsafe.see(Cause::HighWind, false), None);
-        assert_eq!(failsafe.see(Cause::HighWind, true), Some(Change::Begun));
-        assert_eq!(failsafe.see(Cause::HighWind, true), None);
+        assert_eq!(failsafe.see(Cause::HighWind, false, 0), None);
+        assert_eq!(failsafe.see(Cause::HighWind, true, 0), Some(Change::Begun));
+        assert_eq!(failsafe.see(Cause::HighWind, true, 1), None);
         failsafe.engage(Cause::HighWind, Action::Return);
-        assert_eq!(failsafe.see(Cause::Fence, true), Some(Change::Begun));
-        assert_eq!(failsafe.see(Cause::Fence, false), Some(Change::Ended));
+        assert_eq!(failsafe.see(Cause::Fence, true, 1), Some(Change::Begun));
+        assert_eq!(failsafe.see(Cause::Fence, false, 2), None);
+        assert_eq!(failsafe.see(Cause::Fence, false, 2 + HOLD_US), Some(Change::Ended));
         assert_eq!(failsafe.engaged(), Some((Cause::HighWind, Action::Return)), "another cause's end");
-        assert_eq!(failsafe.see(Cause::HighWind, false), Some(Change::Ended));
+        // What comes and goes within the hold time has never gone.
+        for time_us in (3..10 * HOLD_US).step_by(HOLD_US as usize / 3) {
+            assert_eq!(failsafe.see(Cause::HighWind, time_us.is_multiple_of(2), time_us), None, "{time_us}");
+        }
+        assert!(failsafe.is_present(Cause::HighWind));
+        assert_eq!(failsafe.see(Cause::HighWind, false, 20 * HOLD_US), Some(Change::Ended));
         assert_eq!(failsafe.engaged(), None);
+    }
+
+    #[test]
+    fn it_acts_again_when_the_user_brings_the_cause_back() {
+        let mut failsafe = Failsafe::default();
+        failsafe.see(Cause::Fence, true, 0);
+        failsafe.engage(Cause::Fence, Action::Hold);
+        assert_eq!(failsafe.see(Cause::Fence, false, 10), None);
+        failsafe.release();
+        assert_eq!(failsafe.see(Cause::Fence, true, 20), Some(Change::Begun));
+        // While it is there the user has decided.
+        failsafe.release();
+        assert_eq!(failsafe.see(Cause::Fence, true, 30), None);
     }
 }

@@ -37,7 +37,7 @@ impl Vehicle {
 
     /// Takes in whether a cause is there.
     pub(in crate::vehicle) fn see(&mut self, cause: Cause, present: bool) {
-        match self.failsafe.see(cause, present) {
+        match self.failsafe.see(cause, present, self.time_us()) {
             Some(Change::Begun) => self.begin(cause),
             Some(Change::Ended) if self.conduct.failsafe.action(cause) > Action::None => {
                 self.say(Severity::Info, format!("Failsafe: {} is over", lower(cause)));
@@ -51,7 +51,7 @@ impl Vehicle {
         let remaining = self.battery_remaining();
         match cause {
             Cause::RotorFailure => self.lost_rotor().is_some(),
-            Cause::PositionLost => self.armed && !self.validity().horizontal_position,
+            Cause::PositionLost => self.armed && !self.knows_its_place(),
             Cause::BatteryEmergency => remaining < settings.battery_emergency,
             Cause::BatteryCritical => remaining < settings.battery_critical,
             Cause::BatteryLow => remaining < settings.battery_low,
@@ -63,6 +63,9 @@ impl Vehicle {
     }
 
     fn begin(&mut self, cause: Cause) {
+        if cause == Cause::Fence {
+            self.count_breach();
+        }
         let action = self.conduct.failsafe.action(cause);
         if action == Action::None {
             return;
@@ -85,7 +88,7 @@ impl Vehicle {
         self.failsafe.engage(cause, action);
         match action.mode() {
             Some(mode) => self.enter(mode),
-            None => self.stop_rotors("Flight terminated"),
+            None => self.terminate(),
         }
     }
 
@@ -96,26 +99,25 @@ impl Vehicle {
             }
             Cause::HighWind => format!(" ({:.1} m/s)", self.failsafe.wind_m_s),
             Cause::Fence => self.fence_record.now.map(|breach| format!(" ({breach})")).unwrap_or_default(),
+            Cause::PositionLost => match self.failed_instruments().join(", ") {
+                failed if failed.is_empty() => failed,
+                failed => format!(" ({failed} failed)"),
+            },
             _ => String::new(),
         }
     }
 
     /// What of the causes speaks against arming.
     pub(in crate::vehicle) fn failsafe_obstacles(&self) -> Vec<String> {
-        let speaks = |cause: &&Cause| {
+        let speaks = |cause: &Cause| {
             // These have obstacles of their own, or are for the flight only.
             let others = matches!(
                 cause,
                 Cause::RotorFailure | Cause::PositionLost | Cause::SetPointsLost | Cause::BatteryLow
             );
-            !others && self.conduct.failsafe.action(**cause) > Action::Warn
+            !others && self.conduct.failsafe.action(*cause) > Action::Warn
         };
-        self.failsafe
-            .present()
-            .iter()
-            .filter(speaks)
-            .map(|cause| format!("failsafe: {}", lower(*cause)))
-            .collect()
+        self.failsafe.present().filter(speaks).map(|cause| format!("failsafe: {}", lower(cause))).collect()
     }
 
     /// Whether a user may choose a mode now.

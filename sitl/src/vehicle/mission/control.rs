@@ -17,15 +17,19 @@ impl Vehicle {
     /// Starts the mission, or goes on with it; `first` names the item to begin with.
     ///
     /// # Errors
-    /// [`Refusal`] without a mission, or for an item that there is not.
+    /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
     pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        self.may_enter(Mode::Mission)?;
+        self.refuse_without_rotor()?;
         if !self.has_mission() {
             return Err(Refusal::later("Mission rejected: there is none"));
         }
+        self.check_mission_places().map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
         if let Some(first) = first {
             self.set_mission_item(first, true)?;
         }
         self.mission.paused = false;
+        self.failsafe.release();
         if self.mode != Mode::Mission {
             self.enter(Mode::Mission);
         } else if self.mission.progress == Progress::Complete {
