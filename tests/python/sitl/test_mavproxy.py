@@ -12,7 +12,7 @@ import pytest
 
 PROGRAM = Path(sys.executable).parent / "mavproxy.py"
 # Those that a flight by hand needs; others are for maps, cameras and joysticks.
-MODULES = "param,ftp,cmdlong,arm,mode"
+MODULES = "param,ftp,cmdlong,arm,mode,fence"
 
 
 class Shell:
@@ -119,3 +119,27 @@ def test_a_flight_with_px4s_modes(start, connect, shell):
     watcher.wait("HEARTBEAT", armed)
     console.ask("disarm", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
     watcher.wait("HEARTBEAT", lambda beat: not armed(beat))
+
+
+def test_a_fence_is_loaded_and_kept(start, connect, shell, tmp_path):
+    vehicle = start("--autopilot", "ardupilot", "--speed", "4", links=("tcpin:0", "udpin:0"))
+    watcher = connect(vehicle, 1)
+    console = shell(f"tcp:{vehicle.addresses[0]}")
+    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)
+    home = watcher.wait("GLOBAL_POSITION_INT")
+    latitude, longitude = home.lat / 1e7, home.lon / 1e7
+    north, east = math.degrees(15 / 6_378_137), math.degrees(15 / 6_378_137 / math.cos(math.radians(latitude)))
+    corners = [(-north, -east), (-north, east), (north, east), (north, -east)]
+    rows = [f"{index}\t0\t3\t5001\t4\t0\t0\t0\t{latitude + x:.7f}\t{longitude + y:.7f}\t0\t1" for index, (x, y) in enumerate(corners)]
+    (tmp_path / "fence.txt").write_text("\n".join(["QGC WPL 110", *rows, ""]))
+    console.ask("fence load fence.txt", "Loaded 4 fence|fence present|[Ss]ent all|Fence sent")
+    watcher.wait("SYS_STATUS", lambda status: status.onboard_control_sensors_enabled & 1 << 20)
+    console.ask("mode guided", "GUIDED> |Mode GUIDED")
+    console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    console.ask("takeoff 5", "Got COMMAND_ACK: NAV_TAKEOFF: ACCEPTED")
+    watcher.wait("GLOBAL_POSITION_INT", lambda place: abs(place.relative_alt - 5000) < 200, 30)
+    console.ask(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5", "denied: outside the fence")
+    console.ask("fence disable", "fence disabled|Fence disabled")
+    console.type(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5")
+    watcher.wait("LOCAL_POSITION_NED", lambda place: place.x > 20, 30)
+    console.ask("fence enable", "Failsafe: Fence breached")

@@ -30,6 +30,58 @@ def upload(client, kind, items):
             round((HOME[0] + north * NORTH) * 1e7), round((HOME[1] + east * EAST) * 1e7), 0, kind)
 
 
+CIRCLE_IN, CIRCLE_OUT = mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION
+OUTSIDE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION
+INVALID, INVALID_RADIUS = mavlink.MAV_MISSION_INVALID, mavlink.MAV_MISSION_INVALID_PARAM1
+MEANINGLESS = {
+    "two corners": ([(INSIDE, 2, 0, 0), (INSIDE, 2, 9, 0)], INVALID_RADIUS, "item 0: 2 corners"),
+    "crossing sides": ([(INSIDE, 4, *SQUARE[corner]) for corner in (0, 2, 1, 3)], INVALID, "sides 0 and 2 cross"),
+    "no area": ([(INSIDE, 3, 5, 5)] * 3, INVALID, "sides 0 and 1 cross"),
+    "corners of another kind": ([(INSIDE, 3, 0, 0), (OUTSIDE, 3, 9, 0), (INSIDE, 3, 9, 9)], INVALID, "item 1: the polygon"),
+    "a corner missing": ([(INSIDE, 4, *corner) for corner in SQUARE[:3]], INVALID, "needs 4 corners"),
+    "no number of corners": ([(INSIDE, math.nan, 0, 0)], INVALID_RADIUS, "NaN corners"),
+    "radius 0": ([(CIRCLE_IN, 0, 0, 0)], INVALID_RADIUS, "radius 0 m is outside"),
+    "radius below 0": ([(CIRCLE_OUT, -1, 0, 0)], INVALID_RADIUS, "radius -1 m is outside"),
+    "radius NaN": ([(CIRCLE_IN, math.nan, 0, 0)], INVALID_RADIUS, "radius NaN m is outside"),
+    "radius infinite": ([(CIRCLE_OUT, math.inf, 0, 0)], INVALID_RADIUS, "radius inf m is outside"),
+    "a waypoint": ([(mavlink.MAV_CMD_NAV_WAYPOINT, 0, 0, 0)], mavlink.MAV_MISSION_UNSUPPORTED, "command 16 is not supported"),
+}
+
+
+def told(client, words):
+    """Waits for words in the lines for the pilot, whose pieces are joined."""
+    whole = ""
+    while words not in whole:
+        whole += client.wait("STATUSTEXT", timeout=3).text
+
+
+def test_zones_without_meaning_are_refused_and_the_fence_stays(start, connect):
+    client = connect(start("--speed", "10"))
+    assert upload(client, FENCE, [(CIRCLE_IN, 10, 50, 0)]) == mavlink.MAV_MISSION_ACCEPTED
+    client.wait("STATUSTEXT", lambda line: line.text.startswith("Failsafe: Fence breached"))
+    for name, (items, result, reason) in MEANINGLESS.items():
+        client.drain()
+        assert upload(client, FENCE, items) == result, name
+        told(client, reason)
+    # The one that was there still is: here, outside of it, it is not armed.
+    client.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1, result=mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+    fence = mavlink.MAV_SYS_STATUS_GEOFENCE
+    client.wait("SYS_STATUS", lambda status: status.onboard_control_sensors_present & fence
+                and not status.onboard_control_sensors_health & fence)
+    client.wait("FENCE_STATUS", lambda status: status.breach_status == 1 and status.breach_count == 1)
+    assert upload(client, FENCE, []) == mavlink.MAV_MISSION_ACCEPTED
+    client.wait("STATUSTEXT", lambda line: line.text == "Failsafe: fence breached is over")
+    client.arm()
+
+
+def test_a_terminated_flight_is_told_by_the_heartbeat(start, connect):
+    client = connect(start("--speed", "10", "--set", "GF_ACTION=4"))
+    client.take_off()
+    assert upload(client, FENCE, [(CIRCLE_OUT, 10, 5, 0)]) == mavlink.MAV_MISSION_ACCEPTED
+    beat = client.wait("HEARTBEAT", lambda beat: not armed(beat))
+    assert beat.system_status == mavlink.MAV_STATE_FLIGHT_TERMINATION, beat
+
+
 def armed(beat):
     return beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 

@@ -56,8 +56,8 @@ pub enum BatteryPolicy {
     ReturnThenLand,
 }
 
-/// PX4's values, but for three of its actions: a weak battery returns and lands (PX4 warns), a breached fence holds (as PX4's), a failed
-/// rotor lands (PX4 warns).
+/// PX4's values, but for three: a critical battery returns, an empty one lands, and a failed rotor lands (PX4 warns of all), and the fence
+/// is seen ahead (PX4 acts beyond it). A vehicle that is there to be tested shows what it can do.
 impl Default for FailsafeSettings {
     fn default() -> Self {
         Self {
