@@ -1,9 +1,11 @@
-//! The world around the vehicle: where its local frame lies on the earth, and the wind.
+//! The world around the vehicle: where its local frame lies on the earth, air, wind and magnetic field.
 
-mod field;
+mod atmosphere;
 mod local_frame;
+mod magnetic_field;
 mod wind;
 
-pub use field::{atmospheric_pressure_pa, earth_field_ned, pressure_altitude_m};
+pub use atmosphere::{atmospheric_pressure_pa, atmospheric_temperature_degc, pressure_altitude_m};
 pub use local_frame::{Geodetic, LocalFrame};
+pub use magnetic_field::earth_field_ned;
 pub use wind::{Wind, WindSettings};

@@ -13,6 +13,7 @@ use crate::estimation::Readings;
 use crate::estimation::inertial::{ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COUNTS_PER_RAD_S};
 use crate::estimation::magnetometer::COUNTS_PER_GAUSS;
 use crate::vehicle::Vehicle;
+use crate::world::atmospheric_temperature_degc;
 
 /// GPS_RAW_INT: the latest fix, if it is young enough to be one.
 pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
@@ -141,15 +142,13 @@ fn whole(vector: &Vector3<f64>, scale: f64) -> [i16; 3] {
 
 /// SCALED_PRESSURE: the barometer, at the temperature of the standard atmosphere.
 pub fn scaled_pressure(vehicle: &Vehicle) -> MavMessage {
-    const SEA_LEVEL_CENTIDEGREES: f64 = 1500.0;
-    const LAPSE_CENTIDEGREES_M: f64 = 0.65;
     let reading = vehicle.readings().barometer;
     let altitude_m = reading.map_or(0.0, |reading| reading.altitude_m());
     MavMessage::SCALED_PRESSURE(SCALED_PRESSURE_DATA {
         time_boot_ms: boot_ms(reading.map_or(0, |reading| reading.time_us)),
         press_abs: reading.map_or(0.0, |reading| (reading.pressure_pa / 100.0) as f32),
         press_diff: 0.0,
-        temperature: (SEA_LEVEL_CENTIDEGREES - LAPSE_CENTIDEGREES_M * altitude_m).round() as i16,
+        temperature: (atmospheric_temperature_degc(altitude_m) * 1e2).round() as i16,
         temperature_press_diff: 0,
     })
 }
