@@ -37,14 +37,15 @@ impl Echoes {
 mod tests {
     use std::time::Instant;
 
-    use mavlink::dialects::common::{MavMessage, PING_DATA};
+    use mavlink::dialects::common::{MavMessage, SYSTEM_TIME_DATA};
 
     use super::{Echoes, LATEST, MOST};
     use crate::codec::{Frame, Version};
     use crate::service::PeerId;
 
-    fn ping(time_usec: u64) -> Frame {
-        let message = MavMessage::PING(PING_DATA { time_usec, ..PING_DATA::default() });
+    fn frame(time_unix_usec: u64) -> Frame {
+        let message =
+            MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA { time_unix_usec, ..SYSTEM_TIME_DATA::default() });
         Frame::encode(&message.into(), Version::Two, 0, (255, 190)).expect("a message of MAVLink 2")
     }
 
@@ -53,13 +54,13 @@ mod tests {
         let [one, other] = [1, 2].map(|number| PeerId { link: 0, number });
         let now = Instant::now();
         let mut echoes = Echoes::default();
-        echoes.remember(&ping(0), one, now);
-        assert!(echoes.has(&ping(0), other, now + LATEST));
-        assert!(!echoes.has(&ping(0), one, now), "who repeats itself is heard again");
-        assert!(!echoes.has(&ping(1), other, now));
-        assert!(!echoes.has(&ping(0), other, now + 2 * LATEST));
-        (0..2 * MOST as u64).for_each(|number| echoes.remember(&ping(number), one, now));
+        echoes.remember(&frame(0), one, now);
+        assert!(echoes.has(&frame(0), other, now + LATEST));
+        assert!(!echoes.has(&frame(0), one, now), "who repeats itself is heard again");
+        assert!(!echoes.has(&frame(1), other, now));
+        assert!(!echoes.has(&frame(0), other, now + 2 * LATEST));
+        (0..2 * MOST as u64).for_each(|number| echoes.remember(&frame(number), one, now));
         assert_eq!(echoes.0.len(), MOST);
-        assert!(echoes.has(&ping(2 * MOST as u64 - 1), other, now) && !echoes.has(&ping(0), other, now));
+        assert!(echoes.has(&frame(2 * MOST as u64 - 1), other, now) && !echoes.has(&frame(0), other, now));
     }
 }

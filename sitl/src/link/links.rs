@@ -1,8 +1,9 @@
 //! All links: receiving, sending, and forwarding from one peer to the others.
 
-use std::collections::{BTreeMap, VecDeque};
-use std::time::{Duration, Instant};
+use std::collections::BTreeMap;
+use std::time::Instant;
 
+use super::echo::Echoes;
 use super::endpoint::{Endpoint, LinkSpecification};
 use super::error::LinkError;
 use super::peer::Peer;
@@ -14,9 +15,6 @@ use crate::autopilot::COMPONENT;
 use crate::codec::{Frame, Version, id, target_of};
 use crate::service::{Destination, Origin, Outgoing, PeerId};
 use crate::signing::Signing;
-
-/// A frame that comes back within this time by another way is the same frame.
-const ECHO: Duration = Duration::from_millis(500);
 
 /// A received frame.
 #[derive(Clone, Debug)]
@@ -39,7 +37,7 @@ pub struct Links {
     /// Our systems.
     systems: Vec<u8>,
     links: Vec<Link>,
-    recent: VecDeque<(Vec<u8>, PeerId, Instant)>,
+    echoes: Echoes,
     signing: Signing,
     setups: Vec<SigningSetup>,
 }
@@ -56,7 +54,13 @@ impl Links {
                 Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
             })
             .collect::<Result<_, LinkError>>()?;
-        Ok(Self { systems, links, recent: VecDeque::new(), signing: Signing::default(), setups: Vec::new() })
+        Ok(Self {
+            systems,
+            links,
+            echoes: Echoes::default(),
+            signing: Signing::default(),
+            setups: Vec::new(),
+        })
     }
 
     /// Signs and verifies from now on.
@@ -167,15 +171,11 @@ impl Links {
         if origin.component == COMPONENT && self.systems.contains(&origin.system) {
             return false;
         }
-        while self.recent.front().is_some_and(|(_, _, when)| now.duration_since(*when) > ECHO) {
-            self.recent.pop_front();
-        }
-        let bytes = received.frame.bytes();
-        let known = self.recent.iter().any(|(seen, by, _)| *by != origin.peer && seen == bytes);
+        let known = self.echoes.has(&received.frame, origin.peer, now);
         // One peer has no one to be an echo of, and a key is not remembered.
         let secret = received.frame.message_id() == id::SETUP_SIGNING;
         if !known && !secret && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
-            self.recent.push_back((bytes.to_vec(), origin.peer, now));
+            self.echoes.remember(&received.frame, origin.peer, now);
         }
         !known
     }
@@ -270,13 +270,13 @@ fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::{BTreeMap, VecDeque};
+    use std::collections::BTreeMap;
     use std::sync::{Arc, Mutex};
     use std::time::Instant;
 
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
 
-    use super::{Link, Links};
+    use super::{Echoes, Link, Links};
     use crate::codec::{Frame, Message, Version};
     use crate::link::SigningSetup;
     use crate::link::transport::{Event, Transport};
@@ -328,8 +328,8 @@ mod tests {
             peers: BTreeMap::new(),
         };
         let links = vec![of(&ends[0], true), of(&ends[1], false)];
-        let (recent, signing, setups) = (VecDeque::new(), Signing::default(), Vec::new());
-        (Links { systems: vec![1], links, recent, signing, setups }, ends)
+        let (echoes, signing, setups) = (Echoes::default(), Signing::default(), Vec::new());
+        (Links { systems: vec![1], links, echoes, signing, setups }, ends)
     }
 
     fn frame(message: MavMessage, system: u8) -> Frame {

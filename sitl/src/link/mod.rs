@@ -1,5 +1,6 @@
 //! Links: transports, their peers, and what goes between them.
 
+mod echo;
 mod endpoint;
 mod error;
 mod links;
