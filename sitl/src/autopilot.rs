@@ -274,7 +274,7 @@ impl Autopilot {
         &self.settings
     }
 
-    /// Number of parameters.
+    /// All parameters in their order.
     pub fn parameter_table(&self) -> &ParameterTable {
         &self.table
     }

@@ -17,7 +17,7 @@ pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
 pub use decoder::FrameDecoder;
 pub use frame::{Frame, Signature, Version};
-pub use message::{CommandAck, Message};
+pub use message::{CommandAck, Message, floats};
 pub use mission_item::MissionItemMessage;
 pub use payload::Payload;
 pub use position_target::{SetPositionTarget, TargetPosition};
@@ -67,18 +67,20 @@ pub mod id {
     pub const RC_CHANNELS_OVERRIDE: u32 = 70;
     /// MISSION_ITEM_INT
     pub const MISSION_ITEM_INT: u32 = 73;
-    /// COMMAND_CANCEL
-    pub const COMMAND_CANCEL: u32 = 80;
     /// COMMAND_INT
     pub const COMMAND_INT: u32 = 75;
     /// COMMAND_LONG
     pub const COMMAND_LONG: u32 = 76;
+    /// COMMAND_CANCEL
+    pub const COMMAND_CANCEL: u32 = 80;
     /// SET_ATTITUDE_TARGET
     pub const SET_ATTITUDE_TARGET: u32 = 82;
     /// SET_POSITION_TARGET_LOCAL_NED
     pub const SET_POSITION_TARGET_LOCAL_NED: u32 = 84;
     /// SET_POSITION_TARGET_GLOBAL_INT
     pub const SET_POSITION_TARGET_GLOBAL_INT: u32 = 86;
+    /// RADIO_STATUS
+    pub const RADIO_STATUS: u32 = 109;
     /// FILE_TRANSFER_PROTOCOL
     pub const FILE_TRANSFER_PROTOCOL: u32 = 110;
     /// TIMESYNC
@@ -91,8 +93,6 @@ pub mod id {
     pub const LOG_ERASE: u32 = 121;
     /// LOG_REQUEST_END
     pub const LOG_REQUEST_END: u32 = 122;
-    /// RADIO_STATUS
-    pub const RADIO_STATUS: u32 = 109;
     /// SETUP_SIGNING
     pub const SETUP_SIGNING: u32 = 256;
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::Member;
 use super::books::Books;
 use super::signing_keeper::SigningKeeper;
-use crate::codec::target_of;
+use crate::codec::{id, target_of};
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, LogFolder};
@@ -133,11 +133,10 @@ impl Fleet {
 
     /// Sends what a vehicle has to say.
     pub(super) fn send(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
-        const HEARTBEAT_ID: u32 = 0;
         let Some(member) = self.members.get_mut(number) else { return Ok(()) };
         let Some(links) = self.hubs.get_mut(member.hub) else { return Ok(()) };
         for outgoing in member.autopilot.take_outgoing() {
-            if outgoing.message.id() == HEARTBEAT_ID {
+            if outgoing.message.id() == id::HEARTBEAT {
                 member.last_heartbeat = now;
             }
             if let Some(frame) = links.send(&outgoing, member.autopilot.system_id()) {

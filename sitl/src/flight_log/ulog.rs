@@ -1,5 +1,7 @@
 //! The bytes of ULog, as docs.px4.io describes them: a header, definitions, then data.
 
+use crate::parameters::Value;
+
 /// "ULog", three more bytes, and version 1.
 const MAGIC: [u8; 8] = [0x55, 0x4c, 0x6f, 0x67, 0x01, 0x12, 0x35, 1];
 /// Where readers find their way again behind damage.
@@ -57,7 +59,7 @@ impl Definitions {
     }
 
     /// A parameter; it may come among the data, too.
-    pub fn parameter(&mut self, id: &str, value: crate::parameters::Value) {
+    pub fn parameter(&mut self, id: &str, value: Value) {
         parameter(&mut self.bytes, id, value);
     }
 
@@ -69,10 +71,10 @@ impl Definitions {
 }
 
 /// A parameter with its value.
-pub fn parameter(into: &mut Vec<u8>, id: &str, value: crate::parameters::Value) {
+pub fn parameter(into: &mut Vec<u8>, id: &str, value: Value) {
     let kind = match value {
-        crate::parameters::Value::Real(_) => "float",
-        crate::parameters::Value::Integer(_) => "int32_t",
+        Value::Real(_) => "float",
+        Value::Integer(_) => "int32_t",
     };
     keyed(into, b'P', &format!("{kind} {id}"), &value.bytes());
 }

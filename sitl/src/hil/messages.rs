@@ -8,9 +8,10 @@ use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
 
 use super::instruments::Readings;
+use crate::codec::floats;
 use crate::estimation::TrueMotion;
 use crate::estimation::gps::GpsFix;
-use crate::world::LocalFrame;
+use crate::world::{LocalFrame, atmospheric_temperature_degc};
 
 /// HEARTBEAT of a simulator.
 pub fn heartbeat() -> MavMessage {
@@ -26,8 +27,6 @@ pub fn heartbeat() -> MavMessage {
 
 /// HIL_SENSOR: the inertial unit always, the others when they have something new.
 pub fn sensor(time_us: u64, readings: &Readings) -> MavMessage {
-    // Gauges of an open room: the standard atmosphere at the altitude that the barometer shows.
-    let temperature_degc = |altitude_m: f64| 15.0 - 0.0065 * altitude_m;
     let [xacc, yacc, zacc] = floats(&readings.specific_force_m_s2());
     let [xgyro, ygyro, zgyro] = floats(&readings.body_rate_rad_s());
     let mut data = HIL_SENSOR_DATA {
@@ -51,7 +50,7 @@ pub fn sensor(time_us: u64, readings: &Readings) -> MavMessage {
         let altitude_m = reading.altitude_m();
         data.abs_pressure = (reading.pressure_pa / 100.0) as f32;
         data.pressure_alt = altitude_m as f32;
-        data.temperature = temperature_degc(altitude_m) as f32;
+        data.temperature = atmospheric_temperature_degc(altitude_m) as f32;
         // Autopilots look for all three at once.
         data.fields_updated |= HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_ABS_PRESSURE
             | HilSensorUpdatedFlags::HIL_SENSOR_UPDATED_PRESSURE_ALT
@@ -114,10 +113,6 @@ pub fn state_quaternion(motion: &TrueMotion, frame: &LocalFrame, wind_m_s: &Vect
         yacc,
         zacc,
     })
-}
-
-fn floats(vector: &Vector3<f64>) -> [f32; 3] {
-    vector.data.0[0].map(|value| value as f32)
 }
 
 /// Hundredths; beyond the range of the field its end.

@@ -48,7 +48,7 @@ impl LandedDetector {
         self.landed
     }
 
-    /// One look. `controlled` tells whether the reference is flown, `carried` whether rotors turn at all.
+    /// One look. `armed` tells whether rotors turn at all, `controlled` whether the reference is flown.
     pub fn update(&mut self, outputs: &Outputs, weight_n: f64, armed: bool, controlled: bool) {
         let height_m = -outputs.position_m.z;
         let pressed = controlled && outputs.setpoint.position_m.z > outputs.position_m.z + PRESSED_M;

@@ -3,13 +3,14 @@
 use mavlink::dialects::common::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
 
 use super::boot_ms;
+use crate::codec::floats;
 use crate::vehicle::Vehicle;
 
 /// ATTITUDE: ZYX Euler angles and body rates.
 pub fn attitude(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let [roll, pitch, yaw] = outputs.attitude_rad.data.0[0].map(|angle| angle as f32);
-    let [rollspeed, pitchspeed, yawspeed] = outputs.body_rate_rad_s.data.0[0].map(|rate| rate as f32);
+    let [roll, pitch, yaw] = floats(&outputs.attitude_rad);
+    let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
     let time_boot_ms = boot_ms(outputs.time_us);
     MavMessage::ATTITUDE(ATTITUDE_DATA { time_boot_ms, roll, pitch, yaw, rollspeed, pitchspeed, yawspeed })
 }
@@ -18,7 +19,7 @@ pub fn attitude(vehicle: &Vehicle) -> MavMessage {
 pub fn attitude_quaternion(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let [q1, q2, q3, q4] = outputs.quaternion.map(|part| part as f32);
-    let [rollspeed, pitchspeed, yawspeed] = outputs.body_rate_rad_s.data.0[0].map(|rate| rate as f32);
+    let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
     MavMessage::ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         q1,

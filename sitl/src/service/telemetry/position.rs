@@ -6,6 +6,7 @@ use mavlink::dialects::common::{
 };
 
 use super::boot_ms;
+use crate::codec::floats;
 use crate::vehicle::Vehicle;
 
 /// Degrees as the protocol scales them.
@@ -31,8 +32,8 @@ pub fn heading_deg(yaw_rad: f64) -> f64 {
 /// LOCAL_POSITION_NED.
 pub fn local_position_ned(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let [x, y, z] = outputs.position_m.data.0[0].map(|value| value as f32);
-    let [vx, vy, vz] = outputs.velocity_m_s.data.0[0].map(|value| value as f32);
+    let [x, y, z] = floats(&outputs.position_m);
+    let [vx, vy, vz] = floats(&outputs.velocity_m_s);
     let time_boot_ms = boot_ms(outputs.time_us);
     MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
 }
@@ -71,7 +72,7 @@ pub fn gps_global_origin(vehicle: &Vehicle) -> MavMessage {
 pub fn home_position(vehicle: &Vehicle) -> MavMessage {
     let home = vehicle.home();
     let place = vehicle.frame().to_geodetic(&home.position_m);
-    let [x, y, z] = home.position_m.data.0[0].map(|value| value as f32);
+    let [x, y, z] = floats(&home.position_m);
     MavMessage::HOME_POSITION(HOME_POSITION_DATA {
         latitude: scaled_degrees(place.latitude_deg),
         longitude: scaled_degrees(place.longitude_deg),
@@ -117,9 +118,9 @@ pub fn vfr_hud(vehicle: &Vehicle) -> MavMessage {
 /// ODOMETRY: pose in the local frame, velocity in the body's.
 pub fn odometry(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let [x, y, z] = outputs.position_m.data.0[0].map(|value| value as f32);
-    let [vx, vy, vz] = outputs.body_velocity_m_s.data.0[0].map(|value| value as f32);
-    let [rollspeed, pitchspeed, yawspeed] = outputs.body_rate_rad_s.data.0[0].map(|value| value as f32);
+    let [x, y, z] = floats(&outputs.position_m);
+    let [vx, vy, vz] = floats(&outputs.body_velocity_m_s);
+    let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
     // NaN in the first place: the covariance is unknown.
     let unknown = core::array::from_fn(|index| if index == 0 { f32::NAN } else { 0.0 });
     MavMessage::ODOMETRY(ODOMETRY_DATA {

@@ -8,6 +8,7 @@ use nalgebra::UnitQuaternion;
 
 use super::boot_ms;
 use super::position::scaled_degrees;
+use crate::codec::floats;
 use crate::vehicle::{SteeringKind, Vehicle};
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
@@ -43,9 +44,9 @@ fn type_mask(vehicle: &Vehicle) -> PositionTargetTypemask {
 pub fn position_target_local_ned(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
-    let [x, y, z] = reference.position_m.data.0[0].map(|value| value as f32);
-    let [vx, vy, vz] = reference.velocity_m_s.data.0[0].map(|value| value as f32);
-    let [afx, afy, afz] = reference.acceleration_m_s2.data.0[0].map(|value| value as f32);
+    let [x, y, z] = floats(&reference.position_m);
+    let [vx, vy, vz] = floats(&reference.velocity_m_s);
+    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
     MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         x,
@@ -69,8 +70,8 @@ pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
     let place = vehicle.frame().to_geodetic(&reference.position_m);
-    let [vx, vy, vz] = reference.velocity_m_s.data.0[0].map(|value| value as f32);
-    let [afx, afy, afz] = reference.acceleration_m_s2.data.0[0].map(|value| value as f32);
+    let [vx, vy, vz] = floats(&reference.velocity_m_s);
+    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
     MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         lat_int: scaled_degrees(place.latitude_deg),
