@@ -223,6 +223,35 @@ fn an_item_can_wait_for_the_pilot() {
     assert_eq!(flight.complete(60.0).order(), [0, 1, 2]);
 }
 
+/// It is the wall clock's at the start that counts, and a record keeps it.
+#[test]
+fn a_delay_lasts_until_a_time_of_day() {
+    // 2026-11-21 13:45:20.5 UTC, and until half past the next minute.
+    const START_US: u64 = 1_795_268_720_500_000;
+    let until = |parameters: [f64; 4]| {
+        let mut vehicle = common::settings(Identity::Px4);
+        let way = waypoint([10.0, 0.0, -10.0]);
+        vehicle
+            .plans
+            .set(PlanKind::Mission, Plan::new(vec![takeoff(), simple(command::NAV_DELAY, parameters), way]));
+        let mut recording = Recording::started_at(&vehicle, START_US, START_US);
+        recording.send(common::command_long(MavCmd::MAV_CMD_MISSION_START, [0.0; 7], 0));
+        let mut over_s = None;
+        for millisecond in 1..=80_000_u32 {
+            recording.bench.heard.clear();
+            recording.step();
+            let is_second = |message: &Message| matches!(message, Message::Typed(MavMessage::MISSION_ITEM_REACHED(item)) if item.seq == 1);
+            if over_s.is_none() && recording.bench.heard.iter().any(is_second) {
+                over_s = Some(f64::from(millisecond) / 1e3);
+            }
+        }
+        recording.finish().assert_same();
+        over_s.expect("the delay ends")
+    };
+    assert!((until([-1.0, 13.0, 46.0, 30.0]) - 69.5).abs() < 0.01);
+    assert!((until([-1.0, -1.0, -1.0, 45.0]) - 24.5).abs() < 0.01);
+}
+
 /// A plan of the start, one of the messages and a pause: replayed it is the same flight, and it depends on the plan.
 #[test]
 fn a_mission_replays_bit_for_bit() {

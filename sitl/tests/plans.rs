@@ -234,6 +234,10 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
         (waypoint(1.0, -3.0), MavMissionResult::MAV_MISSION_INVALID_PARAM7, "3.0 m below the ground"),
         (with(177, [9.0, 1.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "no item 9"),
         (with(178, [1.0, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "speed 0"),
+        (with(93, [-0.5, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "delay -0.5"),
+        (with(93, [-1.0; 4]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "needs an hour"),
+        (with(93, [-1.0, 24.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "hour 24"),
+        (with(93, [-1.0, 1.0, 0.5, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM3, "0.5 is not a whole"),
     ];
     for (wrong, expected, line) in cases {
         let heard = client.upload(PlanKind::Mission, &[good, wrong, good]);

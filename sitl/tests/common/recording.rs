@@ -29,13 +29,18 @@ const NAME: &str = "flight.record";
 
 impl Recording {
     pub fn of(settings: &VehicleSettings) -> Self {
+        // Replays start at another time of the wall clock.
+        Self::started_at(settings, 0, 77)
+    }
+
+    /// A record that tells a time of the start, µs since 1970, and the time at which it was started.
+    pub fn started_at(settings: &VehicleSettings, told_us: u64, start_us: u64) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let links = vec![LinkProfile::Ground];
         let participant = Participant { system_id: 1, links, vehicle: settings.clone() };
-        let header = Header::new(Speed::Factor(1.0), vec![participant]);
+        let header = Header::new(Speed::Factor(1.0), vec![participant]).started_at(told_us);
         let recorder = Recorder::create(&folder.path().join(NAME), &header).expect("a file");
-        // Replays start at another time of the wall clock.
-        let bench = Bench::started_at(settings, 77);
+        let bench = Bench::started_at(settings, start_us);
         Self { bench, folder, recorder, digest: Digest::default() }
     }
 

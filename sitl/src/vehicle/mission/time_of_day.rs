@@ -13,7 +13,8 @@ impl TimeOfDay {
     /// What an item waits for; `None` if it waits for as long as it says.
     pub fn of(item: &MissionItem) -> Option<Self> {
         let part = |number: usize| Some(item.parameter_or(number, -1.0)).filter(|value| *value >= 0.0);
-        (item.parameter_or(1, 0.0) < 0.0).then(|| Self([2, 3, 4].map(|number| part(number).map(|value| value as u64))))
+        (item.parameter_or(1, 0.0) < 0.0)
+            .then(|| Self([2, 3, 4].map(|number| part(number).map(|value| value as u64))))
     }
 
     /// How long it is to the next such time from a time since 1970, µs; nothing if it is now.
