@@ -1,5 +1,7 @@
 //! The region of interest: the nose follows it.
 
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
 mod common;
 
 use common::mission_flight::{Flight, at, takeoff};
