@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use common::Bench;
-use mavlink::dialects::common::MavCmd;
+use mavlink::dialects::common::{FailureUnit, MavCmd};
+use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::files::LogFolder;
 use sitl::flight_log::{FlightLog, LogSettings, LogStart, Row, TOPICS};
 use sitl::identity::Identity;
@@ -47,6 +48,58 @@ fn every_sample_has_the_bytes_that_its_topic_declares() {
         assert_eq!(row.bytes().len(), size(topic.fields), "{}", topic.name);
         assert!(topic.period_us.is_multiple_of(10_000), "{}", topic.name);
     }
+}
+
+/// What a topic says now.
+fn sample(bench: &Bench, name: &str) -> Vec<u8> {
+    let topic = TOPICS.iter().find(|topic| topic.name == name).expect(name);
+    let mut row = Row::default();
+    assert!((topic.sample)(&bench.autopilot, &mut row), "{name}");
+    row.bytes().to_vec()
+}
+
+/// Floats of a topic, from a byte on, beside what they should be.
+fn assert_floats<'a>(bench: &Bench, name: &str, from: usize, expected: impl IntoIterator<Item = &'a f64>) {
+    let bytes = sample(bench, name);
+    for (bytes, expected) in bytes[from..].chunks_exact(4).zip(expected) {
+        let value = f32::from_le_bytes(bytes.try_into().expect("four bytes"));
+        assert!((f64::from(value) - expected).abs() < 1e-5, "{name}: {value} is not {expected}");
+    }
+}
+
+/// By realistic sensors the vehicle believes one thing and another is true; and what it no longer knows is marked.
+#[test]
+fn ground_truth_is_the_truth_and_what_is_not_known_is_not_valid() {
+    let mut settings = common::settings(Identity::Px4);
+    settings.sensors = SensorSettings { model: SensorModel::Realistic, seed: 3 };
+    let mut bench = Bench::of(&settings);
+    bench.fly_until("health", 10.0, |bench| bench.autopilot.vehicle().arming_obstacles().is_empty());
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    bench.fly(10.0);
+    let vehicle = bench.autopilot.vehicle();
+    let (believed, truth) = (vehicle.outputs(), vehicle.truth());
+    assert!((believed.position_m - truth.position_m).norm() > 0.01, "the sensors are not realistic");
+    let valid = |bench: &Bench, name: &str| sample(bench, name)[..4].to_vec();
+    for (what, outputs) in [("", believed), ("_groundtruth", truth)] {
+        let topic = |name: &str| format!("{name}{what}");
+        let position = topic("vehicle_local_position");
+        assert_eq!(valid(&bench, &position), [1; 4]);
+        assert_floats(&bench, &position, 4, outputs.position_m.iter().chain(&outputs.velocity_m_s));
+        assert_floats(&bench, &topic("vehicle_attitude"), 0, &outputs.quaternion);
+        assert_floats(&bench, &topic("vehicle_angular_velocity"), 0, &outputs.body_rate_rad_s);
+        let place = vehicle.frame().to_geodetic(&outputs.position_m);
+        let latitude = sample(&bench, &topic("vehicle_global_position"))[..8].to_vec();
+        let latitude_deg = f64::from_le_bytes(latitude.try_into().expect("eight bytes"));
+        assert!((latitude_deg - place.latitude_deg).abs() < 1e-7, "{latitude_deg}");
+    }
+
+    let mut no_gps = [0.0; 7];
+    (no_gps[0], no_gps[1]) = (FailureUnit::FAILURE_UNIT_SENSOR_GPS as u32 as f32, 1.0);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, no_gps), 0);
+    bench.fly_until("lost", 20.0, |bench| !bench.autopilot.vehicle().validity().horizontal_position);
+    assert_eq!(valid(&bench, "vehicle_local_position"), [0, 1, 0, 1]);
+    assert_eq!(valid(&bench, "vehicle_local_position_groundtruth"), [1; 4]);
 }
 
 /// Messages of a ULog behind its header: kind and bytes.

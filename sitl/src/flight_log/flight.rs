@@ -201,11 +201,15 @@ fn parameters(autopilot: &Autopilot) -> Vec<Value> {
     indices.filter_map(|index| autopilot.parameter_value(index)).collect()
 }
 
+/// PX4's number of the meaning of topics: from 2 on, readers look for places of the GPS receiver in degrees.
+const DATA_FORMAT: u32 = 2;
+
 fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
     let mut definitions = Definitions::new(autopilot.vehicle().time_us());
     definitions.information("sys_name", "lmpc-sitl");
     definitions.information("ver_hw", "LMPC_SITL");
     definitions.information("ver_sw", concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION")));
+    definitions.number("ver_data_format", DATA_FORMAT);
     definitions.number("ver_sw_release", crate::service::identification::version());
     definitions.information("sys_uuid", &format!("lmpc-sitl-{:03}", autopilot.system_id()));
     for topic in TOPICS {

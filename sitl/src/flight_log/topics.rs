@@ -8,6 +8,7 @@ use quadrotor::ControllerActivity;
 
 use super::row::Row;
 use crate::autopilot::Autopilot;
+use crate::estimation::Validity;
 use crate::identity::Identity;
 use crate::service::telemetry;
 use crate::vehicle::{LandedState, MissionState, SteeringKind};
@@ -149,7 +150,7 @@ fn attitude(autopilot: &Autopilot, row: &mut Row) -> bool {
 }
 
 fn true_attitude(autopilot: &Autopilot, row: &mut Row) -> bool {
-    row.reals(autopilot.vehicle().outputs().quaternion);
+    row.reals(autopilot.vehicle().truth().quaternion);
     true
 }
 
@@ -176,17 +177,20 @@ fn angular_velocity(autopilot: &Autopilot, row: &mut Row) -> bool {
 }
 
 fn true_angular_velocity(autopilot: &Autopilot, row: &mut Row) -> bool {
-    row.reals(autopilot.vehicle().outputs().body_rate_rad_s.data.0[0]);
+    row.reals(autopilot.vehicle().truth().body_rate_rad_s.data.0[0]);
     true
 }
 
 /// Validity, then what the caller says, then the origin and the height above ground.
-fn position_row(autopilot: &Autopilot, row: &mut Row, values: [f32; 7]) {
+fn position_row(autopilot: &Autopilot, row: &mut Row, validity: &Validity, values: [f32; 7]) {
     let origin = autopilot.vehicle().frame().origin();
-    row.bool(true).bool(true).bool(true).bool(true).floats(values).bool(true).bool(true);
+    let (horizontal, vertical) = (validity.horizontal_position, validity.vertical_position);
+    row.bool(horizontal).bool(vertical);
+    row.bool(validity.horizontal_velocity).bool(validity.vertical_velocity);
+    row.floats(values).bool(horizontal).bool(vertical);
     row.f64(origin.latitude_deg).f64(origin.longitude_deg).f32(origin.altitude_m as f32);
     let [_, _, z, ..] = values;
-    row.f32(-z).bool(true);
+    row.f32(-z).bool(vertical);
 }
 
 fn local_position(autopilot: &Autopilot, row: &mut Row) -> bool {
@@ -197,16 +201,17 @@ fn local_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     else {
         return false;
     };
-    position_row(autopilot, row, [told.x, told.y, told.z, told.vx, told.vy, told.vz, attitude.yaw]);
+    let values = [told.x, told.y, told.z, told.vx, told.vy, told.vz, attitude.yaw];
+    position_row(autopilot, row, &autopilot.vehicle().validity(), values);
     true
 }
 
 fn true_local_position(autopilot: &Autopilot, row: &mut Row) -> bool {
-    let outputs = autopilot.vehicle().outputs();
-    let [x, y, z] = outputs.position_m.data.0[0];
-    let [vx, vy, vz] = outputs.velocity_m_s.data.0[0];
-    let values = [x, y, z, vx, vy, vz, outputs.attitude_rad.z];
-    position_row(autopilot, row, values.map(|value| value as f32));
+    let truth = autopilot.vehicle().truth();
+    let [x, y, z] = truth.position_m.data.0[0];
+    let [vx, vy, vz] = truth.velocity_m_s.data.0[0];
+    let values = [x, y, z, vx, vy, vz, truth.attitude_rad.z];
+    position_row(autopilot, row, &Validity::ALL, values.map(|value| value as f32));
     true
 }
 
@@ -239,7 +244,7 @@ fn global_position(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn true_global_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     let vehicle = autopilot.vehicle();
-    let place = vehicle.frame().to_geodetic(&vehicle.outputs().position_m);
+    let place = vehicle.frame().to_geodetic(&vehicle.truth().position_m);
     row.f64(place.latitude_deg).f64(place.longitude_deg).f32(place.altitude_m as f32);
     true
 }
