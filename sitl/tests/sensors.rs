@@ -127,6 +127,21 @@ fn sensor_messages_show_the_instruments() {
     assert!((state.lat_int - 473_977_420).abs() <= 1 && (state.zacc + 9.806_65).abs() < 1e-3, "{state:?}");
 }
 
+/// Neither a fault of the battery nor a recovery system: flags of the protocol that nothing sets are none.
+#[test]
+fn nothing_is_claimed_that_is_not_there() {
+    let mut bench = ready(1);
+    let MavMessage::BATTERY_STATUS(battery) = asked(&mut bench, 147) else { panic!("another message") };
+    assert_eq!(battery.fault_bitmask.bits(), 0);
+    let MavMessage::SYS_STATUS(status) = asked(&mut bench, 1) else { panic!("another message") };
+    let more = [
+        status.onboard_control_sensors_present_extended,
+        status.onboard_control_sensors_enabled_extended,
+        status.onboard_control_sensors_health_extended,
+    ];
+    assert_eq!(more.map(|flags| flags.bits()), [0; 3]);
+}
+
 /// Bars for a hover of half a minute: how far the vehicle strays from where it believes to be, and from where it is told to be.
 #[test]
 fn a_hover_stays_within_its_bars() {

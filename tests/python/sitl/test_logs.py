@@ -41,6 +41,8 @@ def test_flights_read_by_pyulog(start, connect, program, tmp_path):
     log = ULog(str(logs(folder)[0]))
     assert not log.file_corruption and not log.dropouts
     assert log.msg_info_dict["sys_name"] == "lmpc-sitl" and log.get_version_info()[:3] == (0, 1, 0)
+    # Without it Flight Review looks for the receiver's places under the names of before.
+    assert log.msg_info_dict["ver_data_format"] >= 2
     assert log.initial_parameters["MIS_TAKEOFF_ALT"] == 2.5 and isinstance(log.initial_parameters["COM_OBL_RC_ACT"], int)
     assert ("LIM_SPEED_H", pytest.approx(4.5)) in [(name, value) for _, name, value in log.changed_parameters]
     said = [message.message for message in log.logged_messages]

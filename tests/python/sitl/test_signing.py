@@ -139,6 +139,50 @@ def test_setup_signing_from_pymavlink(start, connect, tmp_path):
         assert KEY not in file.read_bytes() and KEY.hex().encode() not in file.read_bytes()
 
 
+def test_a_key_is_that_of_all_vehicles_each_with_its_own_streams(start, connect, tmp_path):
+    path = key_file(tmp_path, "")
+    options = ("--signing-key", str(path), "--vehicles", "2", "--speed", "5")
+    vehicle = start(*options)
+    first, second = clients = [connect(vehicle, number) for number in range(2)]
+    assert [client.target[0] for client in clients] == [1, 2]
+    first.mav.setup_signing_send(1, 1, list(KEY), 0)
+    first.wait("STATUSTEXT", lambda text: "key set by 255" in text.text)
+    # The other vehicle, behind links of its own, hears nobody unsigned from now on either, and signs.
+    second.drain()
+    second.mav.command_long_send(2, 1, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0)
+    refused(second, "1 unsigned")
+    assert second.wait("HEARTBEAT").get_header().incompat_flags & 1
+    packed = []
+    for client in clients:
+        # Both are link 0 of 255/0 and count from the same instant: streams of one hub are not those of the other.
+        signed(client.connection, initial_timestamp=int((time.time() - 1420070400) * 1e5))
+        packed.append(mavlink.MAVLink_command_long_message(
+            *client.target, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, 1, 0, 0, 0, 0, 0, 0).pack(client.mav))
+        client.connection.write(packed[-1])
+        assert client.wait("COMMAND_ACK", lambda ack: ack.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM).result == 0
+        assert client.mav.signing.badsig_count == 0
+    assert vehicle.stop() == 0
+    assert {file.name for file in tmp_path.glob("signing.key*")} == {
+        "signing.key", "signing.key.timestamps", "signing.key.timestamps.1"}
+    assert all(file.stat().st_mode & 0o777 == 0o600 for file in tmp_path.glob("signing.key*"))
+
+    # After a restart each remembers its own: neither takes the same frame again.
+    vehicle = start(*options)
+    clients = [connect(vehicle, number, heartbeat=False) for number in range(2)]
+    for client, frame in zip(clients, packed):
+        client.connection.write(frame)
+        signed(client.connection)
+        client.beat()
+        refused(client, "1 replayed")
+        assert not client.wait("HEARTBEAT").base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+    # Removed at one, it is removed at the other.
+    clients[1].mav.setup_signing_send(2, 1, [0] * 32, 0)
+    for client in clients:
+        client.connection.disable_signing()
+        client.wait("HEARTBEAT", lambda beat: not beat.get_header().incompat_flags & 1)
+    assert path.read_text() == ""
+
+
 def test_mavproxy_sets_a_key_and_flies_with_it(start, connect, tmp_path):
     vehicle = start("--autopilot", "ardupilot", links=("tcpin:0", "udpin:0"))
     proxy = Popen(

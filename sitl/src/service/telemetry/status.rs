@@ -2,8 +2,8 @@
 
 use mavlink::dialects::common::{
     BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
-    MavBatteryChargeState, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
-    MavSysStatusSensor, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavBatteryChargeState, MavBatteryFault, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
+    MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
 };
 
 use super::boot_ms;
@@ -64,6 +64,10 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         voltage_battery: (battery.voltage_v() * 1e3).round() as u16,
         current_battery: (battery.current_a() * 1e2).round() as i16,
         battery_remaining: percent(vehicle),
+        // The crate's default of flags is the first of them, not none.
+        onboard_control_sensors_present_extended: MavSysStatusSensorExtended::empty(),
+        onboard_control_sensors_enabled_extended: MavSysStatusSensorExtended::empty(),
+        onboard_control_sensors_health_extended: MavSysStatusSensorExtended::empty(),
         ..SYS_STATUS_DATA::default()
     })
 }
@@ -102,6 +106,7 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
         battery_remaining: percent(vehicle),
         time_remaining: battery.time_remaining_s(vehicle.conduct().battery_capacity_ah) as i32,
         charge_state: charge_state(vehicle),
+        fault_bitmask: MavBatteryFault::empty(),
         ..BATTERY_STATUS_DATA::default()
     })
 }
