@@ -22,6 +22,8 @@ struct Told {
     fixes: Vec<HIL_GPS_DATA>,
     truths: Vec<HIL_STATE_QUATERNION_DATA>,
     heartbeats: usize,
+    /// How old fixes were when they were told, µs.
+    fix_ages_us: Vec<u64>,
 }
 
 fn fly(rig: &mut Rig, seconds: f64, motors: Option<[f64; 4]>) -> Told {
@@ -33,7 +35,10 @@ fn fly(rig: &mut Rig, seconds: f64, motors: Option<[f64; 4]>) -> Told {
         for message in rig.step().expect("a flight") {
             match message {
                 MavMessage::HIL_SENSOR(data) => told.sensors.push(data),
-                MavMessage::HIL_GPS(data) => told.fixes.push(data),
+                MavMessage::HIL_GPS(data) => {
+                    told.fix_ages_us.push(rig.time_us() - data.time_usec);
+                    told.fixes.push(data);
+                }
                 MavMessage::HIL_STATE_QUATERNION(data) => told.truths.push(data),
                 MavMessage::HEARTBEAT(_) => told.heartbeats += 1,
                 other => panic!("{other:?}"),
@@ -74,6 +79,8 @@ fn instruments_on_the_ground_show_the_ground() {
 
         // Ten fixes a second, from a second (and the receiver's latency) on.
         assert!((19..=21).contains(&told.fixes.len()), "{}", told.fixes.len());
+        // PX4's start script tells its estimator 10 ms; reports come every 4 ms.
+        assert!(told.fix_ages_us.iter().all(|age| (10_000..14_000).contains(age)), "{:?}", told.fix_ages_us);
         let fix = told.fixes.last().expect("a fix");
         assert!((f64::from(fix.lat) * 1e-7 - settings.origin.latitude_deg).abs() < 1e-4, "{fix:?}");
         assert!((f64::from(fix.alt) * 1e-3 - settings.origin.altitude_m).abs() < 15.0, "{fix:?}");

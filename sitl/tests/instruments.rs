@@ -115,7 +115,7 @@ fn gps_fixes_are_as_wide_as_the_data_sheet_says() {
     const RECEIVERS: usize = 2000;
     let (mut near, mut slow, mut together, mut heights) = (0, 0, 0.0, 0.0);
     for seed in 0..RECEIVERS {
-        let mut receiver = gps::GpsReceiver::new(seed as u64);
+        let mut receiver = gps::GpsReceiver::new(seed as u64, gps::LATENCY_US);
         let mut fixes = (0..612).filter_map(|step| receiver.sample(&at_rest(step * gps::PERIOD_US)));
         let first = fixes.next().expect("a fix");
         assert_eq!(first.time_us, 1_000_000);
@@ -138,7 +138,7 @@ fn gps_fixes_are_as_wide_as_the_data_sheet_says() {
 
 #[test]
 fn gps_fixes_come_ten_times_a_second_and_late() {
-    let mut receiver = gps::GpsReceiver::new(1);
+    let mut receiver = gps::GpsReceiver::new(1, gps::LATENCY_US);
     let arrivals: Vec<(u64, u64)> = (0..3000)
         .filter_map(|tick| receiver.sample(&at_rest(tick * 1000)).map(|fix| (tick * 1000, fix.time_us)))
         .collect();

@@ -8,7 +8,7 @@ use crate::world::{atmospheric_pressure_pa, pressure_altitude_m};
 /// resolution.
 pub const PERIOD_US: u64 = 20_000;
 
-// Figures of the MS5611-01BA03 (TE Connectivity, data sheet of 2017).
+// Figures of the MS5611-01BA03 (TE Connectivity, data sheet of 2017, sensor performances at 3 V).
 /// Resolution at an oversampling ratio of 4096: 0.012 mbar RMS.
 pub const NOISE_PA: f64 = 1.2;
 /// Accuracy at 25 °C: ±1.5 mbar, taken as three standard deviations.

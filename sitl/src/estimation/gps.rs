@@ -6,26 +6,27 @@ use super::noise::{Channel, Noise};
 use super::true_motion::TrueMotion;
 use super::wander::GaussMarkov;
 
-/// Time between fixes, µs: the receiver's 10 Hz with several constellations (UBX-15031086, table 1).
+// Figures of the NEO-M8N (u-blox UBX-15031086, table of GNSS performance), as far as not said otherwise.
+/// Time between fixes, µs: the 10 Hz of GPS alone; with GLONASS beside it, the receiver's default, it has 5 Hz.
 pub const PERIOD_US: u64 = 100_000;
-/// Time from a fix to its message, µs; PX4 counts with 110 ms (EKF2_GPS_DELAY).
+/// Time from a fix to its message, µs. Assumed: the data sheet has none; PX4 counts with 110 ms (EKF2_GPS_DELAY).
 pub const LATENCY_US: u64 = 100_000;
-/// Time to the first fix of a hot start, µs: 1 s (UBX-15031086, table 1).
+/// Time to the first fix of a hot start, µs: 1 s.
 const FIRST_FIX_US: u64 = 1_000_000;
 
-/// Standard deviation of a horizontal axis, m: 2.5 m circular error probable (UBX-15031086, table 1), of which a normal
-/// distribution has 1.1774 standard deviations.
+/// Standard deviation of a horizontal axis, m: 2.5 m circular error probable, of which a normal distribution has 1.1774
+/// standard deviations.
 pub const HORIZONTAL_M: f64 = 2.5 / 1.177_4;
-/// Height is worse: the data sheet is silent, a vertical dilution of 1.5 times the horizontal one is usual.
+/// Height is worse. Assumed: the data sheet is silent, a vertical dilution of 1.5 times the horizontal one is usual.
 pub const VERTICAL_M: f64 = 1.5 * HORIZONTAL_M;
-/// How long an error of the position lasts, s; PX4's simulation in Gazebo counts with the same.
+/// How long an error of the position lasts, s. Assumed: PX4's simulation in Gazebo Classic counts with the same.
 pub const POSITION_CORRELATION_S: f64 = 60.0;
-/// Standard deviation of an axis of the velocity, m/s: 0.05 m/s for half of all fixes (UBX-15031086, table 1), which of
-/// two normal axes is again 1.1774 standard deviations.
+/// Standard deviation of an axis of the velocity, m/s: 0.05 m/s for half of all fixes, which of two normal axes is again
+/// 1.1774 standard deviations.
 pub const VELOCITY_M_S: f64 = 0.05 / 1.177_4;
 /// How long an error of the velocity lasts, s: the median over logs of real receivers (fusion-nav's `Correlation`).
 pub const VELOCITY_CORRELATION_S: f64 = 0.5;
-/// Satellites of an open sky.
+/// Satellites of an open sky. Assumed.
 const SATELLITES: u8 = 12;
 /// A receiver whose last fix is older has none, µs.
 const FRESH_US: u64 = 1_000_000;
@@ -72,6 +73,7 @@ impl GpsFix {
 /// The instrument.
 #[derive(Clone, Debug)]
 pub struct GpsReceiver {
+    latency_us: u64,
     noise: Noise,
     position_error: GaussMarkov,
     velocity_error: GaussMarkov,
@@ -80,18 +82,19 @@ pub struct GpsReceiver {
 }
 
 impl GpsReceiver {
-    /// One that has just been switched on.
-    pub fn new(seed: u64) -> Self {
+    /// One that has just been switched on; a fix arrives so long after it was taken, µs.
+    pub fn new(seed: u64, latency_us: u64) -> Self {
         let mut noise = Noise::new(seed, Channel::Gps);
         let position_error = GaussMarkov::new(POSITION_CORRELATION_S, &mut noise);
         let velocity_error = GaussMarkov::new(VELOCITY_CORRELATION_S, &mut noise);
-        Self { noise, position_error, velocity_error, underway: None }
+        Self { latency_us, noise, position_error, velocity_error, underway: None }
     }
 
     /// The fix that arrives now, if one does. To be called every tick.
     pub fn sample(&mut self, motion: &TrueMotion) -> Option<GpsFix> {
         let time_us = motion.time_us;
-        let arrived = self.underway.take_if(|fix| fix.time_us + LATENCY_US <= time_us);
+        let latency_us = self.latency_us;
+        let arrived = self.underway.take_if(|fix| fix.time_us + latency_us <= time_us);
         if time_us.is_multiple_of(PERIOD_US) {
             let dt_s = PERIOD_US as f64 / 1e6;
             let position_error = self.position_error.step(dt_s, &mut self.noise);

@@ -16,7 +16,7 @@ const RAD_S: f64 = core::f64::consts::PI / 180.0;
 // Figures of the ICM-42688-P (TDK InvenSense DS-000347, tables 1 and 2).
 /// Rate noise spectral density: 2.8 mdps/√Hz.
 pub const GYROSCOPE_NOISE_RAD_S_RTHZ: f64 = 2.8e-3 * RAD_S;
-/// Acceleration noise spectral density: 70 µg/√Hz.
+/// Acceleration noise spectral density: 70 µg/√Hz, that of the noisiest axis.
 pub const ACCELEROMETER_NOISE_M_S2_RTHZ: f64 = 70e-6 * GRAVITY_M_S2;
 /// Zero-rate offset ±0.5 dps: taken as three standard deviations.
 const GYROSCOPE_OFFSET_RAD_S: f64 = 0.5 * RAD_S / 3.0;

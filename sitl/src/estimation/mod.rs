@@ -13,7 +13,8 @@
 //! A fault stands between an instrument and everybody who reads it (`defect.rs`). Ideal sensors (`ideal.rs`) have no
 //! noise and need no estimator; faults can only silence them.
 //!
-//! Each instrument's figures stand in its file, beside the part and the table of the data sheet that they are from.
+//! Each instrument's figures stand in its file, beside the part and the data sheet that they are from; what no data sheet
+//! has is marked as assumed.
 
 pub mod barometer;
 mod defect;

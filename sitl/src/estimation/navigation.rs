@@ -111,7 +111,7 @@ impl Navigation {
     pub fn new(seed: u64, start: Estimate) -> Self {
         Self {
             inertial: InertialUnit::new(seed),
-            gps: GpsReceiver::new(seed),
+            gps: GpsReceiver::new(seed, gps::LATENCY_US),
             barometer: Barometer::new(seed),
             magnetometer: Magnetometer::new(seed),
             estimator: Estimator::new(start),

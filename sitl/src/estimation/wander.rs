@@ -25,8 +25,8 @@ impl GaussMarkov {
     }
 }
 
-/// Rate at which something walks that drifts by `slope` per kelvin, per √s: a vehicle that has been switched on warms
-/// by 10 K within ten minutes, and a random walk of that rate has come as far by then.
+/// Rate at which something walks that drifts by `slope` per kelvin, per √s. Assumed: a vehicle that has been switched on
+/// warms by 10 K within ten minutes; a random walk of that rate has come as far by then.
 pub const fn warming_walk(slope: f64) -> f64 {
     const KELVIN: f64 = 10.0;
     /// √600 s

@@ -9,6 +9,10 @@ use crate::estimation::inertial::InertialUnit;
 use crate::estimation::magnetometer::{Magnetometer, MagnetometerReading};
 use crate::world::{LocalFrame, earth_field_ned};
 
+/// Age of a fix when it is told, µs: PX4 counts with this much behind its simulator interface (px4-rc.mavlinksim sets
+/// EKF2_GPS_DELAY, later SENS_GPS0_DELAY, to 10 ms).
+const GPS_LATENCY_US: u64 = 10_000;
+
 /// What the instruments have said since the last report. Noise is not only true to life: an autopilot takes an
 /// instrument that always says the same for a broken one.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +56,7 @@ impl Instruments {
             inertial: InertialUnit::new(seed),
             magnetometer: Magnetometer::new(seed),
             barometer: Barometer::new(seed),
-            gps: GpsReceiver::new(seed),
+            gps: GpsReceiver::new(seed, GPS_LATENCY_US),
             readings: Readings::default(),
         }
     }
