@@ -33,6 +33,12 @@ fn what_goes_wrong_is_found() {
     let found = |words: &str| deaf.violations.iter().any(|violation| violation.contains(words));
     assert!(found("was not answered in 10 times") && found("no heartbeat for six seconds"), "{deaf}");
 
+    // A few pages more are none.
+    let held = [10_100, 10_500, 10_520, 10_520, 10_460, 10_520, 10_550, 10_550, 10_550, 10_530];
+    assert_eq!(run::leak(&held), None);
+    let leaking: Vec<u64> = (1..=10).map(|tenth| 10_000 + 300 * tenth).collect();
+    assert_eq!(run::leak(&leaking), Some("memory grew from 11800 to 13000 kB".to_owned()));
+
     // In gusts a vehicle does not stay within what it stays within in a calm.
     let mut figures = run::Figures::default();
     let mut gusty = common::settings(sitl::identity::Identity::Px4);

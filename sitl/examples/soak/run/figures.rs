@@ -61,18 +61,16 @@ impl Figures {
     pub fn finish(&mut self, wall: Duration) {
         self.wall = wall;
         // Less than ten minutes is all warm-up.
-        if let (Some(warm), Some(last), true) =
-            (self.warm_kb(), self.memory_kb.last(), self.end_us >= 600_000_000)
-            && *last > warm + MOST_GROWTH_KB
-        {
-            self.violations.push(format!("memory grew from {warm} to {last} kB"));
+        if self.end_us >= 600_000_000 {
+            self.violations.extend(leak(&self.memory_kb));
         }
     }
+}
 
-    /// Memory when everything has been in use.
-    fn warm_kb(&self) -> Option<u64> {
-        self.memory_kb.get(self.memory_kb.len() / 2).copied()
-    }
+/// What is wrong with memory that has been looked at in equal times: it grows when everything has been in use.
+pub fn leak(memory_kb: &[u64]) -> Option<String> {
+    let (warm, last) = (memory_kb.get(memory_kb.len() / 2)?, memory_kb.last()?);
+    (*last > warm + MOST_GROWTH_KB).then(|| format!("memory grew from {warm} to {last} kB"))
 }
 
 /// Resident memory, where the system tells it.

@@ -12,6 +12,8 @@ mod watch;
 use std::time::Instant;
 
 pub use figures::Figures;
+#[allow(unused_imports)] // A test looks at it.
+pub use figures::leak;
 use site::Site;
 use sitl::configuration::{Arguments, Settings};
 #[allow(unused_imports)] // A test looks at it.

@@ -63,7 +63,8 @@ const TAKEOFF_US: u64 = 40_000_000;
 /// A way home and a landing, µs.
 const LANDING_US: u64 = 240_000_000;
 const STREAM_US: u64 = 50_000;
-/// A mission, µs.
+/// A mission that was started has taken off within this, µs, and has ended within that.
+const BEGINS_US: u64 = 15_000_000;
 const MISSION_US: u64 = 500_000_000;
 /// A waypoint was passed nearer than this, m: its acceptance radius, and what gusts or the receiver do to it.
 const PASSED_M: f64 = 2.0;
@@ -144,7 +145,8 @@ impl Task {
     }
 
     fn command(&mut self, number: u16, message: &MavMessage, with: &mut Surroundings<'_>) -> Option<Outcome> {
-        const UNSUPPORTED: u8 = 3;
+        const ACCEPTED: u8 = 0;
+        const TEMPORARILY_REJECTED: u8 = 1;
         const IN_PROGRESS: u8 = 5;
         for heard in with.heard {
             let MavMessage::COMMAND_ACK(ack) = heard else { continue };
@@ -154,9 +156,10 @@ impl Task {
             }
             *with.figures.commands.entry((number, result)).or_default() += 1;
             return Some(match result {
-                0 => Outcome::Done,
-                UNSUPPORTED => Outcome::Failed(format!("command {number} is not supported")),
-                _ => Outcome::Dropped,
+                ACCEPTED => Outcome::Done,
+                TEMPORARILY_REJECTED => Outcome::Dropped,
+                // All of them are valid.
+                _ => Outcome::Failed(format!("command {number} was answered by {:?}", ack.result)),
             });
         }
         match self.is_due(with.now_us, &format!("command {number}")) {
@@ -191,12 +194,8 @@ impl Task {
             with.figures.missions += 1;
             return Some(Outcome::Done);
         }
-        // The command to begin may have come when it was about to disarm for want of one.
-        if down && self.passed == 0 && elapsed_us > 15_000_000 {
-            return Some(Outcome::Dropped);
-        }
         let late = format!("{:?}: passed {} of {} waypoints", vehicle.mode(), self.passed, places.len());
-        let dropped = down && self.passed > 0;
+        let dropped = down && (self.passed > 0 || elapsed_us > BEGINS_US);
         (dropped || elapsed_us > MISSION_US).then_some(Outcome::Failed(late))
     }
 
