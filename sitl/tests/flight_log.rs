@@ -67,6 +67,13 @@ fn assert_floats<'a>(bench: &Bench, name: &str, from: usize, expected: impl Into
     }
 }
 
+fn assert_floats_within(bench: &Bench, name: &str, from: usize, low: f32, high: f32) {
+    for bytes in sample(bench, name)[from..].chunks_exact(4) {
+        let value = f32::from_le_bytes(bytes.try_into().expect("four bytes"));
+        assert!((low..high).contains(&value), "{name}: {value}");
+    }
+}
+
 /// By realistic sensors the vehicle believes one thing and another is true; and what it no longer knows is marked.
 #[test]
 fn ground_truth_is_the_truth_and_what_is_not_known_is_not_valid() {
@@ -94,11 +101,20 @@ fn ground_truth_is_the_truth_and_what_is_not_known_is_not_valid() {
         assert!((latitude_deg - place.latitude_deg).abs() < 1e-7, "{latitude_deg}");
     }
 
+    let status = sample(&bench, "estimator_status");
+    assert_eq!(status[32..], [0b111, 0]);
+    let accuracy_m = f32::from_le_bytes(status[16..20].try_into().expect("four bytes"));
+    assert!((0.05..2.0).contains(&accuracy_m), "{accuracy_m}");
+    // 70 µg/√Hz over 500 Hz on three axes: 27 mm/s², and what the flight shakes.
+    assert_floats_within(&bench, "vehicle_imu_status", 12, 0.02, 0.5);
+
     let mut no_gps = [0.0; 7];
     (no_gps[0], no_gps[1]) = (FailureUnit::FAILURE_UNIT_SENSOR_GPS as u32 as f32, 1.0);
     assert_eq!(bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, no_gps), 0);
     bench.fly_until("lost", 20.0, |bench| !bench.autopilot.vehicle().validity().horizontal_position);
     assert_eq!(valid(&bench, "vehicle_local_position"), [0, 1, 0, 1]);
+    // The last two bytes: health and timeouts of velocity, position and height.
+    assert_eq!(sample(&bench, "estimator_status")[32..], [0b100, 0b011]);
     assert_eq!(valid(&bench, "vehicle_local_position_groundtruth"), [1; 4]);
 }
 

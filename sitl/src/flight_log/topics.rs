@@ -63,7 +63,12 @@ const ANGULAR_VELOCITY: &str = "float[3] xyz;";
 pub static TOPICS: &[Topic] = &[
     topic("vehicle_attitude", ATTITUDE, 20_000, attitude),
     topic("vehicle_attitude_groundtruth", ATTITUDE, 50_000, true_attitude),
-    topic("vehicle_attitude_setpoint", "float[4] q_d;float[3] thrust_body;", 20_000, attitude_setpoint),
+    topic(
+        "vehicle_attitude_setpoint",
+        "float[4] q_d;float yaw_sp_move_rate;float[3] thrust_body;",
+        20_000,
+        attitude_setpoint,
+    ),
     topic("vehicle_angular_velocity", ANGULAR_VELOCITY, 10_000, angular_velocity),
     topic("vehicle_angular_velocity_groundtruth", ANGULAR_VELOCITY, 50_000, true_angular_velocity),
     topic("vehicle_local_position", LOCAL_POSITION, 20_000, local_position),
@@ -90,13 +95,27 @@ pub static TOPICS: &[Topic] = &[
         IMU_US,
         sensor_combined,
     ),
+    topic(
+        "vehicle_imu_status",
+        "uint32_t[3] accel_clipping;float accel_vibration_metric;",
+        200_000,
+        imu_status,
+    ),
+    topic(
+        "estimator_status",
+        "float vel_test_ratio;float pos_test_ratio;float hgt_test_ratio;float mag_test_ratio;float pos_horiz_accuracy;\
+         float pos_vert_accuracy;float time_slip;uint16_t innovation_check_flags;uint16_t solution_status_flags;\
+         uint8_t health_flags;uint8_t timeout_flags;",
+        200_000,
+        estimator_status,
+    ),
     topic("vehicle_magnetometer", "float[3] magnetometer_ga;", 100_000, magnetometer),
     topic("vehicle_air_data", "float baro_alt_meter;float baro_pressure_pa;", 100_000, air_data),
     topic("actuator_motors", "float[12] control;", 20_000, actuator_motors),
     topic("actuator_outputs", "uint32_t noutputs;float[16] output;", 100_000, actuator_outputs),
     topic(
         "battery_status",
-        "float voltage_v;float current_a;float discharged_mah;float remaining;float time_remaining_s;bool connected;\
+        "float voltage_v;float voltage_filtered_v;float current_a;float discharged_mah;float remaining;float time_remaining_s;bool connected;\
          uint8_t cell_count;",
         500_000,
         battery_status,
@@ -158,7 +177,7 @@ fn attitude_setpoint(autopilot: &Autopilot, row: &mut Row) -> bool {
     const ATTITUDE_TARGET: u32 = 83;
     match telemetry::message(autopilot, ATTITUDE_TARGET) {
         Some(MavMessage::ATTITUDE_TARGET(told)) => {
-            row.floats(told.q).floats([0.0, 0.0, -told.thrust]);
+            row.floats(told.q).floats([told.body_yaw_rate]).floats([0.0, 0.0, -told.thrust]);
             true
         }
         _ => false,
@@ -272,6 +291,38 @@ fn sensor_combined(autopilot: &Autopilot, row: &mut Row) -> bool {
     true
 }
 
+fn imu_status(autopilot: &Autopilot, row: &mut Row) -> bool {
+    const VIBRATION: u32 = 241;
+    let Some(MavMessage::VIBRATION(told)) = telemetry::message(autopilot, VIBRATION) else { return false };
+    row.u32(told.clipping_0).u32(told.clipping_1).u32(told.clipping_2);
+    let level = [told.vibration_x, told.vibration_y, told.vibration_z];
+    row.f32(level.iter().map(|axis| axis * axis).sum::<f32>().sqrt());
+    true
+}
+
+/// The checks are bits: velocity, horizontal position, height, three of the field, heading; health and timeouts: velocity,
+/// position, height.
+fn estimator_status(autopilot: &Autopilot, row: &mut Row) -> bool {
+    const ESTIMATOR_STATUS: u32 = 230;
+    let Some(MavMessage::ESTIMATOR_STATUS(told)) = telemetry::message(autopilot, ESTIMATOR_STATUS) else {
+        return false;
+    };
+    let ratios = [told.vel_ratio, told.pos_horiz_ratio, told.pos_vert_ratio, told.mag_ratio];
+    row.floats(ratios).floats([told.pos_horiz_accuracy, told.pos_vert_accuracy, 0.0]);
+    let bits = |set: &[(bool, u16)]| set.iter().map(|(set, bit)| u16::from(*set) << bit).sum::<u16>();
+    let [velocity, position, height, heading] = ratios.map(|ratio| ratio > 1.0);
+    row.u16(bits(&[(velocity, 0), (position, 1), (height, 2), (heading, 6)])).u16(told.flags.bits());
+    let validity = autopilot.vehicle().validity();
+    let healthy = [
+        (validity.horizontal_velocity && validity.vertical_velocity, 0),
+        (validity.horizontal_position, 1),
+        (validity.vertical_position, 2),
+    ];
+    let health = bits(&healthy) as u8;
+    row.u8(health).u8(!health & 0b111);
+    true
+}
+
 fn magnetometer(autopilot: &Autopilot, row: &mut Row) -> bool {
     let Some(told) = imu(autopilot) else { return false };
     row.floats([told.xmag, told.ymag, told.zmag]);
@@ -314,7 +365,8 @@ fn battery_status(autopilot: &Autopilot, row: &mut Row) -> bool {
     let vehicle = autopilot.vehicle();
     let battery = vehicle.battery();
     let capacity_ah = vehicle.conduct().battery_capacity_ah;
-    row.reals([battery.voltage_v(), battery.current_a(), battery.drawn_ah() * 1e3]);
+    // Its model has no noise to be filtered; readers that ask for both show neither without.
+    row.reals([battery.voltage_v(), battery.voltage_v(), battery.current_a(), battery.drawn_ah() * 1e3]);
     row.reals([vehicle.battery_remaining(), battery.time_remaining_s(capacity_ah)]);
     row.bool(true).u8(crate::vehicle::BATTERY_CELLS as u8);
     true

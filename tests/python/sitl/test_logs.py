@@ -16,6 +16,23 @@ from test_mavsdk import eventually, fly  # noqa: F401
 from test_program import run
 
 
+FLIGHT_REVIEW = {
+    "vehicle_local_position": "x y z vx vy vz xy_valid z_valid v_xy_valid v_z_valid",
+    "vehicle_local_position_setpoint": "x y z vx vy vz",
+    "vehicle_local_position_groundtruth": "x y z",
+    "vehicle_global_position": "lat lon alt",
+    "vehicle_gps_position": "time_utc_usec latitude_deg longitude_deg altitude_msl_m eph epv satellites_used fix_type",
+    "vehicle_attitude": "q[0] q[3]", "vehicle_attitude_setpoint": "q_d[0] q_d[3] yaw_sp_move_rate", "vehicle_attitude_groundtruth": "q[0] q[3]",
+    "vehicle_angular_velocity": "xyz[0] xyz[2]", "vehicle_angular_velocity_groundtruth": "xyz[0] xyz[2]",
+    "vehicle_air_data": "baro_alt_meter", "vehicle_magnetometer": "magnetometer_ga[0] magnetometer_ga[2]",
+    "sensor_combined": "accelerometer_m_s2[0] gyro_rad[2]", "vehicle_imu_status": "accel_vibration_metric",
+    "estimator_status": "health_flags timeout_flags innovation_check_flags time_slip",
+    "actuator_motors": "control[0] control[3]", "actuator_outputs": "noutputs output[0] output[3]",
+    "battery_status": "voltage_v voltage_filtered_v current_a discharged_mah remaining",
+    "vehicle_status": "nav_state arming_state vehicle_type failsafe", "vehicle_land_detected": "landed",
+}
+
+
 def topics(log: ULog) -> dict:
     return {dataset.name: dataset.data for dataset in log.data_list}
 
@@ -53,6 +70,10 @@ def test_flights_read_by_pyulog(start, connect, program, tmp_path):
         "vehicle_angular_velocity", "actuator_outputs", "actuator_motors", "vehicle_status", "battery_status",
         "vehicle_gps_position", "sensor_combined", "vehicle_land_detected", "lmpc_status", "vehicle_global_position",
     } <= data.keys()
+
+    # What the plots of Flight Review take without a default (its public plot_app/configured_plots.py): one that is missing is a plot less.
+    for topic, fields in FLIGHT_REVIEW.items():
+        assert set(fields.split()) <= data[topic].keys(), topic
 
     # It went where it was sent, as it was told to, and the topics agree with one another.
     position, setpoint = data["vehicle_local_position"], data["vehicle_local_position_setpoint"]
