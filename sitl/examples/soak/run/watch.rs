@@ -11,7 +11,7 @@ pub const PERIOD_US: u64 = 50_000;
 /// Below this, m, feet are on the ground; above that, m, they are not.
 const STANDS_M: f64 = 0.02;
 const FLIES_M: f64 = 0.3;
-/// A vehicle that stands without thrust for so long must know it, µs.
+/// A vehicle that stands to stay for so long must know it, µs.
 const KNOWS_US: u64 = 2_000_000;
 /// A vehicle that has been asked to stay for so long, µs, rests.
 const RESTS_US: u64 = 10_000_000;
@@ -67,12 +67,13 @@ impl Watch {
             wrong = Some(format!("landed at {height_m:.2} m"));
         }
         let weight_n = vehicle.simulation().configuration().airframe.weight_n();
-        let stands =
-            height_m < STANDS_M && outputs.velocity_m_s.norm() < 0.05 && outputs.thrust_n < 0.5 * weight_n;
+        // Without thrust, or told to land.
+        let unloaded = outputs.thrust_n < 0.5 * weight_n || vehicle.mode() == Mode::Land;
+        let stands = height_m < STANDS_M && outputs.velocity_m_s.norm() < 0.05 && unloaded;
         if !stands {
             self.standing_since_us = None;
         } else if time_us - *self.standing_since_us.get_or_insert(time_us) > KNOWS_US && !on_ground {
-            wrong = Some(format!("stands without thrust, but is {:?}", vehicle.landed_state()));
+            wrong = Some(format!("stands, but is {:?}", vehicle.landed_state()));
         }
         // A vehicle without power is on the ground, its rotors at rest, in a mode to be armed in.
         if !vehicle.is_armed() {
