@@ -5,6 +5,10 @@
 //!                  └──────────── FlightLog: when one begins and ends ───────────────┘
 //! ```
 //!
+//! A crash of the program, even SIGKILL, loses at most the last second: what is flushed is the system's by then. It is not
+//! forced onto the disk, because the flight would wait for that; when the machine itself fails, the system's own delay
+//! comes on top.
+//!
 //! Logging reads the vehicle and changes nothing of it: with it or without, the flight is the same.
 
 mod flight;
