@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::activity::ControllerActivity;
 use crate::attitude::{attitude_error, turned};
-use crate::cascade::believed_inertia;
 use crate::cascade_design::ATTITUDE_UNKNOWNS;
 use crate::governor::{Governor, proportional_rate};
 use crate::tracking_law::TrackingSample;
@@ -104,7 +103,8 @@ impl AttitudeController {
         let input_reference = if law.is_incremental() {
             Vector3::zeros()
         } else {
-            (to_body * self.reference.acceleration_rad_s2).component_mul(&believed_inertia(configuration))
+            (to_body * self.reference.acceleration_rad_s2)
+                .component_mul(&configuration.believed_inertia_kg_m2())
         };
         // An incremental law sees in y − r only what may be integrated; the proportional part is in the motion.
         let error = if law.is_incremental() { &integrated } else { &error_rad };

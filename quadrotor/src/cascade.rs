@@ -7,7 +7,7 @@ use crate::activity::Activity;
 use crate::altitude_controller::AltitudeController;
 use crate::attitude::{tilt_angles, turned};
 use crate::attitude_controller::AttitudeController;
-use crate::controller_limits::{attitude_bounds, largest_tilt};
+use crate::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt};
 use crate::estimator::Command;
 use crate::guidance::Heading;
 use crate::observer::Observation;
@@ -23,13 +23,6 @@ use crate::{
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
 /// the thrust is the weight: it pushes sideways or down, but leaves the rotors room for torques.
 const UPRIGHT: f64 = 0.3;
-
-/// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
-pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
-
-/// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots
-/// its command, by half in the worst of many steps tried.
-pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.6;
 
 /// State of the three controllers and of the commands between them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -252,11 +245,6 @@ fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vecto
     if norm > limit { wanted * (limit / norm) } else { wanted }
 }
 
-/// Mass that the controllers believe in, kg.
-fn believed_mass_kg(configuration: &Configuration) -> f64 {
-    configuration.airframe.mass_kg * configuration.controllers.mass_factor
-}
-
 /// Smallest and largest thrust to ask for, N.
 fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
     let limits = &configuration.limits;
@@ -268,7 +256,7 @@ fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.
 fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
-    let share = upright.max(UPRIGHT) / believed_mass_kg(configuration);
+    let share = upright.max(UPRIGHT) / configuration.believed_mass_kg();
     let (least, most) = thrust_range_n(configuration);
     (GRAVITY_M_S2 - most * share, GRAVITY_M_S2 - least * share)
 }
@@ -276,19 +264,14 @@ fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
 /// F = m (g − G) of (7), divided by cos φ cos θ because a tilted thrust carries less.
 fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f64 {
     if upright < UPRIGHT {
-        return believed_mass_kg(configuration) * GRAVITY_M_S2;
+        return configuration.believed_mass_kg() * GRAVITY_M_S2;
     }
-    let level = believed_mass_kg(configuration) * (GRAVITY_M_S2 - vertical_m_s2);
+    let level = configuration.believed_mass_kg() * (GRAVITY_M_S2 - vertical_m_s2);
     let (least, most) = thrust_range_n(configuration);
     (level / upright).clamp(least, most)
 }
 
 /// ω × Jω, N·m: what (3) takes from the torques, given back.
 fn gyroscopic_torque(configuration: &Configuration, body_rate_rad_s: &Vector3<f64>) -> Vector3<f64> {
-    body_rate_rad_s.cross(&believed_inertia(configuration).component_mul(body_rate_rad_s))
-}
-
-/// Moments of inertia that the controllers believe in, kg·m².
-pub(crate) fn believed_inertia(configuration: &Configuration) -> Vector3<f64> {
-    Vector3::from(configuration.airframe.inertia_kg_m2) * configuration.controllers.mass_factor
+    body_rate_rad_s.cross(&configuration.believed_inertia_kg_m2().component_mul(body_rate_rad_s))
 }

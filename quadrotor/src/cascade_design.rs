@@ -62,8 +62,7 @@ impl CascadeDesign {
     pub fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
         validate(configuration)?;
         let settings = &configuration.controllers;
-        // The controllers see the body that they believe in: inertia grows with mass.
-        let inertia = configuration.airframe.inertia_kg_m2.map(|j| j * settings.mass_factor);
+        let inertia = configuration.believed_inertia_kg_m2().into();
         let hold = Discretization::ZeroOrderHold;
         let kind = settings.kind;
         let altitude = designed(

@@ -1,6 +1,6 @@
 //! Everything about a flight that does not change while it lasts.
 
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::Airframe;
@@ -24,6 +24,18 @@ pub struct Configuration {
     pub limits: Limits,
     /// Whether references pass through the jerk-limited shaper.
     pub reference: ReferenceSettings,
+}
+
+impl Configuration {
+    /// Mass that the controllers believe in, kg.
+    pub(crate) fn believed_mass_kg(&self) -> f64 {
+        self.airframe.mass_kg * self.controllers.mass_factor
+    }
+
+    /// Moments of inertia that the controllers believe in, kg·m²: they grow with the mass.
+    pub(crate) fn believed_inertia_kg_m2(&self) -> Vector3<f64> {
+        Vector3::from(self.airframe.inertia_kg_m2) * self.controllers.mass_factor
+    }
 }
 
 /// The world around the vehicle.

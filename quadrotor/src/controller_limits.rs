@@ -9,6 +9,13 @@ use nalgebra::{DMatrix, Vector2, Vector3};
 use crate::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
 use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits};
 
+/// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
+pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
+
+/// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots
+/// its command, by half in the worst of many steps tried.
+pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.6;
+
 /// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
 const TILT_SIDES: usize = 16;
 /// Sides of the polygon for the rate of the tilt.

@@ -7,14 +7,14 @@ use crate::attitude::wrapped;
 use crate::cascade::Cascade;
 use crate::estimator::Command;
 use crate::guidance::Guidance;
-use crate::observer::Observer;
+use crate::observer::{Observation, Observer};
 use crate::plant::Plant;
 use crate::recovery::Recovery;
 use crate::schedule::{next_event_us, ticks};
 use crate::validation::only_tunables_differ;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
-    Outputs, RigidBody, RotorFault, SimulationError,
+    Outputs, PositionReference, RigidBody, RotorFault, SimulationError,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -58,6 +58,37 @@ impl SimulationState {
         }
         Ok(())
     }
+
+    /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
+    fn track(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        seen: &Observation,
+        reference: &PositionReference,
+        (position, altitude, attitude): (bool, bool, bool),
+    ) {
+        let (controllers, limits) = (&configuration.controllers, &configuration.limits);
+        let time_us = self.event_us;
+        if position || altitude {
+            self.guidance.sample(reference, limits, time_us);
+        }
+        if position {
+            // Commands ramp up to the input until the next sample.
+            let setpoint = self.guidance.setpoint(time_us, controllers.position.sample_time_us);
+            self.cascade.sample_position(configuration, design, seen, &setpoint, time_us);
+        }
+        if altitude {
+            // … and the rotors lag behind the thrust command.
+            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
+            let setpoint = self.guidance.setpoint(time_us, controllers.altitude.sample_time_us + lag_us);
+            self.cascade.sample_altitude(configuration, design, seen, &setpoint, time_us);
+        }
+        if attitude {
+            let heading = self.guidance.sample_heading(reference, limits, time_us);
+            self.cascade.sample_attitude(configuration, design, seen, &heading, time_us);
+        }
+    }
 }
 
 /// A flight: configuration, controllers designed from it, and state.
@@ -98,14 +129,7 @@ impl Simulation {
             attitude_target: None,
             engage: false,
         };
-        Ok(Self {
-            configuration: *configuration,
-            design,
-            state,
-            estimate: None,
-            rotor_faults: [None; 4],
-            recovery: None,
-        })
+        Ok(Self::of(configuration, design, state))
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.
@@ -118,14 +142,13 @@ impl Simulation {
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
         let design = CascadeDesign::new(configuration)?;
-        Ok(Self {
-            configuration: *configuration,
-            design,
-            state,
-            estimate: None,
-            rotor_faults: [None; 4],
-            recovery: None,
-        })
+        Ok(Self::of(configuration, design, state))
+    }
+
+    /// A flight that nothing outside has touched yet.
+    fn of(configuration: &Configuration, design: CascadeDesign, state: SimulationState) -> Self {
+        let configuration = *configuration;
+        Self { configuration, design, state, estimate: None, rotor_faults: [None; 4], recovery: None }
     }
 
     /// The configuration.
@@ -354,12 +377,20 @@ impl Simulation {
 
     /// Samples the inputs and runs the controllers whose clocks tick at the last event.
     fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
-        let (configuration, design) = (&self.configuration, &self.design);
+        inputs.check(self.state.event_us)?;
+        self.take(inputs);
+        if self.state.armed {
+            self.control(&inputs.reference);
+        }
+        self.state.sampled = true;
+        Ok(())
+    }
+
+    /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
+    fn take(&mut self, inputs: &Inputs) {
+        let (configuration, estimate) = (&self.configuration, self.estimate.as_ref());
         let state = &mut self.state;
         let time_us = state.event_us;
-        inputs.check(time_us)?;
-
-        let estimate = self.estimate.as_ref();
         state.disturbance = inputs.disturbance;
         if inputs.armed && (!state.armed || state.engage) {
             let body = estimate.unwrap_or(&state.plant.body);
@@ -371,59 +402,42 @@ impl Simulation {
         }
         state.engage &= !inputs.armed;
         state.armed = inputs.armed;
-        state.sampled = true;
-        if !state.armed {
-            return Ok(());
-        }
+    }
+
+    /// Runs the controllers whose clocks tick: those for the loss of a rotor, that of an attitude, or the cascade.
+    fn control(&mut self, reference: &PositionReference) {
+        let (configuration, design) = (&self.configuration, &self.design);
+        let state = &mut self.state;
+        let time_us = state.event_us;
         let controllers = &configuration.controllers;
-        let (reference, limits) = (&inputs.reference, &configuration.limits);
-        let position_us = controllers.position.sample_time_us;
-        let altitude_us = controllers.altitude.sample_time_us;
-        let attitude_us = controllers.attitude.sample_time_us;
-        if ![position_us, altitude_us, attitude_us].iter().any(|period_us| ticks(time_us, *period_us)) {
-            return Ok(());
+        let position = ticks(time_us, controllers.position.sample_time_us);
+        let altitude = ticks(time_us, controllers.altitude.sample_time_us);
+        let attitude = ticks(time_us, controllers.attitude.sample_time_us);
+        if !(position || altitude || attitude) {
+            return;
         }
-        let seen = state.observer.observe(configuration, &state.plant, estimate, time_us);
+        let seen = state.observer.observe(configuration, &state.plant, self.estimate.as_ref(), time_us);
+        let directly = self.recovery.is_some() || state.attitude_target.is_some();
+        if directly && !attitude {
+            return;
+        }
         if let Some(recovery) = &self.recovery {
-            if ticks(time_us, attitude_us) {
-                let measured = &state.plant.rotor_speed_rad_s;
-                let rotor_speed_rad_s = recovery.step(configuration, &seen.body, measured, &inputs.reference);
-                state.cascade.set_rotor_command(rotor_speed_rad_s);
-                let command = Command { acceleration_m_s2: None, rotor_speed_rad_s };
-                state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
-            }
-            return Ok(());
+            let measured = &state.plant.rotor_speed_rad_s;
+            state.cascade.set_rotor_command(recovery.step(configuration, &seen.body, measured, reference));
+        } else if let Some(target) = &state.attitude_target {
+            state.cascade.sample_attitude_target(configuration, design, &seen, target);
+        } else {
+            state.track(configuration, design, &seen, reference, (position, altitude, attitude));
         }
-        if let Some(target) = &state.attitude_target {
-            if ticks(time_us, attitude_us) {
-                state.cascade.sample_attitude_target(configuration, design, &seen, target);
+        if attitude {
+            let command = if directly {
                 let rotor_speed_rad_s = state.cascade.rotor_command_rad_s();
-                let command = Command { acceleration_m_s2: None, rotor_speed_rad_s };
-                state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
-            }
-            return Ok(());
-        }
-        if ticks(time_us, position_us) || ticks(time_us, altitude_us) {
-            state.guidance.sample(reference, limits, time_us);
-        }
-        if ticks(time_us, position_us) {
-            // Commands ramp up to the input until the next sample.
-            let setpoint = state.guidance.setpoint(time_us, position_us);
-            state.cascade.sample_position(configuration, design, &seen, &setpoint, time_us);
-        }
-        if ticks(time_us, altitude_us) {
-            // … and the rotors lag behind the thrust command.
-            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
-            let setpoint = state.guidance.setpoint(time_us, altitude_us + lag_us);
-            state.cascade.sample_altitude(configuration, design, &seen, &setpoint, time_us);
-        }
-        if ticks(time_us, attitude_us) {
-            let heading = state.guidance.sample_heading(reference, limits, time_us);
-            state.cascade.sample_attitude(configuration, design, &seen, &heading, time_us);
-            let command = state.cascade.command(configuration, time_us);
+                Command { acceleration_m_s2: None, rotor_speed_rad_s }
+            } else {
+                state.cascade.command(configuration, time_us)
+            };
             state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
         }
-        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Checks on a configuration: every range, then what must fit together.
 
-use crate::cascade::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
-use crate::{Configuration, ConfigurationError, GRAVITY_M_S2, PARAMETERS, Parameter};
+use crate::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
+use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
@@ -46,7 +46,11 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
             other_value: followed,
         });
     }
-    let controllers = &configuration.controllers;
+    validate_sample_times(&configuration.controllers)
+}
+
+/// The attitude controller is the inner one: it is the fastest.
+fn validate_sample_times(controllers: &Controllers) -> Result<(), ConfigurationError> {
     for (name, outer) in [
         ("controller.position.sample_time", controllers.position.sample_time_s()),
         ("controller.altitude.sample_time", controllers.altitude.sample_time_s()),
