@@ -19,6 +19,9 @@ pub enum Failure {
         /// What is wrong with it.
         reason: String,
     },
+    /// A command line that cannot be read.
+    #[error("{0} (--help tells more)")]
+    Usage(String),
     /// The closed loop cannot be built.
     #[error(transparent)]
     Configuration(#[from] ConfigurationError),
@@ -89,7 +92,7 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Simulation(_) | Self::Signals(_) => 1,
-            Self::Value { .. } | Self::Configuration(_) | Self::Set(_) => 2,
+            Self::Value { .. } | Self::Usage(_) | Self::Configuration(_) | Self::Set(_) => 2,
             Self::Link(_) => 3,
             Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } => 4,
             Self::Differs { .. } => 5,

@@ -3,9 +3,15 @@
 use std::process::ExitCode;
 
 use clap::Parser;
+use sitl::configuration::{Arguments, mistake};
 
 fn main() -> ExitCode {
-    match sitl::run(sitl::configuration::Arguments::parse()) {
+    let ended = match Arguments::try_parse() {
+        Ok(arguments) => sitl::run(arguments),
+        Err(error) if error.use_stderr() => Err(mistake::failure(&error)),
+        Err(help) => help.exit(),
+    };
+    match ended {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("lmpc-sitl: {failure}");

@@ -1,10 +1,22 @@
 //! The file that tells that clients can connect.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use crate::failure::Failure;
 use crate::fleet::Fleet;
 use crate::link::Links;
+
+/// Removes what an earlier run has left: nobody shall take it for this one's.
+///
+/// # Errors
+/// [`Failure::File`]
+pub fn forget(path: &Path) -> Result<(), Failure> {
+    match std::fs::remove_file(path) {
+        Err(source) if source.kind() != ErrorKind::NotFound => Err(Failure::write(path, source)),
+        _ => Ok(()),
+    }
+}
 
 /// Writes it at once: a reader never sees half of it.
 ///

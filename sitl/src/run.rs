@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use tracing_subscriber::EnvFilter;
 
-use crate::configuration::{Arguments, Settings};
+use crate::configuration::{Arguments, Settings, file};
 use crate::failure::Failure;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
@@ -58,33 +58,30 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
 /// The plant for an external autopilot.
 fn simulate(settings: HilSettings, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
+    let ready_file = settings.ready_file.as_deref();
+    ready_file.map(ready::forget).transpose()?;
     let simulator = Simulator::open(settings.clone())?;
+    ready_file.map(|path| ready::write_address(path, &simulator.address())).transpose()?;
     say(hil_banner(&settings, &simulator.address()).trim_end());
-    if let Some(path) = &settings.ready_file {
-        ready::write_address(path, &simulator.address())?;
-    }
     simulator.run(stop)
 }
 
 /// The arguments, completed by the configuration file that they name.
 fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
-    let Some(path) = arguments.config.clone() else { return Ok(arguments) };
-    let text = std::fs::read_to_string(&path).map_err(|source| Failure::read(&path, source))?;
-    let file: Arguments = toml::from_str(&text).map_err(|error| {
-        // The message spans lines; a person needs the place and the reason in one.
-        let line =
-            error.span().map_or(1, |span| text.get(..span.start).unwrap_or_default().lines().count().max(1));
-        let content = text.lines().nth(line - 1).unwrap_or_default().trim();
-        let message = error.message().lines().collect::<Vec<_>>().join(" ");
-        let reason = format!("line {line}, `{content}`: {message}");
-        Failure::Content { path: path.clone(), reason }
-    })?;
-    Ok(arguments.or(file))
+    match &arguments.config {
+        Some(path) => file::read(path).map(|file| arguments.or(file)),
+        None => Ok(arguments),
+    }
 }
 
 fn log_to_stderr(filter: Option<&str>) -> Result<(), Failure> {
-    let filter = EnvFilter::try_new(filter.unwrap_or("info"))
-        .map_err(|error| Failure::Value { name: "--log".to_owned(), reason: error.to_string() })?;
+    let filter = filter.unwrap_or("info");
+    let filter = EnvFilter::try_new(filter).map_err(|_| Failure::Value {
+        name: "--log".to_owned(),
+        reason: format!(
+            "`{filter}` is no filter: error, warn, info, debug, trace, off, or TARGET=LEVEL between commas"
+        ),
+    })?;
     let subscriber = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(|| LogLines)

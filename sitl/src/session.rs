@@ -28,7 +28,10 @@ impl Session {
     /// [`Failure`] of the first thing that cannot be used.
     pub fn new(settings: Settings) -> Result<Self, Failure> {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let ready_file = settings.ready_file.as_deref();
+        ready_file.map(ready::forget).transpose()?;
         let fleet = Fleet::open(&settings, since_1970.as_micros() as u64)?;
+        ready_file.map(|path| ready::write(path, &fleet)).transpose()?;
         Ok(Self { settings, fleet })
     }
 
@@ -50,9 +53,6 @@ impl Session {
             .map(|members| Clock::new(settings.speed, members, settings.end_us, start))
             .collect();
         let mut status = StatusLine::new(start);
-        if let Some(path) = &settings.ready_file {
-            ready::write(path, &fleet)?;
-        }
         let several = clocks.len() as u32;
         while !stop.load(Ordering::Relaxed) && !clocks.iter().all(Clock::is_over) {
             let now = Instant::now();

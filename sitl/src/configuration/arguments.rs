@@ -1,12 +1,13 @@
-//! Command line, environment and configuration file: the same settings by the same names.
+//! Command line and environment; the configuration file has the same settings by the same names.
 
 use std::path::PathBuf;
 
 use clap::Parser;
-use serde::Deserialize;
 
+use super::ranged::{number, whole};
 use super::{Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
 use crate::estimation::SensorModel;
+use crate::fault::ScheduledFault;
 use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::identity::Identity;
@@ -15,68 +16,74 @@ use crate::parameters::Speed;
 
 const AFTER_HELP: &str = "\
 Links:
-  udpout:HOST:PORT[@LOCALPORT]  sends to an address, answers everyone who sends to the local port
+  udpout:HOST:PORT[@LOCALPORT]  sends to an address, answers LOCALPORT's senders
   udpin:[HOST:]PORT             waits for datagrams, answers their senders
   tcpin:[HOST:]PORT             accepts connections
-  serial:PATH[:BAUD]            a serial device or pseudo-terminal, 57600 baud unless named
-  HOST is 127.0.0.1 unless named. With `,onboard` behind it a link gets the faster telemetry of a companion computer.
-  Without --link: udpout:127.0.0.1:14550@18570 and udpout:127.0.0.1:14540@14580,onboard, as PX4 has them; --instance
-  counts the local ports and 14540 up, the latter to 14549.
+  serial:PATH[:BAUD]            a serial device or pseudo-terminal, 57600 baud
+  HOST is 127.0.0.1 unless named. With `,onboard` behind it a link gets the
+  faster telemetry of a companion computer. Without --link, as PX4 has them:
+    udpout:127.0.0.1:14550@18570 and udpout:127.0.0.1:14540@14580,onboard
+  --instance counts the local ports and 14540 up, the latter to 14549.
 
 Many vehicles:
-  --vehicles 5                            each with PX4's ports of its instance
-  --vehicles 5 --ports shared             all behind the same links, told apart by their system ids
-  --vehicles 5 --link tcpin:5760          on 5760 to 5764: local ports count up, and where an onboard link sends to
-  --parameters fleet.params               of system 3 among several: fleet-3.params
+  --vehicles 5                    each with PX4's ports of its instance
+  --vehicles 5 --ports shared     behind the same links, told apart by system id
+  --vehicles 5 --link tcpin:5760  on 5760 to 5764: local ports count up, and where
+                                  an onboard link sends to
+  --parameters fleet.params       of system 3 among several: fleet-3.params
 
 External autopilot:
-  --hil 4560       then, for PX4: make px4_sitl none_iris
-                   (its motors 1 to 4: front right, back left, front left, back right; see --hil-mount)
+  --hil 4560   then, for PX4: make px4_sitl none_iris (its motors 1 to 4: front
+               right, back left, front left, back right; see --hil-mount)
 
 Connect with:
-  QGroundControl     start it: it listens on 14550
-  MAVSDK             udpin://0.0.0.0:14540
-  pymavlink          mavutil.mavlink_connection('udpin:127.0.0.1:14540')
-  MAVProxy           mavproxy.py --master=udpin:127.0.0.1:14550
+  QGroundControl   start it: it listens on 14550
+  MAVSDK           udpin://0.0.0.0:14540
+  pymavlink        mavutil.mavlink_connection('udpin:127.0.0.1:14540')
+  MAVProxy         mavproxy.py --master=udpin:127.0.0.1:14550
 
-Faults:
-  gyroscope, accelerometer, magnetometer, barometer, gps   off, stuck, garbage, wrong, slow, delayed, intermittent
-  battery                                                  off, stuck, wrong
-  rotor1 front, rotor2 right, rotor3 back, rotor4 left,
-  rotors                                                   off, stuck, weak[:SHARE of the thrust, 0.7 unless named]
+Faults (UNIT=KIND):
+  gyroscope, accelerometer, magnetometer, barometer, gps
+      off, stuck, garbage, wrong, slow, delayed, intermittent
+  battery
+      off, stuck, wrong
+  rotor1 (front), rotor2 (right), rotor3 (back), rotor4 (left), rotors
+      off, stuck, weak[:SHARE of the thrust, 0.7 unless named]
   `ok` mends each of them.
 
-Every flag can be set in the configuration file by its name (`autopilot = \"ardupilot\"`) and in the environment by
-LMPC_SITL_ and its name in capitals; flags go before the environment, the environment before the file.
+Every flag can be set in the configuration file by its name (`speed = 5`;
+`link = [\"tcpin:5760\", \"udpin:14550\"]` where it can be repeated), and in the
+environment by LMPC_SITL_ and its name in capitals (several between `;`). Flags
+go before the environment, the environment before the file.
 
-Exit codes: 0 ended as asked, 1 the simulation failed, 2 a wrong flag or value, 3 a port or device cannot be used,
-4 a file cannot be used, 5 a replayed flight differs from the recorded one.";
+Exit codes: 0 ended as asked, 1 the simulation failed, 2 a wrong flag or value,
+3 a port or device cannot be used, 4 a file cannot be used, 5 a replayed flight
+differs from the recorded one.";
 
 /// A simulated quadrotor under Laguerre model predictive control that MAVLink clients fly.
-#[derive(Clone, Debug, Default, PartialEq, Parser, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Parser)]
 #[command(name = "lmpc-sitl", version, after_help = AFTER_HELP, max_term_width = 110)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Arguments {
     /// Configuration file (TOML)
     #[arg(long, env = "LMPC_SITL_CONFIG", value_name = "FILE")]
-    #[serde(skip)]
     pub config: Option<PathBuf>,
 
     /// Link to clients; repeat it for more, see below
     #[arg(long, env = "LMPC_SITL_LINK", value_name = "LINK", value_delimiter = ';')]
     pub link: Option<Vec<LinkSpecification>>,
 
-    /// Number of this vehicle on the machine: moves the default ports and system id [default: 0]
-    #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = clap::value_parser!(u16).range(0..=200))]
+    /// Number of this vehicle on the machine: moves the default ports and system id; 0 to 200
+    /// [default: 0]
+    #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = whole(0_u16, 200), allow_negative_numbers = true)]
     pub instance: Option<u16>,
 
     /// MAVLink system id, 1 to 250 [default: 1 + instance]
-    #[arg(long, env = "LMPC_SITL_SYSTEM_ID", value_name = "ID", value_parser = clap::value_parser!(u8).range(1..=250))]
+    #[arg(long, env = "LMPC_SITL_SYSTEM_ID", value_name = "ID", value_parser = whole(1_u8, 250), allow_negative_numbers = true)]
     pub system_id: Option<u8>,
 
-    /// Number of vehicles, with system ids from --system-id upwards; gusts and noise of each have their own seed
+    /// Number of vehicles, 1 to 250, with system ids from --system-id upwards; gusts and noise of each have their own seed
     /// [default: 1]
-    #[arg(long, env = "LMPC_SITL_VEHICLES", value_name = "N", value_parser = clap::value_parser!(u8).range(1..=250))]
+    #[arg(long, env = "LMPC_SITL_VEHICLES", value_name = "N", value_parser = whole(1_u8, 250), allow_negative_numbers = true)]
     pub vehicles: Option<u8>,
 
     /// Whether each vehicle has its own ports, or all share them [default: own]
@@ -105,12 +112,12 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max", allow_hyphen_values = true)]
     pub speed: Option<Speed>,
 
-    /// Steady wind: speed in m/s and the direction in degrees that it comes from [default: 0,0]
+    /// Steady wind: speed in m/s, 0 to 30, and the direction in degrees that it comes from [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true)]
     pub wind: Option<WindFrom>,
 
-    /// Standard deviation of gusts in m/s (Dryden's spectrum) [default: 0]
-    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", allow_hyphen_values = true)]
+    /// Standard deviation of gusts in m/s, 0 to 10 (Dryden's spectrum) [default: 0]
+    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", value_parser = number(0.0, 10.0), allow_hyphen_values = true)]
     pub gusts: Option<f64>,
 
     /// What the vehicle knows its motion by: `ideal` is the truth; `realistic` are a GPS receiver, an inertial unit, a
@@ -126,13 +133,13 @@ pub struct Arguments {
 
     /// Measure position and attitude only; a Kalman predictor estimates the rest in the loop [default: false]
     #[arg(
-        long, env = "LMPC_SITL_KALMAN", value_name = "true|false", num_args = 0..=1, require_equals = true,
+        long, env = "LMPC_SITL_KALMAN", value_name = "true|false", num_args = 0..=1,
         default_missing_value = "true"
     )]
     pub kalman: Option<bool>,
 
     /// Seed of everything random [default: 1]
-    #[arg(long, env = "LMPC_SITL_SEED", value_name = "N")]
+    #[arg(long, env = "LMPC_SITL_SEED", value_name = "N", value_parser = whole(0, u64::MAX), allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Parameter at the start, by its MAVLink id or its dotted name (airframe.mass=0.9); repeat it for more
@@ -141,7 +148,7 @@ pub struct Arguments {
 
     /// What breaks when, such as 12.5:rotor1=off; repeat it for more, see below
     #[arg(long, env = "LMPC_SITL_FAULT", value_name = "SECONDS:UNIT=KIND", value_delimiter = ';')]
-    pub fault: Option<Vec<String>>,
+    pub fault: Option<Vec<ScheduledFault>>,
 
     /// Parameter file: read at the start if it exists, written whenever a parameter changes
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
@@ -181,12 +188,14 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_LOG_START", value_name = "arm|boot")]
     pub log_start: Option<LogStart>,
 
-    /// A flight or traffic log goes on in another file at this size, MB [default: 100]
-    #[arg(long, env = "LMPC_SITL_LOG_SIZE", value_name = "MB", allow_hyphen_values = true)]
+    /// A flight or traffic log goes on in another file at this size, 0.1 to 4000 MB
+    /// [default: 100]
+    #[arg(long, env = "LMPC_SITL_LOG_SIZE", value_name = "MB", value_parser = number(0.1, 4000.0), allow_hyphen_values = true)]
     pub log_size: Option<f64>,
 
-    /// Flight logs, and files of the traffic log, that are kept; the oldest go [default: 100]
-    #[arg(long, env = "LMPC_SITL_LOG_COUNT", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    /// Flight logs, and files of the traffic log, that are kept, 1 to 10000; the oldest go
+    /// [default: 100]
+    #[arg(long, env = "LMPC_SITL_LOG_COUNT", value_name = "N", value_parser = whole(1_u32, 10_000), allow_negative_numbers = true)]
     pub log_count: Option<u32>,
 
     /// Folder that clients see as /files by MAVLink FTP, to be read
@@ -202,12 +211,13 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SIGNING_KEY", value_name = "FILE")]
     pub signing_key: Option<PathBuf>,
 
-    /// File that is written (JSON: process id, addresses of the links) when clients can connect
+    /// File that is written (JSON: process id, addresses of the links) when clients can connect; an older one is removed
+    /// first
     #[arg(long, env = "LMPC_SITL_READY_FILE", value_name = "FILE")]
     pub ready_file: Option<PathBuf>,
 
     /// End after this much simulated time
-    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", allow_hyphen_values = true)]
+    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", value_parser = number(0.0, 1e9), allow_hyphen_values = true)]
     pub duration: Option<f64>,
 
     /// What to log to the standard error stream: error, warn, info, debug, or a filter of targets [default: info]

@@ -2,8 +2,6 @@
 
 use std::str::FromStr;
 
-use serde::Deserialize;
-
 /// How the starts lie to one another. The first vehicle of a line or a grid stands at home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -16,8 +14,7 @@ pub enum Shape {
 }
 
 /// A shape and the distance between neighbours.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formation {
     /// The shape.
     pub shape: Shape,
@@ -80,14 +77,6 @@ impl FromStr for Formation {
         };
         let fits = (LEAST_SPACING_M..=MOST_SPACING_M).contains(&spacing_m);
         if fits { Ok(Self { shape, spacing_m }) } else { Err(wrong()) }
-    }
-}
-
-impl TryFrom<String> for Formation {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
     }
 }
 

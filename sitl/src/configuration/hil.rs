@@ -53,7 +53,7 @@ impl HilSettings {
             system_id: first_system_id(arguments),
             speed,
             ready_file: arguments.ready_file.clone(),
-            end_us: end_us(arguments)?,
+            end_us: end_us(arguments),
         })
     }
 }

@@ -2,14 +2,11 @@
 
 use std::str::FromStr;
 
-use serde::Deserialize;
-
 use super::settings::numbers;
 use crate::world::Geodetic;
 
 /// Where the vehicle stands at the start.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HomePosition {
     /// The place.
     pub place: Geodetic,
@@ -46,13 +43,5 @@ impl FromStr for HomePosition {
             && heading_deg.abs() <= 360.0;
         let place = Geodetic { latitude_deg, longitude_deg, altitude_m };
         if fits { Ok(Self { place, heading_deg }) } else { Err(wrong()) }
-    }
-}
-
-impl TryFrom<String> for HomePosition {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
     }
 }

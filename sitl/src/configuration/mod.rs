@@ -1,10 +1,13 @@
 //! What the program is told: defaults, then the file, then the environment, then the flags.
 
 mod arguments;
+pub mod file;
 mod formation;
 mod hil;
 mod home;
+pub mod mistake;
 mod noise;
+mod ranged;
 mod settings;
 mod sharing;
 mod wind;

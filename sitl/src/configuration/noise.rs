@@ -2,13 +2,10 @@
 
 use std::str::FromStr;
 
-use serde::Deserialize;
-
 use super::settings::numbers;
 
 /// Standard deviations of the white noise on what the controllers measure.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct MeasurementNoise {
     /// Position, per axis, m.
     pub position_m: f64,
@@ -63,13 +60,5 @@ impl FromStr for MeasurementNoise {
                  and rad/s, none negative, at most 10,10,0.5,10"
             )),
         }
-    }
-}
-
-impl TryFrom<String> for MeasurementNoise {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
     }
 }

@@ -91,7 +91,7 @@ impl Settings {
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
             ready_file: arguments.ready_file.clone(),
-            end_us: end_us(arguments)?,
+            end_us: end_us(arguments),
         })
     }
 
@@ -116,9 +116,8 @@ impl Settings {
 }
 
 /// End, µs of simulation time.
-pub(super) fn end_us(arguments: &Arguments) -> Result<Option<u64>, Failure> {
-    let Some(seconds) = arguments.duration else { return Ok(None) };
-    Ok(Some((within("duration", seconds, 0.0, 1e9)? * 1e6) as u64))
+pub(super) fn end_us(arguments: &Arguments) -> Option<u64> {
+    arguments.duration.map(|seconds| (seconds * 1e6) as u64)
 }
 
 /// System id of the first vehicle.
@@ -133,7 +132,7 @@ fn system_ids(arguments: &Arguments) -> Result<Vec<u8>, Failure> {
     const LAST: u16 = 250;
     let count = u16::from(arguments.vehicles.unwrap_or(1));
     let first = u16::from(first_system_id(arguments));
-    let last = first + count - 1;
+    let last = (first + count).saturating_sub(1);
     if last > LAST {
         let reason =
             format!("{count} vehicles from system {first} on need system {last}; the last is {LAST}");
@@ -177,7 +176,7 @@ pub(super) fn vehicle(
     let identity = arguments.autopilot.unwrap_or_default();
     let home = arguments.home.unwrap_or_default();
     let wind = arguments.wind.unwrap_or_default();
-    let gusts_m_s = within("gusts", arguments.gusts.unwrap_or(0.0), 0.0, 10.0)?;
+    let gusts_m_s = arguments.gusts.unwrap_or(0.0);
     let mut vehicle = VehicleSettings {
         identity,
         configuration: Configuration::default(),
@@ -190,10 +189,7 @@ pub(super) fn vehicle(
             gusts_m_s,
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
-        faults: faults(
-            arguments.fault.as_deref().unwrap_or_default(),
-            arguments.sensors.unwrap_or_default(),
-        )?,
+        faults: faults(arguments)?,
         sensors: SensorSettings {
             model: arguments.sensors.unwrap_or_default(),
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
@@ -242,40 +238,31 @@ fn noise_seed(arguments: &Arguments, number: usize) -> u32 {
 }
 
 fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
-    const MEGABYTE: f64 = 1e6;
+    const MEGABYTES: f64 = 100.0;
     const COUNT: u32 = 100;
     if arguments.ftp_write == Some(true) && arguments.ftp_root.is_none() {
         let reason = "there is no --ftp-root to write to".to_owned();
         return Err(Failure::Value { name: "--ftp-write".to_owned(), reason });
     }
-    let megabytes = within("log-size", arguments.log_size.unwrap_or(100.0), 0.1, 4000.0)?;
-    let count = within("log-count", f64::from(arguments.log_count.unwrap_or(COUNT)), 1.0, 10_000.0)?;
     Ok(LogSettings {
         folder: arguments.log_dir.clone(),
         start: arguments.log_start.unwrap_or_default(),
-        most_bytes: (megabytes * MEGABYTE) as u64,
-        most_files: count as usize,
+        most_bytes: (arguments.log_size.unwrap_or(MEGABYTES) * 1e6) as u64,
+        most_files: arguments.log_count.unwrap_or(COUNT) as usize,
     })
 }
 
-fn within(name: &str, value: f64, minimum: f64, maximum: f64) -> Result<f64, Failure> {
-    if (minimum..=maximum).contains(&value) {
-        return Ok(value);
-    }
-    let reason = format!("{value} is outside [{minimum}, {maximum}]");
-    Err(Failure::Value { name: format!("--{name}"), reason })
-}
-
-fn faults(named: &[String], sensors: SensorModel) -> Result<Vec<ScheduledFault>, Failure> {
-    let wrong = |reason| Failure::Value { name: "--fault".to_owned(), reason };
-    let fault = |text: &String| {
-        let scheduled: ScheduledFault = text.parse().map_err(wrong)?;
-        if sensors == SensorModel::Ideal && scheduled.fault.needs_readings() {
-            return Err(wrong(format!("`{text}` needs --sensors realistic: ideal ones only fall silent")));
+/// What breaks when, by the sensors that there are.
+fn faults(arguments: &Arguments) -> Result<Vec<ScheduledFault>, Failure> {
+    let ideal = arguments.sensors.unwrap_or_default() == SensorModel::Ideal;
+    let faults = arguments.fault.clone().unwrap_or_default();
+    match faults.iter().find(|scheduled| ideal && scheduled.fault.needs_readings()) {
+        None => Ok(faults),
+        Some(scheduled) => {
+            let reason = format!("`{scheduled}` needs --sensors realistic: ideal ones only fall silent");
+            Err(Failure::Value { name: "--fault".to_owned(), reason })
         }
-        Ok(scheduled)
-    };
-    named.iter().map(fault).collect()
+    }
 }
 
 /// Sets the parameters of the file, then those of the command line, on a vehicle that is only made for that.

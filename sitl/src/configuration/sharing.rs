@@ -1,10 +1,7 @@
 //! What the vehicles of a run share.
 
-use serde::Deserialize;
-
 /// Whose the ports are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Ports {
     /// Each vehicle has its own, counted up.
     #[default]
@@ -14,8 +11,7 @@ pub enum Ports {
 }
 
 /// Whose simulation time is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Clocks {
     /// All vehicles tick in lock-step, at one speed.
     #[default]

@@ -2,13 +2,10 @@
 
 use std::str::FromStr;
 
-use serde::Deserialize;
-
 use super::settings::numbers;
 
 /// Steady wind.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct WindFrom {
     /// Speed, m/s.
     pub speed_m_s: f64,
@@ -29,13 +26,5 @@ impl FromStr for WindFrom {
         };
         let fits = (0.0..=30.0).contains(&speed_m_s) && from_deg.abs() <= 360.0;
         if fits { Ok(Self { speed_m_s, from_deg }) } else { Err(wrong()) }
-    }
-}
-
-impl TryFrom<String> for WindFrom {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
     }
 }

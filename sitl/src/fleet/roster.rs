@@ -23,24 +23,12 @@ pub struct Fleet {
 }
 
 impl Fleet {
-    /// Builds the vehicles, opens links and files.
+    /// Opens links and files, builds the vehicles.
     ///
     /// # Errors
     /// [`Failure`] of the first thing that cannot be used.
     pub fn open(settings: &Settings, unix_start_us: u64) -> Result<Self, Failure> {
-        let participants = settings.participants();
         let folder = settings.logs.folder.as_deref().map(LogFolder::open).transpose()?;
-        let members = participants
-            .iter()
-            .zip(&settings.vehicles)
-            .map(|(participant, own)| {
-                let parameters = own.parameters.clone();
-                let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
-                let files = Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?;
-                let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
-                Ok(member.keep(files, log))
-            })
-            .collect::<Result<Vec<_>, Failure>>()?;
         let mut hubs: Vec<Links> = (0..)
             .zip(&settings.hubs)
             .map(|(hub, links)| {
@@ -54,7 +42,22 @@ impl Fleet {
             .enumerate()
             .map(|(hub, links)| SigningKeeper::new(key, hub, unix_start_us, links))
             .collect::<Result<_, _>>()?;
-        Ok(Self { members, hubs, signing, books: Books::open(settings, participants, unix_start_us)? })
+        // A port that is taken belongs to somebody whose files these may be, too: they come after the links.
+        let books = Books::open(settings, settings.participants(), unix_start_us)?;
+        // The vehicles last: they introduce themselves, and then nothing is in the way any more.
+        let members = settings
+            .participants()
+            .iter()
+            .zip(&settings.vehicles)
+            .map(|(participant, own)| {
+                let files = Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?;
+                let parameters = own.parameters.clone();
+                let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
+                let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
+                Ok(member.keep(files, log))
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Self { members, hubs, signing, books })
     }
 
     /// The vehicles.

@@ -3,11 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use serde::Deserialize;
-
 /// When a log begins.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LogStart {
     /// When the vehicle arms; it ends a second after it has disarmed.
     #[default]
@@ -25,14 +22,6 @@ impl FromStr for LogStart {
             "boot" => Ok(Self::Boot),
             _ => Err(format!("`{text}` is no beginning of a log: `arm` or `boot`")),
         }
-    }
-}
-
-impl TryFrom<String> for LogStart {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
     }
 }
 

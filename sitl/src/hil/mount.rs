@@ -3,7 +3,6 @@
 use core::f64::consts::FRAC_PI_4;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use serde::Deserialize;
 
 /// Where the autopilot's forward points, between the airframe's arms or along one. Its motors are numbered by PX4's
 /// convention, which puts the same number on the same rotor in both:
@@ -14,8 +13,7 @@ use serde::Deserialize;
 /// | 2 | back left | left | left | counter-clockwise |
 /// | 3 | front left | front | front | clockwise |
 /// | 4 | back right | back | back | clockwise |
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Mount {
     /// Forward between two arms (quad x).
     #[default]

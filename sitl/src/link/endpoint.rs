@@ -99,7 +99,7 @@ impl FromStr for LinkSpecification {
         let wrong = || {
             format!(
                 "`{text}` is no link: udpout:HOST:PORT[@LOCALPORT], udpin:[HOST:]PORT, tcpin:[HOST:]PORT or \
-                 serial:PATH[:BAUD], each with `,onboard` for faster telemetry"
+                 serial:PATH[:BAUD], each with `,onboard` for faster telemetry; PORT is within 0 to 65535"
             )
         };
         let (address, profile) = match text.rsplit_once(',') {
@@ -125,13 +125,24 @@ impl FromStr for LinkSpecification {
                 Endpoint::TcpIn { host, port }
             }
             "serial" if !rest.is_empty() => {
-                let split = rest.rsplit_once(':').and_then(|(path, baud)| Some((path, baud.parse().ok()?)));
-                let (path, baud) = split.unwrap_or((rest, BAUD));
+                let (path, baud) = path_and_baud(rest).ok_or_else(|| {
+                    format!("`{text}` is no link: serial:PATH[:BAUD] with a whole number above 0 for BAUD")
+                })?;
                 Endpoint::Serial { path: path.into(), baud }
             }
             _ => return Err(wrong()),
         };
         Ok(Self { endpoint, profile })
+    }
+}
+
+/// A colon within the name of a device, as in /dev/serial/by-path/pci-0000:00:14.0, is followed by more of its path.
+fn path_and_baud(text: &str) -> Option<(&str, u32)> {
+    match text.rsplit_once(':') {
+        Some((path, baud)) if !baud.contains(['-', '.', '/']) => {
+            baud.parse().ok().filter(|baud| *baud > 0 && !path.is_empty()).map(|baud| (path, baud))
+        }
+        _ => Some((text, BAUD)),
     }
 }
 
@@ -197,6 +208,16 @@ mod tests {
             ["", "udp", "udpin:", "tcpin:x", "udpout:h:1@x", "serial:", "tcpin:5760,fast", "udpin:70000"]
         {
             assert!(wrong.parse::<LinkSpecification>().is_err(), "{wrong}");
+        }
+        for wrong in ["serial:/dev/ttyS0:abc", "serial:/dev/ttyS0:", "serial:/dev/ttyS0:0", "serial::9600"] {
+            let error = wrong.parse::<LinkSpecification>().expect_err(wrong);
+            assert!(error.contains("BAUD"), "{wrong}: {error}");
+        }
+        for (name, path) in
+            [("/dev/ttyUSB0", "/dev/ttyUSB0"), ("/by-path/pci-0:00:14.0-usb", "/by-path/pci-0:00:14.0-usb")]
+        {
+            let link: LinkSpecification = format!("serial:{name}").parse().expect(name);
+            assert_eq!(link.endpoint, Endpoint::Serial { path: path.into(), baud: 57_600 });
         }
     }
 

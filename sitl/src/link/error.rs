@@ -6,7 +6,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// A socket.
-    #[error("cannot use {what} for the link `{link}`: {source} (is another vehicle running? try --instance)")]
+    #[error("cannot use {what} for the link `{link}`: {source}{}", hint(source))]
     Socket {
         /// Address.
         what: String,
@@ -33,4 +33,11 @@ pub enum LinkError {
         /// The link as it was asked for.
         link: String,
     },
+}
+
+fn hint(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::AddrInUse => " (is another vehicle running? --instance moves the default ports)",
+        _ => "",
+    }
 }

@@ -55,7 +55,8 @@ pub fn changed(seed: u64) -> u64 {
     }
     let parameters = write("a.params", edited(&mut bytes, &parameters()));
     fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
-    if let Ok(arguments) = toml::from_str::<Arguments>(&edited(&mut bytes, CONFIGURATION)) {
+    let configuration = write("a.toml", edited(&mut bytes, CONFIGURATION));
+    if let Ok(arguments) = sitl::configuration::file::read(&configuration) {
         fly(&arguments);
     }
     let path = folder.path().join("a.lmpc");

@@ -17,25 +17,40 @@ def run(program, *arguments, environment=None, timeout=60):
 
 
 @pytest.mark.parametrize(("arguments", "code", "words"), [
-    (("--speed", "-3"), 2, "speed"),
+    (("--speed", "-3"), 2, "--speed: `-3` is not a speed: 0 (paused), 0.01 to 1000"),
     (("--home", "91,0,0"), 2, "place"),
     (("--link", "carrier-pigeon"), 2, "link"),
     (("--set", "AF_MASS=99"), 2, "AF_MASS = 99 is outside"),
     (("--set", "NO_SUCH=1"), 2, "there is no parameter NO_SUCH"),
-    (("--gusts", "99"), 2, "gusts"),
+    (("--gusts", "99"), 2, "--gusts: `99` is no number within 0 to 10"),
+    (("--system-id", "x"), 2, "--system-id: `x` is no whole number within 1 to 250"),
+    (("--seed", "-1"), 2, "--seed: `-1` is no whole number within 0 to"),
+    (("--autopilot", "betaflight"), 2, "--autopilot: `betaflight` is none of px4, ardupilot, generic"),
+    (("--sped", "3"), 2, "'--speed' (--help tells more)"),
+    (("--speed",), 2, "a value is required for '--speed"),
+    (("--log", "debug["), 2, "--log: `debug[` is no filter"),
     (("--config", "/does/not/exist.toml"), 4, "cannot read /does/not/exist.toml"),
     (("--replay", "/does/not/exist"), 4, "cannot read"),
     (("--link", "serial:/dev/no-such-device"), 3, "/dev/no-such-device"),
     (("--noise", "gps"), 2, "is no noise: motion-capture, rtk-gps"),
-    (("--kalman=perhaps",), 2, "kalman"),
+    (("--kalman=perhaps",), 2, "--kalman: `perhaps` is none of true, false"),
     (("--kalman", "--sensors", "realistic"), 2, "--noise, --kalman: realistic sensors"),
     (("--parameters", "/no/such/folder/x.params", "--link", "udpin:0", "--duration", "0"), 4, "cannot write /no/such/folder/x.params"),
     (("--tlog", "/no/such/folder/x.tlog", "--link", "udpin:0"), 4, "cannot write"),
+    (("--link", "serial:/dev/null:fast"), 2, "--link: `serial:/dev/null:fast` is no link: serial:PATH[:BAUD] with a whole number above 0"),
+    (("--link", "tcpin:192.0.2.1:5760"), 3, "cannot use TCP port 192.0.2.1:5760"),
 ])
 def test_a_mistake_is_one_clear_line(program, arguments, code, words):
     result = run(program, *arguments)
     assert result.returncode == code, result.stderr
-    assert words in result.stderr and "panicked" not in result.stderr
+    assert words in result.stderr, result.stderr
+    assert result.stderr.startswith("lmpc-sitl: ") and len(result.stderr.splitlines()) == 1 and not result.stdout, result
+
+
+def test_a_mistake_in_the_environment_names_the_variable(program):
+    result = run(program, environment={"LMPC_SITL_SYSTEM_ID": "251"})
+    assert result.returncode == 2
+    assert result.stderr == "lmpc-sitl: LMPC_SITL_SYSTEM_ID: `251` is no whole number within 1 to 250\n"
 
 
 def test_a_port_that_is_taken(program):
@@ -43,8 +58,20 @@ def test_a_port_that_is_taken(program):
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         result = run(program, "--link", f"tcpin:{taken.getsockname()[1]}")
-    assert result.returncode == 3 and len(result.stderr.strip().splitlines()) <= 2, result.stderr
+    assert result.returncode == 3 and len(result.stderr.splitlines()) == 1, result.stderr
     assert "--instance" in result.stderr
+
+
+def test_an_old_ready_file_is_not_taken_for_a_new_one(program, tmp_path):
+    ready = tmp_path / "ready"
+    ready.write_text("of an earlier run")
+    assert run(program, "--ready-file", ready, "--link", "serial:/dev/no-such-device").returncode == 3
+    assert not ready.exists()
+    assert run(program, "--ready-file", ready, "--link", "udpin:0", "--duration", "0").returncode == 0
+    assert "process_id" in ready.read_text()
+    # One that cannot be written is told before anybody is told how to connect.
+    result = run(program, "--ready-file", "/no/such/folder/ready", "--link", "udpin:0")
+    assert result.returncode == 4 and "cannot write /no/such/folder/ready" in result.stderr and not result.stdout
 
 
 def test_flags_go_before_environment_before_file(program, tmp_path):

@@ -1,0 +1,34 @@
+//! Numbers of the command line and their ranges.
+
+use core::fmt::Display;
+use core::str::FromStr;
+
+/// A parser of whole numbers from `least` to `most`, which its refusal names.
+pub fn whole<T>(least: T, most: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    within("whole number", least, most)
+}
+
+/// A parser of numbers from `least` to `most`, which its refusal names.
+pub fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    within("number", least, most)
+}
+
+fn within<T>(
+    what: &'static str,
+    least: T,
+    most: T,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+where
+    T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let value = text.trim().parse().ok();
+        // NaN is in no range.
+        value
+            .filter(|value| (&least..=&most).contains(&value))
+            .ok_or_else(|| format!("`{text}` is no {what} within {least} to {most}"))
+    }
+}
