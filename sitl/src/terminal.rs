@@ -133,7 +133,9 @@ impl StatusLine {
             [only] => state_of_one(only),
             many => state_of_many(many),
         };
-        let text = format!("{:8.1} s x{factor:<5.1} {state}  {peers} peers", time_us as f64 / 1e6);
+        let text = format!("{:6.1} s x{factor:<4.1} {state}  {peers} peers", time_us as f64 / 1e6);
+        // A line that wraps could not be taken back.
+        let text: String = text.chars().take(columns().saturating_sub(1)).collect();
         // Nobody minds if a terminal is gone.
         let _gone = write!(stderr(), "\r\x1b[K{text}").and_then(|()| stderr().flush());
     }
@@ -146,13 +148,31 @@ impl StatusLine {
     }
 }
 
+/// Width of the terminal.
+fn columns() -> usize {
+    #[cfg(unix)]
+    if let Ok(size) = rustix::termios::tcgetwinsize(stderr())
+        && size.ws_col > 0
+    {
+        return size.ws_col.into();
+    }
+    80
+}
+
 fn state_of_one(member: &Member) -> String {
     let vehicle = member.autopilot().vehicle();
-    let [x, y, z] = vehicle.outputs().position_m.data.0[0];
+    // Minus nothing is nothing.
+    let [north, east, down] =
+        vehicle.outputs().position_m.map(|metres| (metres * 10.0).round() / 10.0).data.0[0];
     let armed = if vehicle.is_armed() { "armed" } else { "disarmed" };
     let mode = vehicle.identity().mode_name(vehicle.mode());
     let battery = 100.0 * vehicle.battery_remaining();
-    format!("{armed} {mode}  N {x:7.1} E {y:7.1} up {:6.1} m  battery {battery:3.0} %", 0.0 - z)
+    format!(
+        "{armed} {mode}  N {:5.1} E {:5.1} up {:4.1} m  battery {battery:.0} %",
+        north + 0.0,
+        east + 0.0,
+        0.0 - down
+    )
 }
 
 /// How many are in which state, and the weakest battery.
