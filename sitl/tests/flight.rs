@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Bench, settings};
-use mavlink::dialects::common::{MANUAL_CONTROL_DATA, MavCmd, MavMessage};
+use mavlink::dialects::common::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
 use sitl::identity::Identity;
 use sitl::vehicle::{LandedState, Mode};
 
@@ -11,6 +11,7 @@ const NOTHING: [f32; 7] = [0.0; 7];
 const UNSUPPORTED: u8 = 3;
 const TEMPORARILY_REJECTED: u8 = 1;
 const DENIED: u8 = 2;
+const UNSUPPORTED_MAV_FRAME: u8 = 9;
 
 #[test]
 fn it_is_armable_from_the_start() {
@@ -109,6 +110,76 @@ fn returns_over_its_height_and_lands_at_home() {
     assert!((highest - 15.0).abs() < 0.5, "{highest}");
     let [x, y, z] = bench.position();
     assert!(x.hypot(y) < 0.2 && z.abs() < 0.02, "{x} {y} {z}");
+}
+
+#[test]
+fn hold_brakes_on_the_way_and_stays_at_the_goal() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    let set_point =
+        |bench: &Bench| nalgebra::Vector3::from(bench.autopilot.vehicle().outputs().setpoint.position_m);
+    let go = |bench: &mut Bench| reposition(bench, MavFrame::MAV_FRAME_GLOBAL, 498.0);
+    // Within the same instant nothing moves yet: it is on its way all the same.
+    assert_eq!((go(&mut bench), bench.set_mode(Mode::Hold)), (0, 0));
+    bench.fly(4.0);
+    assert!(bench.position()[0].abs() < 0.1, "{:?}", bench.position());
+    assert_eq!(go(&mut bench), 0);
+    bench.fly(2.0);
+    let passed_m = bench.position()[0];
+    assert_eq!(bench.set_mode(Mode::Hold), 0);
+    bench.fly(6.0);
+    assert!(
+        passed_m > 1.0 && (passed_m..passed_m + 9.0).contains(&bench.position()[0]),
+        "{passed_m} {:?}",
+        bench.position()
+    );
+    assert!(bench.velocity()[0].abs() < 0.02);
+
+    assert_eq!(go(&mut bench), 0);
+    bench.fly(20.0);
+    let goal = set_point(&bench);
+    assert_eq!(bench.set_mode(Mode::Hold), 0);
+    bench.fly(2.0);
+    assert!((set_point(&bench) - goal).norm() < 1e-9, "{}", set_point(&bench));
+    assert!((goal.x - 20.0).abs() < 0.01 && bench.is_near(goal.into()), "{:?}", bench.position());
+}
+
+#[test]
+fn a_place_in_a_frame_that_is_not_global_is_refused() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    for frame in [MavFrame::MAV_FRAME_LOCAL_NED, MavFrame::MAV_FRAME_MISSION, MavFrame::MAV_FRAME_BODY_FRD] {
+        assert_eq!(reposition(&mut bench, frame, 12.0), UNSUPPORTED_MAV_FRAME, "{frame:?}");
+    }
+    assert!(
+        bench.texts().iter().any(|text| text.contains("is not supported: a place")),
+        "{:?}",
+        bench.texts()
+    );
+    bench.fly(3.0);
+    assert!(bench.is_near([0.0, 0.0, -10.0]), "{:?}", bench.position());
+    // 12 m above home, and above the ground.
+    for frame in [MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT] {
+        assert_eq!(reposition(&mut bench, frame, 12.0), 0);
+    }
+}
+
+/// DO_REPOSITION to 20 m north of the start, as COMMAND_INT.
+fn reposition(bench: &mut Bench, frame: MavFrame, altitude_m: f32) -> u8 {
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(20.0, 0.0, 0.0));
+    let message = MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+        command: MavCmd::MAV_CMD_DO_REPOSITION,
+        target_system: 1,
+        target_component: 1,
+        frame,
+        param1: -1.0,
+        param4: f32::NAN,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: altitude_m,
+        ..COMMAND_INT_DATA::default()
+    });
+    bench.heard.clear();
+    bench.send(message);
+    bench.acks().last().expect("an answer").result
 }
 
 #[test]

@@ -286,3 +286,27 @@ fn outside_its_mode_a_set_point_moves_nothing() {
         assert!(bench.is_near([0.0, 0.0, -10.0]), "{identity:?} {:?}", bench.position());
     }
 }
+
+#[test]
+fn the_heading_of_the_target_stays_within_half_a_turn() {
+    const TURNING: u16 = 0b0101_1100_0111;
+    let mut bench = Bench::hovering(Identity::Px4);
+    let mut target = local(MavFrame::MAV_FRAME_LOCAL_NED, TURNING, [0.0; 3], [0.0; 3]);
+    target.yaw_rate = 0.7;
+    bench.heard.clear();
+    offboard(&mut bench, &target, 15.0);
+    let told: Vec<f32> = bench
+        .heard
+        .iter()
+        .filter_map(|message| match message {
+            sitl::codec::Message::Typed(message) => Some(message),
+            _ => None,
+        })
+        .filter_map(|message| match message {
+            MavMessage::POSITION_TARGET_LOCAL_NED(told) => Some(told.yaw),
+            _ => None,
+        })
+        .collect();
+    assert!(told.iter().any(|yaw| *yaw > 2.7) && told.iter().any(|yaw| *yaw < -2.7), "{told:?}");
+    assert!(told.iter().all(|yaw| yaw.abs() <= core::f32::consts::PI + 1e-6), "{told:?}");
+}

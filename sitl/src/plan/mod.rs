@@ -19,6 +19,6 @@ mod zones;
 pub use fault::{FaultCode, PlanFault};
 pub use item::{MissionItem, command};
 pub use kind::PlanKind;
-pub use site::{Place, Site, frame};
+pub use site::{Place, Site, frame, is_global};
 pub use store::{Plan, Plans};
 pub use zones::zones;

@@ -85,7 +85,7 @@ impl Site {
 }
 
 /// Whether a frame has latitude and longitude.
-fn is_global(frame: u8) -> bool {
+pub fn is_global(frame: u8) -> bool {
     matches!(
         frame,
         frame::GLOBAL

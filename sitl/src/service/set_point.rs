@@ -14,6 +14,7 @@ use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
 
 use crate::autopilot::Autopilot;
 use crate::codec::{Frame, SetAttitudeTarget, SetPositionTarget, TargetPosition};
+use crate::plan::is_global;
 use crate::vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
 };
@@ -42,10 +43,8 @@ const ATTITUDE_IGNORE: u8 = 1 << 7;
 
 /// MAV_FRAME.
 mod frame {
-    pub const GLOBAL: u8 = 0;
     pub const LOCAL_NED: u8 = 1;
     pub const GLOBAL_RELATIVE: u8 = 3;
-    pub const GLOBAL_INT: u8 = 5;
     pub const GLOBAL_RELATIVE_INT: u8 = 6;
     pub const LOCAL_OFFSET_NED: u8 = 7;
     pub const BODY_NED: u8 = 8;
@@ -180,15 +179,10 @@ fn local_position(frame: u8, position_m: Vector3<f64>, vehicle: &Vehicle) -> Res
 }
 
 fn known_global_frame(frame: u8) -> Result<(), Refusal> {
-    match frame {
-        frame::GLOBAL
-        | frame::GLOBAL_INT
-        | frame::GLOBAL_RELATIVE
-        | frame::GLOBAL_RELATIVE_INT
-        | frame::GLOBAL_TERRAIN
-        | frame::GLOBAL_TERRAIN_INT => Ok(()),
-        other => Err(Refusal::denied(format!("Set-point refused: frame {other} is not global"))),
+    if is_global(frame) {
+        return Ok(());
     }
+    Err(Refusal::denied(format!("Set-point refused: frame {frame} is not global")))
 }
 
 fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {

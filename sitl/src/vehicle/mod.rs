@@ -50,6 +50,7 @@ pub use fence::FenceRecord;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
 pub use mode::Mode;
+pub(crate) use motion::wrapped;
 pub use notice::{Notice, Refusal, Severity};
 pub use requests::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};

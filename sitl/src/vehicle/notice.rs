@@ -46,6 +46,9 @@ pub enum Refusal {
     /// The vehicle does not have this.
     #[error("{0}")]
     Unsupported(String),
+    /// A place in a frame that is not known.
+    #[error("{0}")]
+    UnsupportedFrame(String),
     /// It was tried.
     #[error("{0}")]
     Failed(String),

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 use quadrotor::{
-    Configuration, ConfigurationError, Disturbance, Inputs, Outputs, Simulation, SimulationError,
+    Configuration, ConfigurationError, Disturbance, Inputs, Outputs, PositionReference, Simulation,
+    SimulationError,
 };
 use serde::{Deserialize, Serialize};
 
@@ -246,13 +247,18 @@ impl Vehicle {
         self.steering = Steering::Idle { yaw_rad: self.outputs.attitude_rad.z };
     }
 
-    /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it.
+    /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it; one that has not set out yet does
+    /// not.
     pub(super) fn hold(&mut self) {
-        let at_rest = self.outputs.setpoint.velocity_m_s.norm() == 0.0
-            && self.outputs.setpoint.acceleration_m_s2.norm() == 0.0;
+        const NEAR_M: f64 = 0.01;
+        const SLOW_M_S: f64 = 0.01;
+        let now = &self.outputs.setpoint;
+        let rests_at = |goal: &PositionReference| {
+            (goal.position_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
+        };
         match &self.steering {
             Steering::Idle { .. } => {}
-            Steering::Goal(_) if at_rest => {}
+            Steering::Goal(goal) if rests_at(goal) => {}
             _ => self.follow(&PositionSetPoint::HOLD),
         }
     }

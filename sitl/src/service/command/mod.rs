@@ -10,6 +10,7 @@ pub use retry::Retries;
 use super::{Destination, Origin};
 use crate::autopilot::Autopilot;
 use crate::codec::{Command, CommandAck, CommandKind, Frame, Message};
+use crate::plan::is_global;
 use crate::vehicle::{Refusal, Severity};
 
 /// MAV_RESULT.
@@ -21,6 +22,7 @@ mod result {
     pub const FAILED: u8 = 4;
     pub const IN_PROGRESS: u8 = 5;
     pub const CANCELLED: u8 = 6;
+    pub const UNSUPPORTED_MAV_FRAME: u8 = 9;
 }
 
 /// What becomes of a command: carried out, refused with a reason, or unknown (`None`).
@@ -78,6 +80,7 @@ fn code(outcome: &Outcome) -> u8 {
         Some(Err(Refusal::TemporarilyRejected(_))) => result::TEMPORARILY_REJECTED,
         Some(Err(Refusal::Denied(_))) => result::DENIED,
         Some(Err(Refusal::Failed(_))) => result::FAILED,
+        Some(Err(Refusal::UnsupportedFrame(_))) => result::UNSUPPORTED_MAV_FRAME,
         Some(Err(Refusal::Unsupported(_))) | None => result::UNSUPPORTED,
     }
 }
@@ -102,11 +105,21 @@ fn send(autopilot: &mut Autopilot, origin: &Origin, command: u16, result: u8, pr
     autopilot.send(Destination::Peer(origin.peer), Message::CommandAck(ack));
 }
 
-/// The frame in which a command's altitude is meant: COMMAND_LONG has none and means sea level.
-fn altitude_frame(command: &Command) -> u8 {
+/// The frame in which a command's place is meant: COMMAND_LONG has none and means latitude, longitude and sea level.
+fn frame_of(command: &Command) -> u8 {
     const MAV_FRAME_GLOBAL: u8 = 0;
     match command.kind {
         CommandKind::Long { .. } => MAV_FRAME_GLOBAL,
         CommandKind::Int { frame } => frame,
+    }
+}
+
+/// The same for a place that cannot be meant otherwise than by latitude and longitude.
+fn global_frame_of(command: &Command) -> Result<u8, Refusal> {
+    match frame_of(command) {
+        frame if is_global(frame) => Ok(frame),
+        frame => Err(Refusal::UnsupportedFrame(format!(
+            "Frame {frame} is not supported: a place has a global one"
+        ))),
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::UnitQuaternion;
 use super::boot_ms;
 use super::position::scaled_degrees;
 use crate::codec::floats;
-use crate::vehicle::{SteeringKind, Vehicle};
+use crate::vehicle::{SteeringKind, Vehicle, wrapped};
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
 pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {
@@ -58,7 +58,7 @@ pub fn position_target_local_ned(vehicle: &Vehicle) -> MavMessage {
         afx,
         afy,
         afz,
-        yaw: reference.yaw_rad as f32,
+        yaw: wrapped(reference.yaw_rad) as f32,
         yaw_rate: reference.yaw_rate_rad_s as f32,
         type_mask: type_mask(vehicle),
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
@@ -83,7 +83,7 @@ pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
         afx,
         afy,
         afz,
-        yaw: reference.yaw_rad as f32,
+        yaw: wrapped(reference.yaw_rad) as f32,
         yaw_rate: reference.yaw_rate_rad_s as f32,
         type_mask: type_mask(vehicle),
         coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_INT,
