@@ -35,5 +35,6 @@ print(f"down in {flight.now - broken_at:.1f} s, {drifts[-1]:.1f} m away, spinnin
 missed = verdict("largest tilt", max(tilts), 40, "degrees")
 missed |= verdict("sink rate at touch-down", sinks[-1], 1, "m/s")
 missed |= verdict("largest drift", max(drifts), 30, "m")
+flight.command(mavlink.MAV_CMD_INJECT_FAILURE, mavlink.FAILURE_UNIT_SYSTEM_MOTOR, mavlink.FAILURE_TYPE_OK, ROTOR)
 flight.plot(options.plot, f"without rotor {ROTOR}")
 sys.exit(missed)

@@ -50,6 +50,7 @@ text = flight.connection.recv_match(type="STATUSTEXT", condition="'denied' in ST
 print(f"refused: {text.text if text else 'nothing'}")
 missed |= text is None
 flight.land()
+flight.clear(mavlink.MAV_MISSION_TYPE_FENCE)
 
 circle = [(CENTRE[0] + RADIUS * math.cos(angle), CENTRE[1] + RADIUS * math.sin(angle))
           for angle in (2 * math.pi * index / 60 for index in range(61))]

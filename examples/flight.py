@@ -125,9 +125,11 @@ class Flight:
         self.until(lambda: self.rests_at(goal), seconds, f"flying to {goal}", lambda: self.set_point(POSITION, goal))
 
     def upload(self, items, kind: int = mavlink.MAV_MISSION_TYPE_MISSION):
-        """Answers the vehicle's requests until it has a plan; items are command, four parameters, north and east of home in m, height."""
-        self.mav.command_long_send(*self.target, mavlink.MAV_CMD_REQUEST_MESSAGE, 0, mavlink.MAVLINK_MSG_ID_HOME_POSITION, *[0] * 6)
-        home = self.connection.recv_match(type="HOME_POSITION", blocking=True, timeout=5)
+        """Answers the vehicle's requests until it has a plan; items are command, four parameters, north and east of the origin in m, height
+        above home."""
+        self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN)
+        origin = self.connection.messages.get("GPS_GLOBAL_ORIGIN") or self.connection.recv_match(
+            type="GPS_GLOBAL_ORIGIN", blocking=True, timeout=5)
         self.mav.mission_count_send(*self.target, len(items), kind)
         while True:
             message = self.connection.recv_match(type=["MISSION_REQUEST_INT", "MISSION_ACK"], blocking=True, timeout=5)
@@ -140,11 +142,16 @@ class Flight:
             command, parameters, (north, east), height = items[message.seq]
             # Both zero mean "here".
             placed = (north, east) != (0, 0)
-            latitude = home.latitude + round(math.degrees(north / EARTH) * 1e7)
-            longitude = home.longitude + round(math.degrees(east / EARTH / math.cos(math.radians(home.latitude / 1e7))) * 1e7)
+            latitude = origin.latitude + round(math.degrees(north / EARTH) * 1e7)
+            longitude = origin.longitude + round(math.degrees(east / EARTH / math.cos(math.radians(origin.latitude / 1e7))) * 1e7)
             self.mav.mission_item_int_send(
                 *self.target, message.seq, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, command, 0, 1, *parameters,
                 latitude if placed else 0, longitude if placed else 0, height, kind)
+
+    def clear(self, kind: int = mavlink.MAV_MISSION_TYPE_MISSION):
+        self.mav.mission_clear_all_send(*self.target, kind)
+        if self.connection.recv_match(type="MISSION_ACK", blocking=True, timeout=5) is None:
+            raise SystemExit("the vehicle does not clear the plan")
 
     def land(self):
         self.command(mavlink.MAV_CMD_NAV_LAND)
@@ -181,7 +188,7 @@ class Flight:
             axes["above"].plot([east for _, east in border], [north for north, _ in border], color="#cc3311", linewidth=1.2)
         axes["above"].set(ylabel="north, m", title="from above")
         axes["side"].set(ylabel="up, m", title="from the south")
-        axes["above"].legend(loc="upper right")
+        axes["above"].legend(loc="best")
 
         for quantity, name, unit in ((1, "position", "m"), (2, "velocity", "m/s")):
             for axis, (direction, colour) in enumerate(colours.items()):

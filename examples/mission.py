@@ -1,4 +1,5 @@
-"""Uploads a mission around a field and flies it: climb, three corners passed without a stop, a look at its middle, and back to land."""
+"""Uploads a mission around a field and flies it: climb, three corners passed without a stop, a look at its middle, and back to
+land."""
 
 import math
 import sys
@@ -12,7 +13,7 @@ MIDDLE = (15, 15)
 
 
 def item(command, parameters=(0, 0, 0, math.nan), place=(0, 0), height=0.0):
-    """An item with a place in metres from home, which goes as latitude and longitude."""
+    """An item with a place in metres from the origin, which goes as latitude and longitude."""
     return command, parameters, place, height
 
 
@@ -63,6 +64,6 @@ sides = [(position, start, end)
          for (start, end), (left, right) in zip(zip(CORNERS, CORNERS[1:]), zip(passed, passed[1:]))
          for at, position, _ in flight.flown if left + 3 < at < right - 1.5]
 missed |= verdict("beside a leg", 100 * max(beside(*side) for side in sides), 20, "cm")
-missed |= verdict("landed from home", 100 * math.hypot(*flight.position[:2]), 20, "cm")
+missed |= verdict("landed from the origin", 100 * math.hypot(*flight.position[:2]), 20, "cm")
 flight.plot(options.plot, "mission: around a field")
 sys.exit(missed)
