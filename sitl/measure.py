@@ -158,33 +158,53 @@ def round_trips(program, count: int):
     return found
 
 
-def latencies(program, count: int):
-    """ms of the wall clock from sending another thrust to the first SERVO_OUTPUT_RAW, sent every millisecond, that differs. The
-    times of sending are spread over the samples of the attitude controller."""
-    found = []
+def thrust_latencies(program, count: int):
+    """ms of the wall clock from sending another thrust to changed motors, on the ground."""
     with flying(program, "udpin:0,onboard") as (_, connection):
-        command(connection, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW, 1000)
         send_thrust(connection.mav, 0)
         command(connection, mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
         command(connection, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-        for number in range(count):
-            end = time.monotonic() + 0.4 + 0.0007 * (number % 15)
-            while (left := end - time.monotonic()) > 0:
-                send_thrust(connection.mav, number % 2)
-                time.sleep(min(0.05, left))
+        return latencies(connection, count, 0.4, 0.0007, send_thrust)
+
+
+def position_latencies(program, count: int):
+    """ms of the wall clock from sending another height to changed motors, hovering."""
+    with flying(program, "udpin:0,onboard") as (_, connection):
+        take_off(connection)
+        send_height(connection.mav, 0)
+        command(connection, mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
+        return latencies(connection, count, 3, 0.0037, send_height)
+
+
+def latencies(connection, count: int, rest: float, spread: float, send):
+    """ms from sending the other one of two set-points to the first SERVO_OUTPUT_RAW, sent every millisecond, that differs from the one
+    at rest. The times of sending are spread over the samples of the controller."""
+    command(connection, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW, 1000)
+    found = []
+    for number in range(count):
+        end = time.monotonic() + rest + spread * (number % 15)
+        while (left := end - time.monotonic()) > 0:
+            send(connection.mav, number % 2)
+            time.sleep(min(0.05, left))
             while connection.recv_match(blocking=False) is not None:
                 pass
-            settled = wait(connection, "SERVO_OUTPUT_RAW", seconds=1).servo1_raw
-            begin = time.perf_counter()
-            send_thrust(connection.mav, (number + 1) % 2)
-            wait(connection, "SERVO_OUTPUT_RAW", lambda servo: abs(servo.servo1_raw - settled) >= 2, seconds=1)
-            found.append((time.perf_counter() - begin) * 1e3)
+        settled = wait(connection, "SERVO_OUTPUT_RAW", seconds=1).servo1_raw
+        begin = time.perf_counter()
+        send(connection.mav, (number + 1) % 2)
+        wait(connection, "SERVO_OUTPUT_RAW", lambda servo: abs(servo.servo1_raw - settled) >= 2, seconds=1)
+        found.append((time.perf_counter() - begin) * 1e3)
     return found
 
 
 def send_thrust(mav, which: int):
     """Level, too weak to lift off: only the motors change."""
     mav.set_attitude_target_send(0, 1, 1, 0b111, [1, 0, 0, 0], 0, 0, 0, (0.1, 0.2)[which])
+
+
+def send_height(mav, which: int):
+    """A place and a heading."""
+    mav.set_position_target_local_ned_send(0, 1, 1, mavlink.MAV_FRAME_LOCAL_NED, 0b100111111000, 0, 0, (-2.5, -3.0)[which],
+                                           0, 0, 0, 0, 0, 0, 0, 0)
 
 
 def percentiles(values) -> str:
@@ -206,7 +226,8 @@ def main():
         "share of one core at real time, hovering, three links": f"{100 * share:.1f} %",
         "highest speed, no client; ground-station and onboard link": f"{quiet:.0f}; {loud:.0f} times real time",
         "PING to its answer: transport there and back": percentiles(round_trips(program, 200)),
-        "thrust set-point to changed motors, sampled every 10 ms": percentiles(latencies(program, 60)),
+        "thrust set-point to changed motors, sampled every 10 ms": percentiles(thrust_latencies(program, 60)),
+        "position set-point to changed motors, sampled every 50 ms": percentiles(position_latencies(program, 45)),
     }
     for row in rows.items():
         print("| {} | {} |".format(*row))
