@@ -27,7 +27,7 @@ fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     let mut client = Client::sharing(&root, false);
     assert_eq!(
         client.list("/"),
-        Ok(["D@PARAM", "Dmetadata", "Dplans", "Dfiles"].map(str::to_owned).to_vec())
+        Ok(["D@MISSION", "D@PARAM", "Dmetadata", "Dplans", "Dfiles"].map(str::to_owned).to_vec())
     );
     assert_eq!(client.list(""), client.list("/"));
     let listed = ["Dbelow", "Fhello.txt\t5"].map(str::to_owned).to_vec();
@@ -48,7 +48,10 @@ fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     // Without anything shared there is nothing to be found.
     let mut bare = Client::of(Disk::default());
     assert_eq!(bare.list("/files"), Err(NOT_FOUND));
-    assert_eq!(bare.list("/"), Ok(["D@PARAM", "Dmetadata", "Dplans"].map(str::to_owned).to_vec()));
+    assert_eq!(
+        bare.list("/"),
+        Ok(["D@MISSION", "D@PARAM", "Dmetadata", "Dplans"].map(str::to_owned).to_vec())
+    );
 }
 
 /// What is downloaded is what `--mission` reads.

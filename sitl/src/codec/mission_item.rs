@@ -3,7 +3,7 @@
 use mavlink::MavlinkVersion;
 
 use super::command::is_local;
-use super::{Frame, Target, id};
+use super::{Frame, Payload, Target, id};
 use crate::plan::{MissionItem, frame};
 
 /// An item on its way, with any command and any frame.
@@ -33,14 +33,20 @@ fn scale(frame: u8) -> f64 {
 }
 
 impl MissionItemMessage {
+    /// Bytes of a payload with nothing cut off.
+    pub const LENGTH: usize = 38;
+
     /// Reads either message.
     pub fn read(message: &Frame) -> Option<Self> {
-        let payload = message.payload();
-        let int = match message.message_id() {
-            id::MISSION_ITEM_INT => true,
-            id::MISSION_ITEM => false,
-            _ => return None,
-        };
+        match message.message_id() {
+            id::MISSION_ITEM_INT => Some(Self::of_payload(message.payload(), true)),
+            id::MISSION_ITEM => Some(Self::of_payload(message.payload(), false)),
+            _ => None,
+        }
+    }
+
+    /// Reads the payload of either message.
+    pub fn of_payload(payload: Payload<'_>, int: bool) -> Self {
         let frame = payload.u8(34);
         let place = |offset: usize| match payload.i32(offset) {
             _ if !int => f64::from(payload.f32(offset)),
@@ -55,14 +61,14 @@ impl MissionItemMessage {
             position: [place(16), place(20), f64::from(payload.f32(24))],
             autocontinue: payload.u8(36) != 0,
         };
-        Some(Self {
+        Self {
             sequence: payload.u16(28),
             item,
             current: payload.u8(35),
             kind: payload.u8(37),
             target: Target { system: payload.u8(32), component: payload.u8(33) },
             int,
-        })
+        }
     }
 
     /// Identifier of the message.
@@ -70,8 +76,8 @@ impl MissionItemMessage {
         if self.int { id::MISSION_ITEM_INT } else { id::MISSION_ITEM }
     }
 
-    /// Writes the payload and returns its length.
-    pub(super) fn serialize(&self, version: MavlinkVersion, payload: &mut [u8; 255]) -> usize {
+    /// The payload of MAVLink 2 with nothing cut off: [`Self::LENGTH`] bytes.
+    pub fn payload(&self) -> Vec<u8> {
         let item = &self.item;
         let float = |value: f64| (value as f32).to_le_bytes();
         let place = |value: f64| {
@@ -86,11 +92,19 @@ impl MissionItemMessage {
         bytes.extend([place(x), place(y), float(z)].concat());
         bytes.extend([self.sequence.to_le_bytes(), item.command.to_le_bytes()].concat());
         bytes.extend([self.target.system, self.target.component, item.frame, self.current]);
-        bytes.push(u8::from(item.autocontinue));
+        bytes.extend([u8::from(item.autocontinue), self.kind]);
+        bytes
+    }
+
+    /// Writes the payload and returns its length.
+    pub(super) fn serialize(&self, version: MavlinkVersion, payload: &mut [u8; 255]) -> usize {
+        let mut bytes = self.payload();
         if version == MavlinkVersion::V2 {
-            bytes.push(self.kind);
             let used = bytes.iter().rposition(|byte| *byte != 0).map_or(1, |last| last + 1);
             bytes.truncate(used);
+        } else {
+            // The kind is an extension.
+            bytes.pop();
         }
         for (place, byte) in payload.iter_mut().zip(&bytes) {
             *place = *byte;

@@ -157,6 +157,12 @@ def test_mavproxy_loads_lists_and_sets(start, connect, shell, tmp_path):  # noqa
     console.ask(f"wp load {file}", "Loaded 4 waypoint|Sent all 4 waypoints|Flight plan received")
     watcher.wait("MISSION_CURRENT", lambda current: current.total == 3, 20)
     console.ask("wp list", "Saved 4 waypoints|22 3 ")
+    # As a file, too.
+    console.type("wp clear")
+    watcher.wait("MISSION_CURRENT", lambda current: current.mission_state == mavlink.MISSION_STATE_NO_MISSION, 20)
+    console.ask(f"wp ftpload {file}", "Sent|Sending waypoints with ftp")
+    watcher.wait("MISSION_CURRENT", lambda current: current.total == 3, 20)
+    console.ask("wp ftp", r"22 3 47\.39\d+ 8\.54\d+ 5\.0")
     console.type("wp set 2")
     watcher.wait("MISSION_CURRENT", lambda current: current.seq == 2, 20)
     console.type("wp set 1")

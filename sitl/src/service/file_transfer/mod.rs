@@ -2,6 +2,7 @@
 
 mod message;
 mod parameter_pack;
+mod plan_pack;
 mod plan_text;
 mod root;
 mod sessions;
@@ -10,10 +11,12 @@ use std::collections::VecDeque;
 
 use self::message::{DATA, Nak, Reply, Request, opcode};
 use self::sessions::{Client, Content, Sessions};
-use super::{Destination, Origin};
+use super::{Destination, Origin, status_text};
 use crate::autopilot::Autopilot;
 use crate::codec::Frame;
 use crate::files::Access;
+use crate::plan::PlanKind;
+use crate::vehicle::Severity;
 
 /// Requests that have changed something and are remembered.
 const REMEMBERED: usize = 32;
@@ -75,7 +78,8 @@ fn replies(autopilot: &mut Autopilot, client: Client, request: &Request) -> Vec<
     }
     let changes = matches!(
         request.opcode,
-        opcode::CREATE_FILE
+        opcode::TERMINATE_SESSION
+            | opcode::CREATE_FILE
             | opcode::REMOVE_FILE
             | opcode::CREATE_DIRECTORY
             | opcode::REMOVE_DIRECTORY
@@ -104,7 +108,13 @@ fn carry_out(
     let path = || root::writable(request.text()?);
     match request.opcode {
         opcode::NONE => {}
-        opcode::TERMINATE_SESSION => autopilot.files.sessions.close(client, request.session),
+        opcode::TERMINATE_SESSION => {
+            if let Some(Content::Received(kind, bytes)) =
+                autopilot.files.sessions.close(client, request.session)
+            {
+                take_plan(autopilot, kind, &bytes)?;
+            }
+        }
         opcode::RESET_SESSIONS => {
             autopilot.files.sessions.reset(client);
             autopilot.files.done.retain(|done| done.client != client);
@@ -143,6 +153,15 @@ fn open(
     let size = content.size()?;
     autopilot.files.sessions.open(client, request.session, content, time_us)?;
     Ok(size.to_le_bytes().to_vec())
+}
+
+/// Takes a packed plan over, or says why not: clients do not look at the answer to a close.
+fn take_plan(autopilot: &mut Autopilot, kind: PlanKind, bytes: &[u8]) -> Result<(), Nak> {
+    let items = plan_pack::unpack(bytes, kind);
+    items.and_then(|items| autopilot.vehicle.set_plan(kind, items)).map_err(|fault| {
+        status_text::send(autopilot, Severity::Warning, &format!("{} refused: {fault}", kind.name()));
+        Nak::Fail
+    })
 }
 
 fn checksum_of(mut content: Content) -> Result<u32, Nak> {

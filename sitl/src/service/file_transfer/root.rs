@@ -1,6 +1,7 @@
 //! The root that clients see: what is made when it is read, and the folders of the store.
 //!
 //! ```text
+//! /@MISSION/mission.dat         the mission, packed, to be read and written; fence and rally points beside it
 //! /@PARAM/param.pck             parameters, packed
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
@@ -11,6 +12,7 @@
 
 use super::message::Nak;
 use super::parameter_pack;
+use super::plan_pack;
 use super::plan_text;
 use super::sessions::Content;
 use crate::autopilot::Autopilot;
@@ -19,7 +21,8 @@ use crate::plan::PlanKind;
 use crate::service::component_metadata;
 
 /// Folders of files that are made, and their files.
-const MADE: [(&str, &[&str]); 3] = [
+const MADE: [(&str, &[&str]); 4] = [
+    (plan_pack::FOLDER, plan_pack::NAMES),
     ("@PARAM", &["param.pck"]),
     ("metadata", &["general.json", "parameters.json"]),
     ("plans", &["mission.waypoints", "fence.waypoints", "rally.waypoints"]),
@@ -49,6 +52,9 @@ pub fn writable(path: &str) -> Result<String, Nak> {
 /// Opens a file.
 pub fn open(autopilot: &mut Autopilot, path: &str, access: Access) -> Result<Content, Nak> {
     if access != Access::Read {
+        if let Some(kind) = plan_pack::kind_of(&plain(path)?) {
+            return Ok(Content::Received(kind, Vec::new()));
+        }
         let path = writable(path)?;
         return Ok(Content::Stored(autopilot.store.open(&path, access)?));
     }
@@ -58,6 +64,9 @@ pub fn open(autopilot: &mut Autopilot, path: &str, access: Access) -> Result<Con
         .strip_prefix("@PARAM/param.pck")
         .filter(|rest| rest.starts_with('?'))
         .map_or(name.as_str(), |_| "@PARAM/param.pck");
+    if let Some(kind) = plan_pack::kind_of(name) {
+        return Ok(Content::Made(plan_pack::pack(autopilot, kind)));
+    }
     let made = match name {
         "@PARAM/param.pck" => parameter_pack::pack(autopilot),
         "metadata/general.json" => component_metadata::general(autopilot),

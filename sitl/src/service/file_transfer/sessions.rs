@@ -1,7 +1,9 @@
 //! Open files of all clients.
 
 use super::message::{DATA, Nak, Reply, Request, opcode};
+use super::plan_pack;
 use crate::files::{FileError, OpenFile};
+use crate::plan::PlanKind;
 
 /// Open files at the same time, of all clients.
 const MOST: usize = 16;
@@ -22,13 +24,15 @@ pub enum Content {
     Made(Vec<u8>),
     /// In a store.
     Stored(Box<dyn OpenFile>),
+    /// A packed plan that is being written, to be taken when it is closed.
+    Received(PlanKind, Vec<u8>),
 }
 
 impl Content {
     /// Bytes of it; more than offsets can tell is not offered.
     pub fn size(&self) -> Result<u32, Nak> {
         let size = match self {
-            Self::Made(bytes) => bytes.len() as u64,
+            Self::Made(bytes) | Self::Received(_, bytes) => bytes.len() as u64,
             Self::Stored(file) => file.size()?,
         };
         u32::try_from(size).map_err(|_| Nak::Fail)
@@ -38,7 +42,7 @@ impl Content {
     pub fn read_at(&mut self, offset: u64, into: &mut [u8]) -> Result<usize, FileError> {
         match self {
             Self::Stored(file) => file.read_at(offset, into),
-            Self::Made(bytes) => {
+            Self::Made(bytes) | Self::Received(_, bytes) => {
                 let start = usize::try_from(offset).unwrap_or(usize::MAX);
                 let rest = bytes.get(start..).unwrap_or_default();
                 for (byte, given) in into.iter_mut().zip(rest) {
@@ -82,9 +86,10 @@ impl Sessions {
         Ok(())
     }
 
-    /// Closes a file, if it is open.
-    pub fn close(&mut self, client: Client, number: u8) {
-        self.0.retain(|open| (open.client, open.number) != (client, number));
+    /// Closes a file, if it is open, and returns what it was.
+    pub fn close(&mut self, client: Client, number: u8) -> Option<Content> {
+        let place = self.0.iter().position(|open| (open.client, open.number) == (client, number))?;
+        Some(self.0.remove(place).content)
     }
 
     /// Closes all files of a client.
@@ -103,6 +108,18 @@ impl Sessions {
     pub fn write(&mut self, client: Client, request: &Request, time_us: u64) -> Result<Vec<u8>, Nak> {
         match self.find(client, request.session, time_us)? {
             Content::Made(_) => Err(Nak::FileProtected),
+            Content::Received(kind, bytes) => {
+                let start = request.offset as usize;
+                let end = start.saturating_add(request.data.len());
+                if end > plan_pack::largest(*kind) {
+                    return Err(Nak::NoSpace);
+                }
+                bytes.resize(bytes.len().max(end), 0);
+                for (byte, given) in bytes.iter_mut().skip(start).zip(&request.data) {
+                    *byte = *given;
+                }
+                Ok((request.data.len() as u32).to_le_bytes().to_vec())
+            }
             Content::Stored(file) => {
                 file.write_at(u64::from(request.offset), &request.data)?;
                 Ok((request.data.len() as u32).to_le_bytes().to_vec())
