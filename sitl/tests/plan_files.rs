@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use sitl::Failure;
+use sitl::configuration::read_plans;
 use sitl::identity::Identity;
-use sitl::plan::{PlanKind, Plans, Site, command, file};
+use sitl::plan::{PlanKind, Plans, Site, command};
 use sitl::world::{Geodetic, LocalFrame};
 
 fn site(identity: Identity) -> Site {
@@ -17,7 +18,7 @@ fn read(name: &str, text: &str, identity: Identity) -> Result<Plans, String> {
     let folder = tempfile::tempdir().expect("a folder");
     let path: PathBuf = folder.path().join(name);
     std::fs::write(&path, text).expect("written");
-    file::read(&path, &site(identity)).map_err(|error| error.to_string())
+    read_plans(&path, &site(identity)).map_err(|error| error.to_string())
 }
 
 const PLAN: &str = include_str!("corpus/mission.plan");
@@ -97,6 +98,6 @@ fn errors_name_the_file_the_place_the_value_and_its_range() {
         let error = read(name, &text, Identity::Px4).expect_err(expected);
         assert!(error.contains(name) && error.contains(expected), "{error}");
     }
-    let missing = file::read(Path::new("/nowhere/a.plan"), &site(Identity::Px4)).expect_err("no file");
+    let missing = read_plans(Path::new("/nowhere/a.plan"), &site(Identity::Px4)).expect_err("no file");
     assert!(matches!(missing, Failure::File { .. }) && missing.exit_code() == 4);
 }

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use quadrotor::Configuration;
 
-use super::{Arguments, Clocks, Ports};
+use super::{Arguments, Clocks, Ports, read_plans};
 use crate::estimation::{SensorModel, SensorSettings};
 use crate::failure::Failure;
 use crate::fault::ScheduledFault;
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
-use crate::plan::{self, Plans, Site};
+use crate::plan::{Plans, Site};
 use crate::record::Participant;
 use crate::vehicle::{Conduct, Vehicle, VehicleSettings};
 use crate::world::{LocalFrame, WindSettings};
@@ -206,7 +206,7 @@ pub(super) fn vehicle(
     if let Some(path) = &arguments.mission {
         let frame = LocalFrame::new(vehicle.origin);
         let home_m = Vector3::from(vehicle.configuration.initial.position_m);
-        vehicle.plans = plan::file::read(path, &Site { identity, frame, home_m })?;
+        vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
     }
     Ok(vehicle)
 }

@@ -3,10 +3,7 @@
 mod json;
 mod text;
 
-use std::path::Path;
-
 use super::{MissionItem, Plan, PlanKind, Plans, Site, check, command, frame};
-use crate::failure::Failure;
 
 /// The items of a file, before they are checked.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -19,18 +16,13 @@ struct Content {
     rally: Vec<(MissionItem, String)>,
 }
 
-/// Reads the plans of a file for a vehicle at a site.
+/// Reads the plans in a file's text for a vehicle at a site.
 ///
 /// # Errors
-/// [`Failure::File`], or [`Failure::Content`] that names the line or the item, the value and its range.
-pub fn read(path: &Path, site: &Site) -> Result<Plans, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
-    let wrong = |reason: String| Failure::Content { path: path.to_owned(), reason };
-    let mut content = if text.trim_start().starts_with('{') {
-        json::parse(&text).map_err(wrong)?
-    } else {
-        text::parse(&text).map_err(wrong)?
-    };
+/// A reason that names the line or the item, the value and its range.
+pub fn parse(text: &str, site: &Site) -> Result<Plans, String> {
+    let mut content =
+        if text.trim_start().starts_with('{') { json::parse(text)? } else { text::parse(text)? };
     if site.identity.is_ardupilot() && !content.mission.is_empty() {
         put_home_in_front(&mut content);
     }
@@ -44,7 +36,7 @@ pub fn read(path: &Path, site: &Site) -> Result<Plans, Failure> {
         let items: Vec<MissionItem> = named.iter().map(|(item, _)| *item).collect();
         check::plan(kind, &items, site).map_err(|fault| {
             let place = fault.item.and_then(|item| named.get(item)).map(|(_, place)| format!("{place}: "));
-            wrong(format!("{}{}", place.unwrap_or_default(), fault.reason))
+            format!("{}{}", place.unwrap_or_default(), fault.reason)
         })?;
         plans.set(kind, Plan::new(items));
     }

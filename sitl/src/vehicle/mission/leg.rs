@@ -11,7 +11,7 @@
 //! way between them inside the triangle that they make with W.
 
 use nalgebra::Vector3;
-use quadrotor::{Limits, PositionReference};
+use quadrotor::PositionReference;
 
 use super::path::Corner;
 
@@ -157,12 +157,4 @@ fn is_past(reference: &PositionReference, point_m: &Vector3<f64>, velocity_m_s: 
         return false;
     }
     (point_m - reference.position_m).dot(velocity_m_s) <= AHEAD_S * speed_m_s * speed_m_s
-}
-
-/// Fastest that a leg in a direction may be flown, m/s.
-pub fn speed_along_m_s(direction: &Vector3<f64>, limits: &Limits) -> f64 {
-    let horizontal = direction.xy().norm();
-    let vertical = if direction.z < 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s };
-    let by = |share: f64, limit: f64| if share > 1e-9 { limit / share } else { f64::INFINITY };
-    by(horizontal, limits.speed_horizontal_m_s).min(by(direction.z.abs(), vertical))
 }

@@ -4,8 +4,6 @@ use libm::sqrt;
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::leg::speed_along_m_s;
-
 /// A corner between two legs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
@@ -97,6 +95,14 @@ fn bend(before: &Vector3<f64>, here: &Stop, after: &Vector3<f64>, limits: &Limit
     let fastest = speed_along_m_s(&into, limits).min(speed_along_m_s(&out, limits));
     let speed_m_s = bend_speed_m_s((out - into).norm(), cut_m, EACH_AXIS * fastest, limits);
     Some(Bend { into, out, cut_m, speed_m_s })
+}
+
+/// Fastest that a leg in a direction may be flown, m/s.
+fn speed_along_m_s(direction: &Vector3<f64>, limits: &Limits) -> f64 {
+    let horizontal = direction.xy().norm();
+    let vertical = if direction.z < 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s };
+    let by = |share: f64, limit: f64| if share > 1e-9 { limit / share } else { f64::INFINITY };
+    by(horizontal, limits.speed_horizontal_m_s).min(by(direction.z.abs(), vertical))
 }
 
 /// The largest speed v at which the velocity can be turned within the cut,

@@ -1,0 +1,15 @@
+//! `--mission FILE`.
+
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::plan::{Plans, Site, file};
+
+/// Reads the plans of a file for a vehicle at a site.
+///
+/// # Errors
+/// [`Failure::File`], or [`Failure::Content`] that names the line or the item, the value and its range.
+pub fn read_plans(path: &Path, site: &Site) -> Result<Plans, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
+    file::parse(&text, site).map_err(|reason| Failure::Content { path: path.to_owned(), reason })
+}
