@@ -15,6 +15,9 @@ pub mod frame {
     pub const GLOBAL_RELATIVE: u8 = 3;
     pub const GLOBAL_INT: u8 = 5;
     pub const GLOBAL_RELATIVE_INT: u8 = 6;
+    pub const LOCAL_OFFSET_NED: u8 = 7;
+    pub const BODY_NED: u8 = 8;
+    pub const BODY_OFFSET_NED: u8 = 9;
     pub const GLOBAL_TERRAIN: u8 = 10;
     pub const GLOBAL_TERRAIN_INT: u8 = 11;
 }
@@ -74,8 +77,8 @@ impl Site {
         Some(Place { horizontal_m, down_m: finite(z).map(|altitude_m| self.down_m(item.frame, altitude_m)) })
     }
 
-    /// z, m, of an altitude, m, in a global frame.
-    fn down_m(&self, frame: u8, altitude_m: f64) -> f64 {
+    /// z, m, of an altitude, m, in a global frame. Terrain is the flat ground of the simulation.
+    pub fn down_m(&self, frame: u8, altitude_m: f64) -> f64 {
         match frame {
             frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => self.home_m.z - altitude_m,
             frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => -altitude_m,

@@ -14,7 +14,7 @@ use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
 
 use crate::autopilot::Autopilot;
 use crate::codec::{Frame, SetAttitudeTarget, SetPositionTarget, TargetPosition};
-use crate::plan::is_global;
+use crate::plan::{frame, is_global};
 use crate::vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
 };
@@ -40,18 +40,6 @@ const PITCH_RATE_IGNORE: u8 = 2;
 const YAW_RATE_IGNORE_ATTITUDE: u8 = 4;
 const THRUST_IGNORE: u8 = 1 << 6;
 const ATTITUDE_IGNORE: u8 = 1 << 7;
-
-/// MAV_FRAME.
-mod frame {
-    pub const LOCAL_NED: u8 = 1;
-    pub const GLOBAL_RELATIVE: u8 = 3;
-    pub const GLOBAL_RELATIVE_INT: u8 = 6;
-    pub const LOCAL_OFFSET_NED: u8 = 7;
-    pub const BODY_NED: u8 = 8;
-    pub const BODY_OFFSET_NED: u8 = 9;
-    pub const GLOBAL_TERRAIN: u8 = 10;
-    pub const GLOBAL_TERRAIN_INT: u8 = 11;
-}
 
 /// Takes SET_POSITION_TARGET_LOCAL_NED or SET_POSITION_TARGET_GLOBAL_INT.
 pub fn position(autopilot: &mut Autopilot, frame: &Frame) {
@@ -197,17 +185,8 @@ fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vect
         )));
     }
     let mut position_m = vehicle.frame().to_local_m(&place);
-    position_m.z = down_of_altitude(target.frame, altitude_m, vehicle);
+    position_m.z = vehicle.site().down_m(target.frame, altitude_m);
     Ok(position_m)
-}
-
-/// z, m, of an altitude, m, in a global frame. Terrain is the flat ground of the simulation.
-pub(super) fn down_of_altitude(frame: u8, altitude_m: f64, vehicle: &Vehicle) -> f64 {
-    match frame {
-        frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => vehicle.home().position_m.z - altitude_m,
-        frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => -altitude_m,
-        _ => vehicle.frame().origin().altitude_m - altitude_m,
-    }
 }
 
 /// A vector of the heading's frame in NED.
@@ -216,18 +195,12 @@ fn turned(vector: &Vector3<f64>, heading_rad: f64) -> Vector3<f64> {
     Vector3::new(horizontal.x, horizontal.y, vector.z)
 }
 
-fn compose(
+/// Refuses what asks for nothing, or for more than the limits can be set to.
+fn check(
     given: &Given,
-    position: &Vector3<f64>,
-    velocity: &Vector3<f64>,
-    acceleration: &Vector3<f64>,
-    yaw_rad: f64,
+    [position, velocity, acceleration]: [&Vector3<f64>; 3],
     yaw_rate_rad_s: f64,
-    ardupilot: bool,
-) -> Result<PositionSetPoint, Refusal> {
-    if ardupilot && given.nan {
-        return Err(Refusal::denied("Set-point refused: a value is not a number"));
-    }
+) -> Result<(), Refusal> {
     let any = |axes: &[bool; 3]| axes.contains(&true);
     if !any(&given.position) && !any(&given.velocity) && !any(&given.acceleration) {
         return Err(Refusal::denied("Set-point refused: neither position, velocity nor acceleration"));
@@ -249,6 +222,22 @@ fn compose(
             "Set-point refused: yaw rate {yaw_rate_rad_s:.3e} is beyond {QUICKEST_TURN_RAD_S}"
         )));
     }
+    Ok(())
+}
+
+fn compose(
+    given: &Given,
+    position: &Vector3<f64>,
+    velocity: &Vector3<f64>,
+    acceleration: &Vector3<f64>,
+    yaw_rad: f64,
+    yaw_rate_rad_s: f64,
+    ardupilot: bool,
+) -> Result<PositionSetPoint, Refusal> {
+    if ardupilot && given.nan {
+        return Err(Refusal::denied("Set-point refused: a value is not a number"));
+    }
+    check(given, [position, velocity, acceleration], yaw_rate_rad_s)?;
     // A trajectory moves; a place with velocities of zero is a place.
     let moves = (0..3).any(|axis| {
         (given.velocity[axis] && velocity[axis] != 0.0)

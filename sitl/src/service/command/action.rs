@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::{Outcome, frame_of, global_frame_of};
+use super::{Outcome, global_frame, told_frame};
 use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
-use crate::plan::MissionItem;
-use crate::service::{Origin, message_interval, mission, set_point, standard_mode};
+use crate::plan::{self, MissionItem};
+use crate::service::{Origin, message_interval, mission, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
 
@@ -126,7 +126,7 @@ fn take_off(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal>
     if vehicle.identity().is_ardupilot() {
         return vehicle.take_off(Some(command.z));
     }
-    let down_m = set_point::down_of_altitude(global_frame_of(command)?, command.z, vehicle);
+    let down_m = vehicle.site().down_m(global_frame(command)?, command.z);
     let height_m = vehicle.home().position_m.z - down_m;
     // PX4 takes an altitude below the ground for one above home of its parameter.
     const LEAST_M: f64 = 0.5;
@@ -190,12 +190,12 @@ fn set_home(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     if command.parameter(1) == 1.0 {
         return vehicle.set_home(vehicle.outputs().position_m, None);
     }
-    let frame = global_frame_of(command)?;
+    let frame = global_frame(command)?;
     let mut position_m = place(command, vehicle)?;
     if !command.z.is_finite() {
         return Err(Refusal::denied("Home needs an altitude"));
     }
-    position_m.z = set_point::down_of_altitude(frame, command.z, vehicle);
+    position_m.z = vehicle.site().down_m(frame, command.z);
     let yaw_rad = Some(command.parameter(4).to_radians()).filter(|yaw| yaw.is_finite());
     vehicle.set_home(position_m, yaw_rad)
 }
@@ -205,7 +205,7 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
     let vehicle = &autopilot.vehicle;
     // Without a place it has no frame.
     let nowhere = command.x.is_nan() && command.y.is_nan() && !command.z.is_finite();
-    let frame = if nowhere { 0 } else { global_frame_of(command)? };
+    let frame = if nowhere { plan::frame::GLOBAL } else { global_frame(command)? };
     let horizontal_m = if command.x.is_nan() && command.y.is_nan() {
         None
     } else {
@@ -214,7 +214,7 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
     };
     let down_m = Some(command.z)
         .filter(|altitude| altitude.is_finite())
-        .map(|altitude| set_point::down_of_altitude(frame, altitude, vehicle));
+        .map(|altitude| vehicle.site().down_m(frame, altitude));
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
     autopilot.vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
@@ -224,7 +224,7 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
 /// The same as an item of a mission.
 fn as_item(command: &Command) -> MissionItem {
     MissionItem {
-        frame: frame_of(command),
+        frame: told_frame(command),
         command: command.number,
         parameters: command.parameters,
         position: [command.x, command.y, command.z],

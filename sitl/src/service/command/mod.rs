@@ -10,7 +10,7 @@ pub use retry::Retries;
 use super::{Destination, Origin};
 use crate::autopilot::Autopilot;
 use crate::codec::{Command, CommandAck, CommandKind, Frame, Message};
-use crate::plan::is_global;
+use crate::plan::{frame, is_global};
 use crate::vehicle::{Refusal, Severity};
 
 /// MAV_RESULT.
@@ -106,17 +106,16 @@ fn send(autopilot: &mut Autopilot, origin: &Origin, command: u16, result: u8, pr
 }
 
 /// The frame in which a command's place is meant: COMMAND_LONG has none and means latitude, longitude and sea level.
-fn frame_of(command: &Command) -> u8 {
-    const MAV_FRAME_GLOBAL: u8 = 0;
+fn told_frame(command: &Command) -> u8 {
     match command.kind {
-        CommandKind::Long { .. } => MAV_FRAME_GLOBAL,
+        CommandKind::Long { .. } => frame::GLOBAL,
         CommandKind::Int { frame } => frame,
     }
 }
 
-/// The same for a place that cannot be meant otherwise than by latitude and longitude.
-fn global_frame_of(command: &Command) -> Result<u8, Refusal> {
-    match frame_of(command) {
+/// The same, if it is one of latitude and longitude.
+fn global_frame(command: &Command) -> Result<u8, Refusal> {
+    match told_frame(command) {
         frame if is_global(frame) => Ok(frame),
         frame => Err(Refusal::UnsupportedFrame(format!(
             "Frame {frame} is not supported: a place has a global one"
