@@ -7,7 +7,7 @@ use mavlink::dialects::common::*;
 use sitl::codec::Message;
 use sitl::estimation::SensorModel;
 use sitl::identity::Identity;
-use sitl::parameters::CONDUCT_PARAMETERS;
+use sitl::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
 use sitl::vehicle::{Action, Cause, Conduct, Mode};
 
 const TEMPORARILY_REJECTED: u8 = 1;
@@ -36,9 +36,13 @@ fn set(bench: &mut Bench, id: &str, value: f64) {
     assert_eq!(now.to_bits(), param_value.to_bits(), "{id}: {:?}", bench.texts());
 }
 
-/// The parameter of a cause in PX4's names.
-fn parameter(cause: Cause) -> &'static str {
+/// The parameter of a cause.
+fn parameter(identity: Identity, cause: Cause) -> &'static str {
     match cause {
+        Cause::GroundStationLost if identity.is_ardupilot() => "FS_GCS_ENABLE",
+        Cause::Fence if identity.is_ardupilot() => "FENCE_ACTION",
+        Cause::BatteryLow if identity.is_ardupilot() => "BATT_FS_LOW_ACT",
+        Cause::BatteryCritical | Cause::BatteryEmergency if identity.is_ardupilot() => "BATT_FS_CRT_ACT",
         Cause::SetPointsLost => "COM_OBL_RC_ACT",
         Cause::GroundStationLost => "NAV_DLL_ACT",
         Cause::HighWind => "COM_WIND_MAX_ACT",
@@ -51,16 +55,15 @@ fn parameter(cause: Cause) -> &'static str {
 
 /// A vehicle that hovers 10 m up, in a wind if that is what is wrong.
 fn hovering(cause: Cause) -> Bench {
-    let mut start = settings(Identity::Px4);
+    hovering_as(Identity::Px4, cause)
+}
+
+fn hovering_as(identity: Identity, cause: Cause) -> Bench {
+    let mut start = settings(identity);
     if cause == Cause::HighWind {
         start.wind = sitl::world::WindSettings { speed_m_s: 6.0, ..start.wind };
     }
-    let mut bench = Bench::of(&start);
-    bench.arm();
-    let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
-    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0);
-    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
-    bench
+    Bench::hovering_with(&start)
 }
 
 fn stand_still() -> MavMessage {
@@ -80,7 +83,8 @@ fn drain_to(bench: &mut Bench, share: f64) {
     bench
         .fly_until("some charge drawn", 300.0, |bench| bench.autopilot.vehicle().battery().drawn_ah() > 0.15);
     let drawn_mah = 1000.0 * bench.autopilot.vehicle().battery().drawn_ah();
-    set(bench, "BAT1_CAPACITY", (drawn_mah / (1.0 - share)).max(10.0));
+    let capacity = if bench.autopilot.identity().is_ardupilot() { "BATT_CAPACITY" } else { "BAT1_CAPACITY" };
+    set(bench, capacity, (drawn_mah / (1.0 - share)).max(10.0));
 }
 
 /// Makes something go wrong.
@@ -101,6 +105,7 @@ fn spoil(bench: &mut Bench, cause: Cause) {
             // As long as its last position is believed.
             bench.fly(5.5);
         }
+        Cause::Fence if bench.autopilot.identity().is_ardupilot() => set(bench, "FENCE_ALT_MAX", 8.0),
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
     }
@@ -122,11 +127,12 @@ fn lose_ground_station(bench: &mut Bench) {
 }
 
 /// The numbers that a cause's parameter takes, and what it does then.
-fn choices(cause: Cause) -> Vec<(u8, Action)> {
-    let parameter =
-        CONDUCT_PARAMETERS.iter().find(|known| known.id == parameter(cause)).expect("there is one");
+fn choices(identity: Identity, cause: Cause) -> Vec<(u8, Action)> {
+    let name = parameter(identity, cause);
+    let mut known = CONDUCT_PARAMETERS.iter().chain(ARDUPILOT_PARAMETERS);
+    let parameter = known.find(|known| known.id == name).expect("there is one");
     let choice = |number: u8| {
-        let mut conduct = Conduct::new(false);
+        let mut conduct = Conduct::new(identity.is_ardupilot());
         (parameter.set)(&mut conduct, f64::from(number)).then(|| (number, conduct.failsafe.action(cause)))
     };
     (0..=10).filter_map(choice).collect()
@@ -153,9 +159,13 @@ fn expected_state(cause: Cause, action: Action) -> MavState {
 
 /// Every action that a parameter can choose for a cause is taken and told.
 fn every_action_of(cause: Cause) {
-    for (number, action) in choices(cause) {
-        let mut bench = hovering(cause);
-        set(&mut bench, parameter(cause), f64::from(number));
+    every_action_as(Identity::Px4, cause);
+}
+
+fn every_action_as(identity: Identity, cause: Cause) {
+    for (number, action) in choices(identity, cause) {
+        let mut bench = hovering_as(identity, cause);
+        set(&mut bench, parameter(identity, cause), f64::from(number));
         let before = bench.mode();
         bench.heard.clear();
         spoil(&mut bench, cause);
@@ -171,6 +181,21 @@ fn every_action_of(cause: Cause) {
             _ => assert_eq!(Some(vehicle.mode()), action.mode(), "{cause:?} {action:?}: {texts:?}"),
         }
         assert_eq!(state(&bench), expected_state(cause, action), "{cause:?} {action:?}");
+    }
+}
+
+/// ArduPilot's names and numbers choose among the same actions.
+#[test]
+fn ardupilots_parameters() {
+    for cause in [
+        Cause::GroundStationLost,
+        Cause::Fence,
+        Cause::BatteryLow,
+        Cause::BatteryCritical,
+        Cause::BatteryEmergency,
+    ] {
+        assert!(choices(Identity::ArduPilot, cause).len() >= 4, "{cause:?}");
+        every_action_as(Identity::ArduPilot, cause);
     }
 }
 
@@ -439,7 +464,9 @@ fn the_documentation_draws_what_the_parameters_can_choose() {
     drawn.sort_unstable();
     let mut meant: Vec<String> = ENDS.iter().map(|(edge, why)| format!("{edge} : {why}")).collect();
     for action in Action::ALL.into_iter().filter(|action| *action > Action::Warn) {
-        let by = |cause: &Cause| choices(*cause).iter().any(|(_, choice)| *choice == action);
+        let identities = [Identity::Px4, Identity::ArduPilot];
+        let all = |cause: Cause| identities.into_iter().flat_map(move |identity| choices(identity, cause));
+        let by = |cause: &Cause| all(*cause).any(|(_, choice)| choice == action);
         let causes: Vec<String> =
             Cause::ALL.into_iter().filter(by).map(|cause| cause.name().to_lowercase()).collect();
         let to = action.mode().map_or("Terminated".to_owned(), |mode| format!("{mode:?}"));

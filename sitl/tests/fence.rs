@@ -7,6 +7,7 @@ use common::{Bench, settings};
 use mavlink::dialects::common::*;
 use nalgebra::Vector3;
 use sitl::codec::Message;
+use sitl::fence::Breach;
 use sitl::identity::Identity;
 use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
 use sitl::vehicle::{Action, Mode, VehicleSettings};
@@ -331,6 +332,48 @@ fn with_fence(settings: &VehicleSettings, fence: Vec<MissionItem>) -> sitl::Auto
     let mut settings = settings.clone();
     settings.plans.set(PlanKind::Fence, Plan::new(fence));
     Bench::of(&settings).autopilot
+}
+
+fn set_cast(bench: &mut Bench, id: &str, value: f32) -> Option<f32> {
+    bench.heard.clear();
+    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
+        param_value: value,
+        target_system: 1,
+        target_component: 1,
+        param_id: id.into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
+    }));
+    bench.parameters().pop().map(|now| now.param_value)
+}
+
+/// FENCE_ENABLE and FENCE_TYPE say what of the fence is looked at; DO_FENCE_ENABLE is told as the parameter.
+#[test]
+fn ardupilots_parameters_choose_what_of_the_fence_counts() {
+    let mut start = settings(Identity::ArduPilot);
+    start.conduct.failsafe.fence_height_m = 8.0;
+    let circle = item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, 5.0, [0.0, 0.0]);
+    start.plans.set(PlanKind::Fence, Plan::new(vec![circle]));
+    start.conduct.failsafe.fence_enabled = false;
+    let mut bench = Bench::hovering_with(&start);
+    let breached = |bench: &mut Bench| {
+        bench.fly(0.1);
+        bench.autopilot.vehicle().fence_record().now
+    };
+    assert_eq!(set_cast(&mut bench, "FENCE_ACTION", 0.0), Some(0.0));
+    assert_eq!(breached(&mut bench), None);
+    assert_eq!(set_cast(&mut bench, "FENCE_ENABLE", 1.0), Some(1.0));
+    assert_eq!(breached(&mut bench), Some(Breach::Height(8.0)));
+    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 6.0), Some(6.0));
+    assert_eq!(breached(&mut bench), Some(Breach::Inside(0)));
+    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 2.0), Some(2.0));
+    assert_eq!(breached(&mut bench), None);
+    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 8.0), Some(2.0), "there is no least height");
+    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 1.0), Some(1.0));
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, [0.0; 7]), 0);
+    assert_eq!(bench.parameters().pop().map(|told| told.param_value), Some(0.0));
+    assert_eq!(breached(&mut bench), None);
+    // PX4's names of the same are not there.
+    assert_eq!(set_cast(&mut bench, "GF_ACTION", 1.0), None);
 }
 
 /// A fence that comes after the mission: it is told at once, and the mission is not begun.

@@ -40,6 +40,8 @@ pub struct Fence {
     pub zones: Zones,
     /// Whether it is looked at.
     pub enabled: bool,
+    /// Whether the areas are.
+    pub zones_count: bool,
 }
 
 impl Fence {
@@ -62,6 +64,9 @@ impl Fence {
         if radius_m > 0.0 && (place_m - home_m).xy().norm() > radius_m {
             return Some(Breach::Distance(radius_m));
         }
+        if !self.zones_count {
+            return None;
+        }
         let point = [place_m.x, place_m.y];
         let zones = &self.zones.zones;
         if let Some(number) = zones.iter().position(|zone| !zone.inclusion && zone.forbids(point)) {
@@ -75,7 +80,7 @@ impl Fence {
     /// The area to stay out of that the straight way between two places, NED, m, leads through. One that it begins in does not
     /// count: it has to be left anyway.
     pub fn breach_between(&self, from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<Breach> {
-        if !self.enabled {
+        if !self.enabled || !self.zones_count {
             return None;
         }
         let way = ([from_m.x, from_m.y], [to_m.x, to_m.y]);

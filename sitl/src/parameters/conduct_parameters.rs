@@ -1,6 +1,6 @@
 //! The vehicle's own parameters by their identifiers.
 
-use crate::vehicle::{Action, BatteryPolicy, Conduct};
+use crate::vehicle::{Action, BatteryActions, Conduct};
 
 /// A parameter of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ macro_rules! choice {
             ardupilot: None,
             integer: true,
             minimum: 0.0,
-            maximum: 6.0,
+            maximum: 7.0,
             get: |conduct| {
                 let meaning = $meanings.iter().find(|(known, _)| *known == conduct.$($field).+);
                 meaning.map_or(0.0, |(_, number)| f64::from(*number))
@@ -86,13 +86,15 @@ macro_rules! switch {
     };
 }
 
+pub(super) use {choice, switch};
+
 /// The vehicle's own parameters.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("MIS_TAKEOFF_ALT", Some(("PILOT_TKOFF_ALT", 100.0)), 0.5..=1000.0, takeoff_height_m),
     real!("COM_OF_LOSS_T", Some(("GUID_TIMEOUT", 1.0)), 0.1..=60.0, set_point_timeout_s),
     choice!("COM_OBL_RC_ACT", SET_POINTS_ACTIONS, failsafe.set_points_lost),
-    real!("COM_DL_LOSS_T", None, 1.0..=300.0, failsafe.ground_station_timeout_s),
+    real!("COM_DL_LOSS_T", Some(("FS_GCS_TIMEOUT", 1.0)), 1.0..=300.0, failsafe.ground_station_timeout_s),
     choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
     real!("BAT_LOW_THR", None, 0.0..=0.9, failsafe.battery_low),
     real!("BAT_CRIT_THR", None, 0.0..=0.9, failsafe.battery_critical),
@@ -141,5 +143,5 @@ const FENCE_ACTIONS: &[(Action, i32)] = &[
 ];
 const POSITION_ACTIONS: &[(Action, i32)] = &[(Action::Warn, 0), (Action::Land, 1), (Action::Terminate, 2)];
 const ROTOR_ACTIONS: &[(Action, i32)] = &[(Action::Land, 2), (Action::Terminate, 4)];
-const BATTERY_POLICIES: &[(BatteryPolicy, i32)] =
-    &[(BatteryPolicy::Warn, 0), (BatteryPolicy::Land, 2), (BatteryPolicy::ReturnThenLand, 3)];
+const BATTERY_POLICIES: &[(BatteryActions, i32)] =
+    &[(BatteryActions::WARN, 0), (BatteryActions::LAND, 2), (BatteryActions::RETURN_THEN_LAND, 3)];

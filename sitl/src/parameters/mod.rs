@@ -1,5 +1,6 @@
 //! Parameters by MAVLink identifiers: those of the closed loop and the vehicle's own.
 
+mod ardupilot_parameters;
 mod conduct_parameters;
 mod description;
 mod entry;
@@ -10,6 +11,7 @@ mod speed;
 mod table;
 mod value;
 
+pub use ardupilot_parameters::ARDUPILOT_PARAMETERS;
 pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
 pub use description::Description;
 pub use entry::Entry;

@@ -2,6 +2,7 @@
 
 use quadrotor::{ConfigurationError, PARAMETERS, Parameter};
 
+use super::ardupilot_parameters::{ARDUPILOT_PARAMETERS, REPLACED};
 use super::entry::{Entry, Source};
 use super::identifier::identifier;
 use super::loop_access::write;
@@ -105,7 +106,9 @@ impl ParameterTable {
             .iter()
             .filter(described)
             .map(|parameter| Entry { id: identifier(parameter.name), source: Source::Loop(parameter) });
-        let of_conduct = CONDUCT_PARAMETERS.iter().map(|parameter| {
+        let replaced = |parameter: &&ConductParameter| !ardupilot || !REPLACED.contains(&parameter.id);
+        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { &[] };
+        let of_conduct = CONDUCT_PARAMETERS.iter().filter(replaced).chain(own).map(|parameter| {
             let (id, scale) = parameter.ardupilot.filter(|_| ardupilot).unwrap_or((parameter.id, 1.0));
             Entry { id: id.to_owned(), source: Source::Conduct(parameter, scale) }
         });

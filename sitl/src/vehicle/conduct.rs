@@ -78,7 +78,7 @@ impl Conduct {
             battery_capacity_ah: 2.2,
             battery_to_arm: 0.15,
             failure_injection: true,
-            failsafe: FailsafeSettings::default(),
+            failsafe: FailsafeSettings::new(ardupilot),
         }
     }
 }

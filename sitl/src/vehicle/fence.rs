@@ -48,16 +48,39 @@ impl Vehicle {
 
     /// Whether there is anything that it must keep to: zones, a greatest distance or height.
     pub fn has_fence(&self) -> bool {
-        let settings = &self.conduct.failsafe;
-        !self.fence.zones.zones.is_empty() || settings.fence_radius_m > 0.0 || settings.fence_height_m > 0.0
+        let (radius_m, height_m) = self.fence_limits_m();
+        let zones = self.fence.zones_count && !self.fence.zones.zones.is_empty();
+        zones || radius_m > 0.0 || height_m > 0.0
     }
 
     /// Switches the fence on or off.
     pub fn enable_fence(&mut self, enabled: bool) {
-        if self.fence.enabled != enabled {
-            self.fence.enabled = enabled;
+        if self.conduct.failsafe.fence_enabled != enabled {
+            self.conduct.failsafe.fence_enabled = enabled;
+            self.apply_fence_settings();
             self.say(Severity::Info, if enabled { "Fence enabled" } else { "Fence disabled" });
         }
+    }
+
+    /// Looks at the parts of the fence that the settings name.
+    pub(super) fn apply_fence_settings(&mut self) {
+        let settings = &self.conduct.failsafe;
+        self.fence.enabled = settings.fence_enabled;
+        self.fence.zones_count = settings.fence_parts.zones;
+    }
+
+    /// Greatest distance from home and height above it, m; 0: any.
+    fn fence_limits_m(&self) -> (f64, f64) {
+        let settings = &self.conduct.failsafe;
+        let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
+        let parts = settings.fence_parts;
+        (of(parts.distance, settings.fence_radius_m), of(parts.height, settings.fence_height_m))
+    }
+
+    /// The highest that the fence allows, z, m, if it bounds the height.
+    pub(super) fn fence_ceiling_z_m(&self) -> Option<f64> {
+        let (_, height_m) = self.fence_limits_m();
+        (self.fence.enabled && height_m > 0.0).then(|| self.home.position_m.z - height_m)
     }
 
     /// Takes the zones of a fence plan.
@@ -89,8 +112,8 @@ impl Vehicle {
 
     /// What of the fence forbids a place, NED, m.
     pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
-        let settings = &self.conduct.failsafe;
-        self.fence.breach(place_m, &self.home.position_m, settings.fence_radius_m, settings.fence_height_m)
+        let (radius_m, height_m) = self.fence_limits_m();
+        self.fence.breach(place_m, &self.home.position_m, radius_m, height_m)
     }
 
     /// What of the fence forbids a place or the straight way to it.
@@ -173,7 +196,7 @@ impl Vehicle {
     /// The way to a place, north and east, m, around what the fence forbids; straight if there is none.
     pub(super) fn way_m(&mut self, goal: [f64; 2]) -> VecDeque<[f64; 2]> {
         let here = self.outputs.setpoint.position_m;
-        let way = if self.fence.enabled {
+        let way = if self.fence.enabled && self.fence.zones_count {
             route_m(&self.fence.zones, [here.x, here.y], goal)
         } else {
             Some(vec![goal])

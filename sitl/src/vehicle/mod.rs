@@ -45,7 +45,7 @@ use crate::mode;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
-pub use failsafe::{Action, BatteryPolicy, Cause, Failsafe, FailsafeSettings};
+pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
 pub use fence::FenceRecord;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};

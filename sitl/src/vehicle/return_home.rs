@@ -68,9 +68,8 @@ impl Vehicle {
     fn go_at_return_height(&mut self, [x, y]: [f64; 2]) {
         let home_z = self.home.position_m.z;
         let mut z = self.outputs.position_m.z.min(home_z - self.conduct.return_height_m);
-        let highest_m = self.conduct.failsafe.fence_height_m;
-        if self.fence.enabled && highest_m > 0.0 {
-            z = z.max(home_z - highest_m);
+        if let Some(ceiling_z) = self.fence_ceiling_z_m() {
+            z = z.max(ceiling_z);
         }
         let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)];
         self.follow(&PositionSetPoint { axes, yaw: YawTarget::Hold });

@@ -172,7 +172,7 @@ impl Vehicle {
             grounded_since_us: 0,
             notices: Vec::new(),
             plans: settings.plans.clone(),
-            fence: Fence { zones: fence_zones, enabled: true },
+            fence: Fence { zones: fence_zones, ..Fence::default() },
             fence_record: FenceRecord::default(),
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
@@ -185,6 +185,7 @@ impl Vehicle {
             navigation,
             ideal_sensors: IdealSensors::default(),
         };
+        vehicle.apply_fence_settings();
         vehicle.outputs = vehicle.known();
         vehicle.mission_has_changed(false);
         Ok(vehicle)
@@ -341,6 +342,7 @@ impl Vehicle {
     /// Changes its own parameters.
     pub fn set_conduct(&mut self, conduct: Conduct) {
         self.conduct = conduct;
+        self.apply_fence_settings();
     }
 
     /// Home.

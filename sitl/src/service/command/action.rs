@@ -7,7 +7,7 @@ use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
 use crate::plan::{self, MissionItem};
-use crate::service::{Origin, message_interval, mission, standard_mode};
+use crate::service::{Origin, message_interval, mission, parameter, standard_mode};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
 
@@ -65,7 +65,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         | number::DO_SET_ROI_WPNEXT_OFFSET
         | number::DO_SET_ROI_NONE
         | number::DO_SET_ROI => vehicle.look(&as_item(command)),
-        number::DO_FENCE_ENABLE => enable_fence(vehicle, command),
+        number::DO_FENCE_ENABLE => enable_fence(autopilot, command),
         number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.pause(),
         number::DO_PAUSE_CONTINUE => vehicle.continue_mission(),
         number::DO_SET_MISSION_CURRENT => mission::set_current_by_command(autopilot, command),
@@ -95,7 +95,8 @@ fn arm(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     }
 }
 
-fn enable_fence(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+fn enable_fence(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut autopilot.vehicle;
     match command.parameter(1) {
         0.0 => vehicle.enable_fence(false),
         1.0 => vehicle.enable_fence(true),
@@ -103,6 +104,7 @@ fn enable_fence(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal>
             return Err(Refusal::denied(format!("{other} neither enables (1) nor disables (0) the fence")));
         }
     }
+    parameter::tell(autopilot, "FENCE_ENABLE");
     Ok(())
 }
 

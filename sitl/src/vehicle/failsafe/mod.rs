@@ -18,5 +18,5 @@ mod watch;
 
 pub use action::Action;
 pub use cause::Cause;
-pub use settings::{BatteryPolicy, FailsafeSettings};
+pub use settings::{BatteryActions, FailsafeSettings, FenceParts};
 pub use state::{Change, Failsafe};

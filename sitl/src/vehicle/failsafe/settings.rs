@@ -19,13 +19,20 @@ pub struct FailsafeSettings {
     pub battery_critical: f64,
     #[allow(missing_docs)] // With the one above.
     pub battery_emergency: f64,
-    /// What a weak battery does (COM_LOW_BAT_ACT).
-    pub battery: BatteryPolicy,
+    /// What a weak battery does (COM_LOW_BAT_ACT; ArduPilot: BATT_FS_LOW_ACT, BATT_FS_CRT_ACT).
+    #[serde(default)]
+    pub battery: BatteryActions,
     /// What the fence does (GF_ACTION).
     pub fence: Action,
     /// Whether it acts as soon as the vehicle could not stop before the fence, not only beyond it (GF_PREDICT).
     #[serde(default = "yes")]
     pub fence_ahead: bool,
+    /// Whether the fence is looked at (ArduPilot: FENCE_ENABLE; MAV_CMD_DO_FENCE_ENABLE).
+    #[serde(default = "yes")]
+    pub fence_enabled: bool,
+    /// What of it (ArduPilot: FENCE_TYPE).
+    #[serde(default)]
+    pub fence_parts: FenceParts,
     /// Farthest from home, m; 0: anywhere (GF_MAX_HOR_DIST).
     pub fence_radius_m: f64,
     /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
@@ -45,15 +52,47 @@ fn yes() -> bool {
     true
 }
 
+/// Parts of the fence that are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FenceParts {
+    /// The greatest height.
+    pub height: bool,
+    /// The greatest distance.
+    pub distance: bool,
+    /// The zones.
+    pub zones: bool,
+}
+
+impl Default for FenceParts {
+    fn default() -> Self {
+        Self { height: true, distance: true, zones: true }
+    }
+}
+
 /// What a weak battery does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum BatteryPolicy {
+pub struct BatteryActions {
+    /// When it is low.
+    pub low: Action,
+    /// When it is critical.
+    pub critical: Action,
+    /// When it is all but empty.
+    pub empty: Action,
+}
+
+impl BatteryActions {
     /// Nothing but warnings.
-    Warn,
+    pub const WARN: Self = Self { low: Action::Warn, critical: Action::Warn, empty: Action::Warn };
     /// Lands when critical.
-    Land,
+    pub const LAND: Self = Self { critical: Action::Land, empty: Action::Land, ..Self::WARN };
     /// Returns when critical, lands when empty.
-    ReturnThenLand,
+    pub const RETURN_THEN_LAND: Self = Self { critical: Action::Return, ..Self::LAND };
+}
+
+impl Default for BatteryActions {
+    fn default() -> Self {
+        Self::RETURN_THEN_LAND
+    }
 }
 
 /// PX4's values, but for three: a critical battery returns, an empty one lands, and a failed rotor lands (PX4 warns of all), and the fence
@@ -67,9 +106,11 @@ impl Default for FailsafeSettings {
             battery_low: 0.15,
             battery_critical: 0.07,
             battery_emergency: 0.05,
-            battery: BatteryPolicy::ReturnThenLand,
+            battery: BatteryActions::default(),
             fence: Action::Hold,
             fence_ahead: true,
+            fence_enabled: true,
+            fence_parts: FenceParts::default(),
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
             wind_m_s: -1.0,
@@ -81,21 +122,20 @@ impl Default for FailsafeSettings {
 }
 
 impl FailsafeSettings {
+    /// The defaults, which differ by convention: ArduPilot returns at the fence, and misses its ground station after 5 s.
+    pub fn new(ardupilot: bool) -> Self {
+        let px4 = Self::default();
+        if ardupilot { Self { fence: Action::Return, ground_station_timeout_s: 5.0, ..px4 } } else { px4 }
+    }
+
     /// What is done for a cause.
     pub fn action(&self, cause: Cause) -> Action {
         match cause {
             Cause::RotorFailure => self.rotor_failure,
             Cause::PositionLost => self.position_lost,
-            Cause::BatteryEmergency => match self.battery {
-                BatteryPolicy::Warn => Action::Warn,
-                BatteryPolicy::Land | BatteryPolicy::ReturnThenLand => Action::Land,
-            },
-            Cause::BatteryCritical => match self.battery {
-                BatteryPolicy::Warn => Action::Warn,
-                BatteryPolicy::Land => Action::Land,
-                BatteryPolicy::ReturnThenLand => Action::Return,
-            },
-            Cause::BatteryLow => Action::Warn,
+            Cause::BatteryEmergency => self.battery.empty,
+            Cause::BatteryCritical => self.battery.critical,
+            Cause::BatteryLow => self.battery.low,
             Cause::Fence => self.fence,
             Cause::HighWind => self.high_wind,
             Cause::GroundStationLost => self.ground_station_lost,
