@@ -49,6 +49,11 @@ impl RotorMonitor {
         }
         lost
     }
+
+    /// Whether a rotor, 0 to 3, is lost: one that is commanded not to turn any more no longer is.
+    pub fn is_lost(&self, rotor: usize) -> bool {
+        self.different_for_s.get(rotor).is_some_and(|different_for_s| *different_for_s >= LOST_AFTER_S)
+    }
 }
 
 #[cfg(test)]

@@ -68,6 +68,7 @@ fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
         assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 7]), 0);
 
         let (tilt, sink) = fly_down(&mut bench);
+        assert!(!bench.texts().iter().any(|text| text.contains("falls")), "{:?}", bench.texts());
         assert!(tilt < 40_f64.to_radians(), "it tumbled: {}", tilt.to_degrees());
         assert!(sink < 0.9, "it touched down at {sink} m/s");
         assert!(
@@ -85,6 +86,32 @@ fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
         assert_eq!(obstacles, ["rotor 2 failed"]);
         assert_eq!(inject(&mut bench, MOTOR, OK, 0.0), 0);
         assert!(bench.autopilot.vehicle().arming_obstacles().is_empty());
+    }
+}
+
+/// On two rotors nothing can be held: it is told, not called a descent.
+#[test]
+fn two_lost_rotors_are_a_fall() {
+    for (rotors, first) in
+        [(vec![0.0], "Rotor 1 lost"), (vec![2.0], "Rotor 2 lost: descending without yaw control")]
+    {
+        let mut bench = Bench::hovering(Identity::Px4);
+        for rotor in rotors {
+            assert_eq!(inject(&mut bench, MOTOR, OFF, rotor), 0);
+        }
+        bench.fly(0.7);
+        let falls = |bench: &Bench| {
+            bench.texts().iter().filter(|text| text.ends_with("rotor lost: it falls")).count()
+        };
+        assert!(bench.texts().iter().any(|text| text == first), "{:?}", bench.texts());
+        let all = first == "Rotor 1 lost";
+        assert_eq!(falls(&bench), usize::from(all), "{:?}", bench.texts());
+        if !all {
+            assert_eq!(inject(&mut bench, MOTOR, OFF, 3.0), 0);
+            bench.fly(0.2);
+            assert_eq!(falls(&bench), 1, "{:?}", bench.texts());
+        }
+        bench.fly_until("down", 20.0, |bench| !bench.autopilot.vehicle().is_armed());
     }
 }
 

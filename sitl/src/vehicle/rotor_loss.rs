@@ -31,6 +31,8 @@ struct Loss {
     /// North and east, m, of where it descends.
     place_m: Option<[f64; 2]>,
     touching_since_us: Option<u64>,
+    /// Whether another one is lost, too: then nothing can be held.
+    falls: bool,
 }
 
 /// What is known of the rotors.
@@ -66,6 +68,15 @@ impl Vehicle {
         if let (Some(rotor), None) = (lost, self.rotors.loss) {
             self.lose(rotor);
         }
+        let Some(loss) = self.rotors.loss else { return };
+        if !loss.falls && self.is_another_lost(loss.rotor) {
+            self.rotors.loss = Some(Loss { falls: true, ..loss });
+            self.say(Severity::Critical, "More than one rotor lost: it falls");
+        }
+    }
+
+    fn is_another_lost(&self, rotor: usize) -> bool {
+        (0..4).any(|other| other != rotor && self.rotors.monitor.is_lost(other))
     }
 
     fn lose(&mut self, rotor: usize) {
@@ -74,12 +85,14 @@ impl Vehicle {
             self.stop_rotors(&format!("Disarmed: rotor {number} failed"));
             return;
         }
-        let descends = self.conduct.failsafe.rotor_failure == Action::Land;
+        let alone = !self.is_another_lost(rotor);
+        let descends = alone && self.conduct.failsafe.rotor_failure == Action::Land;
         let what = if descends { ": descending without yaw control" } else { "" };
         self.say(Severity::Critical, format!("Rotor {number} lost{what}"));
         let since_us = self.time_us();
         // The failsafe sees it, and lands or terminates.
-        self.rotors.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None });
+        self.rotors.loss =
+            Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
     }
 
     /// One tick of the descent on the rotors that are left.
