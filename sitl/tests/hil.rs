@@ -150,6 +150,19 @@ fn controls_are_rotor_speeds_and_end_with_the_signal() {
     assert!(rig.plant().rotor_speed_rad_s.iter().all(|speed| *speed < 1.0));
 }
 
+/// Before its motors turn a vehicle does not creep over the ground in a wind; then it is blown away.
+#[test]
+fn what_stands_in_the_wind_stays() {
+    let mut settings = settings(Identity::Px4);
+    settings.wind = sitl::world::WindSettings { speed_m_s: 10.0, from_rad: 0.0, gusts_m_s: 0.0, seed: 1 };
+    settings.configuration.airframe.drag_n_s_m = [0.15; 3];
+    let mut rig = Rig::new(&settings, Mount::X).expect("the default airframe");
+    fly(&mut rig, 20.0, None);
+    assert!(rig.plant().body.position_m.xy().norm() < 1e-3, "{}", rig.plant().body.position_m);
+    fly(&mut rig, 2.0, Some([0.6; 4]));
+    assert!(rig.plant().body.position_m.x < -1.0, "{}", rig.plant().body.position_m);
+}
+
 #[test]
 fn the_same_controls_are_the_same_flight() {
     let flight = |motor: f64| {

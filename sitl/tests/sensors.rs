@@ -13,6 +13,7 @@ use sitl::codec::Message;
 use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::identity::Identity;
 use sitl::vehicle::{Action, Mode, VehicleSettings};
+use sitl::world::WindSettings;
 
 const NOTHING: [f32; 7] = [0.0; 7];
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -125,6 +126,23 @@ fn sensor_messages_show_the_instruments() {
     assert!((0.010..0.020).contains(&vibration.vibration_x), "{vibration:?}");
     let MavMessage::SIM_STATE(state) = asked(&mut bench, 108) else { panic!("SIM_STATE") };
     assert!((state.lat_int - 473_977_420).abs() <= 1 && (state.zacc + 9.806_65).abs() < 1e-3, "{state:?}");
+}
+
+/// A minute in a storm on the ground: it does not creep, and the estimator that is told of its rest is right.
+#[test]
+fn what_stands_in_the_wind_stays() {
+    let mut settings = realistic(4);
+    settings.wind = WindSettings { speed_m_s: 12.0, from_rad: 0.5, gusts_m_s: 2.0, seed: 4 };
+    settings.configuration.airframe.drag_n_s_m = [0.15; 3];
+    let mut bench = Bench::of(&settings);
+    bench.fly(1.0);
+    let start = truth(&bench);
+    bench.fly(60.0);
+    assert!((truth(&bench) - start).norm() < 1e-3, "{}", truth(&bench) - start);
+    let estimate = *bench.autopilot.vehicle().estimate().expect("it flies by one");
+    let away_m = (estimate.body.position_m - truth(&bench)).xy().norm();
+    assert!(away_m < 4.0 * estimate.horizontal_accuracy_m, "{away_m} {}", estimate.horizontal_accuracy_m);
+    assert!(bench.autopilot.vehicle().wind_m_s().norm() > 3.0, "the wind is still told");
 }
 
 /// Neither a fault of the battery nor a recovery system: flags of the protocol that nothing sets are none.
