@@ -128,6 +128,19 @@ fn sensor_messages_show_the_instruments() {
     assert!((state.lat_int - 473_977_420).abs() <= 1 && (state.zacc + 9.806_65).abs() < 1e-3, "{state:?}");
 }
 
+/// A magnetometer and a barometer that have never said anything are no zeros that were measured.
+#[test]
+fn what_was_never_measured_is_not_told() {
+    for (unit, bits) in [("magnetometer", 0x1c0), ("barometer", 0xa00)] {
+        let mut settings = realistic(1);
+        settings.faults = vec![format!("0:{unit}=off").parse().expect("a fault")];
+        let mut bench = Bench::of(&settings);
+        bench.fly(1.0);
+        let MavMessage::HIGHRES_IMU(imu) = asked(&mut bench, 105) else { panic!("another message") };
+        assert_eq!(imu.fields_updated.bits(), 0xbff & !bits, "{unit}: {imu:?}");
+    }
+}
+
 /// A minute in a storm on the ground: it does not creep, and the estimator that is told of its rest is right.
 #[test]
 fn what_stands_in_the_wind_stays() {

@@ -68,6 +68,11 @@ pub fn highres_imu(vehicle: &Vehicle) -> MavMessage {
     let mut updated = HighresImuUpdatedFlags::all()
         & !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_DIFF_PRESSURE
         & !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_TEMPERATURE;
+    if readings.magnetometer.is_none() {
+        updated &= !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_XMAG
+            & !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_YMAG
+            & !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_ZMAG;
+    }
     if readings.barometer.is_none() {
         updated &= !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_ABS_PRESSURE
             & !HighresImuUpdatedFlags::HIGHRES_IMU_UPDATED_PRESSURE_ALT;
