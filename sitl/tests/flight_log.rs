@@ -113,6 +113,10 @@ fn ground_truth_is_the_truth_and_what_is_not_known_is_not_valid() {
     assert_eq!(bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, no_gps), 0);
     bench.fly_until("lost", 20.0, |bench| !bench.autopilot.vehicle().validity().horizontal_position);
     assert_eq!(valid(&bench, "vehicle_local_position"), [0, 1, 0, 1]);
+    let accuracies = &sample(&bench, "vehicle_gps_position")[40..48];
+    assert!(
+        accuracies.chunks_exact(4).all(|bytes| f32::from_le_bytes(bytes.try_into().expect("four")).is_nan())
+    );
     // The last two bytes: health and timeouts of velocity, position and height.
     assert_eq!(sample(&bench, "estimator_status")[32..], [0b100, 0b011]);
     assert_eq!(valid(&bench, "vehicle_local_position_groundtruth"), [1; 4]);

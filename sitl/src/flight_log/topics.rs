@@ -3,7 +3,7 @@
 //! What the vehicle believes comes from its telemetry; topics with `groundtruth` are the simulation's truth, as in PX4's
 //! simulations.
 
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::common::{GpsFixType, MavMessage};
 use quadrotor::ControllerActivity;
 
 use super::row::Row;
@@ -277,7 +277,9 @@ fn gps_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     row.u64(autopilot.unix_start_us() + autopilot.vehicle().time_us());
     row.f64(f64::from(told.lat) / 1e7).f64(f64::from(told.lon) / 1e7);
     row.f64(f64::from(told.alt) / 1e3).f64(f64::from(told.alt_ellipsoid) / 1e3);
-    row.f32(told.h_acc as f32 / 1e3).f32(told.v_acc as f32 / 1e3);
+    // Zero would be the best of all.
+    let fixed = told.fix_type != GpsFixType::GPS_FIX_TYPE_NO_FIX;
+    row.floats([told.h_acc, told.v_acc].map(|mm| if fixed { mm as f32 / 1e3 } else { f32::NAN }));
     row.floats([hundredths(told.eph), hundredths(told.epv), hundredths(told.vel)]);
     row.f32(hundredths(told.cog).to_radians()).u8(told.fix_type as u8).u8(told.satellites_visible);
     true
