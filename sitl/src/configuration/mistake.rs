@@ -14,7 +14,7 @@ pub fn failure(error: &clap::Error) -> Failure {
     }
 }
 
-/// What is wrong, without the name of the setting if [`setting`] knows it.
+/// What is wrong, without the name of the setting if `setting` knows it.
 pub fn reason(error: &clap::Error) -> String {
     if let Some(source) = error.source() {
         return source.to_string();
