@@ -56,6 +56,17 @@ impl PartialEq for MissionItem {
 }
 
 impl MissionItem {
+    /// Home as an item: latitude and longitude, degrees, and altitude above sea level, m.
+    pub fn home(position: [f64; 3]) -> Self {
+        Self {
+            frame: super::frame::GLOBAL,
+            command: command::NAV_WAYPOINT,
+            parameters: [0.0; 4],
+            position,
+            autocontinue: true,
+        }
+    }
+
     /// Parameter `n` of 1 to 7.
     pub fn parameter(&self, n: usize) -> f64 {
         let all = self.parameters.iter().chain(&self.position);

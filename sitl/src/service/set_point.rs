@@ -18,16 +18,15 @@ use crate::plan::{frame, is_global};
 use crate::vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
 };
-use crate::world::Geodetic;
+use crate::world::{FARTHEST_M, Geodetic};
 
 /// POSITION_TARGET_TYPEMASK.
 const FORCE_SET: u16 = 1 << 9;
 const YAW_IGNORE: u16 = 1 << 10;
 const YAW_RATE_IGNORE: u16 = 1 << 11;
 
-/// Beyond these a set-point is a mistake: m (the tangent plane is not the earth), and the largest values that the limits
-/// of speed, acceleration and turning can be given, m/s, m/s² and rad/s.
-const FARTHEST_M: f64 = 1e5;
+/// Beyond these a set-point is a mistake: the largest values that the limits of speed, acceleration and turning can be
+/// given, m/s, m/s² and rad/s.
 const FASTEST_M_S: f64 = 50.0;
 const STRONGEST_M_S2: f64 = 20.0;
 const QUICKEST_TURN_RAD_S: f64 = 10.0;

@@ -51,7 +51,6 @@ impl Vehicle {
             Mode::Hold | Mode::Position => self.hold(),
             Mode::Offboard if !self.set_points_are_recent() => self.hold(),
             Mode::Return if self.steering.kind() != SteeringKind::Idle => self.begin_return(),
-            Mode::Land => self.begin_landing(),
             Mode::Mission => self.enter_mission(),
             _ => {}
         }

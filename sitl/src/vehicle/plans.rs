@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::notice::Severity;
 use super::state::Vehicle;
-use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check, command, frame};
+use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check};
 
 impl Vehicle {
     /// Its plans.
@@ -23,14 +23,13 @@ impl Vehicle {
         if kind != PlanKind::Mission || index > 0 || !self.identity.is_ardupilot() {
             return Some(item);
         }
+        Some(self.home_item())
+    }
+
+    /// Home as an item of a plan.
+    pub fn home_item(&self) -> MissionItem {
         let place = self.frame.to_geodetic(&self.home.position_m);
-        Some(MissionItem {
-            frame: frame::GLOBAL,
-            command: command::NAV_WAYPOINT,
-            parameters: [0.0; 4],
-            position: [place.latitude_deg, place.longitude_deg, place.altitude_m],
-            autocontinue: true,
-        })
+        MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
     }
 
     /// Replaces a plan.

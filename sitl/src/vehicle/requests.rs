@@ -8,9 +8,8 @@ use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::state::Vehicle;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
+use crate::world::FARTHEST_M;
 
-/// Farther than this from the origin, m, nothing is flown to: the tangent plane is not the earth.
-const FARTHEST_M: f64 = 100_000.0;
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
 

@@ -2,7 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::mode::Mode;
 use super::notice::Severity;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 use super::state::Vehicle;
@@ -120,10 +119,5 @@ impl Vehicle {
             thrust: (thrust_n / strongest_n).clamp(0.0, 1.0),
         };
         self.steering.follow_attitude(&set_point, &self.outputs);
-    }
-
-    /// Begins the mode that a return ends in or that a user asked for.
-    pub(super) fn begin_landing(&mut self) {
-        self.mode = Mode::Land;
     }
 }

@@ -9,6 +9,9 @@ const A_M: f64 = 6_378_137.0;
 /// First eccentricity of WGS-84, squared.
 const E2: f64 = 6.694_379_990_141_316_5e-3;
 
+/// Farther than this from the origin, m, nothing is flown to: the tangent plane is not the earth.
+pub const FARTHEST_M: f64 = 100_000.0;
+
 /// A place on the earth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Geodetic {

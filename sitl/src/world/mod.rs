@@ -6,6 +6,6 @@ mod magnetic_field;
 mod wind;
 
 pub use atmosphere::{atmospheric_pressure_pa, atmospheric_temperature_degc, pressure_altitude_m};
-pub use local_frame::{Geodetic, LocalFrame};
+pub use local_frame::{FARTHEST_M, Geodetic, LocalFrame};
 pub use magnetic_field::earth_field_ned;
 pub use wind::{Wind, WindSettings};

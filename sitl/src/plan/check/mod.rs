@@ -5,6 +5,7 @@ mod mission;
 mod rally;
 
 use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site};
+use crate::world::FARTHEST_M;
 
 pub use mission::is_flown_to;
 
@@ -42,9 +43,6 @@ pub fn plan(kind: PlanKind, items: &[MissionItem], site: &Site) -> Result<(), Pl
 
 /// What is wrong with an item.
 type ItemFault = (FaultCode, String);
-
-/// Farther than this from the origin, m, nothing is flown to: the tangent plane is not the earth.
-const FARTHEST_M: f64 = 100_000.0;
 
 /// Checks the place of an item: its frame, latitude and longitude, and that it is not too far away.
 fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {

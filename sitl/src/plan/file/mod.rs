@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use super::{MissionItem, Plan, PlanKind, Plans, Site, check, command, frame};
+use super::{MissionItem, Plan, PlanKind, Plans, Site, check, command};
 
 /// The items of a file, before they are checked.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -51,12 +51,6 @@ fn put_home_in_front(content: &mut Content) {
             *target += 1.0;
         }
     }
-    let home = MissionItem {
-        frame: frame::GLOBAL,
-        command: command::NAV_WAYPOINT,
-        parameters: [0.0; 4],
-        position: content.home.unwrap_or([0.0; 3]),
-        autocontinue: true,
-    };
+    let home = MissionItem::home(content.home.unwrap_or([0.0; 3]));
     content.mission.insert(0, (home, "home".to_owned()));
 }

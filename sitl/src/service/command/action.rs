@@ -7,7 +7,7 @@ use crate::autopilot::Autopilot;
 use crate::codec::Command;
 use crate::fault::Fault;
 use crate::plan::{self, MissionItem};
-use crate::service::{Origin, message_interval, mission, parameter, standard_mode};
+use crate::service::{Origin, message_interval, mission, parameter, standard_mode, status_text};
 use crate::vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 use crate::world::Geodetic;
 
@@ -23,14 +23,14 @@ mod number {
     pub const DO_SET_HOME: u16 = 179;
     pub const DO_FLIGHTTERMINATION: u16 = 185;
     pub const DO_REPOSITION: u16 = 192;
+    pub const DO_PAUSE_CONTINUE: u16 = 193;
     pub const DO_SET_ROI_LOCATION: u16 = 195;
     pub const DO_SET_ROI_WPNEXT_OFFSET: u16 = 196;
     pub const DO_SET_ROI_NONE: u16 = 197;
     pub const DO_SET_ROI: u16 = 201;
     pub const DO_FENCE_ENABLE: u16 = 207;
-    pub const DO_PAUSE_CONTINUE: u16 = 193;
-    pub const PREFLIGHT_STORAGE: u16 = 245;
     pub const DO_SET_MISSION_CURRENT: u16 = 224;
+    pub const PREFLIGHT_STORAGE: u16 = 245;
     pub const DO_SET_STANDARD_MODE: u16 = 262;
     pub const MISSION_START: u16 = 300;
     pub const COMPONENT_ARM_DISARM: u16 = 400;
@@ -112,10 +112,10 @@ fn enable_fence(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refu
 fn check(autopilot: &mut Autopilot) {
     let obstacles = autopilot.vehicle.arming_obstacles();
     if obstacles.is_empty() {
-        super::super::status_text::send(autopilot, Severity::Info, "Ready to arm");
+        status_text::send(autopilot, Severity::Info, "Ready to arm");
     }
     for obstacle in obstacles {
-        super::super::status_text::send(autopilot, Severity::Warning, &format!("Preflight: {obstacle}"));
+        status_text::send(autopilot, Severity::Warning, &format!("Preflight: {obstacle}"));
     }
 }
 
@@ -134,7 +134,7 @@ fn take_off(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal>
     const LEAST_M: f64 = 0.5;
     if height_m < LEAST_M {
         let text = format!("Takeoff altitude {:.1} m is not above home: using the parameter", command.z);
-        super::super::status_text::send(autopilot, Severity::Warning, &text);
+        status_text::send(autopilot, Severity::Warning, &text);
         return autopilot.vehicle.take_off(None);
     }
     vehicle.take_off(Some(height_m))

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::plan::{MissionItem, PlanKind, command, frame};
+use crate::plan::{MissionItem, PlanKind, command};
 use crate::vehicle::Vehicle;
 
 /// The text. The first line of a mission is home, as ground stations write it, and jumps count it.
@@ -14,7 +14,7 @@ pub fn render(vehicle: &Vehicle, kind: PlanKind) -> Vec<u8> {
             let [target, ..] = &mut item.parameters;
             *target += 1.0;
         }
-        items.insert(0, home(vehicle));
+        items.insert(0, vehicle.home_item());
     }
     let mut text = String::from("QGC WPL 110\n");
     for (index, item) in items.iter().enumerate() {
@@ -27,15 +27,4 @@ pub fn render(vehicle: &Vehicle, kind: PlanKind) -> Vec<u8> {
         let _infallible = writeln!(text, "\t{}", u8::from(item.autocontinue));
     }
     text.into_bytes()
-}
-
-fn home(vehicle: &Vehicle) -> MissionItem {
-    let place = vehicle.frame().to_geodetic(&vehicle.home().position_m);
-    MissionItem {
-        frame: frame::GLOBAL,
-        command: command::NAV_WAYPOINT,
-        parameters: [0.0; 4],
-        position: [place.latitude_deg, place.longitude_deg, place.altitude_m],
-        autocontinue: true,
-    }
 }

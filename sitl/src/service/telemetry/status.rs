@@ -8,10 +8,7 @@ use mavlink::dialects::common::{
 
 use super::boot_ms;
 use crate::fence::Breach;
-use crate::vehicle::{LandedState, Vehicle};
-
-/// Cells of the battery.
-const CELLS: usize = 3;
+use crate::vehicle::{BATTERY_CELLS, LandedState, Vehicle};
 
 /// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
 pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
@@ -93,13 +90,13 @@ fn percent(vehicle: &Vehicle) -> i8 {
 /// BATTERY_STATUS.
 pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
     let battery = vehicle.battery();
-    let cell_mv = (battery.voltage_v() / CELLS as f64 * 1e3).round() as u16;
+    let cell_mv = (battery.voltage_v() / BATTERY_CELLS as f64 * 1e3).round() as u16;
     MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
         current_consumed: (battery.drawn_ah() * 1e3).round() as i32,
         energy_consumed: (battery.energy_j() / 100.0).round() as i32,
         // Unknown.
         temperature: i16::MAX,
-        voltages: core::array::from_fn(|cell| if cell < CELLS { cell_mv } else { u16::MAX }),
+        voltages: core::array::from_fn(|cell| if cell < BATTERY_CELLS { cell_mv } else { u16::MAX }),
         current_battery: (battery.current_a() * 1e2).round() as i16,
         battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
         mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
