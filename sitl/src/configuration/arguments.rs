@@ -35,8 +35,8 @@ Many vehicles:
 External autopilot:
   --hil 4560   then, for PX4: make px4_sitl none_iris (its motors 1 to 4: front
                right, back left, front left, back right; see --hil-mount)
-  --hil 0.0.0.0:4561   for PX4's instance 1 on another machine, which is told the
-               name of this one by PX4_SIM_HOSTNAME
+  --hil 0.0.0.0:4561   for PX4's instance 1 on another machine, which finds
+               this one by its PX4_SIM_HOSTNAME
 
 Connect with:
   QGroundControl   start it: it listens on 14550
