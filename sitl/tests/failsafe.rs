@@ -8,6 +8,7 @@ use sitl::codec::Message;
 use sitl::estimation::SensorModel;
 use sitl::identity::Identity;
 use sitl::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
+use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
 use sitl::vehicle::{Action, Cause, Conduct, Mode};
 
 const TEMPORARILY_REJECTED: u8 = 1;
@@ -313,6 +314,31 @@ fn a_worse_cause_goes_before_a_milder_one() {
     lose_ground_station(&mut bench);
     bench.fly(3.0);
     assert_eq!(bench.mode(), Mode::Land);
+}
+
+/// Only landing is left: a mission is neither begun nor gone on with.
+#[test]
+fn no_mission_is_begun_without_a_position_or_a_rotor() {
+    for cause in [Cause::PositionLost, Cause::RotorFailure] {
+        let mut start = settings(Identity::Px4);
+        let waypoint = MissionItem {
+            frame: frame::GLOBAL_RELATIVE_INT,
+            command: command::NAV_WAYPOINT,
+            parameters: [0.0; 4],
+            position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
+            autocontinue: true,
+        };
+        start.plans.set(PlanKind::Mission, Plan::new(vec![waypoint]));
+        let mut bench = Bench::hovering_with(&start);
+        spoil(&mut bench, cause);
+        bench.fly(0.2);
+        for command in [MavCmd::MAV_CMD_MISSION_START, MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH] {
+            assert_eq!(bench.command(command, [0.0; 7]), TEMPORARILY_REJECTED, "{cause:?} {command:?}");
+        }
+        let go_on = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_ne!(bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, go_on), 0, "{cause:?}");
+        assert_eq!(bench.mode(), Mode::Land, "{cause:?}");
+    }
 }
 
 /// A user who starts the mission, or pauses where it is, has decided: the next cause acts again.
