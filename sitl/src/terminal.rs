@@ -89,13 +89,16 @@ fn ways(links: &Links, specifications: &[LinkSpecification]) -> String {
         let profile = if link.profile == LinkProfile::Onboard { "onboard" } else { "ground" };
         text.push_str(&format!("  {description} ({profile})\n"));
         text.push_str(&match &link.endpoint {
-            Endpoint::UdpOut { port: 14_550, .. } => {
-                "      QGroundControl: start it; MAVProxy: --master=udpin:127.0.0.1:14550\n".to_owned()
+            Endpoint::UdpOut { host, port: 14_550, .. } => {
+                format!("      QGroundControl: start it; MAVProxy: --master=udpin:{}:14550\n", listening(host))
             }
-            Endpoint::UdpOut { port, .. } => format!(
-                "      MAVSDK: udpin://0.0.0.0:{port}; pymavlink: mavlink_connection('udpin:127.0.0.1:{port}')\n"
+            Endpoint::UdpOut { host, port, .. } => format!(
+                "      MAVSDK: udpin://0.0.0.0:{port}; pymavlink: mavlink_connection('udpin:{}:{port}')\n",
+                listening(host)
             ),
-            Endpoint::UdpIn { .. } => format!("      pymavlink: mavlink_connection('udpout:{address}')\n"),
+            Endpoint::UdpIn { .. } => format!(
+                "      pymavlink: mavlink_connection('udpout:{address}'); MAVSDK: udpout://{address}; MAVProxy: --master=udpout:{address}\n"
+            ),
             Endpoint::TcpIn { .. } => format!(
                 "      pymavlink: mavlink_connection('tcp:{address}'); MAVSDK: tcpout://{address}; MAVProxy: --master=tcp:{address}\n"
             ),
@@ -103,6 +106,11 @@ fn ways(links: &Links, specifications: &[LinkSpecification]) -> String {
         });
     }
     text
+}
+
+/// Where a client listens that a link sends to: on this machine, or on another one to whoever sends.
+fn listening(host: &str) -> &str {
+    if matches!(host, "127.0.0.1" | "localhost") { "127.0.0.1" } else { "0.0.0.0" }
 }
 
 /// One live line on a terminal.

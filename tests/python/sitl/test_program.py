@@ -111,6 +111,15 @@ def test_help_is_worth_reading(program):
         assert word in text
 
 
+def test_the_banner_tells_how_to_connect(program):
+    links = ("--link", "udpin:0", "--link", "udpout:127.0.0.1:9,onboard", "--link", "udpout:192.0.2.1:14550", "--duration", "0")
+    text = run(program, *links).stdout
+    assert "mavlink_connection('udpout:127.0.0.1:" in text and "MAVSDK: udpout://127.0.0.1:" in text, text
+    assert "MAVSDK: udpin://0.0.0.0:9; pymavlink: mavlink_connection('udpin:127.0.0.1:9')" in text, text
+    # Who is on another machine does not hear what is sent there on its own 127.0.0.1.
+    assert "MAVProxy: --master=udpin:0.0.0.0:14550" in text, text
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_cleanly(start, number):
     vehicle = start()
