@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use sitl::configuration::{Arguments, Settings};
+use sitl::configuration::{self, Arguments, MemberSettings, Settings};
+use sitl::plan::PlanKind;
 use sitl::record::Digest;
+use sitl::vehicle::VehicleSettings;
 use sitl::{Autopilot, Session};
 
 fn settings(line: &str) -> Result<Settings, sitl::Failure> {
@@ -48,6 +50,48 @@ fn vehicles_have_ids_ports_starts_seeds_and_files_of_their_own() {
     assert_eq!((shared.hubs.len(), shared.clocks().len()), (1, 2));
     let one = settings(&format!("--parameters {}", file("b.c").display())).expect("settings");
     assert_eq!(one.vehicles[0].parameters, Some(file("b.c")));
+}
+
+/// A plan or a fault with an id in front is of that vehicle; a plan of its own goes before that of all.
+#[test]
+fn plans_and_faults_are_of_all_or_of_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, count: usize| {
+        let path = folder.path().join(name);
+        let line = |number: usize| format!("{number} 0 3 16 0 0 0 0 47.3978 8.5456 10 1\n");
+        let lines: String = (0..count).map(line).collect();
+        std::fs::write(&path, format!("QGC WPL 110\n{lines}")).expect("written");
+        path.display().to_string()
+    };
+    let (all, own) = (file("all.waypoints", 2), file("own.waypoints", 3));
+    let line = format!(
+        "--vehicles 3 --system-id 4 --mission {all} --mission 5:{own} --fault 5:9:rotor1=weak:0.5 --fault 7:rotor2=off"
+    );
+    let counts = |settings: &Settings| {
+        let plan = |vehicle: &VehicleSettings| vehicle.plans.get(PlanKind::Mission).items().len();
+        let of = |member: &MemberSettings| (plan(&member.vehicle), member.vehicle.faults.len());
+        settings.vehicles.iter().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(counts(&settings(&line).expect("settings")), [(2, 1), (3, 2), (2, 1)]);
+    // A configuration file names one or several.
+    let path = folder.path().join("fleet.toml");
+    for (text, expected) in [
+        (format!("vehicles = 2\nmission = {all:?}"), [(2, 0), (2, 0)]),
+        (format!("vehicles = 2\nmission = [{:?}]", format!("2:{own}")), [(0, 0), (3, 0)]),
+    ] {
+        std::fs::write(&path, text).expect("written");
+        let arguments = configuration::file::read(&path).expect("a file");
+        assert_eq!(counts(&Settings::resolve(&arguments).expect("settings")), expected);
+    }
+    for (line, words) in [
+        (format!("--vehicles 2 --mission 3:{own}"), "there is no system 3, only 1 to 2"),
+        (format!("--mission 3:{own}"), "there is no system 3, only 1"),
+        (format!("--mission {all} --mission {own}"), "is a second plan for all"),
+        ("--vehicles 2 --fault 3:1:rotor1=off".to_owned(), "--fault: `3:1:rotor1=off`: there is no system 3"),
+    ] {
+        let error = settings(&line).expect_err(&line).to_string();
+        assert!(error.contains(words), "{error}");
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 
 use super::ranged::{number, whole};
-use super::{Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
+use super::{Addressed, Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
 use crate::estimation::SensorModel;
 use crate::fault::ScheduledFault;
 use crate::flight_log::LogStart;
@@ -31,6 +31,8 @@ Many vehicles:
   --vehicles 5 --link tcpin:5760  on 5760 to 5764: local ports count up, and where
                                   an onboard link sends to
   --parameters fleet.params       of system 3 among several: fleet-3.params
+  --mission 3:own.plan            of system 3, instead of another one for all
+  --fault 3:12.5:rotor1=off       of system 3 alone
 
 External autopilot:
   --hil 4560   then, for PX4: make px4_sitl none_iris (its motors 1 to 4: front
@@ -148,17 +150,19 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SET", value_name = "NAME=VALUE", value_delimiter = ';')]
     pub set: Option<Vec<String>>,
 
-    /// What breaks when, such as 12.5:rotor1=off; repeat it for more, see below
-    #[arg(long, env = "LMPC_SITL_FAULT", value_name = "SECONDS:UNIT=KIND", value_delimiter = ';')]
-    pub fault: Option<Vec<ScheduledFault>>,
+    /// What breaks when, such as 12.5:rotor1=off; repeat it for more, see below. Of one vehicle only with its system id in
+    /// front
+    #[arg(long, env = "LMPC_SITL_FAULT", value_name = "[ID:]SECONDS:UNIT=KIND", value_delimiter = ';')]
+    pub fault: Option<Vec<Addressed<ScheduledFault>>>,
 
     /// Parameter file: read at the start if it exists, written whenever a parameter changes
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
     pub parameters: Option<PathBuf>,
 
-    /// Plan to start with: QGroundControl's .plan (mission, fence and rally points) or a QGC WPL 110 text (mission)
-    #[arg(long, env = "LMPC_SITL_MISSION", value_name = "FILE")]
-    pub mission: Option<PathBuf>,
+    /// Plan to start with: QGroundControl's .plan (mission, fence and rally points) or a QGC WPL 110 text (mission). Repeat
+    /// it for plans of single vehicles, with their system ids in front
+    #[arg(long, env = "LMPC_SITL_MISSION", value_name = "[ID:]FILE", value_delimiter = ';')]
+    pub mission: Option<Vec<Addressed<PathBuf>>>,
 
     /// Record received messages with their simulation times, to be replayed
     #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay")]

@@ -1,5 +1,6 @@
 //! What the program is told: defaults, then the file, then the environment, then the flags.
 
+mod addressed;
 mod arguments;
 pub mod file;
 mod formation;
@@ -13,6 +14,7 @@ mod settings;
 mod sharing;
 mod wind;
 
+pub use addressed::Addressed;
 pub use arguments::Arguments;
 pub use formation::{Formation, Shape};
 pub use home::HomePosition;

@@ -72,6 +72,7 @@ impl Settings {
         let ids = system_ids(arguments)?;
         let shared = arguments.ports.unwrap_or_default() == Ports::Shared;
         let count = ids.len();
+        check_addresses(arguments, &ids)?;
         let member = |(number, system_id): (usize, u8)| {
             let parameters = arguments.parameters.as_deref();
             let parameters =
@@ -173,6 +174,7 @@ pub(super) fn vehicle(
     count: usize,
     parameters: Option<&Path>,
 ) -> Result<VehicleSettings, Failure> {
+    let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
     let identity = arguments.autopilot.unwrap_or_default();
     let home = arguments.home.unwrap_or_default();
     let wind = arguments.wind.unwrap_or_default();
@@ -189,7 +191,7 @@ pub(super) fn vehicle(
             gusts_m_s,
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
-        faults: faults(arguments)?,
+        faults: faults(arguments, system_id)?,
         sensors: SensorSettings {
             model: arguments.sensors.unwrap_or_default(),
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
@@ -203,7 +205,7 @@ pub(super) fn vehicle(
         vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
     }
     set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
-    if let Some(path) = &arguments.mission {
+    if let Some(path) = mission_of(arguments, system_id) {
         let frame = LocalFrame::new(vehicle.origin);
         let home_m = Vector3::from(vehicle.configuration.initial.position_m);
         vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
@@ -252,10 +254,32 @@ fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
     })
 }
 
-/// What breaks when, by the sensors that there are.
-fn faults(arguments: &Arguments) -> Result<Vec<ScheduledFault>, Failure> {
+/// The plan of a system: its own, else that of all.
+fn mission_of(arguments: &Arguments, system_id: u8) -> Option<&Path> {
+    let of = |id: Option<u8>| arguments.mission.iter().flatten().find(|file| file.system_id == id);
+    of(Some(system_id)).or_else(|| of(None)).map(|file| file.value.as_path())
+}
+
+/// Refuses plans and faults of systems that there are not, and a second plan for the same.
+fn check_addresses(arguments: &Arguments, systems: &[u8]) -> Result<(), Failure> {
+    let mut planned = Vec::new();
+    for file in arguments.mission.iter().flatten() {
+        file.check("--mission", file.value.display(), systems)?;
+        if planned.contains(&file.system_id) {
+            let whose = file.system_id.map_or("all".to_owned(), |id| format!("system {id}"));
+            let reason = format!("`{}` is a second plan for {whose}", file.value.display());
+            return Err(Failure::Value { name: "--mission".to_owned(), reason });
+        }
+        planned.push(file.system_id);
+    }
+    arguments.fault.iter().flatten().try_for_each(|fault| fault.check("--fault", fault.value, systems))
+}
+
+/// What breaks in a system when, by the sensors that there are.
+fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, Failure> {
     let ideal = arguments.sensors.unwrap_or_default() == SensorModel::Ideal;
-    let faults = arguments.fault.clone().unwrap_or_default();
+    let own = arguments.fault.iter().flatten().filter(|fault| fault.is_for(system_id));
+    let faults: Vec<ScheduledFault> = own.map(|fault| fault.value).collect();
     match faults.iter().find(|scheduled| ideal && scheduled.fault.needs_readings()) {
         None => Ok(faults),
         Some(scheduled) => {

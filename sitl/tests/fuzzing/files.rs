@@ -4,7 +4,7 @@ use std::path::Path;
 
 use sitl::Autopilot;
 use sitl::codec::{Message, Version};
-use sitl::configuration::{Arguments, Settings};
+use sitl::configuration::{Addressed, Arguments, Settings};
 use sitl::parameters::Speed;
 use sitl::record::{self, Digest, Header, Recorder};
 use sitl::service::{LinkProfile, Origin, PeerId};
@@ -51,7 +51,8 @@ pub fn changed(seed: u64) -> u64 {
     };
     for (name, text) in [("a.plan", PLAN), ("a.waypoints", WAYPOINTS)] {
         let mission = write(name, edited(&mut bytes, text));
-        fly(&Arguments { mission: Some(mission), ..Arguments::default() });
+        let mission = Some(vec![Addressed { system_id: None, value: mission }]);
+        fly(&Arguments { mission, ..Arguments::default() });
     }
     let parameters = write("a.params", edited(&mut bytes, &parameters()));
     fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
