@@ -14,6 +14,7 @@ use sitl::vehicle::Mode;
 use sitl::world::LocalFrame;
 
 const DENIED: u8 = 2;
+const UNSUPPORTED_FRAME: u8 = 9;
 
 /// COMMAND_INT at a place 10 m up.
 fn command_at(bench: &mut Bench, command: MavCmd, [north, east]: [f64; 2], yaw: f32) -> u8 {
@@ -119,6 +120,15 @@ fn what_is_none_is_refused_with_the_reason() {
         assert_eq!(bench.command(command, parameters), DENIED);
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{:?}", bench.texts());
     }
+    let unknown = COMMAND_INT_DATA {
+        command: location,
+        target_system: 1,
+        target_component: 1,
+        frame: MavFrame::MAV_FRAME_BODY_FRD,
+        ..COMMAND_INT_DATA::default()
+    };
+    bench.send(MavMessage::COMMAND_INT(unknown));
+    assert_eq!(bench.acks().last().expect("an answer").result, UNSUPPORTED_FRAME);
     bench.fly(3.0);
     assert!(off_deg(&bench, TREE) < 1.0, "the old one stays: {}", off_deg(&bench, TREE));
 }

@@ -32,6 +32,7 @@ impl Vehicle {
         let number = self.first_mission_item();
         check::item(PlanKind::Mission, number, item, &self.site()).map_err(|fault| match fault.code {
             FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
+            FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
             _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
         })?;
         let count = self.mission_items().len();
