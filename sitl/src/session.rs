@@ -63,7 +63,7 @@ impl Session {
             }
             fleet.keep_links_alive(now)?;
             fleet.keep_logs(now)?;
-            fleet.flush()?;
+            fleet.flush();
             status.update(now, &fleet);
             if !behind {
                 std::thread::sleep(REST);

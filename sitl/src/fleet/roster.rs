@@ -134,9 +134,10 @@ impl Fleet {
         self.members.get_mut(number)
     }
 
-    /// Sends what a vehicle has to say.
+    /// Sends what a vehicle has to say. A changed parameter is in the file before anybody hears of it.
     pub(super) fn send(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
         let Some(member) = self.members.get_mut(number) else { return Ok(()) };
+        member.save_parameters()?;
         let Some(links) = self.hubs.get_mut(member.hub) else { return Ok(()) };
         for outgoing in member.autopilot.take_outgoing() {
             if outgoing.message.id() == id::HEARTBEAT {
@@ -180,10 +181,9 @@ impl Fleet {
         Ok(())
     }
 
-    /// Sends what waits in the links, and writes changed parameters.
-    pub(crate) fn flush(&mut self) -> Result<(), Failure> {
+    /// Sends what waits in the links.
+    pub(crate) fn flush(&mut self) {
         self.hubs.iter_mut().for_each(Links::flush);
-        self.members.iter_mut().try_for_each(Member::save_parameters)
     }
 
     /// Ends the files and returns the vehicles as they are.
