@@ -110,6 +110,34 @@ fn logs_arrive_whole_over_a_lossy_channel() {
     }
 }
 
+/// PX4's ids count from zero, ArduPilot's from one: what QGroundControl and MAVProxy expect of each.
+#[test]
+fn ids_are_those_of_the_autopilot() {
+    for (identity, first) in [(Identity::Px4, 0), (Identity::ArduPilot, 1)] {
+        let (_place, folder, contents) = logs();
+        let mut bench = Bench::new(identity);
+        bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+        bench.send(list_logs());
+        let listed = entries(std::mem::take(&mut bench.heard));
+        let ids: Vec<u16> = listed.iter().map(|entry| entry.id).collect();
+        assert_eq!(ids, [first, first + 1, first + 2]);
+        assert!(listed.iter().all(|entry| (entry.num_logs, entry.last_log_num) == (3, first + 2)));
+        let mut piece = |id| {
+            bench.heard.clear();
+            bench.send(request_log(id, 0, 90));
+            bench.autopilot.send_logs(1, |_| Some(true));
+            bench.listen();
+            pieces(std::mem::take(&mut bench.heard)).remove(0)
+        };
+        assert_eq!(piece(first).data, contents[0][..90]);
+        assert_eq!(piece(first + 1).data, contents[1][..90]);
+        assert_eq!(piece(first + 3).count, 0);
+        if let Some(below) = first.checked_sub(1) {
+            assert_eq!(piece(below).count, 0);
+        }
+    }
+}
+
 #[test]
 fn a_download_waits_for_room_and_ends_when_told() {
     let (place, folder, contents) = logs();

@@ -30,7 +30,12 @@ pub struct LogServer {
     downloads: Vec<Download>,
 }
 
-/// Looks at what there is. Ids count from zero, as clients expect, and stay until somebody asks for the list again.
+/// The id of the first log. Clients expect PX4's to count from zero, and ArduPilot's from one.
+fn first_id(autopilot: &Autopilot) -> u16 {
+    u16::from(autopilot.identity().is_ardupilot())
+}
+
+/// Looks at what there is. Ids stay until somebody asks for the list again.
 fn look(autopilot: &mut Autopilot) {
     let listed = autopilot.store.list(LOGS).unwrap_or_default();
     autopilot.logs.listed = listed.into_iter().filter(|log| log.size.is_some()).collect();
@@ -49,7 +54,9 @@ pub fn request_list(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         autopilot.send(to, MavMessage::LOG_ENTRY(LOG_ENTRY_DATA::default()));
         return;
     }
-    let entries: Vec<LOG_ENTRY_DATA> = (0..count)
+    let lowest = first_id(autopilot);
+    let highest = lowest.saturating_add(count - 1);
+    let entries: Vec<LOG_ENTRY_DATA> = (lowest..=highest)
         .zip(&autopilot.logs.listed)
         .filter(|(id, _)| (first..=last).contains(id))
         .map(|(id, log)| LOG_ENTRY_DATA {
@@ -57,7 +64,7 @@ pub fn request_list(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
             size: u32::try_from(log.size.unwrap_or(0)).unwrap_or(u32::MAX),
             id,
             num_logs: count,
-            last_log_num: count - 1,
+            last_log_num: highest,
         })
         .collect();
     for entry in entries {
@@ -71,14 +78,13 @@ pub fn request_data(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
     if autopilot.logs.listed.is_empty() {
         look(autopilot);
     }
+    let place = id.checked_sub(first_id(autopilot)).map(usize::from);
     let downloads = &mut autopilot.logs.downloads;
     let same = downloads.iter().position(|download| (download.peer, download.id) == (origin.peer, id));
     let file = match same.map(|index| downloads.remove(index).file) {
         Some(file) => Some(file),
-        None => autopilot
-            .logs
-            .listed
-            .get(usize::from(id))
+        None => place
+            .and_then(|place| autopilot.logs.listed.get(place))
             .and_then(|log| autopilot.store.open(&format!("{LOGS}/{}", log.name), Access::Read).ok()),
     };
     // Who asks for what is not there gets an empty piece: the end.
