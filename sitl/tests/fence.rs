@@ -310,7 +310,7 @@ fn the_fence_is_part_of_the_health() {
     };
     let start = settings(Identity::Px4);
     let mut bench = Bench::of(&start);
-    assert_eq!(told(&mut bench), [false; 3]);
+    assert_eq!(told(&mut bench), [false, false, true]);
     let circle = |radius_m| vec![item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, radius_m, [30.0, 0.0])];
     bench.autopilot = with_fence(&start, circle(20.0));
     assert_eq!(told(&mut bench), [true; 3]);

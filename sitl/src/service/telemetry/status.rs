@@ -52,7 +52,9 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
-    let health = failed.fold(present, |health, sensor| health & !sensor);
+    // No fence is not breached, either: ArduPilot says so, and MAVProxy would tell a breach at the start.
+    let sound = present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE;
+    let health = failed.fold(sound, |health, sensor| health & !sensor);
     let battery = vehicle.battery();
     MavMessage::SYS_STATUS(SYS_STATUS_DATA {
         onboard_control_sensors_present: present,
