@@ -1,5 +1,6 @@
 //! `lmpc-sitl`: a simulated quadrotor that MAVLink clients fly.
 
+use std::io::{Write, stderr};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -14,7 +15,8 @@ fn main() -> ExitCode {
     match ended {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("lmpc-sitl: {failure}");
+            // Whoever has closed it reads the exit code.
+            let _gone = writeln!(stderr(), "lmpc-sitl: {failure}");
             ExitCode::from(failure.exit_code())
         }
     }

@@ -202,14 +202,16 @@ pub struct LogLines;
 
 impl Write for LogLines {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        // Whoever has closed it does not want it: the flight goes on.
         if stderr().is_terminal() {
-            stderr().write_all(b"\r\x1b[K")?;
+            let _gone = stderr().write_all(b"\r\x1b[K");
         }
-        stderr().write_all(bytes)?;
+        let _gone = stderr().write_all(bytes);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
-        stderr().flush()
+        let _gone = stderr().flush();
+        Ok(())
     }
 }

@@ -128,6 +128,15 @@ def test_a_signal_ends_it_cleanly(start, number):
     assert "digest" in vehicle.output()
 
 
+@pytest.mark.parametrize(("flags", "code"), [(("--link", "udpin:0"), 0), (("--sensors", "none"), 2)])
+def test_who_closes_the_streams_does_not_end_it(program, flags, code):
+    process = subprocess.Popen([program, "--duration", "2", "--speed", "max", "--fault", "1:gps=off", *flags],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={})
+    process.stdout.close()
+    process.stderr.close()
+    assert process.wait(20) == code
+
+
 def test_speed_pause_and_time(start, connect):
     client = connect(start("--speed", "4"))
 

@@ -74,7 +74,7 @@ impl Vehicle {
         let acts = flying && self.failsafe.goes_before(action, Action::of_mode(self.mode));
         let why = cause.name();
         let severity = if action > Action::Warn { Severity::Critical } else { Severity::Warning };
-        tracing::warn!(cause = why, action = action.name(), flying, acts, "failsafe");
+        tracing::debug!(cause = why, action = action.name(), flying, acts, "failsafe");
         let details = self.details(cause);
         if !acts {
             let meanwhile = match (flying, action > Action::Warn) {
