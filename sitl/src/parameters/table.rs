@@ -201,15 +201,16 @@ fn set_conduct(
     vehicle: &mut Vehicle,
 ) -> Result<(), SetError> {
     let (minimum, maximum) = (parameter.minimum * scale, parameter.maximum * scale);
-    // NaN is in no range.
-    if !(minimum..=maximum).contains(&value) {
-        return Err(SetError::OutOfRange { id: entry.id.clone(), value, minimum, maximum });
-    }
     let mut conduct = *vehicle.conduct();
-    if !(parameter.set)(&mut conduct, value / scale) {
+    // NaN is in no range.
+    if !(minimum..=maximum).contains(&value) || !(parameter.set)(&mut conduct, value / scale) {
+        let id = entry.id.clone();
         let names = entry.describe().names;
+        if names.is_empty() {
+            return Err(SetError::OutOfRange { id, value, minimum, maximum });
+        }
         let meanings: Vec<_> = names.into_iter().map(|(value, name)| format!("{value} {name}")).collect();
-        return Err(SetError::Meaningless { id: entry.id.clone(), value, meanings: meanings.join(", ") });
+        return Err(SetError::Meaningless { id, value, meanings: meanings.join(", ") });
     }
     vehicle.set_conduct(conduct);
     Ok(())

@@ -21,6 +21,7 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--home", "91,0,0"), 2, "place"),
     (("--link", "carrier-pigeon"), 2, "link"),
     (("--set", "AF_MASS=99"), 2, "AF_MASS = 99 is outside"),
+    (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9 has no meaning here: 2 Land, 4 Terminate"),
     (("--set", "NO_SUCH=1"), 2, "there is no parameter NO_SUCH"),
     (("--gusts", "99"), 2, "--gusts: `99` is no number within 0 to 10"),
     (("--system-id", "x"), 2, "--system-id: `x` is no whole number within 1 to 250"),
