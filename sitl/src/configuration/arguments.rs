@@ -125,7 +125,7 @@ pub struct Arguments {
     pub gusts: Option<f64>,
 
     /// What the vehicle knows its motion by: `ideal` is the truth; `realistic` are a GPS receiver, an inertial unit, a
-    /// barometer and a magnetometer with the noise of real ones, and an estimator (armable after some 2.5 s) [default: ideal]
+    /// barometer and a magnetometer with the noise of real ones, and an estimator (armable after 2 to 2.5 s) [default: ideal]
     #[arg(long, env = "LMPC_SITL_SENSORS", value_name = "ideal|realistic")]
     pub sensors: Option<SensorModel>,
 
