@@ -19,6 +19,7 @@ from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 from flight import INTERVAL, OFFBOARD, TRAJECTORY, arguments, verdict  # noqa: E402
 
 COUNT = 5
+START = f"--vehicles {COUNT} --ports shared --formation circle,6"
 HEIGHT, TURN = 5.0, 20.0  # m, s of one turn
 ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 
@@ -35,7 +36,7 @@ class Fleet:
         end = time.monotonic() + 5
         while len(self.flown) < COUNT:
             if time.monotonic() > end:
-                raise SystemExit(f"no {COUNT} vehicles at {address}, only {sorted(self.flown)}")
+                raise SystemExit(f"no {COUNT} vehicles at {address}, only {sorted(self.flown)}: start them with {START}")
             self.read(0.1)
         self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 1e6 * INTERVAL)
 
@@ -139,6 +140,8 @@ def motion(start, phase: float, t: float, h: float = 0.02):
 options = arguments(__doc__, "five_vehicles.png")
 fleet = Fleet(options.connect)
 starts = {system: reports[0][1][:2] for system, reports in sorted(fleet.flown.items())}
+if min(math.hypot(*start) for start in starts.values()) < 4:
+    raise SystemExit(f"the vehicles do not stand in a circle: start them with {START}")
 phases = {system: 2 * math.pi * number / COUNT for number, system in enumerate(starts)}
 fleet.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
 fleet.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)

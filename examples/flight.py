@@ -162,8 +162,8 @@ class Flight:
         """What has been flown since a time."""
         return [report for report in self.flown if report[0] >= start]
 
-    def plot(self, path: str, title: str, borders=()):
-        """Draws set-points against the flight, and lines of north and east from above."""
+    def plot(self, path: str, title: str, borders=(), places: bool = False):
+        """Draws set-points against the flight, and lines of north and east from above; `places` are single ones, which no line joins."""
         import matplotlib
 
         matplotlib.use("Agg")
@@ -174,13 +174,14 @@ class Flight:
                                           width_ratios=(2, 3), layout="constrained")
         colours = {"north": "#0072b2", "east": "#d55e00", "up": "#009e73"}
         dashed = {"color": "#333333", "linestyle": (0, (4, 3)), "linewidth": 1}
+        crosses = {"color": "#333333", "linestyle": "none", "marker": "x"}
         flown, asked = [(at, up(p), up(v)) for at, p, v in self.flown], [(at, up(p), up(v)) for at, p, v in self.asked]
 
         for name, across, along in (("above", 1, 0), ("side", 1, 2)):
             axes[name].plot([p[across] for _, p, _ in flown], [p[along] for _, p, _ in flown], color="#0072b2", label="flown")
             points = [p for _, p, _ in asked if p]
             if points:
-                mark = {"marker": "x", "linestyle": "none", "color": "#333333"} if len(set(points)) == 1 else dashed
+                mark = crosses if places or len(set(points)) == 1 else dashed
                 axes[name].plot([p[across] for p in points], [p[along] for p in points], label="set-point", **mark)
             axes[name].plot(*[[flown[0][1][axis]] for axis in (across, along)], "o", color="#333333", markersize=4)
             axes[name].set(xlabel="east, m", aspect="equal", adjustable="datalim")
@@ -196,7 +197,8 @@ class Flight:
                                 label=direction)
                 # A gap in time is a gap in the line.
                 given = [(a[0], a[quantity][axis]) if a[quantity] else (a[0], math.nan) for a in asked]
-                axes[name].plot(*zip(*given), **dashed, label="set-point" if axis == 2 else None) if given else None
+                line = crosses if places else dashed
+                axes[name].plot(*zip(*given), **line, label="set-point" if axis == 2 else None) if given else None
             axes[name].set(xlabel="time of the vehicle, s", ylabel=f"{name}, {unit}")
         figure.legend(*axes["velocity"].get_legend_handles_labels(), ncols=4, loc="outside lower right")
         figure.suptitle(title)

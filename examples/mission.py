@@ -65,5 +65,5 @@ sides = [(position, start, end)
          for at, position, _ in flight.flown if left + 3 < at < right - 1.5]
 missed |= verdict("beside a leg", 100 * max(beside(*side) for side in sides), 20, "cm")
 missed |= verdict("landed from the origin", 100 * math.hypot(*flight.position[:2]), 20, "cm")
-flight.plot(options.plot, "mission: around a field")
+flight.plot(options.plot, "mission: around a field", places=True)
 sys.exit(missed)

@@ -39,6 +39,13 @@ def test_examples_fly_one_after_the_other(start, tmp_path):
         fly(name, vehicle, tmp_path)
 
 
+def test_vehicles_that_do_not_fit_the_example_are_told_how_to_start(start, tmp_path):
+    vehicle = start("--vehicles", "5", "--ports", "shared")
+    done = subprocess.run([sys.executable, EXAMPLES / "five_vehicles.py", "--connect", f"udpout:{vehicle.addresses[0]}"], cwd=tmp_path,
+                          capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and "start them with --vehicles 5 --ports shared --formation circle,6" in done.stderr
+
+
 def test_a_missing_vehicle_is_told(tmp_path):
     done = subprocess.run([sys.executable, EXAMPLES / "circle.py", "--connect", "udpout:127.0.0.1:9"], cwd=tmp_path,
                           capture_output=True, text=True, timeout=60)
