@@ -434,6 +434,28 @@ fn without_a_height_it_lands_at_once_and_softly() {
 }
 
 #[test]
+fn without_a_gyroscope_it_falls_and_says_so() {
+    let mut start = settings(Identity::Px4);
+    start.sensors.model = SensorModel::Realistic;
+    let mut bench = Bench::of(&start);
+    bench.fly(4.0);
+    bench.arm();
+    let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    break_unit(&mut bench, FailureUnit::FAILURE_UNIT_SENSOR_GYRO, FailureType::FAILURE_TYPE_OFF);
+    let mut fastest: f64 = 0.0;
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
+        assert!(bench.autopilot.vehicle().time_us() < 60_000_000, "still up: {:?}", bench.position());
+    }
+    let told = "Failsafe: Position lost (gyroscope failed: no attitude can be held): land";
+    assert_eq!(count(&bench, told), 1, "{:?}", bench.texts());
+    assert!(fastest > 8.0, "{fastest} m/s");
+}
+
+#[test]
 fn a_script_without_a_ground_station_is_left_alone() {
     let mut bench = hovering(Cause::GroundStationLost);
     bench.fly(60.0);

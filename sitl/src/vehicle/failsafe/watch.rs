@@ -101,7 +101,8 @@ impl Vehicle {
             Cause::Fence => self.fence_record.now.map(|breach| format!(" ({breach})")).unwrap_or_default(),
             Cause::PositionLost => match self.failed_instruments().join(", ") {
                 failed if failed.is_empty() => failed,
-                failed => format!(" ({failed} failed)"),
+                failed if self.instrument_health().gyroscope => format!(" ({failed} failed)"),
+                failed => format!(" ({failed} failed: no attitude can be held)"),
             },
             _ => String::new(),
         }
