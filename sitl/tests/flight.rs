@@ -85,6 +85,24 @@ fn a_refused_arming_says_why() {
 }
 
 #[test]
+fn a_mode_that_there_is_not_names_those_that_there_are() {
+    // PX4's acrobatic mode and ArduPilot's STABILIZE.
+    for (identity, main, told) in [
+        (
+            Identity::Px4,
+            5.0,
+            "Mode 0x50000 is not available, only Position, Hold, Takeoff, Mission, Return, Land, Offboard",
+        ),
+        (Identity::ArduPilot, 0.0, "Mode 0 is not available, only Loiter, Guided, Auto, RTL, Land, Brake"),
+    ] {
+        let mut bench = Bench::new(identity);
+        let mode = [1.0, main, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_MODE, mode), UNSUPPORTED);
+        assert_eq!(bench.texts().last().map(String::as_str), Some(told));
+    }
+}
+
+#[test]
 fn returns_over_its_height_and_lands_at_home() {
     let mut start = settings(Identity::Px4);
     start.conduct.return_height_m = 15.0;

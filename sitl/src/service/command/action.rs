@@ -173,10 +173,17 @@ fn set_mode(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal>
 
 /// Changes to a mode by its number in HEARTBEAT.
 pub fn set_custom_mode(autopilot: &mut Autopilot, custom_mode: u32) -> Result<(), Refusal> {
-    match autopilot.identity().mode(custom_mode) {
-        Some(mode) => autopilot.vehicle.set_mode(mode),
-        None => Err(Refusal::Unsupported(format!("Mode {custom_mode:#x} is not available"))),
-    }
+    let identity = autopilot.identity();
+    let Some(mode) = identity.mode(custom_mode) else {
+        let names: Vec<_> =
+            identity.selectable_modes().iter().map(|known| identity.mode_name(*known)).collect();
+        // PX4's main and sub-modes are bytes of the number.
+        let number =
+            if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
+        let there_are = names.join(", ");
+        return Err(Refusal::Unsupported(format!("Mode {number} is not available, only {there_are}")));
+    };
+    autopilot.vehicle.set_mode(mode)
 }
 
 fn place(command: &Command, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {
