@@ -1,5 +1,6 @@
 //! Whether the vehicle stands on the ground.
 
+use libm::cos;
 use quadrotor::Outputs;
 
 /// MAV_LANDED_STATE.
@@ -35,12 +36,13 @@ const UNLOADED: f64 = 0.75;
 pub struct LandedDetector {
     landed: bool,
     touching_since_us: Option<u64>,
+    settled: bool,
 }
 
 impl LandedDetector {
     /// A vehicle at a height, m.
     pub fn new(height_m: f64) -> Self {
-        Self { landed: height_m < FLYING_HEIGHT_M, touching_since_us: None }
+        Self { landed: height_m < FLYING_HEIGHT_M, touching_since_us: None, settled: false }
     }
 
     /// Whether it stands.
@@ -48,21 +50,27 @@ impl LandedDetector {
         self.landed
     }
 
+    /// Whether it has touched the ground, still and unloaded, for a while up to now.
+    pub fn is_settled(&self) -> bool {
+        self.settled
+    }
+
     /// One look. `armed` tells whether rotors turn at all, `controlled` whether the reference is flown.
     pub fn update(&mut self, outputs: &Outputs, weight_n: f64, armed: bool, controlled: bool) {
         let height_m = -outputs.position_m.z;
         let pressed = controlled && outputs.setpoint.position_m.z > outputs.position_m.z + PRESSED_M;
-        let unloaded = !armed || outputs.thrust_n < UNLOADED * weight_n || pressed;
+        // A vehicle that has come to lie on its back is not carried either.
+        let lift_n = outputs.thrust_n * cos(outputs.attitude_rad.x) * cos(outputs.attitude_rad.y);
+        let weak = lift_n < UNLOADED * weight_n;
         let still = outputs.velocity_m_s.norm() < STILL_M_S && outputs.body_rate_rad_s.norm() < STILL_RAD_S;
-        let touching = height_m < CONTACT_HEIGHT_M && still && unloaded;
-        if !touching {
-            self.touching_since_us = None;
-        }
-        if height_m > FLYING_HEIGHT_M {
-            self.landed = false;
-        } else if touching {
-            let since_us = *self.touching_since_us.get_or_insert(outputs.time_us);
-            self.landed |= outputs.time_us - since_us >= SETTLED_US;
-        }
+        // What has not left the ground yet stands, whatever its rotors do.
+        let on_its_feet = height_m < CONTACT_HEIGHT_M && (!armed || weak || pressed || self.landed);
+        // What is held up by less than its weight and does not fall stands, be it on one edge.
+        let on_an_edge = height_m < FLYING_HEIGHT_M && weak && pressed;
+        let touching = still && (on_its_feet || on_an_edge);
+        self.touching_since_us = touching.then(|| self.touching_since_us.unwrap_or(outputs.time_us));
+        self.settled =
+            self.touching_since_us.is_some_and(|since_us| outputs.time_us - since_us >= SETTLED_US);
+        self.landed = height_m <= FLYING_HEIGHT_M && (self.landed || self.settled);
     }
 }

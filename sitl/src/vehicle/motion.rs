@@ -39,6 +39,11 @@ impl Motion {
         (self.set_point, self.since_us) = (set_point, time_us);
     }
 
+    /// Whether it is asked to rise above z, m.
+    pub fn leads_up(&self, z_m: f64) -> bool {
+        self.set_point.leads_up(z_m)
+    }
+
     /// Asks for another heading on the same way.
     pub fn turn_to(&mut self, yaw: YawTarget) {
         self.set_point.yaw = yaw;
@@ -88,16 +93,17 @@ impl Motion {
         }
     }
 
-    /// Velocity that an axis wants, m/s; `None` if its acceleration is given or it follows a trajectory.
+    /// Velocity that an axis wants, m/s, one that is given as it is; `None` if its acceleration is given or it follows a trajectory.
     fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), acceleration: f64) -> Option<f64> {
         let wanted = match self.set_point.axes[axis] {
             AxisTarget::Position(goal) => {
                 approach(goal - self.state.position_m[axis], POSITION_RATE, BRAKING_SHARE * acceleration)
+                    .clamp(-fastest.0, fastest.1)
             }
             AxisTarget::Velocity(velocity) => velocity,
             AxisTarget::Acceleration(_) | AxisTarget::Track { .. } => return None,
         };
-        Some(wanted.clamp(-fastest.0, fastest.1))
+        Some(wanted)
     }
 
     fn accelerate_horizontally(&mut self, limits: &Limits, dt_s: f64) {
@@ -106,7 +112,7 @@ impl Motion {
         let wanted: [Option<f64>; 2] =
             core::array::from_fn(|axis| self.wanted_m_s(axis, (fastest, fastest), strongest));
         let velocity = self.state.velocity_m_s.xy();
-        // The limits are those of the vehicle in its plane, not of an axis.
+        // The limits are those of the vehicle in its plane, not of an axis: it goes slower, not elsewhere.
         let target = within(Vector2::from_fn(|axis, _| wanted[axis].unwrap_or(velocity[axis])), fastest);
         let missing = Vector2::from_fn(|axis, _| wanted[axis].map_or(0.0, |_| target[axis] - velocity[axis]));
         let size = missing.norm();
@@ -131,7 +137,7 @@ impl Motion {
             self.push(DOWN, fastest, strongest, jerk, dt_s);
             return;
         };
-        let missing = wanted - self.state.velocity_m_s[DOWN];
+        let missing = wanted.clamp(-fastest.0, fastest.1) - self.state.velocity_m_s[DOWN];
         let goal = copysign(closing(missing.abs(), strongest, jerk), missing);
         let change = goal - self.state.acceleration_m_s2[DOWN];
         self.state.acceleration_m_s2[DOWN] += change.clamp(-jerk * dt_s, jerk * dt_s);

@@ -84,11 +84,13 @@ impl Vehicle {
     /// One tick of a descent, above a place or wherever it comes to rest.
     pub(super) fn descend(&mut self, above: Option<[f64; 2]>) {
         if self.landed.is_landed() {
-            // The blind one ends here, too.
-            if self.steering.kind() == SteeringKind::Attitude {
-                self.idle();
+            match self.steering.kind() {
+                // The blind one ends here, too.
+                SteeringKind::Attitude => return self.idle(),
+                SteeringKind::Idle => return,
+                // It had only just begun to lift off.
+                SteeringKind::Position | SteeringKind::Descent => {}
             }
-            return;
         }
         if !self.knows_its_place() {
             self.descend_blind();

@@ -228,7 +228,16 @@ impl Vehicle {
         if self.landed.is_landed() != stood {
             self.touched(!stood);
         }
+        self.rest();
         Ok(())
+    }
+
+    /// A vehicle that stands, and is not led up, lets its rotors idle. A mission and a takeoff know what they do.
+    fn rest(&mut self) {
+        let waits = !matches!(self.mode, Mode::Mission | Mode::Takeoff);
+        if waits && self.landed.is_settled() && self.steering.stays_below(self.outputs.position_m.z) {
+            self.idle();
+        }
     }
 
     /// The vehicle has touched down (`true`) or lifted off.

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{AttitudeTarget, Outputs, PositionReference, Simulation, SimulationError};
 
 use super::motion::{Motion, at_rest};
-use super::set_point::{AttitudeSetPoint, PositionSetPoint, YawTarget};
+use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 
 /// A body-rate command may lead the vehicle by this angle, rad, and no further.
 const RATE_LEAD_RAD: f64 = 0.5;
@@ -107,6 +107,18 @@ impl Steering {
                 velocity_m_s: outputs.velocity_m_s,
                 ..at_rest(outputs.position_m, outputs.attitude_rad.z)
             },
+        }
+    }
+
+    /// Whether it goes by position, and nowhere above z, m.
+    pub(super) fn stays_below(&self, z_m: f64) -> bool {
+        match self {
+            Self::Goal(goal) => {
+                let axes = goal.position_m.data.0[0].map(AxisTarget::Position);
+                !PositionSetPoint { axes, yaw: YawTarget::Hold }.leads_up(z_m)
+            }
+            Self::Motion(motion) => !motion.leads_up(z_m),
+            Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => false,
         }
     }
 

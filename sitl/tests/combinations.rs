@@ -1,0 +1,62 @@
+//! What single features get right, and what went wrong where they met.
+
+mod common;
+
+use common::Bench;
+use mavlink::dialects::common::{
+    MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
+use sitl::identity::Identity;
+use sitl::vehicle::{Mode, SteeringKind};
+
+/// A takeoff that is called off before it has left the ground, be it to hold, to land or to return: the rotors idle, and stop.
+#[test]
+fn a_takeoff_that_is_called_off_on_the_ground_ends_there() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        for mode in [Mode::Hold, Mode::Land, Mode::Return, Mode::Position] {
+            for delay_s in [0.01, 0.05, 0.2] {
+                let mut bench = Bench::new(identity);
+                if identity.is_ardupilot() {
+                    bench.set_mode(Mode::Offboard);
+                }
+                bench.arm();
+                let altitude = if identity.is_ardupilot() { 10.0 } else { 498.0 };
+                let takeoff = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, altitude];
+                assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, takeoff), 0);
+                bench.fly(delay_s);
+                assert_eq!(bench.set_mode(mode), 0);
+                let what = format!("{identity:?} {mode:?} {delay_s}");
+                bench.fly_until(&what, 12.0, |bench| !bench.autopilot.vehicle().is_armed());
+                assert_eq!(bench.autopilot.vehicle().steering_kind(), SteeringKind::Idle, "{what}");
+            }
+        }
+    }
+}
+
+fn velocity([vx, vy, vz]: [f32; 3]) -> MavMessage {
+    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+        vx,
+        vy,
+        vz,
+        target_system: 1,
+        target_component: 1,
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1100_0111),
+        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+    })
+}
+
+/// Pushed along the ground by its set-points a vehicle comes to lean on an edge: it lands all the same.
+#[test]
+fn what_leans_on_the_ground_has_landed() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        for sideways in [1.5, 3.0] {
+            let mut bench = Bench::hovering(identity);
+            bench.send(velocity([sideways, -sideways, 1.0]));
+            assert_eq!(bench.set_mode(Mode::Offboard), 0);
+            bench.stream(15.0, |bench| bench.send(velocity([sideways, -sideways, 1.0])));
+            bench.set_mode(Mode::Land);
+            bench.fly_until("disarmed", 20.0, |bench| !bench.autopilot.vehicle().is_armed());
+        }
+    }
+}
