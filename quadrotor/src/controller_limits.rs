@@ -24,6 +24,9 @@ const RATE_SIDES: usize = 8;
 const SPEED_SIDES: usize = 16;
 /// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
 const CATCHING_UP: f64 = 0.1;
+/// And by so much at least, m/s: with less room a gust, or the start of a motion, is beyond the bound, and what brings the speed
+/// back by full tilt overshoots it on the other side.
+const LEAST_CATCHING_UP_M_S: f64 = 0.3;
 
 /// Number of bounds of the position controller.
 pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
@@ -62,6 +65,10 @@ pub(crate) fn position_limits(settings: &ControllerSettings<2>) -> Vec<Limit> {
     [tilt, increment, Limit { directions, ..polygon }.soft()].into()
 }
 
+fn catching_up_m_s(limit_m_s: f64) -> f64 {
+    (CATCHING_UP * limit_m_s).max(LEAST_CATCHING_UP_M_S)
+}
+
 /// Values of [`position_limits`]: the largest tilt as |a|/g, its largest increment, and the speed that is
 /// left in each direction beside `moving_m_s`.
 pub(crate) fn position_bounds(
@@ -74,7 +81,7 @@ pub(crate) fn position_bounds(
     let inside = |sides: usize| libm::cos(PI / sides as f64);
     let increment = limits.tilt_rate_rad_s * sample_time_s;
     let speed = (limits.speed_horizontal_m_s * inside(SPEED_SIDES))
-        .max(reference_velocity_m_s.norm() + CATCHING_UP * limits.speed_horizontal_m_s);
+        .max(reference_velocity_m_s.norm() + catching_up_m_s(limits.speed_horizontal_m_s));
     core::array::from_fn(|bound| match bound {
         ..TILT_SIDES => tilt * inside(TILT_SIDES),
         _ if bound < TILT_SIDES + RATE_SIDES => increment * inside(RATE_SIDES),
@@ -106,8 +113,8 @@ pub(crate) fn altitude_bounds(
     reference_rate_m_s: f64,
     moving_m_s: f64,
 ) -> [f64; ALTITUDE_BOUNDS] {
-    let down = limits.speed_down_m_s.max(reference_rate_m_s + CATCHING_UP * limits.speed_down_m_s);
-    let up = limits.speed_up_m_s.max(CATCHING_UP * limits.speed_up_m_s - reference_rate_m_s);
+    let down = limits.speed_down_m_s.max(reference_rate_m_s + catching_up_m_s(limits.speed_down_m_s));
+    let up = limits.speed_up_m_s.max(catching_up_m_s(limits.speed_up_m_s) - reference_rate_m_s);
     [range.1, -range.0, down - moving_m_s, up + moving_m_s]
 }
 

@@ -60,3 +60,24 @@ fn what_leans_on_the_ground_has_landed() {
         }
     }
 }
+
+/// A velocity above a low limit of speed: the vehicle flies at the limit, level and steady.
+#[test]
+fn a_slow_vehicle_flies_steadily_at_its_limit() {
+    for limit_m_s in [0.2, 0.5, 1.0, 3.0] {
+        let mut bench = Bench::hovering(Identity::Px4);
+        let speed = [1.0, limit_m_s, -1.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, speed), 0);
+        bench.send(velocity([-3.0, 4.0, 0.1]));
+        assert_eq!(bench.set_mode(Mode::Offboard), 0);
+        bench.stream(4.0, |bench| bench.send(velocity([-3.0, 4.0, 0.1])));
+        for _ in 0..100 {
+            bench.stream(0.05, |bench| bench.send(velocity([-3.0, 4.0, 0.1])));
+            let outputs = bench.autopilot.vehicle().outputs();
+            let (lean, behind) = (outputs.attitude_rad.xy().norm(), outputs.tracking_error_m.norm());
+            let [vx, vy, _] = bench.velocity();
+            let off = libm::hypot(vx + 0.6 * f64::from(limit_m_s), vy - 0.8 * f64::from(limit_m_s));
+            assert!(lean < 0.05 && off < 0.1 && behind < 0.3, "{limit_m_s}: {lean} {off} {behind}");
+        }
+    }
+}
