@@ -2,12 +2,13 @@
 
 mod common;
 
-use common::Bench;
+use common::{Bench, settings};
 use mavlink::dialects::common::{
     MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
+use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::identity::Identity;
-use sitl::vehicle::{Mode, SteeringKind};
+use sitl::vehicle::{Action, Mode, SteeringKind};
 
 /// A takeoff that is called off before it has left the ground, be it to hold, to land or to return: the rotors idle, and stop.
 #[test]
@@ -79,5 +80,40 @@ fn a_slow_vehicle_flies_steadily_at_its_limit() {
             let off = libm::hypot(vx + 0.6 * f64::from(limit_m_s), vy - 0.8 * f64::from(limit_m_s));
             assert!(lean < 0.05 && off < 0.1 && behind < 0.3, "{limit_m_s}: {lean} {off} {behind}");
         }
+    }
+}
+
+/// Accelerometers that are off by 1 m/s² contradict the receiver: after two seconds it is believed instead of them, and the vehicle
+/// comes to rest and stays, with errors no larger than the receiver's.
+#[test]
+fn the_estimator_recovers_from_an_accelerometer_that_is_wrong() {
+    const ACCELEROMETER_WRONG: [f32; 7] = [1.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    for seed in 1..=4 {
+        let mut settings = settings(Identity::Px4);
+        settings.sensors = SensorSettings { model: SensorModel::Realistic, seed };
+        settings.conduct.failsafe.position_lost = Action::Warn;
+        let mut bench = Bench::of(&settings);
+        bench.fly(4.0);
+        bench.arm();
+        let takeoff = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 508.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, takeoff), 0);
+        bench.fly_until("takeoff", 30.0, |bench| bench.mode() != Mode::Takeoff);
+        bench.fly(5.0);
+        let start = bench.autopilot.vehicle().truth().position_m;
+        assert_eq!(bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, ACCELEROMETER_WRONG), 0);
+        let mut farthest_m = 0.0_f64;
+        for second in 0..60 {
+            bench.fly(1.0);
+            let vehicle = bench.autopilot.vehicle();
+            let truth = vehicle.truth();
+            farthest_m = farthest_m.max((truth.position_m - start).norm());
+            let (health, resets) = (vehicle.instrument_health(), vehicle.estimate().unwrap().resets);
+            if second >= 10 {
+                let what = format!("seed {seed}, {second} s: {health:?} {resets} {:?}", truth.velocity_m_s);
+                assert!(health.gps && health.barometer && (1..=2).contains(&resets), "{what}");
+                assert!(truth.velocity_m_s.norm() < 1.0 && vehicle.validity().all(), "{what}");
+            }
+        }
+        assert!(farthest_m < 15.0, "seed {seed}: {farthest_m} m");
     }
 }

@@ -12,6 +12,7 @@ use super::barometer::BarometerReading;
 use super::estimate::{Estimate, TestRatios, Validity};
 use super::gps::GpsFix;
 use super::inertial::InertialReading;
+use super::lockout::Lockout;
 use super::magnetometer::MagnetometerReading;
 use super::release::Release;
 use super::tuning;
@@ -42,6 +43,7 @@ pub struct Estimator {
     field: Option<MagField<fusion_nav::Body>>,
     estimate: Estimate,
     resets: u32,
+    lockout: Lockout,
     position_release: Release,
     velocity_release: Release,
 }
@@ -67,6 +69,7 @@ impl Estimator {
             field: None,
             estimate: start,
             resets: 0,
+            lockout: Lockout::default(),
             position_release: Release::new(POSITION_RELEASE_M_S),
             velocity_release: Release::new(VELOCITY_RELEASE_M_S2),
         }
@@ -127,6 +130,9 @@ impl Estimator {
         );
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
         self.hold_back(&before);
+        if self.lockout.update(fix, fitted(motion)) {
+            self.start_again(fix);
+        }
         fitted(place.horizontal) && fitted(place.height) && fitted(motion)
     }
 
@@ -213,6 +219,18 @@ impl Estimator {
             Err(error) => tracing::warn!(%error, "the estimator does not align"),
         }
         self.window = StaticWindow::new();
+    }
+
+    /// The receiver is right, and the inertial unit is not what it was: takes its velocity over at once, and looks for the offsets
+    /// again. The crate's own recovery takes the velocity over, but goes on believing the offsets.
+    fn start_again(&mut self, fix: &GpsFix) {
+        let state =
+            State { velocity: Velocity::from_array(single(&fix.velocity_m_s)), ..self.filter.state() };
+        let doubts = Covariance::from_sigmas(tuning::DOUBTS);
+        match self.filter.initialize_from(state, doubts, Timestamp::from_micros(self.predicted_us)) {
+            Ok(_) => self.resets += 1,
+            Err(error) => tracing::warn!(%error, "the estimator does not start again"),
+        }
     }
 
     /// Holds back what a measurement has corrected since `before`.

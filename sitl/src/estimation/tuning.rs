@@ -22,6 +22,11 @@ const HEADING_RAD: f32 = 0.02;
 /// A heading is levelled by the estimated tilt, whose error lasts until the vehicle has accelerated, s.
 const LEVELLING_S: f32 = 15.0;
 
+/// Standard deviations of a start in flight, after seconds in which the receiver was not believed: position, m, velocity, m/s,
+/// attitude, rad, offsets of accelerometers, m/s², and of gyroscopes, rad/s. Offsets are more likely than a wrong tilt.
+pub const DOUBTS: [f32; 15] =
+    [5.0, 5.0, 3.0, 0.5, 0.5, 0.5, 0.05, 0.05, 0.05, 1.0, 1.0, 1.0, 0.05, 0.05, 0.05];
+
 /// The filter's settings.
 pub fn configuration() -> Config {
     // A one-sided density n is white noise of √(n²/2) in the time domain.
