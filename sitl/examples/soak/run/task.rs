@@ -278,6 +278,15 @@ impl Task {
             let wanted = match heard {
                 MavMessage::MISSION_REQUEST_INT(request) => request.seq,
                 MavMessage::MISSION_REQUEST(request) => request.seq,
+                // A pilot who has left in the middle of an upload is still waited for.
+                MavMessage::MISSION_ACK(ack)
+                    if self.count.is_none()
+                        && ack.mavtype == MavMissionResult::MAV_MISSION_DENIED
+                        && with.now_us - self.began_us < TRANSFER_US =>
+                {
+                    self.tries = 0;
+                    continue;
+                }
                 MavMessage::MISSION_ACK(ack) if usize::from(self.count.unwrap_or(0)) == items.len() => {
                     if ack.mavtype != MavMissionResult::MAV_MISSION_ACCEPTED {
                         return Some(Outcome::Failed(format!("mission refused: {:?}", ack.mavtype)));
