@@ -158,13 +158,10 @@ impl Recovery {
 
 /// Acceleration towards the reference, NED, m/s²; sideways the share that can be steered.
 fn wanted_acceleration_m_s2(body: &RigidBody, reference: &PositionReference, steerable: f64) -> Vector3<f64> {
-    let shortened = |vector: nalgebra::Vector2<f64>, longest: f64| {
-        let length = vector.norm();
-        if length > longest { vector * (longest / length) } else { vector }
-    };
-    let away = shortened((reference.position_m - body.position_m).xy(), FARTHEST_M);
+    let away = (reference.position_m - body.position_m).xy().cap_magnitude(FARTHEST_M);
     let error = (reference.velocity_m_s - body.velocity_m_s).xy();
-    let horizontal = shortened(away * POSITION_GAIN + error * VELOCITY_GAIN, steerable * HORIZONTAL_M_S2);
+    let horizontal = away * POSITION_GAIN + error * VELOCITY_GAIN;
+    let horizontal = horizontal.cap_magnitude(steerable * HORIZONTAL_M_S2);
     let down = (reference.position_m.z - body.position_m.z) * POSITION_GAIN
         + (reference.velocity_m_s.z - body.velocity_m_s.z) * SINK_GAIN;
     Vector3::new(horizontal.x, horizontal.y, down.clamp(-VERTICAL_M_S2, VERTICAL_M_S2))

@@ -95,15 +95,14 @@ impl Motion {
 
     /// Velocity that an axis wants, m/s, one that is given as it is; `None` if its acceleration is given or it follows a trajectory.
     fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), acceleration: f64) -> Option<f64> {
-        let wanted = match self.set_point.axes[axis] {
+        Some(match self.set_point.axes[axis] {
             AxisTarget::Position(goal) => {
                 approach(goal - self.state.position_m[axis], POSITION_RATE, BRAKING_SHARE * acceleration)
                     .clamp(-fastest.0, fastest.1)
             }
             AxisTarget::Velocity(velocity) => velocity,
             AxisTarget::Acceleration(_) | AxisTarget::Track { .. } => return None,
-        };
-        Some(wanted)
+        })
     }
 
     fn accelerate_horizontally(&mut self, limits: &Limits, dt_s: f64) {
@@ -113,13 +112,14 @@ impl Motion {
             core::array::from_fn(|axis| self.wanted_m_s(axis, (fastest, fastest), strongest));
         let velocity = self.state.velocity_m_s.xy();
         // The limits are those of the vehicle in its plane, not of an axis: it goes slower, not elsewhere.
-        let target = within(Vector2::from_fn(|axis, _| wanted[axis].unwrap_or(velocity[axis])), fastest);
+        let target =
+            Vector2::from_fn(|axis, _| wanted[axis].unwrap_or(velocity[axis])).cap_magnitude(fastest);
         let missing = Vector2::from_fn(|axis, _| wanted[axis].map_or(0.0, |_| target[axis] - velocity[axis]));
         let size = missing.norm();
         let jerk = limits.jerk_horizontal_m_s3;
         let goal = if size > 0.0 { missing * (closing(size, strongest, jerk) / size) } else { missing };
         let now = self.state.acceleration_m_s2.xy();
-        let change = within(goal - now, jerk * dt_s);
+        let change = (goal - now).cap_magnitude(jerk * dt_s);
         for axis in 0..2 {
             if wanted[axis].is_some() {
                 self.state.acceleration_m_s2[axis] += change[axis];
@@ -205,12 +205,6 @@ fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
 /// Acceleration that closes a velocity error: what the jerk can still take back, and gentle at the end.
 fn closing(missing: f64, strongest: f64, jerk: f64) -> f64 {
     sqrt(2.0 * jerk * missing).min(VELOCITY_RATE * missing).min(strongest)
-}
-
-/// A vector no longer than `most`.
-fn within(vector: Vector2<f64>, most: f64) -> Vector2<f64> {
-    let norm = vector.norm();
-    if norm > most { vector * (most / norm) } else { vector }
 }
 
 /// A reference that rests at a place.
