@@ -33,42 +33,39 @@ impl fmt::Display for Breach {
     }
 }
 
-/// The fence.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Fence {
+/// The fence, as far as it is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fence<'a> {
     /// Areas.
-    pub zones: Zones,
-    /// Whether it is looked at.
-    pub enabled: bool,
-    /// Whether the areas are.
-    pub zones_count: bool,
+    pub zones: Option<&'a Zones>,
+    /// What the distance and the height are from, NED, m.
+    pub home_m: Vector3<f64>,
+    /// Greatest distance, m; 0: any.
+    pub radius_m: f64,
+    /// Greatest height, m; 0: any.
+    pub height_m: f64,
 }
 
-impl Fence {
-    /// What forbids a place, NED, m, if anything does. A radius or height of zero is none.
+impl Fence<'_> {
+    /// Whether there is anything to keep to.
+    pub fn bounds(&self) -> bool {
+        let zones = self.zones.is_some_and(|zones| !zones.zones.is_empty());
+        zones || self.radius_m > 0.0 || self.height_m > 0.0
+    }
+
+    /// What forbids a place, NED, m, if anything does.
     ///
     /// Several areas to stay in are one: it is enough to be in one of them.
-    pub fn breach(
-        &self,
-        place_m: &Vector3<f64>,
-        home_m: &Vector3<f64>,
-        radius_m: f64,
-        height_m: f64,
-    ) -> Option<Breach> {
-        if !self.enabled {
-            return None;
-        }
+    pub fn breach(&self, place_m: &Vector3<f64>) -> Option<Breach> {
+        let Self { home_m, radius_m, height_m, .. } = *self;
         if height_m > 0.0 && home_m.z - place_m.z > height_m {
             return Some(Breach::Height(height_m));
         }
         if radius_m > 0.0 && (place_m - home_m).xy().norm() > radius_m {
             return Some(Breach::Distance(radius_m));
         }
-        if !self.zones_count {
-            return None;
-        }
         let point = [place_m.x, place_m.y];
-        let zones = &self.zones.zones;
+        let zones = &self.zones?.zones;
         if let Some(number) = zones.iter().position(|zone| !zone.inclusion && zone.forbids(point)) {
             return Some(Breach::Inside(number));
         }
@@ -80,11 +77,8 @@ impl Fence {
     /// The area to stay out of that the straight way between two places, NED, m, leads through. One that it begins in does not
     /// count: it has to be left anyway.
     pub fn breach_between(&self, from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<Breach> {
-        if !self.enabled || !self.zones_count {
-            return None;
-        }
         let way = ([from_m.x, from_m.y], [to_m.x, to_m.y]);
-        let zones = self.zones.zones.iter();
+        let zones = self.zones?.zones.iter();
         let number = zones
             .map(|zone| !zone.inclusion && !zone.forbids(way.0) && zone.shape.is_entered_by(&way))
             .position(|entered| entered)?;

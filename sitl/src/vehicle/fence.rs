@@ -36,9 +36,22 @@ pub struct FenceRecord {
 }
 
 impl Vehicle {
-    /// The fence.
-    pub fn fence(&self) -> &Fence {
-        &self.fence
+    /// The fence as it is looked at; `None` while it is switched off.
+    pub fn fence(&self) -> Option<Fence<'_>> {
+        self.conduct.failsafe.fence_enabled.then(|| self.whole_fence())
+    }
+
+    /// Switched on or off.
+    fn whole_fence(&self) -> Fence<'_> {
+        let settings = &self.conduct.failsafe;
+        let parts = settings.fence_parts;
+        let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
+        Fence {
+            zones: parts.zones.then_some(&self.fence_zones),
+            home_m: self.home.position_m,
+            radius_m: of(parts.distance, settings.fence_radius_m),
+            height_m: of(parts.height, settings.fence_height_m),
+        }
     }
 
     /// What has become of it.
@@ -48,39 +61,21 @@ impl Vehicle {
 
     /// Whether there is anything that it must keep to: zones, a greatest distance or height.
     pub fn has_fence(&self) -> bool {
-        let (radius_m, height_m) = self.fence_limits_m();
-        let zones = self.fence.zones_count && !self.fence.zones.zones.is_empty();
-        zones || radius_m > 0.0 || height_m > 0.0
+        self.whole_fence().bounds()
     }
 
     /// Switches the fence on or off.
     pub fn enable_fence(&mut self, enabled: bool) {
         if self.conduct.failsafe.fence_enabled != enabled {
             self.conduct.failsafe.fence_enabled = enabled;
-            self.apply_fence_settings();
             self.say(Severity::Info, if enabled { "Fence enabled" } else { "Fence disabled" });
         }
     }
 
-    /// Looks at the parts of the fence that the settings name.
-    pub(super) fn apply_fence_settings(&mut self) {
-        let settings = &self.conduct.failsafe;
-        self.fence.enabled = settings.fence_enabled;
-        self.fence.zones_count = settings.fence_parts.zones;
-    }
-
-    /// Greatest distance from home and height above it, m; 0: any.
-    fn fence_limits_m(&self) -> (f64, f64) {
-        let settings = &self.conduct.failsafe;
-        let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
-        let parts = settings.fence_parts;
-        (of(parts.distance, settings.fence_radius_m), of(parts.height, settings.fence_height_m))
-    }
-
     /// The highest that the fence allows, z, m, if it bounds the height.
     pub(super) fn fence_ceiling_z_m(&self) -> Option<f64> {
-        let (_, height_m) = self.fence_limits_m();
-        (self.fence.enabled && height_m > 0.0).then(|| self.home.position_m.z - height_m)
+        let fence = self.fence().filter(|fence| fence.height_m > 0.0)?;
+        Some(fence.home_m.z - fence.height_m)
     }
 
     /// Takes the zones of a fence plan.
@@ -88,7 +83,7 @@ impl Vehicle {
     /// # Errors
     /// [`PlanFault`]; the old ones stay then.
     pub(super) fn take_fence(&mut self, items: &[MissionItem]) -> Result<(), PlanFault> {
-        self.fence.zones = zones(items, &self.site())?;
+        self.fence_zones = zones(items, &self.site())?;
         Ok(())
     }
 
@@ -112,13 +107,13 @@ impl Vehicle {
 
     /// What of the fence forbids a place, NED, m.
     pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
-        let (radius_m, height_m) = self.fence_limits_m();
-        self.fence.breach(place_m, &self.home.position_m, radius_m, height_m)
+        self.fence()?.breach(place_m)
     }
 
     /// What of the fence forbids a place or the straight way to it.
     fn breach_to(&self, place_m: &Vector3<f64>) -> Option<Breach> {
-        self.breach_at(place_m).or_else(|| self.fence.breach_between(&self.outputs.position_m, place_m))
+        let fence = self.fence()?;
+        fence.breach(place_m).or_else(|| fence.breach_between(&self.outputs.position_m, place_m))
     }
 
     /// Where it comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is not
@@ -187,7 +182,7 @@ impl Vehicle {
         let distance = |[x, y]: &[f64; 2]| libm::hypot(x - here.x, y - here.y);
         core::iter::once([home.x, home.y])
             .chain(rally)
-            .chain(self.fence.zones.return_m)
+            .chain(self.fence_zones.return_m)
             .filter(|[x, y]| self.breach_at(&Vector3::new(*x, *y, home.z)).is_none())
             .min_by(|one, other| distance(one).total_cmp(&distance(other)))
             .unwrap_or([home.x, home.y])
@@ -196,10 +191,9 @@ impl Vehicle {
     /// The way to a place, north and east, m, around what the fence forbids; straight if there is none.
     pub(super) fn way_m(&mut self, goal: [f64; 2]) -> VecDeque<[f64; 2]> {
         let here = self.outputs.setpoint.position_m;
-        let way = if self.fence.enabled && self.fence.zones_count {
-            route_m(&self.fence.zones, [here.x, here.y], goal)
-        } else {
-            Some(vec![goal])
+        let way = match self.fence().and_then(|fence| fence.zones) {
+            Some(zones) => route_m(zones, [here.x, here.y], goal),
+            None => Some(vec![goal]),
         };
         if way.is_none() {
             self.say(Severity::Warning, "No way around the fence: returning straight");

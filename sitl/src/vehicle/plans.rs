@@ -83,8 +83,10 @@ impl Vehicle {
             let Some([x, y]) = place.horizontal_m else { continue };
             let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));
             // Where there are ways, each leads from the last place to the next.
-            let way =
-                (kind == PlanKind::Mission).then(|| self.fence.breach_between(&before_m, &place_m)).flatten();
+            let way = self
+                .fence()
+                .filter(|_| kind == PlanKind::Mission)
+                .and_then(|fence| fence.breach_between(&before_m, &place_m));
             before_m = place_m;
             if let Some(breach) = self.breach_at(&place_m).or(way) {
                 return Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string()));

@@ -27,7 +27,7 @@ use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
-use crate::fence::Fence;
+use crate::fence::Zones;
 use crate::identity::Identity;
 use crate::plan::{PlanKind, Plans, Site, zones};
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
@@ -113,7 +113,7 @@ pub struct Vehicle {
     pub(super) grounded_since_us: u64,
     pub(super) notices: Vec<Notice>,
     pub(super) plans: Plans,
-    pub(super) fence: Fence,
+    pub(super) fence_zones: Zones,
     pub(super) fence_record: FenceRecord,
     pub(super) failsafe: Failsafe,
     /// The way of a return: north and east, m, the place to land at last.
@@ -172,7 +172,7 @@ impl Vehicle {
             grounded_since_us: 0,
             notices: Vec::new(),
             plans: settings.plans.clone(),
-            fence: Fence { zones: fence_zones, ..Fence::default() },
+            fence_zones,
             fence_record: FenceRecord::default(),
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
@@ -185,7 +185,6 @@ impl Vehicle {
             navigation,
             ideal_sensors: IdealSensors::default(),
         };
-        vehicle.apply_fence_settings();
         vehicle.outputs = vehicle.known();
         vehicle.mission_has_changed(false);
         Ok(vehicle)
@@ -354,7 +353,6 @@ impl Vehicle {
     /// Changes its own parameters.
     pub fn set_conduct(&mut self, conduct: Conduct) {
         self.conduct = conduct;
-        self.apply_fence_settings();
     }
 
     /// Home.

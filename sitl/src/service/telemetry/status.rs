@@ -28,7 +28,7 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
-    let enabled = if vehicle.fence().enabled {
+    let enabled = if vehicle.fence().is_some() {
         present
     } else {
         present & !MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE
