@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use crate::failure::Failure;
+use crate::files::{Readers, replace};
 use crate::fleet::Fleet;
 use crate::link::Links;
 
@@ -56,8 +57,5 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
 }
 
 fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {
-    let beside = path.with_extension("new");
-    std::fs::write(&beside, format!("{content}\n"))
-        .and_then(|()| std::fs::rename(&beside, path))
-        .map_err(|source| Failure::write(path, source))
+    replace(path, format!("{content}\n").as_bytes(), Readers::All)
 }

@@ -7,9 +7,11 @@
 mod disk;
 mod log_folder;
 mod mount;
+mod replace;
 mod store;
 
 pub use disk::Disk;
 pub use log_folder::LogFolder;
 pub use mount::Mount;
+pub use replace::{Readers, replace};
 pub use store::{Access, FileError, FileStore, LOGS, Listed, Nothing, OpenFile};

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::autopilot::Autopilot;
 use crate::codec::{Frame, id};
 use crate::failure::Failure;
-use crate::files::Disk;
+use crate::files::{Disk, Readers, replace};
 use crate::flight_log::FlightLog;
 use crate::parameters::Speed;
 use crate::record::{Digest, Participant};
@@ -140,10 +140,6 @@ impl Member {
     pub(super) fn save_parameters(&mut self) -> Result<(), Failure> {
         let Some(path) = &self.parameters else { return Ok(()) };
         let Some(text) = self.autopilot.take_changed_parameters() else { return Ok(()) };
-        // A crash in between leaves the old file.
-        let beside = path.with_extension("new");
-        std::fs::write(&beside, text)
-            .and_then(|()| std::fs::rename(&beside, path))
-            .map_err(|source| Failure::write(path, source))
+        replace(path, text.as_bytes(), Readers::All)
     }
 }

@@ -43,10 +43,10 @@ impl Fleet {
             .map(|(hub, links)| SigningKeeper::new(key, hub, unix_start_us, links))
             .collect::<Result<_, _>>()?;
         // A port that is taken belongs to somebody whose files these may be, too: they come after the links.
-        let books = Books::open(settings, settings.participants(), unix_start_us)?;
+        let participants = settings.participants();
+        let books = Books::open(settings, participants.clone(), unix_start_us)?;
         // The vehicles last: they introduce themselves, and then nothing is in the way any more.
-        let members = settings
-            .participants()
+        let members = participants
             .iter()
             .zip(&settings.vehicles)
             .map(|(participant, own)| {

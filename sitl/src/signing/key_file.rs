@@ -1,11 +1,12 @@
 //! The key and its timestamps on the disk. Both are for their owner alone.
 
-use std::fs::{File, OpenOptions};
-use std::io::{Read, Write};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::{Kept, SecretKey};
 use crate::failure::Failure;
+use crate::files::{Readers, replace};
 
 /// Longer than any key.
 const LONGEST: u64 = 256;
@@ -56,7 +57,7 @@ impl KeyFile {
     /// # Errors
     /// [`Failure::File`]
     pub fn keep(&self, kept: &Kept) -> Result<(), Failure> {
-        replace(&self.timestamps, kept.render().as_bytes())
+        replace(&self.timestamps, kept.render().as_bytes(), Readers::Owner)
     }
 
     /// Keeps another key, or none.
@@ -64,7 +65,8 @@ impl KeyFile {
     /// # Errors
     /// [`Failure::File`]
     pub fn keep_key(&self, key: Option<&SecretKey>) -> Result<(), Failure> {
-        replace(&self.path, key.map(SecretKey::to_digits).unwrap_or_default().as_bytes())
+        let digits = key.map(SecretKey::to_digits).unwrap_or_default();
+        replace(&self.path, digits.as_bytes(), Readers::Owner)
     }
 }
 
@@ -81,30 +83,6 @@ fn read(path: &Path) -> std::io::Result<(Vec<u8>, Option<u32>)> {
     let mut content = Vec::new();
     file.take(LONGEST).read_to_end(&mut content)?;
     Ok((content, mode))
-}
-
-/// A crash in between leaves the old file.
-fn replace(path: &Path, content: &[u8]) -> Result<(), Failure> {
-    let mut beside = path.to_owned().into_os_string();
-    beside.push(".new");
-    let beside = PathBuf::from(beside);
-    let written = || {
-        // What a crash has left behind may have another mode.
-        match std::fs::remove_file(&beside) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
-        let mut options = OpenOptions::new();
-        options.write(true).create_new(true);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::OpenOptionsExt;
-            options.mode(0o600);
-        }
-        options.open(&beside)?.write_all(content)?;
-        std::fs::rename(&beside, path)
-    };
-    written().map_err(|source| Failure::write(path, source))
 }
 
 #[cfg(all(test, unix))]
