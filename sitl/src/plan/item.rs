@@ -56,6 +56,12 @@ impl PartialEq for MissionItem {
 }
 
 impl MissionItem {
+    /// The number of the item that a jump leads to, if it is one.
+    pub fn jump_target_mut(&mut self) -> Option<&mut f64> {
+        let [target, ..] = &mut self.parameters;
+        (self.command == command::DO_JUMP).then_some(target)
+    }
+
     /// Home as an item: latitude and longitude, degrees, and altitude above sea level, m.
     pub fn home(position: [f64; 3]) -> Self {
         Self {

@@ -119,10 +119,7 @@ fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
     }
     // In the file a jump names the id of its target.
     for (item, place) in &mut items {
-        if item.command != command::DO_JUMP {
-            continue;
-        }
-        let [target, ..] = &mut item.parameters;
+        let Some(target) = item.jump_target_mut() else { continue };
         let index = jump_ids.iter().position(|id| id.map(f64::from) == Some(*target));
         *target = index.ok_or_else(|| format!("{place}: there is no item with doJumpId {target}"))? as f64;
     }

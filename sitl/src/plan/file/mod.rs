@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use super::{MissionItem, Plan, PlanKind, Plans, Site, check, command};
+use super::{MissionItem, Plan, PlanKind, Plans, Site, check};
 
 /// The items of a file, before they are checked.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -45,12 +45,8 @@ pub fn parse(text: &str, site: &Site) -> Result<Plans, String> {
 
 /// Jumps count home then.
 fn put_home_in_front(content: &mut Content) {
-    for (item, _) in &mut content.mission {
-        if item.command == command::DO_JUMP {
-            let [target, ..] = &mut item.parameters;
-            *target += 1.0;
-        }
-    }
+    let items = content.mission.iter_mut();
+    items.filter_map(|(item, _)| item.jump_target_mut()).for_each(|target| *target += 1.0);
     let home = MissionItem::home(content.home.unwrap_or([0.0; 3]));
     content.mission.insert(0, (home, "home".to_owned()));
 }

@@ -40,13 +40,11 @@ pub fn parse(text: &str) -> Result<Content, String> {
 
 fn without_home(content: &mut Content) -> Result<(), String> {
     for (item, place) in &mut content.mission {
-        if item.command == command::DO_JUMP {
-            let [target, ..] = &mut item.parameters;
-            if *target < 1.0 {
-                return Err(format!("{place}: item {target} is home: no jump goes there"));
-            }
-            *target -= 1.0;
+        let Some(target) = item.jump_target_mut() else { continue };
+        if *target < 1.0 {
+            return Err(format!("{place}: item {target} is home: no jump goes there"));
         }
+        *target -= 1.0;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::plan::{MissionItem, PlanKind, command};
+use crate::plan::{MissionItem, PlanKind};
 use crate::vehicle::Vehicle;
 
 /// The text. The first line of a mission is home, as ground stations write it, and jumps count it.
@@ -10,10 +10,7 @@ pub fn render(vehicle: &Vehicle, kind: PlanKind) -> Vec<u8> {
     let count = vehicle.plans().get(kind).items().len();
     let mut items: Vec<MissionItem> = (0..count).filter_map(|index| vehicle.plan_item(kind, index)).collect();
     if kind == PlanKind::Mission && !vehicle.identity().is_ardupilot() && !items.is_empty() {
-        for item in items.iter_mut().filter(|item| item.command == command::DO_JUMP) {
-            let [target, ..] = &mut item.parameters;
-            *target += 1.0;
-        }
+        items.iter_mut().filter_map(MissionItem::jump_target_mut).for_each(|target| *target += 1.0);
         items.insert(0, vehicle.home_item());
     }
     let mut text = String::from("QGC WPL 110\n");

@@ -162,17 +162,15 @@ fn go_on(autopilot: &mut Autopilot) {
         ask(autopilot);
         return;
     }
-    let (kind, mut plan) = (upload.kind, std::mem::take(&mut upload.items));
-    let upload_is_partial = upload.partial;
-    if upload.partial {
-        let items = std::mem::replace(&mut plan, autopilot.vehicle.plans().get(kind).items().to_vec());
-        let end = upload.end.min(plan.len());
-        plan.splice(upload.first.min(end)..end, items);
-    }
-    let taken = if upload_is_partial {
+    let Upload { kind, partial, first, end, .. } = *upload;
+    let items = std::mem::take(&mut upload.items);
+    let taken = if partial {
+        let mut plan = autopilot.vehicle.plans().get(kind).items().to_vec();
+        let end = end.min(plan.len());
+        plan.splice(first.min(end)..end, items);
         autopilot.vehicle.amend_plan(kind, plan)
     } else {
-        autopilot.vehicle.set_plan(kind, plan)
+        autopilot.vehicle.set_plan(kind, items)
     };
     match taken {
         Ok(()) => {

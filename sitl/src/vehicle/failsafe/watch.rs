@@ -46,6 +46,11 @@ impl Vehicle {
         }
     }
 
+    /// Whether there is a flight that could be ended, or flown otherwise.
+    fn flies(&self) -> bool {
+        self.armed && self.steering.kind() != SteeringKind::Idle
+    }
+
     fn is_present(&self, cause: Cause) -> bool {
         let settings = &self.conduct.failsafe;
         let remaining = self.battery_remaining();
@@ -70,7 +75,7 @@ impl Vehicle {
         if action == Action::None {
             return;
         }
-        let flying = self.armed && self.steering.kind() != SteeringKind::Idle;
+        let flying = self.flies();
         let acts = flying && self.failsafe.goes_before(action, Action::of_mode(self.mode));
         let why = cause.name();
         let severity = if action > Action::Warn { Severity::Critical } else { Severity::Warning };
@@ -126,8 +131,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal::TemporarilyRejected`] while the place is not known.
     pub(in crate::vehicle) fn may_enter(&self, mode: Mode) -> Result<(), Refusal> {
-        let flying = self.armed && self.steering.kind() != SteeringKind::Idle;
-        if !flying || mode == Mode::Land {
+        if !self.flies() || mode == Mode::Land {
             return Ok(());
         }
         let lost = self.failsafe.is_present(Cause::PositionLost);

@@ -63,10 +63,7 @@ impl Vehicle {
 
     fn begin_condition(&mut self, item: &MissionItem) -> Option<Condition> {
         match item.command {
-            command::CONDITION_DELAY => {
-                let delay_us = (item.parameter_or(1, 0.0) * 1e6) as u64;
-                Some(Condition::Until(self.time_us().saturating_add(delay_us)))
-            }
+            command::CONDITION_DELAY => Some(Condition::Until(self.after_s(item.parameter_or(1, 0.0)))),
             command::CONDITION_DISTANCE => Some(Condition::Within(item.parameter_or(1, 0.0))),
             command::CONDITION_YAW => {
                 let fastest_rad_s = self.simulation.configuration().limits.yaw_rate_rad_s;

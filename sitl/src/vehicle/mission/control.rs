@@ -151,10 +151,7 @@ impl Vehicle {
     /// Goes on from where the vehicle is.
     fn take_over(&mut self) {
         self.mission.carry = None;
-        self.mission.anchor_m = match self.steering.kind() {
-            SteeringKind::Position => self.outputs.setpoint.position_m,
-            _ => self.outputs.position_m,
-        };
+        self.mission.anchor_m = self.steering.present(&self.outputs).position_m;
         self.mission.heading_rad = self.outputs.attitude_rad.z;
         self.apply_mission_speeds(true);
         self.hold();

@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 use super::super::flight::is_slow_near;
-use super::super::mode::Mode;
 use super::super::notice::Severity;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::state::{TICK_US, Vehicle};
@@ -174,7 +173,8 @@ impl Vehicle {
         }
     }
 
-    fn after_s(&self, seconds: f64) -> u64 {
+    /// So many seconds from now, µs.
+    pub(super) fn after_s(&self, seconds: f64) -> u64 {
         self.time_us().saturating_add((seconds * 1e6) as u64)
     }
 
@@ -186,10 +186,7 @@ impl Vehicle {
     }
 
     fn begin_climb(&mut self, z_m: f64, item: bool) -> Task {
-        let here = match self.steering.kind() {
-            SteeringKind::Position => self.outputs.setpoint.position_m,
-            _ => self.outputs.position_m,
-        };
+        let here = self.steering.present(&self.outputs).position_m;
         let axes = [AxisTarget::Position(here.x), AxisTarget::Position(here.y), AxisTarget::Position(z_m)];
         self.mission.heading_rad = match self.steering {
             Steering::Goal(goal) => goal.yaw_rad,
@@ -332,10 +329,7 @@ impl Vehicle {
 
     /// Whether the mission climbs from the ground or descends to it.
     pub(in super::super) fn mission_task_is_vertical(&self) -> (bool, bool) {
-        let here = self.mode == Mode::Mission;
-        (
-            here && matches!(self.mission.task, Some(Task::Climb { .. })),
-            here && matches!(self.mission.task, Some(Task::Descend(_))),
-        )
+        let task = self.mission.task.as_ref();
+        (matches!(task, Some(Task::Climb { .. })), matches!(task, Some(Task::Descend(_))))
     }
 }
