@@ -3,6 +3,7 @@
 #![allow(dead_code)] // Each test uses a part of it.
 
 pub mod channel;
+pub mod failsafe_bench;
 pub mod ftp_client;
 pub mod mission_flight;
 pub mod plan_client;

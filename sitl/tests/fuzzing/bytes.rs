@@ -45,6 +45,13 @@ impl Bytes {
         CORPUS[self.below(CORPUS.len())].clone()
     }
 
+    /// A frame that ends anywhere.
+    fn cut(&mut self) -> Vec<u8> {
+        let mut bytes = self.real();
+        bytes.truncate(self.below(bytes.len()));
+        bytes
+    }
+
     /// Frames in the order of the corpus, which has conversations: all of them, or one changed, doubled or lost.
     fn row(&mut self) -> Vec<u8> {
         let (start, length) = (self.below(CORPUS.len()), 1 + self.below(LONGEST_ROW));
@@ -109,12 +116,7 @@ impl Bytes {
     pub fn piece(&mut self) -> Vec<u8> {
         match self.below(12) {
             0 => self.noise(),
-            1 => {
-                // Cut anywhere.
-                let mut bytes = self.real();
-                bytes.truncate(self.below(bytes.len()));
-                bytes
-            }
+            1 => self.cut(),
             2 => {
                 // Changed anywhere, the checksum left as it is.
                 let mut bytes = self.real();
@@ -141,11 +143,7 @@ impl Bytes {
     pub fn garbage(&mut self) -> Vec<u8> {
         let bytes = match self.below(4) {
             0 => self.noise(),
-            1 => {
-                let mut bytes = self.real();
-                bytes.truncate(self.below(bytes.len()));
-                bytes
-            }
+            1 => self.cut(),
             2 => {
                 let mut bytes = self.changed();
                 let last = bytes.len() - 1;
