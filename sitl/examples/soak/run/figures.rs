@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use sitl::record::Digest;
+
 use super::Options;
 
 /// Growth beyond this in the second half of the time is a leak, kB.
@@ -35,6 +37,10 @@ pub struct Figures {
     /// Resident memory after each tenth of the time, kB.
     memory_kb: Vec<u64>,
     sampled_us: u64,
+    /// Digests of everything sent, of the flight log's topics, and of the motion: equal for equal flights.
+    pub messages: Digest,
+    pub logged: Digest,
+    pub motion: Digest,
     pub violations: Vec<String>,
 }
 
@@ -108,6 +114,13 @@ impl fmt::Display for Figures {
             formatter,
             "transfers: {} parameter lists, {} parameters set, {} missions up, {} down",
             self.parameter_lists, self.parameters_set, self.uploads, self.downloads
+        )?;
+        writeln!(
+            formatter,
+            "digests: messages {:016x}, log {:016x}, motion {:016x}",
+            self.messages.value(),
+            self.logged.value(),
+            self.motion.value()
         )?;
         let of = |result: u8| -> u64 {
             self.commands.iter().filter(|((_, found), _)| *found == result).map(|(_, count)| count).sum()

@@ -4,6 +4,7 @@ use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
 use sitl::codec::{Frame, Version};
 use sitl::configuration::MemberSettings;
 use sitl::estimation::SensorModel;
+use sitl::flight_log::{Row, TOPICS};
 use sitl::parameters::Speed;
 use sitl::service::LinkProfile;
 use sitl::vehicle::TICK_US;
@@ -18,6 +19,8 @@ use super::watch::{self, Stays, Watch};
 
 /// System ids of the clients: a pilot and two who look on.
 const SYSTEMS: [u8; 3] = [255, 254, 253];
+/// How often the topics of the flight log are looked at, µs.
+const LOG_PERIOD_US: u64 = 100_000;
 /// A.h; nobody changes batteries in an hour of flights.
 const BATTERY_AH: f64 = 200.0;
 
@@ -75,11 +78,16 @@ impl Site {
                 }
             }
             self.autopilot.tick().expect("the flight goes on");
+            figures.motion.update(self.autopilot.vehicle());
+            if now_us.is_multiple_of(LOG_PERIOD_US) {
+                self.log(figures);
+            }
             for outgoing in self.autopilot.take_outgoing() {
                 self.sequence = self.sequence.wrapping_add(1);
                 let sender = (self.autopilot.system_id(), COMPONENT);
                 let frame = Frame::encode(&outgoing.message, Version::Two, self.sequence, sender);
                 let frame = frame.expect("a message of MAVLink 2");
+                figures.messages.bytes(frame.bytes());
                 for client in self.clients.iter_mut().flatten().filter(|client| client.is_meant(outgoing.to))
                 {
                     client.tell(frame.clone(), now_us + TICK_US, &mut self.chance);
@@ -87,6 +95,16 @@ impl Site {
             }
             if now_us.is_multiple_of(watch::PERIOD_US) {
                 self.watch.look(&self.autopilot, self.stays, figures);
+            }
+        }
+    }
+
+    /// Takes in what a flight log would have now.
+    fn log(&self, figures: &mut Figures) {
+        for topic in TOPICS {
+            let mut row = Row::default();
+            if (topic.sample)(&self.autopilot, &mut row) {
+                figures.logged.bytes(row.bytes());
             }
         }
     }
