@@ -4,9 +4,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use quadrotor::{ConfigurationError, SimulationError};
+use vehicle::parameters::{ParameterFileError, SetError};
 
 use crate::link::LinkError;
-use crate::parameters::{ParameterFileError, SetError};
 
 /// One line for the user, and an exit code.
 #[derive(Debug, thiserror::Error)]

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::parameters::Speed;
+use vehicle::parameters::Speed;
 
 /// A delay beyond this is not caught up: a machine that slept does not race afterwards.
 const MOST_BEHIND: Duration = Duration::from_millis(250);

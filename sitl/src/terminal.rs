@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
+use autopilot::service::LinkProfile;
+
 use crate::configuration::Settings;
 use crate::fleet::{Fleet, Member};
 use crate::hil::{HilSettings, Mount};
 use crate::link::{Endpoint, LinkSpecification, Links};
-use crate::service::LinkProfile;
 
 /// How often the line changes.
 const PERIOD: Duration = Duration::from_millis(500);

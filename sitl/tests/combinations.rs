@@ -6,9 +6,9 @@ use common::{Bench, settings};
 use mavlink::dialects::common::{
     MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
-use sitl::estimation::{SensorModel, SensorSettings};
-use sitl::identity::Identity;
-use sitl::vehicle::{Action, Mode, SteeringKind};
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::identity::Identity;
+use vehicle::{Action, Mode, SteeringKind};
 
 /// A takeoff that is called off before it has left the ground, be it to hold, to land or to return: the rotors idle, and stop.
 #[test]

@@ -8,8 +8,8 @@ use mavlink::dialects::common::{
     MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use quadrotor::{Inputs, PositionReference, Simulation};
-use sitl::identity::Identity;
-use sitl::vehicle::Mode;
+use vehicle::Mode;
+use vehicle::identity::Identity;
 
 fn place(x: f32, y: f32, z: f32, yaw: f32) -> MavMessage {
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
@@ -89,7 +89,7 @@ fn the_flight_through_messages_is_that_of_the_library() {
 #[test]
 fn a_record_replays_bit_for_bit() {
     let mut vehicle = settings(Identity::Px4);
-    vehicle.wind = sitl::world::WindSettings { speed_m_s: 4.0, from_rad: 1.0, gusts_m_s: 1.5, seed: 5 };
+    vehicle.wind = vehicle::world::WindSettings { speed_m_s: 4.0, from_rad: 1.0, gusts_m_s: 1.5, seed: 5 };
     vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut recording = Recording::of(&vehicle);
     let arm =

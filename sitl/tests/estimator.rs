@@ -2,9 +2,9 @@
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quadrotor::GRAVITY_M_S2;
-use sitl::estimation::{Estimate, Navigation, TrueMotion};
-use sitl::fault::Faults;
-use sitl::world::{Geodetic, LocalFrame};
+use vehicle::estimation::{Estimate, Navigation, TrueMotion};
+use vehicle::fault::Faults;
+use vehicle::world::{Geodetic, LocalFrame};
 
 /// It stands this long, s, before it moves.
 const REST_S: f64 = 5.0;

@@ -3,8 +3,8 @@
 mod common;
 
 use common::failsafe_bench::*;
-use sitl::identity::Identity;
-use sitl::vehicle::{Action, Cause};
+use vehicle::identity::Identity;
+use vehicle::{Action, Cause};
 
 /// Every action that a parameter can choose for a cause is taken and told.
 fn every_action_of(cause: Cause) {

@@ -5,10 +5,10 @@ mod common;
 use common::failsafe_bench::*;
 use common::{Bench, settings};
 use mavlink::dialects::common::*;
-use sitl::estimation::SensorModel;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
-use sitl::vehicle::{Cause, Mode};
+use vehicle::estimation::SensorModel;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
+use vehicle::{Cause, Mode};
 
 fn count(bench: &Bench, text: &str) -> usize {
     bench.texts().iter().filter(|told| *told == text).count()

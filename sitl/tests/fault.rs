@@ -2,15 +2,15 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::recording::Recording;
 use common::{Bench, settings};
 use mavlink::dialects::common::{MavCmd, MavMessage};
-use sitl::codec::Message;
-use sitl::estimation::SensorModel;
-use sitl::fault::{Fault, ScheduledFault, Sensor, SensorFault};
-use sitl::identity::Identity;
-use sitl::vehicle::{LandedState, Mode};
-use sitl::world::WindSettings;
+use vehicle::estimation::SensorModel;
+use vehicle::fault::{Fault, ScheduledFault, Sensor, SensorFault};
+use vehicle::identity::Identity;
+use vehicle::world::WindSettings;
+use vehicle::{LandedState, Mode};
 
 /// MAV_RESULT.
 const TEMPORARILY_REJECTED: u8 = 1;
@@ -209,7 +209,7 @@ fn what_has_no_meaning_is_refused_with_the_reason() {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
     }
-    assert_eq!(*bench.autopilot.vehicle().faults(), sitl::fault::Faults::default());
+    assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 
 /// Ideal sensors read the truth: what would change nothing is not accepted. Realistic ones take it all, and show it.
@@ -298,7 +298,7 @@ fn a_parameter_forbids_it() {
     let mut bench = Bench::of(&start);
     assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
     assert!(bench.texts().iter().any(|text| text.contains("SYS_FAILURE_EN is 0")), "{:?}", bench.texts());
-    assert_eq!(*bench.autopilot.vehicle().faults(), sitl::fault::Faults::default());
+    assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 
 /// In wind and gusts, and by instruments and the estimator instead of the true motion. Measured: 29° to 38°, 9 to 20 m.

@@ -2,21 +2,21 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::plan_client::{result, upload};
 use common::{Bench, settings};
 use mavlink::dialects::common::*;
 use nalgebra::Vector3;
-use sitl::codec::Message;
-use sitl::fence::Breach;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, Plan, PlanKind, command, frame};
-use sitl::vehicle::{Action, Mode, VehicleSettings};
+use vehicle::fence::Breach;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
+use vehicle::{Action, Mode, VehicleSettings};
 
 const TEMPORARILY_REJECTED: u8 = 1;
 const DENIED: u8 = 2;
 
 fn item(settings: &VehicleSettings, command: u16, parameter: f64, [north, east]: [f64; 2]) -> MissionItem {
-    let place = sitl::world::LocalFrame::new(settings.origin).to_geodetic(&Vector3::new(north, east, 0.0));
+    let place = vehicle::world::LocalFrame::new(settings.origin).to_geodetic(&Vector3::new(north, east, 0.0));
     MissionItem {
         frame: frame::GLOBAL_RELATIVE_INT,
         command,
@@ -328,7 +328,7 @@ fn the_fence_is_part_of_the_health() {
     bench.arm();
 }
 
-fn with_fence(settings: &VehicleSettings, fence: Vec<MissionItem>) -> sitl::Autopilot {
+fn with_fence(settings: &VehicleSettings, fence: Vec<MissionItem>) -> autopilot::Autopilot {
     let mut settings = settings.clone();
     settings.plans.set(PlanKind::Fence, Plan::new(fence));
     Bench::of(&settings).autopilot

@@ -6,9 +6,9 @@ use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::*;
 use sitl::files::Disk;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, Plan, PlanKind};
 use tempfile::TempDir;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind};
 
 /// A folder with something in it, beside a secret.
 fn shared() -> (TempDir, std::path::PathBuf) {
@@ -77,7 +77,7 @@ fn the_mission_is_a_file_that_reads_as_the_mission() {
         let text = client.read("/plans/mission.waypoints").expect("there");
         let text = String::from_utf8(text).expect("text");
         let site = client.bench.autopilot.vehicle().site();
-        let read = sitl::plan::file::parse(&text, &site).expect("a plan");
+        let read = vehicle::plan::file::parse(&text, &site).expect("a plan");
         let read = read.get(PlanKind::Mission).items();
         let flown = client.bench.autopilot.vehicle().plans().get(PlanKind::Mission).items();
         assert_eq!(&read[read.len() - 3..], &flown[flown.len() - 3..], "{text}");
@@ -276,10 +276,14 @@ fn quotas_hold_and_say_so() {
     let open = |bench: &mut Bench, system: u8, session: u8| {
         bench.heard.clear();
         let message = request(u16::from(session) * 2, OPEN, session, 16, 0, b"/files/hello.txt");
-        let frame =
-            sitl::codec::Frame::encode(&message.into(), sitl::codec::Version::Two, session, (system, 190));
-        let peer = sitl::service::PeerId { link: 0, number: u64::from(system) };
-        let origin = sitl::service::Origin { peer, system, component: 190 };
+        let frame = autopilot::codec::Frame::encode(
+            &message.into(),
+            autopilot::codec::Version::Two,
+            session,
+            (system, 190),
+        );
+        let peer = autopilot::service::PeerId { link: 0, number: u64::from(system) };
+        let origin = autopilot::service::Origin { peer, system, component: 190 };
         bench.autopilot.receive(&origin, &frame.expect("a frame"));
         bench.listen();
         answers(&bench.heard)[0].result.clone().map(|_| ())

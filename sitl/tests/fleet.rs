@@ -5,12 +5,13 @@ mod common;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use autopilot::Autopilot;
 use clap::Parser;
+use sitl::Session;
 use sitl::configuration::{self, Arguments, MemberSettings, Settings};
-use sitl::plan::PlanKind;
 use sitl::record::Digest;
-use sitl::vehicle::VehicleSettings;
-use sitl::{Autopilot, Session};
+use vehicle::VehicleSettings;
+use vehicle::plan::PlanKind;
 
 fn settings(line: &str) -> Result<Settings, sitl::Failure> {
     let words = ["lmpc-sitl"].into_iter().chain(line.split_whitespace());
@@ -124,8 +125,9 @@ fn a_flight_among_others_is_the_flight_alone() {
         let summary = session.run(&Arc::new(AtomicBool::new(false))).expect("a flight");
         assert_eq!(summary.flights.len(), 4);
         for (flight, own) in summary.flights.iter().zip(vehicles) {
-            let mut alone = Autopilot::new(&own.vehicle, own.system_id, sitl::parameters::Speed::Max, &[], 5)
-                .expect("valid");
+            let mut alone =
+                Autopilot::new(&own.vehicle, own.system_id, vehicle::parameters::Speed::Max, &[], 5)
+                    .expect("valid");
             let mut digest = Digest::default();
             while alone.vehicle().time_us() < 3_000_000 {
                 alone.tick().expect("a flight");

@@ -4,8 +4,8 @@ mod common;
 
 use common::{Bench, settings};
 use mavlink::dialects::common::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
-use sitl::identity::Identity;
-use sitl::vehicle::{LandedState, Mode};
+use vehicle::identity::Identity;
+use vehicle::{LandedState, Mode};
 
 const NOTHING: [f32; 7] = [0.0; 7];
 const UNSUPPORTED: u8 = 3;
@@ -241,14 +241,14 @@ fn every_command_is_answered() {
 }
 
 /// A frame of MAVLink 2 made by hand.
-fn raw_frame(id: u8, payload: &[u8]) -> sitl::codec::Frame {
+fn raw_frame(id: u8, payload: &[u8]) -> autopilot::codec::Frame {
     use mavlink::Message as _;
     let mut bytes = vec![0xfd, payload.len() as u8, 0, 0, 0, 255, 190, id, 0, 0];
     bytes.extend(payload);
     let extra = MavMessage::extra_crc(u32::from(id));
     let checksum = mavlink::calculate_crc(&bytes[1..], extra);
     bytes.extend(checksum.to_le_bytes());
-    sitl::codec::Frame::parse(&bytes).expect("a right frame")
+    autopilot::codec::Frame::parse(&bytes).expect("a right frame")
 }
 
 #[test]

@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 
 use common::Bench;
 use mavlink::dialects::common::{FailureUnit, MavCmd};
-use sitl::estimation::{SensorModel, SensorSettings};
 use sitl::files::LogFolder;
 use sitl::flight_log::{FlightLog, LogSettings, LogStart, Row, TOPICS};
-use sitl::identity::Identity;
 use sitl::record::Digest;
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::identity::Identity;
 
 fn settings(start: LogStart, most_bytes: u64, most_files: usize) -> LogSettings {
     LogSettings { folder: None, start, most_bytes, most_files }
@@ -221,7 +221,7 @@ fn a_full_file_goes_on_in_the_next_and_the_oldest_go() {
         paths.max().map(|path| std::fs::read(path).expect("a log")).expect("one")
     };
     bench.fly(0.3);
-    bench.autopilot.announce(sitl::vehicle::Severity::Info, "the last words");
+    bench.autopilot.announce(vehicle::Severity::Info, "the last words");
     bench.fly(0.01);
     log.tick(&mut bench.autopilot, start);
     log.keep_up(&mut bench.autopilot, start + Duration::from_secs(1));

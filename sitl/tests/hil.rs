@@ -5,8 +5,8 @@ mod common;
 use common::settings;
 use mavlink::dialects::common::{HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, MavMessage};
 use sitl::hil::{ActuatorControls, Mount, Rig, STEP_US};
-use sitl::identity::Identity;
-use sitl::world::earth_field_ned;
+use vehicle::identity::Identity;
+use vehicle::world::earth_field_ned;
 
 fn rig(mount: Mount) -> Rig {
     Rig::new(&settings(Identity::Px4), mount).expect("the default airframe")
@@ -154,7 +154,7 @@ fn controls_are_rotor_speeds_and_end_with_the_signal() {
 #[test]
 fn what_stands_in_the_wind_stays() {
     let mut settings = settings(Identity::Px4);
-    settings.wind = sitl::world::WindSettings { speed_m_s: 10.0, from_rad: 0.0, gusts_m_s: 0.0, seed: 1 };
+    settings.wind = vehicle::world::WindSettings { speed_m_s: 10.0, from_rad: 0.0, gusts_m_s: 0.0, seed: 1 };
     settings.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut rig = Rig::new(&settings, Mount::X).expect("the default airframe");
     fly(&mut rig, 20.0, None);

@@ -2,8 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::GRAVITY_M_S2;
-use sitl::estimation::{TrueMotion, Vibration, barometer, gps, inertial, magnetometer};
-use sitl::world::{atmospheric_pressure_pa, pressure_altitude_m};
+use vehicle::estimation::{TrueMotion, Vibration, barometer, gps, inertial, magnetometer};
+use vehicle::world::{atmospheric_pressure_pa, pressure_altitude_m};
 
 fn at_rest(time_us: u64) -> TrueMotion {
     TrueMotion {

@@ -2,16 +2,16 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::{Client, PROTECTED, REMOVE, noise};
 use mavlink::dialects::common::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_LIST_DATA, MavMessage,
 };
-use sitl::codec::Message;
 use sitl::files::{Disk, LogFolder};
-use sitl::identity::Identity;
 use tempfile::TempDir;
+use vehicle::identity::Identity;
 
 fn list_logs() -> MavMessage {
     let (target_system, target_component) = (1, 1);

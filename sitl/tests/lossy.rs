@@ -9,7 +9,7 @@ use common::channel::Lossy;
 use mavlink::dialects::common::{
     MavCmd, MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
-use sitl::identity::Identity;
+use vehicle::identity::Identity;
 
 fn request(index: i16) -> MavMessage {
     let request = PARAM_REQUEST_READ_DATA {

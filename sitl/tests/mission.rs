@@ -4,15 +4,15 @@ mod common;
 
 use core::f64::consts::{PI, TAU};
 
+use autopilot::codec::Message;
 use common::Bench;
 use common::mission_flight::{Flight, NAN, SQUARE, at, simple, takeoff, waypoint};
 use common::plan_client::{result, upload};
 use mavlink::dialects::common::MavMessage;
 use nalgebra::Vector3;
-use sitl::codec::Message;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, PlanKind, command, frame};
-use sitl::vehicle::{LandedState, MissionState, Mode};
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, PlanKind, command, frame};
+use vehicle::{LandedState, MissionState, Mode};
 
 /// Distance from the line of a leg, m.
 fn off_line(place: &Vector3<f64>, from: [f64; 3], to: [f64; 3]) -> f64 {
@@ -224,7 +224,7 @@ fn what_is_not_given_stays_as_it_is() {
 #[test]
 fn tracking_errors_are_told() {
     let mut settings = common::settings(Identity::Px4);
-    settings.wind = sitl::world::WindSettings { speed_m_s: 5.0, from_rad: 0.0, gusts_m_s: 1.5, seed: 3 };
+    settings.wind = vehicle::world::WindSettings { speed_m_s: 5.0, from_rad: 0.0, gusts_m_s: 1.5, seed: 3 };
     settings.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut bench = Bench::of(&settings);
     upload(&mut bench, PlanKind::Mission, &[takeoff(), waypoint([0.0, 120.0, -10.0])]);
@@ -296,8 +296,8 @@ proptest::proptest! {
 #[test]
 fn a_square_is_flown_by_instruments() {
     let mut settings = common::settings(Identity::Px4);
-    settings.sensors.model = sitl::estimation::SensorModel::Realistic;
-    settings.wind = sitl::world::WindSettings { speed_m_s: 4.0, from_rad: 0.7, gusts_m_s: 1.0, seed: 11 };
+    settings.sensors.model = vehicle::estimation::SensorModel::Realistic;
+    settings.wind = vehicle::world::WindSettings { speed_m_s: 4.0, from_rad: 0.7, gusts_m_s: 1.0, seed: 11 };
     settings.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut bench = Bench::of(&settings);
     bench.fly(5.0);

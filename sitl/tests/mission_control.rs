@@ -4,15 +4,15 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::Bench;
 use common::mission_flight::{Flight, SQUARE, at, simple, takeoff, waypoint};
 use common::plan_client::{count_message, item_message, result, upload};
 use common::recording::Recording;
 use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
-use sitl::codec::Message;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, Plan, PlanKind, command};
-use sitl::vehicle::{MissionState, Mode};
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind, command};
+use vehicle::{MissionState, Mode};
 
 #[test]
 fn speeds_change_and_come_back() {
@@ -256,7 +256,7 @@ fn a_delay_lasts_until_a_time_of_day() {
 #[test]
 fn a_mission_replays_bit_for_bit() {
     let mut vehicle = common::settings(Identity::Px4);
-    vehicle.wind = sitl::world::WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 1.0, seed: 5 };
+    vehicle.wind = vehicle::world::WindSettings { speed_m_s: 3.0, from_rad: 1.0, gusts_m_s: 1.0, seed: 5 };
     vehicle.configuration.airframe.drag_n_s_m = [0.15; 3];
     let roi = at(command::DO_SET_ROI_LOCATION, [0.0; 4], [20.0, 20.0, 0.0]);
     vehicle.plans.set(

@@ -2,13 +2,13 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::Bench;
 use mavlink::dialects::common::{MavCmd, MavMessage};
 use nalgebra::Vector3;
-use sitl::codec::Message;
 use sitl::configuration::{Arguments, Settings};
 use sitl::record::Digest;
-use sitl::vehicle::Mode;
+use vehicle::Mode;
 
 fn bench(noise: &str, kalman: bool, seed: u64) -> Bench {
     let arguments = Arguments {
@@ -102,7 +102,7 @@ fn what_is_no_noise_is_refused() {
     }
     let both = Arguments {
         kalman: Some(true),
-        sensors: Some(sitl::estimation::SensorModel::Realistic),
+        sensors: Some(vehicle::estimation::SensorModel::Realistic),
         ..Arguments::default()
     };
     assert!(Settings::resolve(&both).expect_err("both").to_string().contains("of their own"));

@@ -6,7 +6,7 @@ use common::ftp_client::{CREATE, Client, ERRNO, FAIL, PROTECTED, REMOVE, TERMINA
 use mavlink::dialects::common::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionType};
 use mavlink::{MavlinkVersion, MessageData};
 use sitl::files::Disk;
-use sitl::plan::PlanKind;
+use vehicle::plan::PlanKind;
 
 /// Header and items, as ArduPilot packs them: those of the dialect with what it cuts off.
 fn packed(kind: u16, items: &[MISSION_ITEM_INT_DATA]) -> Vec<u8> {

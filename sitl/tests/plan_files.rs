@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use sitl::Failure;
 use sitl::configuration::read_plans;
-use sitl::identity::Identity;
-use sitl::plan::{PlanKind, Plans, Site, command};
-use sitl::world::{Geodetic, LocalFrame};
+use vehicle::identity::Identity;
+use vehicle::plan::{PlanKind, Plans, Site, command};
+use vehicle::world::{Geodetic, LocalFrame};
 
 fn site(identity: Identity) -> Site {
     let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 };

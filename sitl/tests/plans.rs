@@ -4,14 +4,14 @@
 
 mod common;
 
+use autopilot::codec::{Frame, Message, Version};
+use autopilot::service::{Origin, PeerId};
 use common::channel::Lossy;
 use common::plan_client::{ack_of, count_message, item_message, mission_type, request_of, result};
 use common::{Bench, GROUND_STATION};
 use mavlink::dialects::common::*;
-use sitl::codec::{Frame, Message, Version};
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, PlanKind, command, frame};
-use sitl::service::{Origin, PeerId};
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, PlanKind, command, frame};
 
 const ACCEPTED: u8 = 0;
 

@@ -8,10 +8,10 @@ use common::mission_flight::{Flight, at, takeoff};
 use common::{Bench, settings};
 use mavlink::dialects::common::{COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage};
 use nalgebra::Vector3;
-use sitl::identity::Identity;
-use sitl::plan::command;
-use sitl::vehicle::Mode;
-use sitl::world::LocalFrame;
+use vehicle::Mode;
+use vehicle::identity::Identity;
+use vehicle::plan::command;
+use vehicle::world::LocalFrame;
 
 const DENIED: u8 = 2;
 const UNSUPPORTED_FRAME: u8 = 9;

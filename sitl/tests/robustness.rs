@@ -3,12 +3,12 @@
 
 mod common;
 
+use autopilot::codec::{Frame, FrameDecoder, Version, target_of};
 use common::{Bench, command_long};
 use mavlink::Message as _;
 use mavlink::dialects::common::{MavCmd, MavMessage};
 use proptest::prelude::*;
-use sitl::codec::{Frame, FrameDecoder, Version, target_of};
-use sitl::identity::Identity;
+use vehicle::identity::Identity;
 
 /// A whole frame around any payload.
 fn framed(id: u32, payload: &[u8], version: Version) -> Option<Frame> {
@@ -103,7 +103,7 @@ proptest! {
             payload.extend([1, 1, coordinates]);
             let frame = framed(if global { 86 } else { 84 }, &payload, Version::Two).unwrap();
             bench.receive(&frame);
-            bench.set_mode(sitl::vehicle::Mode::Offboard);
+            bench.set_mode(vehicle::Mode::Offboard);
             bench.fly(0.3);
         }
         let outputs = bench.autopilot.vehicle().outputs();
@@ -144,7 +144,7 @@ fn cut_payloads_mean_the_same() {
     let two = Frame::encode(&message, Version::Two, 0, (255, 190)).unwrap();
     let one = Frame::encode(&message, Version::One, 0, (255, 190)).unwrap();
     assert!(two.payload_bytes().len() < one.payload_bytes().len());
-    assert_eq!(sitl::codec::Command::read(&two), sitl::codec::Command::read(&one));
+    assert_eq!(autopilot::codec::Command::read(&two), autopilot::codec::Command::read(&one));
 }
 
 /// Messages of the dialect are found by their numbers, also the one whose checksum begins with zero; others are noise.
@@ -168,7 +168,7 @@ fn an_endless_interval_is_survived() {
         let get = [30.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(bench.command(MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL, get), 0);
         let told = bench.heard.iter().any(|message| {
-            matches!(message, sitl::codec::Message::Typed(MavMessage::MESSAGE_INTERVAL(interval))
+            matches!(message, autopilot::codec::Message::Typed(MavMessage::MESSAGE_INTERVAL(interval))
                 if interval.message_id == 30 && interval.interval_us == i32::MAX)
         });
         assert!(told, "{:?}", bench.heard);

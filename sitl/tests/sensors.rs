@@ -2,6 +2,7 @@
 
 mod common;
 
+use autopilot::codec::Message;
 use common::recording::Recording;
 use common::{Bench, settings};
 use mavlink::dialects::common::{
@@ -9,11 +10,10 @@ use mavlink::dialects::common::{
     PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use nalgebra::Vector3;
-use sitl::codec::Message;
-use sitl::estimation::{SensorModel, SensorSettings};
-use sitl::identity::Identity;
-use sitl::vehicle::{Action, Mode, VehicleSettings};
-use sitl::world::WindSettings;
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::identity::Identity;
+use vehicle::world::WindSettings;
+use vehicle::{Action, Mode, VehicleSettings};
 
 const NOTHING: [f32; 7] = [0.0; 7];
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];

@@ -9,8 +9,8 @@ use mavlink::dialects::common::{
     AttitudeTargetTypemask, MavFrame, MavMessage, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
     SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
-use sitl::identity::Identity;
-use sitl::vehicle::Mode;
+use vehicle::Mode;
+use vehicle::identity::Identity;
 
 const POSITION_ONLY: u16 = 0b1101_1111_1000;
 const VELOCITY_ONLY: u16 = 0b1101_1100_0111;
@@ -299,7 +299,7 @@ fn the_heading_of_the_target_stays_within_half_a_turn() {
         .heard
         .iter()
         .filter_map(|message| match message {
-            sitl::codec::Message::Typed(message) => Some(message),
+            autopilot::codec::Message::Typed(message) => Some(message),
             _ => None,
         })
         .filter_map(|message| match message {

@@ -1,8 +1,8 @@
 //! Signing: pymavlink's signatures are ours, and what has come before, late, forged or unsigned is refused.
 
+use autopilot::codec::{Frame, Message, Version};
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA};
 use proptest::prelude::*;
-use sitl::codec::{Frame, Message, Version};
 use sitl::signing::{Kept, Refusal, SecretKey, Signing, timestamp};
 
 /// Some day of the year 2026.

@@ -41,8 +41,8 @@ fn what_goes_wrong_is_found() {
 
     // In gusts a vehicle does not stay within what it stays within in a calm.
     let mut figures = run::Figures::default();
-    let mut gusty = common::settings(sitl::identity::Identity::Px4);
-    gusty.wind = sitl::world::WindSettings { speed_m_s: 8.0, from_rad: 0.0, gusts_m_s: 3.0, seed: 1 };
+    let mut gusty = common::settings(vehicle::identity::Identity::Px4);
+    gusty.wind = vehicle::world::WindSettings { speed_m_s: 8.0, from_rad: 0.0, gusts_m_s: 3.0, seed: 1 };
     gusty.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut bench = common::Bench::of(&gusty);
     bench.arm();

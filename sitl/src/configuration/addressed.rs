@@ -4,8 +4,9 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use vehicle::fault::ScheduledFault;
+
 use crate::failure::Failure;
-use crate::fault::ScheduledFault;
 
 /// A value, and the system that it is for.
 #[derive(Clone, Debug, PartialEq)]

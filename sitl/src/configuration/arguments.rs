@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use vehicle::estimation::SensorModel;
+use vehicle::fault::ScheduledFault;
+use vehicle::parameters::Speed;
 
+use super::Conventions;
 use super::ranged::{number, whole};
 use super::{Addressed, Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
-use crate::estimation::SensorModel;
-use crate::fault::ScheduledFault;
 use crate::flight_log::LogStart;
 use crate::hil::Mount;
-use crate::identity::Identity;
 use crate::link::LinkSpecification;
-use crate::parameters::Speed;
 
 const AFTER_HELP: &str = "\
 Links:
@@ -104,7 +104,7 @@ pub struct Arguments {
 
     /// Whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT")]
-    pub autopilot: Option<Identity>,
+    pub autopilot: Option<Conventions>,
 
     /// Start: latitude and longitude in degrees, altitude above sea level in m, heading in degrees
     /// [default: 47.397742,8.545594,488,0]

@@ -68,7 +68,7 @@ fn is_setting(command: &Command, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{Arguments, parse};
-    use crate::parameters::Speed;
+    use vehicle::parameters::Speed;
 
     #[test]
     fn numbers_and_lists_read_as_a_person_writes_them() {

@@ -1,11 +1,12 @@
 //! `--hil HOST:PORT`: the plant alone, for an external autopilot.
 
+use vehicle::parameters::Speed;
+
 use super::Arguments;
 use super::settings::{end_us, first_system_id, vehicle};
 use crate::failure::Failure;
 use crate::hil::HilSettings;
 use crate::link::{Endpoint, LinkSpecification};
-use crate::parameters::Speed;
 
 impl HilSettings {
     /// Resolves arguments that ask for it.

@@ -2,8 +2,9 @@
 
 use std::str::FromStr;
 
+use vehicle::world::Geodetic;
+
 use super::settings::numbers;
-use crate::world::Geodetic;
 
 /// Where the vehicle stands at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 mod addressed;
 mod arguments;
+mod conventions;
 pub mod file;
 mod formation;
 mod hil;
@@ -16,6 +17,7 @@ mod wind;
 
 pub use addressed::Addressed;
 pub use arguments::Arguments;
+pub use conventions::Conventions;
 pub use formation::{Formation, Shape};
 pub use home::HomePosition;
 pub use noise::MeasurementNoise;

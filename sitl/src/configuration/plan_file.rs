@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use vehicle::plan::{Plans, Site, file};
+
 use crate::failure::Failure;
-use crate::plan::{Plans, Site, file};
 
 /// Reads the plans of a file for a vehicle at a site.
 ///

@@ -5,18 +5,19 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use quadrotor::Configuration;
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::fault::ScheduledFault;
+use vehicle::identity::Identity;
+use vehicle::parameters::{Host, ParameterTable, Speed, identifier, parse};
+use vehicle::plan::{Plans, Site};
+use vehicle::world::{LocalFrame, WindSettings};
+use vehicle::{Conduct, Vehicle, VehicleSettings};
 
 use super::{Arguments, Clocks, Ports, read_plans};
-use crate::estimation::{SensorModel, SensorSettings};
 use crate::failure::Failure;
-use crate::fault::ScheduledFault;
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
-use crate::parameters::{Host, ParameterTable, Speed, identifier, parse};
-use crate::plan::{Plans, Site};
 use crate::record::Participant;
-use crate::vehicle::{Conduct, Vehicle, VehicleSettings};
-use crate::world::{LocalFrame, WindSettings};
 
 /// Linear drag that the wind acts through when the airframe has none, N·s/m: 0.7 kg with an open frame drifts with
 /// 10 m/s of wind at a lean of 12°.
@@ -175,7 +176,7 @@ pub(super) fn vehicle(
     parameters: Option<&Path>,
 ) -> Result<VehicleSettings, Failure> {
     let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
-    let identity = arguments.autopilot.unwrap_or_default();
+    let identity: Identity = arguments.autopilot.unwrap_or_default().into();
     let home = arguments.home.unwrap_or_default();
     let wind = arguments.wind.unwrap_or_default();
     let gusts_m_s = arguments.gusts.unwrap_or(0.0);

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use autopilot::file_store::{Access, FileError, FileStore, LOGS, Listed, OpenFile};
+
 use super::log_folder::LogFolder;
 use super::mount::Mount;
-use super::store::{Access, FileError, FileStore, LOGS, Listed, OpenFile};
 use crate::failure::Failure;
 
 /// Name of the folder that the user shares.

@@ -6,10 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::UNIX_EPOCH;
 
+use autopilot::file_store::{Access, FileError, Listed, OpenFile};
 use cap_std::ambient_authority;
 use cap_std::fs::{Dir, File, OpenOptions};
-
-use super::store::{Access, FileError, Listed, OpenFile};
 
 /// Bytes of the largest file that a client may write.
 const LARGEST_FILE: u64 = 16 << 20;

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use autopilot::codec::Frame;
+
 use super::Member;
-use crate::codec::Frame;
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::link::Received;

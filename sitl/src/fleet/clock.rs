@@ -3,11 +3,12 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
+use vehicle::TICK_US;
+use vehicle::parameters::Speed;
+
 use super::Fleet;
 use crate::failure::Failure;
 use crate::pace::Pace;
-use crate::parameters::Speed;
-use crate::vehicle::TICK_US;
 
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);

@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::autopilot::Autopilot;
-use crate::codec::{Frame, id};
+use autopilot::Autopilot;
+use autopilot::codec::{Frame, id};
+use vehicle::parameters::Speed;
+
 use crate::failure::Failure;
 use crate::files::{Disk, Readers, replace};
 use crate::flight_log::FlightLog;
-use crate::parameters::Speed;
 use crate::record::{Digest, Participant};
 
 /// A client must hear a heartbeat this often, however slow simulation time is.

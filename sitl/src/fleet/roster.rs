@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
+use autopilot::codec::{id, target_of};
+
 use super::Member;
 use super::books::Books;
 use super::signing_keeper::SigningKeeper;
-use crate::codec::{id, target_of};
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, LogFolder};

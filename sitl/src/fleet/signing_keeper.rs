@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use vehicle::Severity;
+
 use crate::failure::Failure;
 use crate::link::{Links, SigningSetup};
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
-use crate::vehicle::Severity;
 
 /// Refused frames are told this often.
 const TOLD: Duration = Duration::from_secs(5);

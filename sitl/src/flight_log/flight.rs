@@ -4,15 +4,16 @@ use std::fs::File;
 use std::io;
 use std::time::{Duration, Instant};
 
+use autopilot::Autopilot;
+use vehicle::Severity;
+use vehicle::parameters::Value;
+
 use super::log_file::LogFile;
 use super::row::Row;
 use super::settings::{LogSettings, LogStart};
 use super::topics::{GRID_US, TOPICS};
 use super::ulog::{self, Definitions};
-use crate::autopilot::Autopilot;
 use crate::files::LogFolder;
-use crate::parameters::Value;
-use crate::vehicle::Severity;
 
 /// How often data reach the disk, in simulation time, µs, and by the wall clock.
 const FLUSH_US: u64 = 1_000_000;
@@ -210,7 +211,7 @@ fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
     definitions.information("ver_hw", "LMPC_SITL");
     definitions.information("ver_sw", concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION")));
     definitions.number("ver_data_format", DATA_FORMAT);
-    definitions.number("ver_sw_release", crate::service::identification::version());
+    definitions.number("ver_sw_release", autopilot::service::identification::version());
     definitions.information("sys_uuid", &format!("lmpc-sitl-{:03}", autopilot.system_id()));
     for topic in TOPICS {
         definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));

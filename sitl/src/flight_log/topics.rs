@@ -3,15 +3,15 @@
 //! What the vehicle believes comes from its telemetry; topics with `groundtruth` are the simulation's truth, as in PX4's
 //! simulations.
 
+use autopilot::Autopilot;
+use autopilot::service::telemetry;
 use mavlink::dialects::common::{GpsFixType, MavMessage};
 use quadrotor::ControllerActivity;
+use vehicle::estimation::Validity;
+use vehicle::identity::Identity;
+use vehicle::{LandedState, MissionState, SteeringKind};
 
 use super::row::Row;
-use crate::autopilot::Autopilot;
-use crate::estimation::Validity;
-use crate::identity::Identity;
-use crate::service::telemetry;
-use crate::vehicle::{LandedState, MissionState, SteeringKind};
 
 /// A topic.
 #[derive(Clone, Copy, Debug)]
@@ -370,7 +370,7 @@ fn battery_status(autopilot: &Autopilot, row: &mut Row) -> bool {
     // Its model has no noise to be filtered; readers that ask for both show neither without.
     row.reals([battery.voltage_v(), battery.voltage_v(), battery.current_a(), battery.drawn_ah() * 1e3]);
     row.reals([vehicle.battery_remaining(), battery.time_remaining_s(capacity_ah)]);
-    row.bool(true).u8(crate::vehicle::BATTERY_CELLS as u8);
+    row.bool(true).u8(vehicle::BATTERY_CELLS as u8);
     true
 }
 
@@ -387,7 +387,7 @@ fn vehicle_status(autopilot: &Autopilot, row: &mut Row) -> bool {
     let vehicle = autopilot.vehicle();
     row.u8(if vehicle.is_armed() { ARMED } else { DISARMED });
     row.u8(nav_state(Identity::Px4.custom_mode(vehicle.mode()))).u8(ROTARY_WING);
-    row.u8(autopilot.system_id()).u8(crate::autopilot::COMPONENT);
+    row.u8(autopilot.system_id()).u8(autopilot::COMPONENT);
     row.bool(vehicle.failsafe().engaged().is_some());
     true
 }

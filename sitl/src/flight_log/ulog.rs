@@ -1,6 +1,6 @@
 //! The bytes of ULog, as docs.px4.io describes them: a header, definitions, then data.
 
-use crate::parameters::Value;
+use vehicle::parameters::Value;
 
 /// "ULog", three more bytes, and version 1.
 const MAGIC: [u8; 8] = [0x55, 0x4c, 0x6f, 0x67, 0x01, 0x12, 0x35, 1];

@@ -1,6 +1,6 @@
 //! HIL_ACTUATOR_CONTROLS.
 
-use crate::codec::Frame;
+use autopilot::codec::Frame;
 
 /// What an autopilot wants of the motors.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,8 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
-use crate::codec::{Frame, FrameDecoder, Message, Version};
+use autopilot::codec::{Frame, FrameDecoder, Message, Version};
+
 use crate::link::is_nothing_yet;
 
 /// Component of a simulator, as Gazebo's has it.

@@ -1,13 +1,12 @@
 //! The instruments of the rig: those of the vehicle, read as often as an autopilot gets them.
 
 use nalgebra::Vector3;
-
-use crate::estimation::TrueMotion;
-use crate::estimation::barometer::{Barometer, BarometerReading};
-use crate::estimation::gps::{GpsFix, GpsReceiver};
-use crate::estimation::inertial::InertialUnit;
-use crate::estimation::magnetometer::{Magnetometer, MagnetometerReading};
-use crate::world::{LocalFrame, earth_field_ned};
+use vehicle::estimation::TrueMotion;
+use vehicle::estimation::barometer::{Barometer, BarometerReading};
+use vehicle::estimation::gps::{GpsFix, GpsReceiver};
+use vehicle::estimation::inertial::InertialUnit;
+use vehicle::estimation::magnetometer::{Magnetometer, MagnetometerReading};
+use vehicle::world::{LocalFrame, earth_field_ned};
 
 /// Age of a fix when it is told, µs: PX4 counts with this much behind its simulator interface (px4-rc.mavlinksim sets
 /// EKF2_GPS_DELAY, later SENS_GPS0_DELAY, to 10 ms).

@@ -1,17 +1,17 @@
 //! What the autopilot is told.
 
+use autopilot::codec::floats;
 use mavlink::dialects::common::{
     HEARTBEAT_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, HilSensorUpdatedFlags,
     MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
 };
 use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
+use vehicle::estimation::TrueMotion;
+use vehicle::estimation::gps::GpsFix;
+use vehicle::world::{LocalFrame, atmospheric_temperature_degc};
 
 use super::instruments::Readings;
-use crate::codec::floats;
-use crate::estimation::TrueMotion;
-use crate::estimation::gps::GpsFix;
-use crate::world::{LocalFrame, atmospheric_temperature_degc};
 
 /// HEARTBEAT of a simulator.
 pub fn heartbeat() -> MavMessage {

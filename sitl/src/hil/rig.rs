@@ -5,15 +5,15 @@ use nalgebra::Vector3;
 use quadrotor::{
     CascadeDesign, Configuration, ConfigurationError, Disturbance, GRAVITY_M_S2, Plant, SimulationError,
 };
+use vehicle::estimation::TrueMotion;
+use vehicle::world::{LocalFrame, Wind};
+use vehicle::{TICK_US, VehicleSettings};
 
 use super::actuator_controls::ActuatorControls;
 use super::instruments::Instruments;
 use super::messages;
 use super::mount::Mount;
-use crate::estimation::TrueMotion;
 use crate::record::Digest;
-use crate::vehicle::{TICK_US, VehicleSettings};
-use crate::world::{LocalFrame, Wind};
 
 /// From one HIL_SENSOR to the next, µs: PX4's 250 Hz.
 pub const STEP_US: u64 = 4_000;

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use vehicle::VehicleSettings;
+use vehicle::parameters::Speed;
+
 use super::Mount;
-use crate::parameters::Speed;
-use crate::vehicle::VehicleSettings;
 
 /// What the simulator of an external autopilot does.
 #[derive(Clone, Debug, PartialEq)]

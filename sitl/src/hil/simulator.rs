@@ -5,16 +5,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use autopilot::codec::{Command, CommandAck, Frame, Message, id};
+use vehicle::parameters::Speed;
+
 use super::actuator_controls::ActuatorControls;
 use super::client::{Client, Gone};
 use super::messages;
 use super::rig::{Rig, STEP_US};
 use super::settings::HilSettings;
-use crate::codec::{Command, CommandAck, Frame, Message, id};
 use crate::failure::Failure;
 use crate::link::{LinkError, resolve};
 use crate::pace::Pace;
-use crate::parameters::Speed;
 use crate::summary::{Flight, Summary};
 
 /// Between two looks for a connection, and longest rest of the pace.

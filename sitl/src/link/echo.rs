@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use crate::codec::Frame;
-use crate::service::PeerId;
+use autopilot::codec::Frame;
+use autopilot::service::PeerId;
 
 /// A frame that comes again within this time by another way is the same frame.
 const LATEST: Duration = Duration::from_millis(500);
@@ -40,8 +40,8 @@ mod tests {
     use mavlink::dialects::common::{MavMessage, SYSTEM_TIME_DATA};
 
     use super::{Echoes, LATEST, MOST};
-    use crate::codec::{Frame, Version};
-    use crate::service::PeerId;
+    use autopilot::codec::{Frame, Version};
+    use autopilot::service::PeerId;
 
     fn frame(time_unix_usec: u64) -> Frame {
         let message =

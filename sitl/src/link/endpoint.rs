@@ -4,9 +4,8 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use autopilot::service::LinkProfile;
 use serde::{Deserialize, Serialize};
-
-use crate::service::LinkProfile;
 
 /// Nothing is reachable from outside unless it is asked for.
 const LOCAL: &str = "127.0.0.1";

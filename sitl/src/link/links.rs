@@ -3,6 +3,10 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+use autopilot::COMPONENT;
+use autopilot::codec::{Frame, Version, id, target_of};
+use autopilot::service::{Destination, Origin, Outgoing, PeerId};
+
 use super::echo::Echoes;
 use super::endpoint::{Endpoint, LinkSpecification};
 use super::error::LinkError;
@@ -11,9 +15,6 @@ use super::signing_setup::SigningSetup;
 use super::tcp::Tcp;
 use super::transport::{Event, Transport};
 use super::udp::Udp;
-use crate::autopilot::COMPONENT;
-use crate::codec::{Frame, Version, id, target_of};
-use crate::service::{Destination, Origin, Outgoing, PeerId};
 use crate::signing::Signing;
 
 /// A received frame.
@@ -277,11 +278,11 @@ mod tests {
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
 
     use super::{Echoes, Link, Links};
-    use crate::codec::{Frame, Message, Version};
     use crate::link::SigningSetup;
     use crate::link::transport::{Event, Transport};
-    use crate::service::{Destination, Outgoing};
     use crate::signing::{SecretKey, Signing};
+    use autopilot::codec::{Frame, Message, Version};
+    use autopilot::service::{Destination, Outgoing};
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 

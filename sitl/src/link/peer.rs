@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use crate::codec::{Frame, FrameDecoder, Version};
+use autopilot::codec::{Frame, FrameDecoder, Version};
 
 /// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
 /// and change when they hear version 2.

@@ -1,6 +1,7 @@
 //! SETUP_SIGNING: a new key, from a local link only.
 
-use crate::codec::Frame;
+use autopilot::codec::Frame;
+
 use crate::signing::{SecretKey, Signing};
 
 /// An attempt to change the key.

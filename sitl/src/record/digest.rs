@@ -1,8 +1,7 @@
 //! A number that two flights share only if they are the same, bit for bit.
 
 use serde::Serialize;
-
-use crate::vehicle::Vehicle;
+use vehicle::Vehicle;
 
 /// How often the motion is taken in, µs.
 const PERIOD_US: u64 = 100_000;

@@ -14,14 +14,14 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use autopilot::codec::Frame;
+use autopilot::service::{LinkProfile, Origin, PeerId};
 use serde::{Deserialize, Serialize};
+use vehicle::VehicleSettings;
+use vehicle::parameters::Speed;
 
 use super::Digest;
-use crate::codec::Frame;
 use crate::failure::Failure;
-use crate::parameters::Speed;
-use crate::service::{LinkProfile, Origin, PeerId};
-use crate::vehicle::VehicleSettings;
 
 /// Name and version of the format.
 const FORMAT: &str = "lmpc-sitl record 2";

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use autopilot::Autopilot;
+use vehicle::TICK_US;
+
 use super::{Digest, Entry, Header, Participant, read};
-use crate::autopilot::Autopilot;
 use crate::failure::Failure;
 use crate::summary::Flight;
-use crate::vehicle::TICK_US;
 
 /// Flies every vehicle of a record again, each alone and as fast as possible, and compares the flights. Returns them:
 /// their digests are the recorded ones.

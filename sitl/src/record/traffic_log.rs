@@ -5,7 +5,8 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::codec::Frame;
+use autopilot::codec::Frame;
+
 use crate::failure::Failure;
 
 /// How often it reaches the disk, µs of its own time, and by the wall clock.
@@ -114,7 +115,7 @@ mod tests {
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
 
     use super::TrafficLog;
-    use crate::codec::{Frame, Version};
+    use autopilot::codec::{Frame, Version};
 
     #[test]
     fn full_files_make_room_and_no_frame_is_split_or_lost_among_those_kept() {

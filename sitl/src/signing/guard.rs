@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use autopilot::codec::{Frame, id};
+
 use super::kept::{Kept, Stream};
 use super::key::SecretKey;
-use crate::codec::{Frame, id};
 
 /// A new stream may begin this far behind, units of 10 µs: a minute.
 const NEW_STREAM_BEHIND: u64 = 6_000_000;

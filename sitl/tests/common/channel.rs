@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
+use autopilot::codec::{Frame, Message};
 use mavlink::dialects::common::{MavCmd, MavMessage, PARAM_VALUE_DATA};
-use sitl::codec::{Frame, Message};
-use sitl::identity::Identity;
+use vehicle::identity::Identity;
 
 use super::{Bench, command_long};
 

@@ -1,10 +1,10 @@
 //! Making things go wrong, and what the vehicle tells then.
 
+use autopilot::codec::Message;
 use mavlink::dialects::common::*;
-use sitl::codec::Message;
-use sitl::identity::Identity;
-use sitl::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
-use sitl::vehicle::{Action, Cause, Conduct, Mode};
+use vehicle::identity::Identity;
+use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
+use vehicle::{Action, Cause, Conduct, Mode};
 
 use super::{Bench, settings};
 
@@ -59,7 +59,7 @@ pub fn hovering(cause: Cause) -> Bench {
 pub fn hovering_as(identity: Identity, cause: Cause) -> Bench {
     let mut start = settings(identity);
     if cause == Cause::HighWind {
-        start.wind = sitl::world::WindSettings { speed_m_s: 6.0, ..start.wind };
+        start.wind = vehicle::world::WindSettings { speed_m_s: 6.0, ..start.wind };
     }
     Bench::hovering_with(&start)
 }

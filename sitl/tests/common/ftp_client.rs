@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use autopilot::codec::Message;
 use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
-use sitl::codec::Message;
 use sitl::files::Disk;
-use sitl::identity::Identity;
+use vehicle::identity::Identity;
 
 use super::Bench;
 

@@ -1,11 +1,11 @@
 //! Missions that are flown, and what is seen of the flight.
 
+use autopilot::codec::Message;
 use mavlink::dialects::common::MavMessage;
 use nalgebra::Vector3;
-use sitl::codec::Message;
-use sitl::identity::Identity;
-use sitl::plan::{MissionItem, PlanKind, command, frame};
-use sitl::vehicle::{MissionState, Mode};
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, PlanKind, command, frame};
+use vehicle::{MissionState, Mode};
 
 use super::Bench;
 use super::plan_client::{result, upload};

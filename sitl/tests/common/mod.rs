@@ -9,15 +9,15 @@ pub mod mission_flight;
 pub mod plan_client;
 pub mod recording;
 
+use autopilot::Autopilot;
+use autopilot::codec::{CommandAck, Frame, Message, Version};
+use autopilot::service::{LinkProfile, Origin, PeerId};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
-use sitl::Autopilot;
-use sitl::codec::{CommandAck, Frame, Message, Version};
-use sitl::estimation::SensorSettings;
-use sitl::identity::Identity;
-use sitl::parameters::Speed;
-use sitl::service::{LinkProfile, Origin, PeerId};
-use sitl::vehicle::{Conduct, Mode, VehicleSettings};
-use sitl::world::{Geodetic, WindSettings};
+use vehicle::estimation::SensorSettings;
+use vehicle::identity::Identity;
+use vehicle::parameters::Speed;
+use vehicle::world::{Geodetic, WindSettings};
+use vehicle::{Conduct, Mode, VehicleSettings};
 
 pub const GROUND_STATION: (u8, u8) = (255, 190);
 
@@ -32,7 +32,7 @@ pub fn settings(identity: Identity) -> VehicleSettings {
         wind: WindSettings::default(),
         faults: Vec::new(),
         sensors: SensorSettings::default(),
-        plans: sitl::plan::Plans::default(),
+        plans: vehicle::plan::Plans::default(),
     }
 }
 

@@ -2,9 +2,9 @@
 
 #![allow(deprecated)] // Clients still use what the dialect calls deprecated.
 
+use autopilot::codec::{Message, MissionItemMessage, Target};
 use mavlink::dialects::common::{MISSION_ACK_DATA, MISSION_COUNT_DATA, MavMessage, MavMissionType};
-use sitl::codec::{Message, MissionItemMessage, Target};
-use sitl::plan::{MissionItem, PlanKind};
+use vehicle::plan::{MissionItem, PlanKind};
 
 use super::Bench;
 

@@ -1,12 +1,12 @@
 //! A flight that is recorded, and its record.
 
-use sitl::codec::Message;
-use sitl::parameters::Speed;
+use autopilot::codec::Message;
+use autopilot::service::LinkProfile;
 use sitl::record::{Digest, Header, Participant, Recorder, replay};
-use sitl::service::LinkProfile;
-use sitl::vehicle::VehicleSettings;
 use sitl::{Failure, Flight};
 use tempfile::TempDir;
+use vehicle::VehicleSettings;
+use vehicle::parameters::Speed;
 
 use super::Bench;
 

@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
+use autopilot::codec::{Frame, FrameDecoder};
 use mavlink::dialects::common::MavMessage;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use sitl::codec::{Frame, FrameDecoder};
 
 static CORPUS: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     let bytes = |line: &str| {

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use sitl::Autopilot;
-use sitl::codec::{Message, Version};
+use autopilot::Autopilot;
+use autopilot::codec::{Message, Version};
+use autopilot::service::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
-use sitl::parameters::Speed;
 use sitl::record::{self, Digest, Header, Recorder};
-use sitl::service::{LinkProfile, Origin, PeerId};
 use sitl::signing::{Kept, SecretKey};
+use vehicle::parameters::Speed;
 
 use super::bytes::Bytes;
 
@@ -106,10 +106,10 @@ fn fly(arguments: &Arguments) {
 /// The parameters as the vehicle writes them.
 fn parameters() -> String {
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
-    let vehicle = sitl::vehicle::Vehicle::new(&settings.vehicles[0].vehicle).expect("defaults");
-    let table = sitl::parameters::ParameterTable::new(settings.vehicles[0].vehicle.identity);
-    let view = sitl::parameters::View { vehicle: &vehicle, system_id: 1, speed: Speed::Max };
-    sitl::parameters::render(&table, &view)
+    let vehicle = vehicle::Vehicle::new(&settings.vehicles[0].vehicle).expect("defaults");
+    let table = vehicle::parameters::ParameterTable::new(settings.vehicles[0].vehicle.identity);
+    let view = vehicle::parameters::View { vehicle: &vehicle, system_id: 1, speed: Speed::Max };
+    vehicle::parameters::render(&table, &view)
 }
 
 /// A short record.
@@ -119,7 +119,7 @@ fn recorded(path: &Path) {
     let mut recorder =
         Recorder::create(path, &Header::new(Speed::Max, settings.participants())).expect("a file");
     let message = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
-    let frame = sitl::codec::Frame::encode(&message, Version::Two, 0, (255, 190)).expect("a frame");
+    let frame = autopilot::codec::Frame::encode(&message, Version::Two, 0, (255, 190)).expect("a frame");
     let origin = Origin { peer: PeerId { link: 0, number: 0 }, system: 255, component: 190 };
     for time_us in [0, 1_000, 250_000] {
         recorder.frame(0, time_us, &origin, &frame).expect("written");

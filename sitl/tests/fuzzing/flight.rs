@@ -1,15 +1,14 @@
 //! Bytes of all kinds into the decoder and the vehicle.
 
-use sitl::Autopilot;
-use sitl::codec::{Frame, FrameDecoder};
-use sitl::configuration::{Arguments, Settings};
-use sitl::estimation::SensorModel;
+use autopilot::Autopilot;
+use autopilot::codec::{Frame, FrameDecoder};
+use autopilot::service::{LinkProfile, Origin, PeerId};
+use sitl::configuration::{Arguments, Conventions, Settings};
 use sitl::files::{Disk, LogFolder};
-use sitl::identity::Identity;
-use sitl::parameters::Speed;
 use sitl::record::Digest;
-use sitl::service::{LinkProfile, Origin, PeerId};
 use tempfile::TempDir;
+use vehicle::estimation::SensorModel;
+use vehicle::parameters::Speed;
 
 use super::bytes::{Bytes, command, framed, position_target};
 
@@ -27,9 +26,9 @@ const LONGEST_FRAME: usize = 280;
 /// ends, or if its memory grows. Returns the number of frames that arrived.
 pub fn anything(seed: u64) -> u64 {
     let mut bytes = Bytes::new(seed);
-    let identity = if seed.is_multiple_of(2) { Identity::Px4 } else { Identity::ArduPilot };
+    let conventions = if seed.is_multiple_of(2) { Conventions::Px4 } else { Conventions::ArduPilot };
     let sensors = if seed.is_multiple_of(8) { SensorModel::Realistic } else { SensorModel::Ideal };
-    let mut target = Target::new(identity, sensors);
+    let mut target = Target::new(conventions, sensors);
     if bytes.below(2) == 0 {
         target.take_off();
     }
@@ -49,7 +48,7 @@ pub fn anything(seed: u64) -> u64 {
 pub fn undisturbed(seed: u64) -> u64 {
     let fly = |disturbed: bool| {
         let mut bytes = Bytes::new(seed);
-        let mut target = Target::new(Identity::Px4, SensorModel::Ideal);
+        let mut target = Target::new(Conventions::Px4, SensorModel::Ideal);
         target.take_off();
         let (mut digest, mut decoder) = (Digest::default(), FrameDecoder::default());
         for tick in 0..8_000 {
@@ -85,9 +84,9 @@ struct Target {
 }
 
 impl Target {
-    fn new(identity: Identity, sensors: SensorModel) -> Self {
+    fn new(conventions: Conventions, sensors: SensorModel) -> Self {
         let arguments =
-            Arguments { autopilot: Some(identity), sensors: Some(sensors), ..Arguments::default() };
+            Arguments { autopilot: Some(conventions), sensors: Some(sensors), ..Arguments::default() };
         let settings = Settings::resolve(&arguments).expect("defaults").vehicles[0].vehicle.clone();
         let links = [LinkProfile::Ground, LinkProfile::Onboard];
         let mut autopilot = Autopilot::new(&settings, 1, Speed::Max, &links, 0).expect("defaults");

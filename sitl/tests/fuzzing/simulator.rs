@@ -1,6 +1,6 @@
 //! Controls of all kinds into the plant that an external autopilot flies.
 
-use sitl::codec::{Frame, FrameDecoder};
+use autopilot::codec::{Frame, FrameDecoder};
 use sitl::configuration::{Arguments, Settings};
 use sitl::hil::{ActuatorControls, Mount, Rig};
 

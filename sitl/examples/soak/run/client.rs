@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
+use autopilot::Autopilot;
+use autopilot::codec::{Frame, Version};
+use autopilot::service::{Destination, Origin, PeerId};
 use mavlink::Message as _;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MISSION_ITEM_INT_DATA, MavMessage};
-use sitl::Autopilot;
-use sitl::codec::{Frame, Version};
-use sitl::service::{Destination, Origin, PeerId};
-use sitl::vehicle::LandedState;
+use vehicle::LandedState;
 
 use super::chance::Chance;
 use super::channel::Channel;

@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
+use autopilot::Autopilot;
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
 };
 use nalgebra::Vector3;
-use sitl::Autopilot;
-use sitl::vehicle::LandedState;
+use vehicle::LandedState;
 
 use super::chance::Chance;
 use super::task::Step;

@@ -1,15 +1,15 @@
 //! One vehicle and its clients.
 
+use autopilot::codec::{Frame, Version};
+use autopilot::service::LinkProfile;
+use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
-use sitl::codec::{Frame, Version};
 use sitl::configuration::MemberSettings;
-use sitl::estimation::SensorModel;
 use sitl::flight_log::{Row, TOPICS};
-use sitl::parameters::Speed;
-use sitl::service::LinkProfile;
-use sitl::vehicle::TICK_US;
-use sitl::world::WindSettings;
-use sitl::{Autopilot, COMPONENT};
+use vehicle::TICK_US;
+use vehicle::estimation::SensorModel;
+use vehicle::parameters::Speed;
+use vehicle::world::WindSettings;
 
 use super::Options;
 use super::chance::Chance;

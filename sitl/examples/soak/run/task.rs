@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use autopilot::Autopilot;
 use mavlink::dialects::common::{
     MISSION_ACK_DATA, MISSION_COUNT_DATA, MISSION_ITEM_INT_DATA, MISSION_REQUEST_INT_DATA,
     MISSION_REQUEST_LIST_DATA, MavFrame, MavMessage, MavMissionResult, MavMissionType, MavParamType,
@@ -10,9 +11,8 @@ use mavlink::dialects::common::{
     SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use nalgebra::Vector3;
-use sitl::Autopilot;
-use sitl::estimation::SensorModel;
-use sitl::vehicle::LandedState;
+use vehicle::LandedState;
+use vehicle::estimation::SensorModel;
 
 use super::figures::Figures;
 

@@ -1,8 +1,8 @@
 //! What must always hold, seen from the true motion and independent of how the vehicle comes to its own view.
 
+use autopilot::Autopilot;
 use nalgebra::Vector3;
-use sitl::Autopilot;
-use sitl::vehicle::{LandedState, Mode, SteeringKind};
+use vehicle::{LandedState, Mode, SteeringKind};
 
 use super::figures::Figures;
 

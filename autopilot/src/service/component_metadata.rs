@@ -1,0 +1,81 @@
+//! Component metadata: what a ground station needs to show parameters that it does not know.
+
+use mavlink::dialects::common::{COMPONENT_METADATA_DATA, MavMessage};
+use serde_json::{Map, Value as Json, json};
+use vehicle::parameters::Value;
+
+use super::file_transfer::checksum;
+use crate::autopilot::Autopilot;
+
+/// COMP_METADATA_TYPE_PARAMETER.
+const TYPE_PARAMETER: u8 = 1;
+const GENERAL_URI: &str = "mftp:///metadata/general.json";
+const PARAMETERS_URI: &str = "mftp:///metadata/parameters.json";
+
+/// COMPONENT_METADATA: where the general file is, and its checksum.
+pub fn message(autopilot: &Autopilot) -> MavMessage {
+    MavMessage::COMPONENT_METADATA(COMPONENT_METADATA_DATA {
+        time_boot_ms: (autopilot.vehicle.time_us() / 1000) as u32,
+        file_crc: checksum(&general(autopilot)),
+        uri: GENERAL_URI.into(),
+    })
+}
+
+/// The general file: which others there are.
+pub fn general(autopilot: &Autopilot) -> Vec<u8> {
+    let types = json!([{
+        "type": TYPE_PARAMETER,
+        "uri": PARAMETERS_URI,
+        "fileCrc": checksum(&parameters(autopilot)),
+    }]);
+    json!({ "version": 1, "metadataTypes": types }).to_string().into_bytes()
+}
+
+/// The file about parameters. It stays the same however they are set: clients keep it by its checksum.
+pub fn parameters(autopilot: &Autopilot) -> Vec<u8> {
+    let entries = autopilot.table.entries().iter().zip(autopilot.initial_parameters());
+    let parameters: Vec<Json> = entries
+        .map(|(entry, initial)| {
+            let description = entry.describe();
+            let (minimum, maximum) = description.range;
+            let mut parameter = Map::new();
+            let mut put = |key: &str, value: Json| parameter.insert(key.to_owned(), value);
+            put("name", json!(entry.id));
+            put("shortDesc", json!(description.text));
+            put("group", json!(description.group));
+            match initial {
+                Value::Real(value) => {
+                    put("type", json!("Float"));
+                    // The shortest text that reads back as the same float.
+                    put("default", json!(value.to_string().parse::<f64>().unwrap_or_default()));
+                    put("min", json!(minimum));
+                    put("max", json!(maximum));
+                    put("decimalPlaces", json!(decimal_places(f64::from(*value))));
+                }
+                Value::Integer(value) => {
+                    put("type", json!("Int32"));
+                    put("default", json!(value));
+                    put("min", json!(minimum as i64));
+                    put("max", json!(maximum as i64));
+                }
+            }
+            if !description.unit.is_empty() {
+                put("units", json!(description.unit));
+            }
+            if description.fixed_in_flight {
+                put("longDesc", json!("Changes only while disarmed on the ground."));
+            }
+            if !description.names.is_empty() {
+                let name = |(value, text): &(i32, String)| json!({ "value": value, "description": text });
+                put("values", description.names.iter().map(name).collect());
+            }
+            Json::Object(parameter)
+        })
+        .collect();
+    json!({ "version": 1, "parameters": parameters }).to_string().into_bytes()
+}
+
+/// Enough to show a value with three digits.
+fn decimal_places(value: f64) -> u32 {
+    if value == 0.0 { 3 } else { (2.0 - libm::floor(libm::log10(value.abs()))).clamp(0.0, 9.0) as u32 }
+}

@@ -1,0 +1,84 @@
+//! HEARTBEAT: once a second, and at once when mode or arming change.
+
+use mavlink::dialects::common::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType};
+use vehicle::identity::Identity;
+use vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
+
+use super::Destination;
+use crate::autopilot::Autopilot;
+
+const PERIOD_US: u64 = 1_000_000;
+
+/// What was told last, and when to tell again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Heartbeat {
+    told: Option<(bool, Mode, bool, MavState)>,
+    due_us: u64,
+}
+
+/// Sends a heartbeat if one is due.
+pub fn update(autopilot: &mut Autopilot) {
+    let vehicle = &autopilot.vehicle;
+    let idle = vehicle.steering_kind() == SteeringKind::Idle;
+    let now = (vehicle.is_armed(), vehicle.mode(), idle, system_status(vehicle));
+    let time_us = vehicle.time_us();
+    if autopilot.heartbeat.told == Some(now) && time_us < autopilot.heartbeat.due_us {
+        return;
+    }
+    autopilot.heartbeat = Heartbeat { told: Some(now), due_us: time_us + PERIOD_US };
+    beat(autopilot);
+}
+
+/// Sends a heartbeat.
+pub fn beat(autopilot: &mut Autopilot) {
+    let message = message(&autopilot.vehicle);
+    autopilot.send(Destination::Everyone, message);
+}
+
+/// The heartbeat of now.
+pub fn message(vehicle: &Vehicle) -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        custom_mode: vehicle.identity().custom_mode(vehicle.mode()),
+        mavtype: MavType::MAV_TYPE_QUADROTOR,
+        autopilot: match vehicle.identity() {
+            Identity::Px4 => MavAutopilot::MAV_AUTOPILOT_PX4,
+            Identity::ArduPilot => MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+            Identity::Generic => MavAutopilot::MAV_AUTOPILOT_GENERIC,
+        },
+        base_mode: base_mode(vehicle),
+        system_status: system_status(vehicle),
+        mavlink_version: 3,
+    })
+}
+
+fn system_status(vehicle: &Vehicle) -> MavState {
+    if vehicle.is_terminated() {
+        return MavState::MAV_STATE_FLIGHT_TERMINATION;
+    }
+    if !vehicle.is_armed() {
+        return MavState::MAV_STATE_STANDBY;
+    }
+    let failsafe = vehicle.failsafe();
+    let acts = |cause: &Cause| vehicle.conduct().failsafe.action(*cause) > Action::Warn;
+    if failsafe.present().filter(acts).any(Cause::is_emergency) {
+        MavState::MAV_STATE_EMERGENCY
+    } else if failsafe.engaged().is_some() {
+        MavState::MAV_STATE_CRITICAL
+    } else {
+        MavState::MAV_STATE_ACTIVE
+    }
+}
+
+fn base_mode(vehicle: &Vehicle) -> MavModeFlag {
+    let stabilized =
+        MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED;
+    let guided = stabilized | MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED;
+    let flags = match vehicle.mode() {
+        Mode::Position => stabilized | MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
+        Mode::Offboard => guided,
+        Mode::Takeoff | Mode::Hold | Mode::Mission | Mode::Return | Mode::Land => {
+            guided | MavModeFlag::MAV_MODE_FLAG_AUTO_ENABLED
+        }
+    };
+    if vehicle.is_armed() { flags | MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED } else { flags }
+}

@@ -1,0 +1,60 @@
+//! AUTOPILOT_VERSION and PROTOCOL_VERSION: what this is and what it can do.
+
+use mavlink::dialects::common::{
+    AUTOPILOT_VERSION_DATA, MavMessage, MavProtocolCapability, PROTOCOL_VERSION_DATA,
+};
+use vehicle::identity::Identity;
+
+/// Our own: "LM" and "PC".
+const VENDOR_ID: u16 = 0x4c4d;
+const PRODUCT_ID: u16 = 0x5043;
+
+/// AUTOPILOT_VERSION. It names no other autopilot's version, and no commit.
+pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
+    let mut capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
+    capabilities |= if identity.is_ardupilot() {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
+    } else {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+    };
+    MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
+        capabilities,
+        uid: u64::from(VENDOR_ID) << 48 | u64::from(PRODUCT_ID) << 32 | u64::from(system_id),
+        flight_sw_version: version(),
+        vendor_id: VENDOR_ID,
+        product_id: PRODUCT_ID,
+        ..AUTOPILOT_VERSION_DATA::default()
+    })
+}
+
+/// Major, minor, patch and the type of the release (0: development), a byte each.
+pub fn version() -> u32 {
+    let number = |text: &str| text.parse::<u8>().unwrap_or(0);
+    u32::from_be_bytes([
+        number(env!("CARGO_PKG_VERSION_MAJOR")),
+        number(env!("CARGO_PKG_VERSION_MINOR")),
+        number(env!("CARGO_PKG_VERSION_PATCH")),
+        0,
+    ])
+}
+
+/// PROTOCOL_VERSION: MAVLink 1 is understood, 2 is spoken.
+pub fn protocol_version() -> MavMessage {
+    MavMessage::PROTOCOL_VERSION(PROTOCOL_VERSION_DATA {
+        version: 200,
+        min_version: 100,
+        max_version: 200,
+        ..PROTOCOL_VERSION_DATA::default()
+    })
+}

@@ -1,0 +1,82 @@
+//! Starting a mission, its current item, and how far it has come.
+
+use mavlink::dialects::common::{
+    MISSION_CURRENT_DATA, MISSION_ITEM_REACHED_DATA, MavMessage, MissionState as MavMissionState,
+};
+use vehicle::plan::PlanKind;
+use vehicle::{MissionState, MissionStatus, Refusal, Severity, Vehicle};
+
+use crate::autopilot::Autopilot;
+use crate::codec::{Command, Frame};
+use crate::service::{Destination, status_text};
+
+/// MAV_CMD_MISSION_START: first item; zero or less begins where the mission is. PX4 arms for it, ArduPilot wants to be armed.
+pub fn start(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    let first = command.whole(1).filter(|first| *first > 0).map(|first| first as usize);
+    let vehicle = &mut autopilot.vehicle;
+    if !vehicle.is_armed() && vehicle.identity().is_ardupilot() {
+        return Err(Refusal::Failed("Mission rejected: not armed".to_owned()));
+    }
+    vehicle.start_mission(first)?;
+    vehicle.arm(false)
+}
+
+/// MAV_CMD_DO_SET_MISSION_CURRENT: item (−1: the present one), and whether the mission begins anew.
+pub fn set_current_by_command(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+    let reset = command.parameter(2) == 1.0;
+    let index = if command.parameter(1) == -1.0 {
+        autopilot.vehicle.mission_status().current
+    } else {
+        command.whole(1).ok_or_else(|| Refusal::denied("A mission item has a number"))? as usize
+    };
+    autopilot.vehicle.set_mission_item(index, reset)?;
+    tell(autopilot);
+    Ok(())
+}
+
+/// MISSION_SET_CURRENT: answered to everyone, by the new item or by why there is none.
+pub fn set_current(autopilot: &mut Autopilot, frame: &Frame) {
+    match autopilot.vehicle.set_mission_item(usize::from(frame.payload().u16(0)), false) {
+        Ok(()) => tell(autopilot),
+        Err(refusal) => status_text::send(autopilot, Severity::Error, &refusal.to_string()),
+    }
+}
+
+/// MISSION_CURRENT.
+pub fn current(vehicle: &Vehicle) -> MavMessage {
+    let MissionStatus { current, total, state, in_mode } = vehicle.mission_status();
+    let id = |kind| vehicle.plans().get(kind).id();
+    let number = |value: usize| u16::try_from(value).unwrap_or(u16::MAX);
+    MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
+        seq: number(current),
+        total: if state == MissionState::None { u16::MAX } else { number(total) },
+        mission_state: match state {
+            MissionState::None => MavMissionState::MISSION_STATE_NO_MISSION,
+            MissionState::NotStarted => MavMissionState::MISSION_STATE_NOT_STARTED,
+            MissionState::Active => MavMissionState::MISSION_STATE_ACTIVE,
+            MissionState::Paused => MavMissionState::MISSION_STATE_PAUSED,
+            MissionState::Complete => MavMissionState::MISSION_STATE_COMPLETE,
+        },
+        mission_mode: if in_mode { 1 } else { 2 },
+        mission_id: id(PlanKind::Mission),
+        fence_id: id(PlanKind::Fence),
+        rally_points_id: id(PlanKind::Rally),
+    })
+}
+
+fn tell(autopilot: &mut Autopilot) {
+    autopilot.mission_told = Some(autopilot.vehicle.mission_status());
+    let message = current(&autopilot.vehicle);
+    autopilot.send(Destination::Everyone, message);
+}
+
+/// Tells at once what was reached, and what has changed.
+pub fn update_progress(autopilot: &mut Autopilot) {
+    for seq in autopilot.vehicle.take_reached_items() {
+        let message = MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq });
+        autopilot.send(Destination::Everyone, message);
+    }
+    if autopilot.mission_told != Some(autopilot.vehicle.mission_status()) {
+        tell(autopilot);
+    }
+}

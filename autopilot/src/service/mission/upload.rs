@@ -1,0 +1,349 @@
+//! Uploads: one at a time, item by item in order; the vehicle asks for each.
+
+use mavlink::dialects::common::{
+    MISSION_REQUEST_DATA, MISSION_REQUEST_INT_DATA, MavMessage, MavMissionResult,
+};
+use vehicle::Severity;
+use vehicle::parameters::Speed;
+use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind, check};
+
+use super::answer;
+use crate::autopilot::Autopilot;
+use crate::codec::{Frame, MissionItemMessage};
+use crate::service::{Destination, Origin, status_text};
+
+/// An item is asked for again after this long, µs, as the protocol recommends.
+const RETRY_US: f64 = 250_000.0;
+/// So often; PX4 waits for as long in all.
+const MOST_RETRIES: u32 = 20;
+/// A client that has never answered MISSION_REQUEST_INT after so many may know only the older MISSION_REQUEST.
+const OLDER_AFTER: u32 = 4;
+/// Pace that is counted on when time runs as fast as it can.
+const FULL_SPEED: f64 = 100.0;
+/// For this long, µs, late copies of an upload's messages are recognized.
+const REMEMBERED_US: u64 = 10_000_000;
+
+/// The upload that is under way, and the one before it.
+#[derive(Clone, Debug, Default)]
+pub struct Uploads {
+    receiving: Option<Upload>,
+    finished: Option<Finished>,
+}
+
+/// An upload under way.
+#[derive(Clone, Debug)]
+struct Upload {
+    origin: Origin,
+    kind: PlanKind,
+    /// Whether the other items of the plan stay.
+    partial: bool,
+    /// Numbers of the items that are written.
+    first: usize,
+    end: usize,
+    items: Vec<MissionItem>,
+    /// Frame that began it: a copy of it begins nothing.
+    begun_by: u8,
+    /// Whether the client has answered with MISSION_ITEM_INT, or with the older MISSION_ITEM.
+    int: Option<bool>,
+    asked_us: u64,
+    retries: u32,
+}
+
+/// An upload that is over.
+#[derive(Clone, Debug)]
+struct Finished {
+    origin: Origin,
+    kind: PlanKind,
+    begun_by: u8,
+    last: Option<usize>,
+    /// The answer, to be given again if it was lost.
+    answer: Result<u32, FaultCode>,
+    time_us: u64,
+}
+
+impl Upload {
+    fn next(&self) -> usize {
+        self.first + self.items.len()
+    }
+}
+
+/// MISSION_COUNT: an upload begins.
+pub fn count(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let payload = frame.payload();
+    begin(autopilot, origin, frame, payload.u8(4), None, usize::from(payload.u16(0)));
+}
+
+/// MISSION_WRITE_PARTIAL_LIST: items of the plan are replaced, others may follow behind them.
+pub fn write_partial_list(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let payload = frame.payload();
+    let (start, end, number) = (payload.i16(0), payload.i16(2), payload.u8(6));
+    let there = PlanKind::of(number).map_or(0, |kind| autopilot.vehicle.plans().get(kind).items().len());
+    match (usize::try_from(start), usize::try_from(end)) {
+        (Ok(first), Ok(last)) if first <= last && first <= there => {
+            begin(autopilot, origin, frame, number, Some(first), last + 1);
+        }
+        _ => {
+            let reason = format!("items {start} to {end} of {there} cannot be written");
+            let fault = PlanFault::of_plan(FaultCode::InvalidSequence, reason);
+            answer::refused_aloud(autopilot, origin, number, &fault);
+        }
+    }
+}
+
+fn begin(
+    autopilot: &mut Autopilot,
+    origin: &Origin,
+    frame: &Frame,
+    number: u8,
+    partial_from: Option<usize>,
+    end: usize,
+) {
+    let Some(kind) = PlanKind::of(number) else {
+        answer::refused(autopilot, origin, number, FaultCode::Invalid);
+        return;
+    };
+    if is_copy(autopilot, origin, kind, frame.sequence()) {
+        return;
+    }
+    if denied(autopilot, origin, number) {
+        return;
+    }
+    if end > kind.capacity() {
+        let reason = format!("{end} items are more than {}", kind.capacity());
+        let fault = PlanFault::of_plan(FaultCode::NoSpace, reason);
+        answer::refused_aloud(autopilot, origin, number, &fault);
+        return;
+    }
+    autopilot.uploads.receiving = Some(Upload {
+        origin: *origin,
+        kind,
+        partial: partial_from.is_some(),
+        first: partial_from.unwrap_or(0),
+        end,
+        items: Vec::new(),
+        begun_by: frame.sequence(),
+        int: None,
+        asked_us: 0,
+        retries: 0,
+    });
+    go_on(autopilot);
+}
+
+/// Whether a message that begins an upload is a late copy of one that did.
+fn is_copy(autopilot: &Autopilot, origin: &Origin, kind: PlanKind, sequence: u8) -> bool {
+    let time_us = autopilot.vehicle.time_us();
+    let uploads = &autopilot.uploads;
+    let under_way = uploads
+        .receiving
+        .as_ref()
+        .is_some_and(|upload| (upload.origin, upload.kind, upload.begun_by) == (*origin, kind, sequence));
+    let over = uploads.finished.as_ref().is_some_and(|finished| {
+        (finished.origin, finished.kind, finished.begun_by) == (*origin, kind, sequence)
+            && time_us - finished.time_us < REMEMBERED_US
+    });
+    under_way || over
+}
+
+/// Refuses what would disturb somebody else's upload.
+fn denied(autopilot: &mut Autopilot, origin: &Origin, number: u8) -> bool {
+    let foreign = autopilot.uploads.receiving.as_ref().is_some_and(|upload| upload.origin != *origin);
+    if foreign {
+        let fault = PlanFault::of_plan(FaultCode::Denied, "another client is uploading");
+        answer::refused_aloud(autopilot, origin, number, &fault);
+    }
+    foreign
+}
+
+/// Asks for the next item, or takes the plan over if there is none left.
+fn go_on(autopilot: &mut Autopilot) {
+    let Some(upload) = &mut autopilot.uploads.receiving else { return };
+    if upload.next() < upload.end {
+        upload.retries = 0;
+        ask(autopilot);
+        return;
+    }
+    let Upload { kind, partial, first, end, .. } = *upload;
+    let items = std::mem::take(&mut upload.items);
+    let taken = if partial {
+        let mut plan = autopilot.vehicle.plans().get(kind).items().to_vec();
+        let end = end.min(plan.len());
+        plan.splice(first.min(end)..end, items);
+        autopilot.vehicle.amend_plan(kind, plan)
+    } else {
+        autopilot.vehicle.set_plan(kind, items)
+    };
+    match taken {
+        Ok(()) => {
+            let id = autopilot.vehicle.plans().get(kind).id();
+            finish(autopilot, Ok(id));
+        }
+        Err(fault) => fail(autopilot, &fault),
+    }
+}
+
+/// Asks for the next item. Clients differ in which of the two requests they understand.
+fn ask(autopilot: &mut Autopilot) {
+    let time_us = autopilot.vehicle.time_us();
+    let Some(upload) = &mut autopilot.uploads.receiving else { return };
+    upload.asked_us = time_us;
+    let older = match upload.int {
+        Some(true) => false,
+        // Some answer either request with the older item.
+        Some(false) => upload.retries % 2 == 0,
+        None => upload.retries >= OLDER_AFTER && upload.retries % 2 == 0,
+    };
+    let Origin { peer, system: target_system, component: target_component } = upload.origin;
+    let seq = u16::try_from(upload.next()).unwrap_or(u16::MAX);
+    let mission_type = answer::kind_of(upload.kind.number());
+    let message = if older {
+        let request = MISSION_REQUEST_DATA { seq, target_system, target_component, mission_type };
+        MavMessage::MISSION_REQUEST(request)
+    } else {
+        let request = MISSION_REQUEST_INT_DATA { seq, target_system, target_component, mission_type };
+        MavMessage::MISSION_REQUEST_INT(request)
+    };
+    autopilot.send(Destination::Peer(peer), message);
+}
+
+/// MISSION_ITEM_INT or MISSION_ITEM.
+pub fn item(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let Some(message) = MissionItemMessage::read(frame) else { return };
+    let sequence = usize::from(message.sequence);
+    let own = autopilot.uploads.receiving.as_mut().filter(|upload| upload.origin == *origin);
+    let Some(upload) = own else {
+        unexpected(autopilot, origin, &message);
+        return;
+    };
+    if message.kind != upload.kind.number() {
+        let wrong = format!("type {} in an upload of type {}", message.kind, upload.kind.number());
+        fail(autopilot, &PlanFault::of_item(sequence, FaultCode::Invalid, wrong));
+        return;
+    }
+    let next = upload.next();
+    if sequence != next {
+        // A copy of an earlier one needs no answer; one that came too early has lost its predecessor.
+        if sequence > next && sequence < upload.end {
+            ask(autopilot);
+        }
+        return;
+    }
+    upload.int = Some(message.int);
+    let kind = upload.kind;
+    match check::item(kind, sequence, &message.item, &autopilot.vehicle.site()) {
+        Ok(()) => {
+            if let Some(upload) = &mut autopilot.uploads.receiving {
+                upload.items.push(message.item);
+            }
+            go_on(autopilot);
+        }
+        Err(fault) => fail(autopilot, &fault),
+    }
+}
+
+/// An item that nobody has asked this client for: a copy, or its upload is over and it has not heard so.
+fn unexpected(autopilot: &mut Autopilot, origin: &Origin, message: &MissionItemMessage) {
+    let time_us = autopilot.vehicle.time_us();
+    let own = autopilot.uploads.finished.as_ref().filter(|finished| {
+        finished.origin == *origin
+            && finished.kind.number() == message.kind
+            && time_us - finished.time_us < REMEMBERED_US
+    });
+    let Some(finished) = own else {
+        if !denied(autopilot, origin, message.kind) {
+            answer::refused(autopilot, origin, message.kind, FaultCode::Error);
+        }
+        return;
+    };
+    if finished.last == Some(usize::from(message.sequence)) {
+        let answer = finished.answer;
+        repeat(autopilot, origin, message.kind, answer);
+    }
+}
+
+fn repeat(autopilot: &mut Autopilot, origin: &Origin, number: u8, answer: Result<u32, FaultCode>) {
+    match answer {
+        Ok(id) => answer::accepted(autopilot, origin, number, id),
+        Err(code) => answer::refused(autopilot, origin, number, code),
+    }
+}
+
+/// MISSION_ACK from a client: the end of a download, or the cancellation of its upload.
+pub fn acknowledge(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let payload = frame.payload();
+    let (result, number) = (payload.u8(2), payload.u8(3));
+    let own = autopilot
+        .uploads
+        .receiving
+        .as_ref()
+        .is_some_and(|upload| upload.origin == *origin && upload.kind.number() == number);
+    if own && result != MavMissionResult::MAV_MISSION_ACCEPTED as u8 {
+        autopilot.uploads.receiving = None;
+        let name = PlanKind::of(number).map_or("Plan", PlanKind::name);
+        status_text::send(autopilot, Severity::Info, &format!("{name} upload cancelled by the client"));
+    }
+}
+
+/// MISSION_CLEAR_ALL: of one kind or of all.
+pub fn clear_all(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+    let number = frame.payload().u8(2);
+    let kinds: Vec<PlanKind> = match PlanKind::of(number) {
+        Some(kind) => vec![kind],
+        None if number == PlanKind::NUMBER_OF_ALL => PlanKind::ALL.to_vec(),
+        None => {
+            answer::refused(autopilot, origin, number, FaultCode::Invalid);
+            return;
+        }
+    };
+    if denied(autopilot, origin, number) {
+        return;
+    }
+    // Whoever clears has given its own upload up.
+    autopilot.uploads.receiving = None;
+    for kind in kinds {
+        if let Err(fault) = autopilot.vehicle.set_plan(kind, Vec::new()) {
+            answer::refused_aloud(autopilot, origin, number, &fault);
+            return;
+        }
+    }
+    answer::accepted(autopilot, origin, number, 0);
+}
+
+/// Asks again for what has not come, and gives up in the end. The client lives by the wall clock: when simulation time runs
+/// faster, it has as many seconds of its own.
+pub fn update(autopilot: &mut Autopilot) {
+    let pace = match autopilot.speed() {
+        Speed::Paused => 1.0,
+        Speed::Factor(factor) => factor.max(1.0),
+        Speed::Max => FULL_SPEED,
+    };
+    let Some(upload) = &mut autopilot.uploads.receiving else { return };
+    let silent_us = autopilot.vehicle.time_us() - upload.asked_us;
+    if silent_us < (RETRY_US * pace) as u64 {
+        return;
+    }
+    if upload.retries < MOST_RETRIES {
+        upload.retries += 1;
+        ask(autopilot);
+        return;
+    }
+    let fault = PlanFault::of_item(upload.next(), FaultCode::Cancelled, "did not come, upload given up");
+    fail(autopilot, &fault);
+}
+
+/// Ends an upload with the old plan in force.
+fn fail(autopilot: &mut Autopilot, fault: &PlanFault) {
+    let Some(upload) = &autopilot.uploads.receiving else { return };
+    let name = upload.kind.name();
+    finish(autopilot, Err(fault.code));
+    status_text::send(autopilot, Severity::Warning, &format!("{name} refused: {fault}"));
+}
+
+fn finish(autopilot: &mut Autopilot, answer: Result<u32, FaultCode>) {
+    let time_us = autopilot.vehicle.time_us();
+    let Some(upload) = autopilot.uploads.receiving.take() else { return };
+    let Upload { origin, kind, begun_by, .. } = upload;
+    // With the plan taken over, its items have left the upload.
+    let last = if answer.is_ok() { upload.end.checked_sub(1) } else { Some(upload.next()) };
+    autopilot.uploads.finished = Some(Finished { origin, kind, begun_by, last, answer, time_us });
+    repeat(autopilot, &origin, kind.number(), answer);
+}

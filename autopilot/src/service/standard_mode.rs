@@ -1,0 +1,60 @@
+//! Standard modes: AVAILABLE_MODES, CURRENT_MODE and DO_SET_STANDARD_MODE.
+
+use mavlink::dialects::common::{
+    AVAILABLE_MODES_DATA, CURRENT_MODE_DATA, MavMessage, MavModeProperty, MavStandardMode,
+};
+use vehicle::identity::Identity;
+use vehicle::{Mode, Vehicle};
+
+/// The standard mode that a mode is.
+fn standard(mode: Mode) -> MavStandardMode {
+    match mode {
+        Mode::Position => MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD,
+        Mode::Return => MavStandardMode::MAV_STANDARD_MODE_SAFE_RECOVERY,
+        Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
+        Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,
+        Mode::Takeoff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
+        Mode::Hold | Mode::Offboard => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
+    }
+}
+
+/// The mode of a standard mode's number, if there is one.
+pub fn mode(number: u32) -> Option<Mode> {
+    let non_standard = MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD as u32;
+    Mode::ALL.into_iter().find(|mode| number != non_standard && standard(*mode) as u32 == number)
+}
+
+/// AVAILABLE_MODES of one mode, counted from one, or of all for zero; empty for any other number.
+pub fn available(identity: Identity, index: u32) -> Vec<MavMessage> {
+    let modes = identity.selectable_modes();
+    let wanted = |number: u32| index == 0 || index == number;
+    (1..)
+        .zip(modes)
+        .filter(|(number, _)| wanted(*number))
+        .map(|(number, mode)| {
+            let automatic = *mode != Mode::Position;
+            MavMessage::AVAILABLE_MODES(AVAILABLE_MODES_DATA {
+                custom_mode: identity.custom_mode(*mode),
+                properties: if automatic {
+                    MavModeProperty::MAV_MODE_PROPERTY_AUTO_MODE
+                } else {
+                    MavModeProperty::empty()
+                },
+                number_modes: modes.len() as u8,
+                mode_index: number as u8,
+                standard_mode: standard(*mode),
+                mode_name: identity.mode_name(*mode).into(),
+            })
+        })
+        .collect()
+}
+
+/// CURRENT_MODE.
+pub fn current(vehicle: &Vehicle) -> MavMessage {
+    let custom_mode = vehicle.identity().custom_mode(vehicle.mode());
+    MavMessage::CURRENT_MODE(CURRENT_MODE_DATA {
+        standard_mode: standard(vehicle.mode()),
+        custom_mode,
+        intended_custom_mode: custom_mode,
+    })
+}

@@ -1,0 +1,34 @@
+//! ATTITUDE and ATTITUDE_QUATERNION.
+
+use mavlink::dialects::common::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
+use vehicle::Vehicle;
+
+use super::boot_ms;
+use crate::codec::floats;
+
+/// ATTITUDE: ZYX Euler angles and body rates.
+pub fn attitude(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let [roll, pitch, yaw] = floats(&outputs.attitude_rad);
+    let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
+    let time_boot_ms = boot_ms(outputs.time_us);
+    MavMessage::ATTITUDE(ATTITUDE_DATA { time_boot_ms, roll, pitch, yaw, rollspeed, pitchspeed, yawspeed })
+}
+
+/// ATTITUDE_QUATERNION: FRD into NED.
+pub fn attitude_quaternion(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let [q1, q2, q3, q4] = outputs.quaternion.map(|part| part as f32);
+    let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
+    MavMessage::ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA {
+        time_boot_ms: boot_ms(outputs.time_us),
+        q1,
+        q2,
+        q3,
+        q4,
+        rollspeed,
+        pitchspeed,
+        yawspeed,
+        repr_offset_q: [0.0; 4],
+    })
+}

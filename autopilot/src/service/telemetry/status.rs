@@ -1,0 +1,165 @@
+//! Health, battery, outputs, landed state and time.
+
+use mavlink::dialects::common::{
+    BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
+    MavBatteryChargeState, MavBatteryFault, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
+    MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+};
+use vehicle::fence::Breach;
+use vehicle::{BATTERY_CELLS, LandedState, Vehicle};
+
+use super::boot_ms;
+
+/// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
+pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
+    let present = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ANGULAR_RATE_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+        | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
+        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
+        | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let present =
+        if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
+    let enabled = if vehicle.fence().is_some() {
+        present
+    } else {
+        present & !MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE
+    };
+    let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
+    let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
+    let position = validity.horizontal_position && validity.horizontal_velocity;
+    let charged = vehicle.battery_remaining() >= vehicle.conduct().failsafe.battery_critical;
+    let checks = [
+        (instruments.gyroscope, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO),
+        (instruments.accelerometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL),
+        (instruments.magnetometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG),
+        (instruments.barometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE),
+        (instruments.gps, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS),
+        (validity.tilt && validity.heading, MavSysStatusSensor::MAV_SYS_STATUS_AHRS),
+        (validity.vertical_position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL),
+        (position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL),
+        (vehicle.lost_rotor().is_none(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
+        (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
+        (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
+        (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
+    ];
+    let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
+    // No fence is not breached, either: ArduPilot says so, and MAVProxy would tell a breach at the start.
+    let sound = present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE;
+    let health = failed.fold(sound, |health, sensor| health & !sensor);
+    let battery = vehicle.battery();
+    MavMessage::SYS_STATUS(SYS_STATUS_DATA {
+        onboard_control_sensors_present: present,
+        onboard_control_sensors_enabled: enabled,
+        onboard_control_sensors_health: health,
+        voltage_battery: (battery.voltage_v() * 1e3).round() as u16,
+        current_battery: (battery.current_a() * 1e2).round() as i16,
+        battery_remaining: percent(vehicle),
+        // The crate's default of flags is the first of them, not none.
+        onboard_control_sensors_present_extended: MavSysStatusSensorExtended::empty(),
+        onboard_control_sensors_enabled_extended: MavSysStatusSensorExtended::empty(),
+        onboard_control_sensors_health_extended: MavSysStatusSensorExtended::empty(),
+        ..SYS_STATUS_DATA::default()
+    })
+}
+
+/// By the thresholds at which the failsafe acts.
+fn charge_state(vehicle: &Vehicle) -> MavBatteryChargeState {
+    let (remaining, settings) = (vehicle.battery_remaining(), &vehicle.conduct().failsafe);
+    if remaining < settings.battery_emergency {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_EMERGENCY
+    } else if remaining < settings.battery_critical {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL
+    } else if remaining < settings.battery_low {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW
+    } else {
+        MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK
+    }
+}
+
+fn percent(vehicle: &Vehicle) -> i8 {
+    (100.0 * vehicle.battery_remaining()).ceil() as i8
+}
+
+/// BATTERY_STATUS.
+pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
+    let battery = vehicle.battery();
+    let cell_mv = (battery.voltage_v() / BATTERY_CELLS as f64 * 1e3).round() as u16;
+    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
+        current_consumed: (battery.drawn_ah() * 1e3).round() as i32,
+        energy_consumed: (battery.energy_j() / 100.0).round() as i32,
+        // Unknown.
+        temperature: i16::MAX,
+        voltages: core::array::from_fn(|cell| if cell < BATTERY_CELLS { cell_mv } else { u16::MAX }),
+        current_battery: (battery.current_a() * 1e2).round() as i16,
+        battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
+        mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
+        battery_remaining: percent(vehicle),
+        time_remaining: battery.time_remaining_s(vehicle.conduct().battery_capacity_ah) as i32,
+        charge_state: charge_state(vehicle),
+        fault_bitmask: MavBatteryFault::empty(),
+        ..BATTERY_STATUS_DATA::default()
+    })
+}
+
+/// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most.
+pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
+    let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
+        outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
+    MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
+        time_usec: outputs.time_us as u32,
+        servo1_raw,
+        servo2_raw,
+        servo3_raw,
+        servo4_raw,
+        ..SERVO_OUTPUT_RAW_DATA::default()
+    })
+}
+
+/// EXTENDED_SYS_STATE.
+pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
+    MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        landed_state: match vehicle.landed_state() {
+            LandedState::OnGround => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+            LandedState::InAir => MavLandedState::MAV_LANDED_STATE_IN_AIR,
+            LandedState::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
+            LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
+        },
+        ..EXTENDED_SYS_STATE_DATA::default()
+    })
+}
+
+/// FENCE_STATUS.
+pub fn fence_status(vehicle: &Vehicle) -> MavMessage {
+    let record = vehicle.fence_record();
+    let (breach_type, breach_time) = match record.latest {
+        None => (FenceBreach::FENCE_BREACH_NONE, 0),
+        Some((Breach::Height(_), time_us)) => (FenceBreach::FENCE_BREACH_MAXALT, boot_ms(time_us)),
+        Some((_, time_us)) => (FenceBreach::FENCE_BREACH_BOUNDARY, boot_ms(time_us)),
+    };
+    MavMessage::FENCE_STATUS(FENCE_STATUS_DATA {
+        breach_time,
+        breach_count: record.count,
+        breach_status: u8::from(record.now.is_some()),
+        breach_type,
+        breach_mitigation: FenceMitigate::FENCE_MITIGATE_NONE,
+    })
+}
+
+/// SYSTEM_TIME: the wall clock's time at the start, and simulation time from there on.
+pub fn system_time(vehicle: &Vehicle, unix_start_us: u64) -> MavMessage {
+    MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
+        time_unix_usec: unix_start_us + vehicle.time_us(),
+        time_boot_ms: boot_ms(vehicle.time_us()),
+    })
+}

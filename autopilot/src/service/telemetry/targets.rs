@@ -1,0 +1,91 @@
+//! What the vehicle is steered to.
+
+use mavlink::dialects::common::{
+    ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, POSITION_TARGET_GLOBAL_INT_DATA,
+    POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask,
+};
+use nalgebra::UnitQuaternion;
+use vehicle::{SteeringKind, Vehicle, wrapped};
+
+use super::boot_ms;
+use super::position::scaled_degrees;
+use crate::codec::floats;
+
+/// ATTITUDE_TARGET: what the attitude controller tracks.
+pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let (_, strongest_n) = vehicle.simulation().configuration().airframe.thrust_range_n();
+    let [phi, theta] = outputs.tilt_reference_rad;
+    let (attitude, rate, thrust) = vehicle.attitude_reference().unwrap_or_else(|| {
+        let attitude = UnitQuaternion::from_euler_angles(phi, theta, outputs.setpoint.yaw_rad);
+        (attitude, nalgebra::Vector3::zeros(), outputs.thrust_n / strongest_n)
+    });
+    MavMessage::ATTITUDE_TARGET(ATTITUDE_TARGET_DATA {
+        time_boot_ms: boot_ms(outputs.time_us),
+        q: [attitude.w as f32, attitude.i as f32, attitude.j as f32, attitude.k as f32],
+        body_roll_rate: rate.x as f32,
+        body_pitch_rate: rate.y as f32,
+        body_yaw_rate: rate.z as f32,
+        thrust: thrust as f32,
+        type_mask: AttitudeTargetTypemask::empty(),
+    })
+}
+
+/// Everything is ignored while the vehicle is not steered by position.
+fn type_mask(vehicle: &Vehicle) -> PositionTargetTypemask {
+    const ALL_VALUES: u16 = 0b1101_1111_1111;
+    match vehicle.steering_kind() {
+        SteeringKind::Position => PositionTargetTypemask::empty(),
+        _ => PositionTargetTypemask::from_bits_retain(ALL_VALUES),
+    }
+}
+
+/// POSITION_TARGET_LOCAL_NED: the reference that the cascade tracks.
+pub fn position_target_local_ned(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let reference = &outputs.setpoint;
+    let [x, y, z] = floats(&reference.position_m);
+    let [vx, vy, vz] = floats(&reference.velocity_m_s);
+    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
+    MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
+        time_boot_ms: boot_ms(outputs.time_us),
+        x,
+        y,
+        z,
+        vx,
+        vy,
+        vz,
+        afx,
+        afy,
+        afz,
+        yaw: wrapped(reference.yaw_rad) as f32,
+        yaw_rate: reference.yaw_rate_rad_s as f32,
+        type_mask: type_mask(vehicle),
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+    })
+}
+
+/// POSITION_TARGET_GLOBAL_INT: the same as a place.
+pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let reference = &outputs.setpoint;
+    let place = vehicle.frame().to_geodetic(&reference.position_m);
+    let [vx, vy, vz] = floats(&reference.velocity_m_s);
+    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
+    MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
+        time_boot_ms: boot_ms(outputs.time_us),
+        lat_int: scaled_degrees(place.latitude_deg),
+        lon_int: scaled_degrees(place.longitude_deg),
+        alt: place.altitude_m as f32,
+        vx,
+        vy,
+        vz,
+        afx,
+        afy,
+        afz,
+        yaw: wrapped(reference.yaw_rad) as f32,
+        yaw_rate: reference.yaw_rate_rad_s as f32,
+        type_mask: type_mask(vehicle),
+        coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_INT,
+    })
+}

@@ -1,0 +1,34 @@
+//! A simulated quadrotor that can be flown: modes, arming, missions, fences, failsafes, faults and an estimator over the closed
+//! loop of [`quadrotor`]. It speaks no protocol, owns no socket and reads no clock: requests in SI units and ticks of
+//! simulation time go in, motion and notices come out.
+//!
+//! ```text
+//!  world        local frame, air, wind, magnetic field
+//!  fence        areas, and the ways around them
+//!  plan         items, checks and texts of missions, fences and rally points
+//!  fault        what is broken
+//!  estimation   instruments and the estimator
+//!  vehicle      the state machine over the closed loop
+//!  parameters   all settings by their identifiers
+//! ```
+
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod estimation;
+pub mod fault;
+pub mod fence;
+pub mod identity;
+mod mode;
+pub mod parameters;
+pub mod plan;
+mod vehicle;
+pub mod world;
+
+pub use mode::Mode;
+pub use vehicle::{
+    Action, AttitudeSetPoint, AxisTarget, BATTERY_CELLS, Battery, BatteryActions, Cause, Conduct, Failsafe,
+    FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice,
+    PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
+};

@@ -1,0 +1,56 @@
+//! The vehicle: a state machine over the closed loop. It takes requests in SI units and simulation time; it owns
+//! no socket and reads no clock.
+//!
+//! ```text
+//!              arm                     take_off / set-point up / stick up
+//!  disarmed ─────────► armed, idling ─────────────────────────────────────► flying
+//!     ▲   ◄───────────  on the ground  ◄────────────────────────────────────  │
+//!     │     disarm, or nothing         touched down                           │
+//!     │     happens for a while                                               │
+//!     └───────────────────────── forced disarm ───────────────────────────────┘
+//!
+//!  flying:  Takeoff ──reached──► Hold (ArduPilot: Offboard)
+//!           Offboard ──set-points lost──► Hold, Land, Return or Position, as the parameter says
+//!           Mission ──last item done──► Hold
+//!           Return ──home reached──► descends ──touched down──► disarms
+//!           Land ──touched down──► disarms
+//!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
+//! ```
+
+mod arming;
+mod battery;
+mod conduct;
+mod failsafe;
+mod fence;
+mod flight;
+mod injection;
+mod landed;
+mod mission;
+mod motion;
+mod notice;
+mod offboard;
+mod perception;
+mod plans;
+mod region;
+mod requests;
+mod return_home;
+mod rotor_loss;
+mod set_point;
+mod speeds;
+mod state;
+mod steering;
+mod sticks;
+
+pub use battery::{Battery, CELLS as BATTERY_CELLS};
+pub use conduct::Conduct;
+pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
+pub use fence::FenceRecord;
+pub use landed::LandedState;
+pub use mission::{MissionState, MissionStatus};
+pub use motion::wrapped;
+pub use notice::{Notice, Refusal, Severity};
+pub use requests::Reposition;
+pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
+pub use state::{Home, TICK_US, Vehicle, VehicleSettings};
+pub use steering::SteeringKind;
+pub use sticks::Sticks;
