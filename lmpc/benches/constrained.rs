@@ -9,10 +9,10 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT};
 use criterion::{Criterion, criterion_group, criterion_main};
 use lmpc::{
-    Augmented, ConstrainedController, ConstrainedState, ControllerState, Discretization, LaguerreBasis,
-    Limit, LmpcDesign, QuadraticProgram, Quantity, StateSpace, WarmStart, Weighting, Weights,
+    Augmented, Controller, ControllerState, Discretization, LaguerreBasis, LaguerreMpc, Limit, LmpcDesign,
+    QuadraticProgram, Quantity, Sample, StateSpace, WarmStart, Weighting, Weights,
 };
-use nalgebra::{DMatrix, SVector, Vector2, Vector3, Vector4, Vector6, dmatrix};
+use nalgebra::{DMatrix, SVector, Vector2, Vector3, dmatrix};
 
 /// Laguerre terms per input.
 const TERMS: usize = 5;
@@ -43,17 +43,16 @@ fn bounds() -> Vec<f64> {
 }
 
 fn steps(criterion: &mut Criterion) {
-    let controller =
-        ConstrainedController::<4, 2, 2, { UNKNOWNS + 1 }>::new(&design(), &limits()).expect("limits");
-    let (bounds, zero) = (bounds(), Vector4::zeros());
-    let start = ConstrainedState::new(ControllerState::new(zero, Vector2::zeros(), Vector2::zeros()));
-    let step = |state: &mut ConstrainedState<4, 2, { UNKNOWNS + 1 }>, error: &Vector2<f64>| {
-        controller.step_from(state, &zero, &zero, error, &Vector2::zeros(), &bounds)
+    let controller = LaguerreMpc::<4, 2, 2, { UNKNOWNS + 1 }>::new(&design(), &limits()).expect("limits");
+    let bounds = bounds();
+    let start = ControllerState::at_rest();
+    let step = |state: &mut ControllerState<4, 2, { UNKNOWNS + 1 }>, error: &Vector2<f64>| {
+        controller.step(state, &Sample { error: *error, upper: &bounds, ..Sample::default() })
     };
     let (near, far) = (Vector2::new(-0.01, 0.01), Vector2::new(-5.0, -5.0));
     let mut warm = start;
     assert!(step(&mut warm, &far).active > 0 && step(&mut { start }, &near).active == 0);
-    warm.controller = start.controller;
+    warm.apply(&Vector2::zeros());
 
     let mut group = criterion.benchmark_group("step");
     group.bench_function("unconstrained", |bencher| bencher.iter(|| step(&mut { start }, black_box(&near))));
@@ -84,22 +83,16 @@ fn attitude_steps(criterion: &mut Criterion) {
     let design = LmpcDesign::new(&model, &weights, &bases, 60, Weighting::Terminal { lambda: 1.0 });
     let limits = [Limit::range(Quantity::Input, 3, 0..15), Limit::range(Quantity::Increment, 3, 0..15)];
     let controller =
-        ConstrainedController::<6, 3, 3, { 3 * TERMS + 1 }>::new(&design.expect("a design"), &limits)
-            .expect("limits");
+        LaguerreMpc::<6, 3, 3, { 3 * TERMS + 1 }>::new(&design.expect("a design"), &limits).expect("limits");
     let bounds = [0.9, 0.9, 0.145, 0.9, 0.9, 0.145, 0.2, 0.2, 0.05, 0.2, 0.2, 0.05];
-    let zero = Vector6::zeros();
-    let start = ConstrainedState::<6, 3, { 3 * TERMS + 1 }>::new(ControllerState::new(
-        zero,
-        Vector3::zeros(),
-        Vector3::zeros(),
-    ));
-    let step = |state: &mut ConstrainedState<6, 3, { 3 * TERMS + 1 }>, error: &Vector3<f64>| {
-        controller.step_from(state, &zero, &zero, error, &Vector3::zeros(), &bounds)
+    let start = ControllerState::at_rest();
+    let step = |state: &mut ControllerState<6, 3, { 3 * TERMS + 1 }>, error: &Vector3<f64>| {
+        controller.step(state, &Sample { error: *error, upper: &bounds, ..Sample::default() })
     };
     let far = Vector3::new(1.0, -0.7, 0.5);
     let mut warm = start;
     assert!(step(&mut warm, &far).active > 3);
-    warm.controller = start.controller;
+    warm.apply(&Vector3::zeros());
     let mut group = criterion.benchmark_group("attitude step, 180 rows");
     group.bench_function("at its limits, warm", |bencher| {
         bencher.iter(|| step(&mut { warm }, black_box(&far)))

@@ -22,7 +22,9 @@ pub struct Limit {
     pub quantity: Quantity,
     /// D: one row per bound, one column per input or state.
     pub directions: DMatrix<f64>,
-    /// The samples m at which it holds, in any order.
+    /// The samples m at which it holds, in any order. Gaps are fine, but the last one should be about where the
+    /// moves have ended: beyond it a plan may be anything, and far from the goal a controller leans on that, up to
+    /// setting off the wrong way.
     pub samples: Vec<usize>,
     /// Whether it gives way first when not all limits can be kept.
     pub soft: bool,

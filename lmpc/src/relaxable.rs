@@ -3,6 +3,8 @@
 use nalgebra::{DMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::capacity::{SLACKS, iteration_limit};
+use crate::limit_row::LimitRow;
 use crate::{DesignError, Outcome, QuadraticProgram, Solution, Status, WarmStart};
 
 /// Weight of the slack against the largest element of H: constraints give way when they must, not to save
@@ -30,27 +32,31 @@ pub(crate) struct RelaxableWarmStart<const W: usize> {
 }
 
 impl<const E: usize> RelaxableProgram<E> {
-    /// For H, n×n, and G, m×n, with n < E, and which of its rows are soft.
-    pub(crate) fn new(h: &DMatrix<f64>, g: &DMatrix<f64>, soft: &[bool]) -> Result<Self, DesignError> {
+    /// For H, n×n with n < E, and the rows of G, 1×n each.
+    pub(crate) fn new(h: &DMatrix<f64>, rows: &[LimitRow]) -> Result<Self, DesignError> {
         let unknowns = h.nrows();
-        if unknowns + 1 > E {
-            let actual = (unknowns + 1, unknowns + 1);
+        let mut g = DMatrix::zeros(rows.len(), unknowns);
+        for (index, row) in rows.iter().enumerate() {
+            g.set_row(index, &row.decision);
+        }
+        let size = unknowns + SLACKS;
+        if size > E {
+            let actual = (size, size);
             return Err(DesignError::Dimension { name: "H with slack", expected: (E, E), actual });
         }
-        let mut extended_h = h.clone().resize(unknowns + 1, unknowns + 1, 0.0);
+        let mut extended_h = h.clone().resize(size, size, 0.0);
         extended_h[(unknowns, unknowns)] = SLACK_WEIGHT * h.amax();
         let stage = |gives_way: &dyn Fn(usize) -> bool| {
-            let mut extended_g = g.clone().resize_horizontally(unknowns + 1, 0.0);
+            let mut extended_g = g.clone().resize_horizontally(size, 0.0);
             for row in (0..g.nrows()).filter(|row| gives_way(*row)) {
                 extended_g[(row, unknowns)] = -1.0;
             }
             QuadraticProgram::new(&extended_h, &extended_g)
         };
-        let is_soft = |row: usize| soft.get(row).copied().unwrap_or(false);
-        let size = u32::try_from(unknowns + 1 + g.nrows()).unwrap_or(u32::MAX / 4);
+        let is_soft = |row: usize| rows.get(row).is_some_and(|row| row.soft);
         Ok(Self {
             stages: [stage(&|_| false)?, stage(&is_soft)?, stage(&|_| true)?],
-            iteration_limit: 4 * size,
+            iteration_limit: iteration_limit(size, g.nrows()),
         })
     }
 

@@ -1,8 +1,8 @@
 //! Laguerre MPC with limits, in closed loop and against predictions made by simulation.
 
 use lmpc::{
-    Augmented, ConstrainedController, ConstrainedState, ControllerState, DesignError, Discretization,
-    LaguerreBasis, Limit, LmpcDesign, Quantity, Status, Weighting, Weights,
+    Augmented, Controller, ControllerState, DesignError, Discretization, LaguerreBasis, LaguerreMpc, Limit,
+    LmpcDesign, Quantity, Sample, Status, Weighting, Weights,
 };
 use nalgebra::{SMatrix, SVector, Vector1, Vector2, Vector4, dmatrix};
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ fn design(model: &Augmented, terms: usize, scale: f64, weight: f64, weighting: W
 }
 
 /// Altitude, |G| ≤ 1 m/s², |ΔG| ≤ 0.2 m/s², |v| ≤ 1.5 m/s (soft), over the first 15 samples.
-fn altitude(weighting: Weighting) -> ConstrainedController<2, 1, 1, 6> {
+fn altitude(weighting: Weighting) -> LaguerreMpc<2, 1, 1, 6> {
     let limits = [
         Limit::range(Quantity::Increment, 1, 0..15),
         Limit::range(Quantity::Input, 1, 0..15),
@@ -35,7 +35,7 @@ fn altitude(weighting: Weighting) -> ConstrainedController<2, 1, 1, 6> {
             soft: true,
         },
     ];
-    ConstrainedController::new(&design(&altitude_model(), 5, 0.8187, 1.0, weighting), &limits).unwrap()
+    LaguerreMpc::new(&design(&altitude_model(), 5, 0.8187, 1.0, weighting), &limits).unwrap()
 }
 
 const ALTITUDE_BOUNDS: [f64; 6] = [0.2, 0.2, 1.0, 1.0, 1.5, 1.5];
@@ -44,8 +44,8 @@ fn advanced(x: Vector2<f64>, u: f64) -> Vector2<f64> {
     Vector2::new(x.x + TIME * x.y + TIME * TIME / 2.0 * u, x.y + TIME * u)
 }
 
-fn at_rest() -> ConstrainedState<2, 1, 6> {
-    ConstrainedState::new(ControllerState::new(Vector2::zeros(), Vector1::zeros(), Vector1::zeros()))
+fn at_rest() -> ControllerState<2, 1, 6> {
+    ControllerState::at_rest()
 }
 
 #[test]
@@ -57,16 +57,18 @@ fn limits_hold_exactly_in_closed_loop() {
         let mut active = 0;
         for sample in 0..600 {
             let error = Vector1::new(x.x - 10.0);
-            let result = controller.step_from(
+            let result = controller.step(
                 &mut state,
-                &x,
-                &(x - previous),
-                &error,
-                &Vector1::zeros(),
-                &ALTITUDE_BOUNDS,
+                &Sample {
+                    measured: x,
+                    increment: x - previous,
+                    error,
+                    upper: &ALTITUDE_BOUNDS,
+                    ..Sample::default()
+                },
             );
-            assert_eq!(result.step.status, Status::Optimal, "{weighting:?}, sample {sample}");
-            let next = result.step.input.x;
+            assert_eq!(result.status, Status::Optimal, "{weighting:?}, sample {sample}");
+            let next = result.input.x;
             assert!(
                 (next - u).abs() <= 0.2 + 1e-8 && next.abs() <= 1.0 + 1e-8,
                 "sample {sample}: {u} to {next}"
@@ -83,17 +85,20 @@ fn limits_hold_exactly_in_closed_loop() {
 #[test]
 fn without_need_for_limits_it_is_the_unconstrained_law() {
     let controller = altitude(Weighting::exponential(1.2, 1.0));
-    let (mut state, mut free) = (at_rest(), at_rest().controller);
+    let (mut state, mut free) = (at_rest(), ControllerState::<2, 1>::at_rest());
     let (mut x, mut previous) = (Vector2::zeros(), Vector2::zeros());
     for _ in 0..200 {
         let error = Vector1::new(x.x - 0.1);
         let delta = x - previous;
-        let limited =
-            controller.step_from(&mut state, &x, &delta, &error, &Vector1::zeros(), &ALTITUDE_BOUNDS);
-        let unlimited =
-            controller.unconstrained().step_from(&mut free, &x, &delta, &error, &Vector1::zeros());
-        assert_eq!((limited.step, limited.active), (unlimited, 0));
-        (previous, x) = (x, advanced(x, limited.step.input.x));
+        let limited = controller.step(
+            &mut state,
+            &Sample { measured: x, increment: delta, error, upper: &ALTITUDE_BOUNDS, ..Sample::default() },
+        );
+        let unlimited = controller
+            .unconstrained()
+            .step(&mut free, &Sample { measured: x, increment: delta, error, ..Sample::default() });
+        assert_eq!((limited, limited.active), (unlimited, 0));
+        (previous, x) = (x, advanced(x, limited.input.x));
     }
 }
 
@@ -102,21 +107,22 @@ fn a_speed_beyond_its_limit_is_relaxed_and_brought_back() {
     let controller = altitude(Weighting::Terminal { lambda: 1.0 });
     let mut x = Vector2::new(0.0, 4.0);
     let mut previous = Vector2::new(-4.0 * TIME, 4.0);
-    let mut state =
-        ConstrainedState::<_, _, 6>::new(ControllerState::new(previous, Vector1::zeros(), Vector1::zeros()));
+    let mut state = ControllerState::<_, _, 6>::new(previous, Vector1::zeros(), Vector1::zeros());
     let (mut u, mut relaxed) = (0.0_f64, 0);
     for _ in 0..800 {
         let error = Vector1::new(x.x - 10.0);
-        let result = controller.step_from(
+        let result = controller.step(
             &mut state,
-            &x,
-            &(x - previous),
-            &error,
-            &Vector1::zeros(),
-            &ALTITUDE_BOUNDS,
+            &Sample {
+                measured: x,
+                increment: x - previous,
+                error,
+                upper: &ALTITUDE_BOUNDS,
+                ..Sample::default()
+            },
         );
-        relaxed += usize::from(result.step.status == Status::Relaxed);
-        let next = result.step.input.x;
+        relaxed += usize::from(result.status == Status::Relaxed);
+        let next = result.input.x;
         // Hard limits give way a thousand times less than soft ones.
         assert!((next - u).abs() <= 0.21 && next.abs() <= 1.01, "{u} to {next}");
         (previous, x, u) = (x, advanced(x, next), next);
@@ -126,12 +132,12 @@ fn a_speed_beyond_its_limit_is_relaxed_and_brought_back() {
 }
 
 /// Position with its two tilts limited jointly, by a polygon of 16 sides inside the circle of 0.3 rad.
-fn position<const E: usize>(terms: usize, scale: f64) -> ConstrainedController<4, 2, 2, E> {
+fn position<const E: usize>(terms: usize, scale: f64) -> LaguerreMpc<4, 2, 2, E> {
     let model =
         Augmented::new(&double_integrators(&[-GRAVITY, GRAVITY], TIME, Discretization::ZeroOrderHold));
     let design = design(&model, terms, scale, 1000.0, Weighting::Terminal { lambda: 1.0 });
     let limits = [Limit::polygon(Quantity::Input, 16, 0..15), Limit::range(Quantity::Increment, 2, 0..15)];
-    ConstrainedController::new(&design, &limits).unwrap()
+    LaguerreMpc::new(&design, &limits).unwrap()
 }
 
 fn position_bounds() -> Vec<f64> {
@@ -141,23 +147,18 @@ fn position_bounds() -> Vec<f64> {
 }
 
 /// Σ (y − r)ᵀ(y − r) + Δuᵀ R Δu of a step of `goal`, until it has settled.
-fn closed_loop_cost<const E: usize>(
-    controller: &ConstrainedController<4, 2, 2, E>,
-    goal: Vector2<f64>,
-) -> f64 {
-    let mut state = ConstrainedState::<_, _, 11>::new(ControllerState::new(
-        Vector4::zeros(),
-        Vector2::zeros(),
-        Vector2::zeros(),
-    ));
+fn closed_loop_cost<const E: usize>(controller: &LaguerreMpc<4, 2, 2, E>, goal: Vector2<f64>) -> f64 {
+    let mut state = ControllerState::<_, _, 11>::new(Vector4::zeros(), Vector2::zeros(), Vector2::zeros());
     let (mut x, mut previous, mut u, mut cost) = (Vector4::zeros(), Vector4::zeros(), Vector2::zeros(), 0.0);
     for sample in 0..600 {
         let error = Vector2::new(x[0], x[2]) - goal;
         let delta: Vector4<f64> = x - previous;
-        let result =
-            controller.step_from(&mut state, &x, &delta, &error, &Vector2::zeros(), &position_bounds());
-        assert_eq!(result.step.status, Status::Optimal, "sample {sample}");
-        let next = result.step.input;
+        let result = controller.step(
+            &mut state,
+            &Sample { measured: x, increment: delta, error, upper: &position_bounds(), ..Sample::default() },
+        );
+        assert_eq!(result.status, Status::Optimal, "sample {sample}");
+        let next = result.input;
         assert!(next.norm() <= 0.3 + 1e-7, "sample {sample}: {} rad", next.norm());
         cost += error.norm_squared() + 1000.0 * (next - u).norm_squared();
         let a = next.component_mul(&Vector2::new(-GRAVITY, GRAVITY));
@@ -200,7 +201,7 @@ proptest! {
         let quantity = [Quantity::Increment, Quantity::Input, Quantity::State][kind];
         let directions = if kind == 2 { dmatrix![0.3, 1.0] } else { dmatrix![1.0] };
         let limit = Limit { quantity, directions, samples: vec![m], soft: false };
-        let controller = ConstrainedController::<2, 1, 1, 5>::new(&design, &[limit]).unwrap();
+        let controller = LaguerreMpc::<2, 1, 1, 5>::new(&design, &[limit]).unwrap();
 
         // The unconstrained prediction, sample by sample: Δu(k+i) = αⁱ L(i)ᵀ η with η = −Ω⁻¹Ψx.
         let x = nalgebra::DVector::from_column_slice(&[dz, dv, z]);
@@ -222,10 +223,12 @@ proptest! {
         }
 
         let run = |bound: f64| {
-            let start = ControllerState::new(Vector2::new(z - dz, v - dv), Vector1::new(u), Vector1::zeros());
-            let mut state = ConstrainedState::<_, _, 6>::new(start);
+            let before = Vector2::new(z - dz, v - dv);
+            let mut state = ControllerState::<_, _, 6>::new(before, Vector1::new(u), Vector1::zeros());
             let (measured, delta) = (Vector2::new(z, v), Vector2::new(dz, dv));
-            controller.step_from(&mut state, &measured, &delta, &Vector1::new(z), &Vector1::zeros(), &[bound])
+            let (error, upper) = (Vector1::new(z), &[bound]);
+            let sample = Sample { measured, increment: delta, error, upper, ..Sample::default() };
+            controller.step(&mut state, &sample)
         };
         let margin = 1e-6 * (1.0 + reached.abs());
         prop_assert_eq!(run(reached + margin).active, 0);
@@ -243,11 +246,17 @@ proptest! {
         for _ in 0..3 {
             let measured = Vector2::new(values[0], values[1]);
             let delta = Vector2::new(values[2], values[3]);
-            let result = controller.step_from(
-                &mut state, &measured, &delta, &Vector1::new(values[4]), &Vector1::new(values[5]), &values[6..12],
-            );
-            prop_assert!(result.step.input.x.is_finite());
-            prop_assert!(state.controller.applied().x.is_finite());
+            let sample = Sample {
+                measured,
+                increment: delta,
+                error: Vector1::new(values[4]),
+                input_reference: Vector1::new(values[5]),
+                upper: &values[6..12],
+                ..Sample::default()
+            };
+            let result = controller.step(&mut state, &sample);
+            prop_assert!(result.input.x.is_finite());
+            prop_assert!(state.applied().x.is_finite());
         }
     }
 }
@@ -255,18 +264,13 @@ proptest! {
 #[test]
 fn a_step_does_not_allocate() {
     let controller = position::<11>(5, 0.8);
-    let mut state = ConstrainedState::<_, _, 11>::new(ControllerState::new(
-        Vector4::zeros(),
-        Vector2::zeros(),
-        Vector2::zeros(),
-    ));
+    let mut state = ControllerState::<_, _, 11>::new(Vector4::zeros(), Vector2::zeros(), Vector2::zeros());
     let bounds = position_bounds();
     let allocations = allocation_counter::measure(|| {
         let error = Vector2::new(-5.0, -5.0);
         for _ in 0..10 {
-            let zero = Vector4::zeros();
-            let result = controller.step_from(&mut state, &zero, &zero, &error, &Vector2::zeros(), &bounds);
-            assert!(result.step.status == Status::Optimal && result.active > 0);
+            let result = controller.step(&mut state, &Sample { error, upper: &bounds, ..Sample::default() });
+            assert!(result.status == Status::Optimal && result.active > 0);
         }
     });
     assert_eq!(allocations.count_total, 0);
@@ -276,9 +280,9 @@ fn a_step_does_not_allocate() {
 fn wrong_limits_are_refused() {
     let design = design(&altitude_model(), 5, 0.8, 1.0, Weighting::Terminal { lambda: 1.0 });
     let wrong = Limit::range(Quantity::Input, 2, 0..5);
-    let refused = ConstrainedController::<2, 1, 1, 6>::new(&design, &[wrong]).unwrap_err();
+    let refused = LaguerreMpc::<2, 1, 1, 6>::new(&design, &[wrong]).unwrap_err();
     assert!(matches!(refused, DesignError::Dimension { name: "directions of a limit", .. }), "{refused}");
-    let small = ConstrainedController::<2, 1, 1, 5>::new(&design, &[]).unwrap_err();
+    let small = LaguerreMpc::<2, 1, 1, 5>::new(&design, &[]).unwrap_err();
     assert!(matches!(small, DesignError::Dimension { name: "H with slack", .. }), "{small}");
 }
 

@@ -2,9 +2,9 @@
 
 use lmpc::{
     Augmented, Controller, ControllerState, DesignError, Discretization, LaguerreBasis, LmpcDesign,
-    Reference, StateSpace, Status, Weighting, Weights,
+    Reference, StateFeedback, StateSpace, Status, Step, Weighting, Weights,
 };
-use nalgebra::{DVector, Vector1, Vector2, dmatrix};
+use nalgebra::{DVector, RowVector2, Vector1, Vector2, dmatrix};
 use proptest::prelude::*;
 
 mod common;
@@ -12,13 +12,13 @@ use common::double_integrators;
 
 const TIME: f64 = 0.05;
 
-fn altitude() -> (StateSpace, LmpcDesign, Controller<2, 1, 1>) {
+fn altitude() -> (StateSpace, LmpcDesign, StateFeedback<2, 1, 1>) {
     let plant = double_integrators(&[1.0], TIME, Discretization::ZeroOrderHold);
     let model = Augmented::new(&plant);
     let weights = Weights::output(&model, 1.0, 1.0).unwrap();
     let basis = [LaguerreBasis::new(5, 0.8187).unwrap()];
     let design = LmpcDesign::new(&model, &weights, &basis, 100, Weighting::exponential(1.2, 1.0)).unwrap();
-    let controller = Controller::from_design(&design, plant.c()).unwrap();
+    let controller = StateFeedback::from_design(&design).unwrap();
     (plant, design, controller)
 }
 
@@ -27,8 +27,19 @@ fn advanced(plant: &StateSpace, x: Vector2<f64>, u: f64, disturbance: f64) -> Ve
     Vector2::new(next[0], next[1])
 }
 
+/// One sample of the altitude, y = z.
+fn step(
+    controller: &StateFeedback<2, 1, 1>,
+    state: &mut ControllerState<2, 1>,
+    measured: &Vector2<f64>,
+    reference: &Reference<2, 1>,
+) -> Step<1> {
+    let sample = reference.sample(&RowVector2::new(1.0, 0.0), &state.measured(), measured);
+    controller.step(state, &sample)
+}
+
 fn at_rest() -> ControllerState<2, 1> {
-    ControllerState::new(Vector2::zeros(), Vector1::zeros(), Vector1::zeros())
+    ControllerState::at_rest()
 }
 
 /// The closed loop runs exactly as A − BK says: Δu = −K [Δx_m; y − r].
@@ -42,7 +53,7 @@ fn closed_loop_follows_its_eigenvalues() {
     // [Δx_m; y − r] at the first sample.
     let mut predicted = DVector::from_column_slice(&[0.0, 0.0, -3.0]);
     for _ in 0..200 {
-        let step = controller.step(&mut state, &x, &reference);
+        let step = step(&controller, &mut state, &x, &reference);
         assert_eq!(step.status, Status::Optimal);
         x = advanced(&plant, x, step.input.x, 0.0);
         predicted = &closed_loop * predicted;
@@ -61,7 +72,7 @@ proptest! {
         let reference = Reference::set_point(Vector2::new(goal, 0.0), Vector1::zeros());
         let (mut state, mut x) = (at_rest(), Vector2::new(z, v));
         for _ in 0..800 {
-            let step = controller.step(&mut state, &x, &reference);
+            let step = step(&controller, &mut state, &x, &reference);
             x = advanced(&plant, x, step.input.x, disturbance);
         }
         prop_assert!((x.x - goal).abs() < 1e-8, "{}", x.x - goal);
@@ -80,7 +91,7 @@ proptest! {
                 state: Vector2::new(pair[2], 0.0), increment: Vector2::zeros(), input: Vector1::new(pair[3]),
             };
             let before = state;
-            let step = controller.step(&mut state, &Vector2::new(pair[0], pair[1]), &reference);
+            let step = step(&controller, &mut state, &Vector2::new(pair[0], pair[1]), &reference);
             prop_assert!(step.input.x.is_finite());
             if step.status == Status::Held {
                 prop_assert_eq!(state, before);
@@ -107,7 +118,7 @@ fn a_trajectory_is_followed_without_error() {
             increment: reference_state - previous,
             input: Vector1::new(input),
         };
-        let step = controller.step(&mut state, &x, &reference);
+        let step = step(&controller, &mut state, &x, &reference);
         x = advanced(&plant, x, step.input.x, 0.0);
         previous = reference_state;
         reference_state = advanced(&plant, reference_state, input, 0.0);
@@ -124,7 +135,7 @@ fn saturation_does_not_wind_up() {
         let reference = Reference::set_point(Vector2::new(20.0, 0.0), Vector1::zeros());
         let (mut state, mut x, mut top) = (at_rest(), Vector2::zeros(), 0.0_f64);
         for _ in 0..2000 {
-            let wanted = controller.step(&mut state, &x, &reference).input;
+            let wanted = step(&controller, &mut state, &x, &reference).input;
             let applied = wanted.map(|u| u.clamp(-2.0, 2.0));
             if report {
                 state.apply(&applied);
@@ -145,7 +156,7 @@ fn a_step_does_not_allocate() {
     let reference = Reference::set_point(Vector2::new(1.0, 0.0), Vector1::zeros());
     let allocations = allocation_counter::measure(|| {
         for _ in 0..100 {
-            let step = controller.step(&mut state, &Vector2::new(0.3, 0.1), &reference);
+            let step = step(&controller, &mut state, &Vector2::new(0.3, 0.1), &reference);
             state.apply(&step.input);
         }
     });
@@ -155,9 +166,9 @@ fn a_step_does_not_allocate() {
 #[test]
 fn wrong_sizes_are_refused() {
     let gain = dmatrix![1.0, 2.0, 3.0];
-    assert!(Controller::<2, 1, 1>::new(&gain, &dmatrix![1.0, 0.0]).is_ok());
-    let wrong = Controller::<3, 1, 1>::new(&gain, &dmatrix![1.0, 0.0]);
+    assert!(StateFeedback::<2, 1, 1>::new(&gain).is_ok());
+    let wrong = StateFeedback::<3, 1, 1>::new(&gain);
     assert_eq!(wrong, Err(DesignError::Dimension { name: "K", expected: (1, 4), actual: (1, 3) }));
-    let wrong = Controller::<2, 1, 1>::new(&gain, &dmatrix![1.0]);
-    assert_eq!(wrong, Err(DesignError::Dimension { name: "C", expected: (1, 2), actual: (1, 1) }));
+    let wrong = StateFeedback::<2, 2, 1>::new(&gain);
+    assert_eq!(wrong, Err(DesignError::Dimension { name: "K", expected: (2, 3), actual: (1, 3) }));
 }

@@ -1,9 +1,8 @@
 //! State-space MPC against simulated predictions, LMPC with unit pulses, and its own limits.
 
 use lmpc::{
-    Augmented, ConstrainedState, ControllerState, DesignError, Discretization, Dlqr, Limit, Quantity,
-    StateSpace, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, StateSpaceMpcWeights, Status,
-    Weights,
+    Augmented, Controller, ControllerState, DesignError, Discretization, Dlqr, Limit, Quantity, Sample,
+    StateSpace, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Status, Weights,
 };
 use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix, dvector};
 use proptest::prelude::*;
@@ -22,8 +21,13 @@ fn design() -> StateSpaceMpcDesign {
     StateSpaceMpcDesign::new(&plant(), &dmatrix![1.0], &dmatrix![1.0], 100, MOVES).unwrap()
 }
 
-fn applying(u: f64) -> ConstrainedState<2, 1, 26> {
-    ConstrainedState::new(ControllerState::new(Vector2::zeros(), Vector1::new(u), Vector1::zeros()))
+fn applying(u: f64) -> ControllerState<2, 1, 26> {
+    ControllerState::new(Vector2::zeros(), Vector1::new(u), Vector1::zeros())
+}
+
+/// A state without a reference trajectory.
+fn of_state(state: Vector2<f64>) -> Sample<'static, 2, 1, 1> {
+    Sample { measured: state, deviation: state, ..Sample::default() }
 }
 
 fn advanced(x: Vector2<f64>, u: f64) -> Vector2<f64> {
@@ -67,8 +71,8 @@ proptest! {
 
         let references: Vec<Vector1<f64>> = r.iter().map(|&value| Vector1::new(value)).collect();
         let mut state = applying(u);
-        let step = controller.step(&mut state, &StateSpaceMpcSample::of_state(Vector2::new(z, v)), &references, &[]);
-        prop_assert!((step.step.input.x - u - best[0]).abs() < 1e-7 * (1.0 + best[0].abs()));
+        let step = controller.step(&mut state, &Sample { preview: &references, ..of_state(Vector2::new(z, v)) });
+        prop_assert!((step.input.x - u - best[0]).abs() < 1e-7 * (1.0 + best[0].abs()));
     }
 
     /// … also with a disturbance that acts like an input, and a weight on the increments of the velocity.
@@ -109,12 +113,12 @@ proptest! {
         });
         let best = -hessian.lu().solve(&gradient).unwrap();
 
-        let sample = StateSpaceMpcSample {
+        let sample = Sample {
             disturbance: Vector1::new(d),
-            ..StateSpaceMpcSample::of_state(Vector2::new(z, v))
+            ..of_state(Vector2::new(z, v))
         };
-        let step = controller.step(&mut applying(u), &sample, &[], &[]);
-        prop_assert!((step.step.input.x - u - best[0]).abs() < 1e-6 * (1.0 + best[0].abs()));
+        let step = controller.step(&mut applying(u), &sample);
+        prop_assert!((step.input.x - u - best[0]).abs() < 1e-6 * (1.0 + best[0].abs()));
     }
 
     #[test]
@@ -125,10 +129,11 @@ proptest! {
         let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
         let mut state = applying(0.0);
         for chunk in values.chunks_exact(3) {
-            let estimate = StateSpaceMpcSample::of_state(Vector2::new(chunk[0], chunk[1]));
-            let step = controller.step(&mut state, &estimate, &[Vector1::new(chunk[2])], &[1.0, 1.0]);
-            prop_assert!(step.step.input.x.is_finite());
-            state.controller.apply(&Vector1::new(chunk[0]));
+            let estimate = of_state(Vector2::new(chunk[0], chunk[1]));
+            let sample = Sample { preview: &[Vector1::new(chunk[2])], upper: &[1.0, 1.0], ..estimate };
+            let step = controller.step(&mut state, &sample);
+            prop_assert!(step.input.x.is_finite());
+            state.apply(&Vector1::new(chunk[0]));
         }
     }
 }
@@ -142,9 +147,9 @@ fn it_arrives_and_the_preview_makes_it_start_early() {
         for k in 0..400_usize {
             let reference = |sample: usize| Vector1::new(f64::from(sample >= 100));
             let references: Vec<_> = (0..=preview).map(|ahead| reference(k + ahead)).collect();
-            let step = controller.step(&mut state, &StateSpaceMpcSample::of_state(x), &references, &[]);
+            let step = controller.step(&mut state, &Sample { preview: &references, ..of_state(x) });
             cost += f64::powi(x.x - reference(k).x, 2);
-            x = advanced(x, step.step.input.x);
+            x = advanced(x, step.input.x);
         }
         assert!((x.x - 1.0).abs() < 1e-3, "{x}");
         cost
@@ -173,12 +178,12 @@ fn with_the_terminal_weight_many_moves_are_the_regulator() {
         let before = Vector2::new(x.x - TIME * (x.y - TIME * u) - TIME * TIME / 2.0 * u, x.y - TIME * u);
         let delta = x - before;
         let regulated = u - (dlqr.gain() * dvector![delta.x, delta.y, x.x - 1.0])[0];
-        let sample = StateSpaceMpcSample::of_state(x);
-        let step = controller.step(&mut applying(u), &sample, &[Vector1::new(1.0)], &[]);
+        let sample = of_state(x);
+        let step = controller.step(&mut applying(u), &Sample { preview: &[Vector1::new(1.0)], ..sample });
         assert!(
-            (step.step.input.x - regulated).abs() < 2e-3 * regulated.abs(),
+            (step.input.x - regulated).abs() < 2e-3 * regulated.abs(),
             "{} beside {regulated}",
-            step.step.input.x
+            step.input.x
         );
     }
 }
@@ -191,9 +196,9 @@ fn a_known_disturbance_leaves_no_error() {
     let mut state = applying(0.0);
     let mut x = Vector2::zeros();
     for _ in 0..600 {
-        let sample = StateSpaceMpcSample { disturbance: wind, ..StateSpaceMpcSample::of_state(x) };
-        let step = controller.step(&mut state, &sample, &[Vector1::new(1.0)], &[]);
-        x = advanced(x, step.step.input.x + wind.x);
+        let sample = Sample { disturbance: wind, ..of_state(x) };
+        let step = controller.step(&mut state, &Sample { preview: &[Vector1::new(1.0)], ..sample });
+        x = advanced(x, step.input.x + wind.x);
     }
     assert!((x.x - 1.0).abs() < 1e-6, "{x}");
 }
@@ -204,18 +209,17 @@ fn feed_forward_counts_towards_the_limits() {
     let limits = [Limit::range(Quantity::Increment, 1, 0..5), Limit::range(Quantity::Input, 1, 0..5)];
     let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &limits).unwrap();
     let bounds = [0.5, 0.5, 2.0, 2.0];
-    let far = StateSpaceMpcSample::of_state(Vector2::new(-100.0, 0.0));
-    let with =
-        |input_reference: f64| StateSpaceMpcSample { input_reference: Vector1::new(input_reference), ..far };
+    let far = of_state(Vector2::new(-100.0, 0.0));
+    let with = |input_reference: f64| Sample { input_reference: Vector1::new(input_reference), ..far };
     let mut state = applying(0.0);
     // The feed-forward steps by 0.3; feedback may add 0.2 …
-    let step = controller.step(&mut state, &with(0.3), &[], &bounds);
-    assert!((step.step.input.x - 0.5).abs() < 1e-9, "{step:?}");
+    let step = controller.step(&mut state, &Sample { upper: &bounds, ..with(0.3) });
+    assert!((step.input.x - 0.5).abs() < 1e-9, "{step:?}");
     // … and the sum ends at its limit.
     for _ in 0..10 {
-        controller.step(&mut state, &with(0.3), &[], &bounds);
+        controller.step(&mut state, &Sample { upper: &bounds, ..with(0.3) });
     }
-    assert!((state.controller.applied().x - 2.0).abs() < 1e-9);
+    assert!((state.applied().x - 2.0).abs() < 1e-9);
 }
 
 #[test]
@@ -235,10 +239,10 @@ fn limits_hold_in_closed_loop() {
     let mut state = applying(0.0);
     let (mut x, mut u, mut active) = (Vector2::zeros(), 0.0_f64, 0);
     for sample in 0..600 {
-        let step =
-            controller.step(&mut state, &StateSpaceMpcSample::of_state(x), &[Vector1::new(10.0)], &bounds);
-        assert_eq!(step.step.status, Status::Optimal, "sample {sample}");
-        let next = step.step.input.x;
+        let step = controller
+            .step(&mut state, &Sample { preview: &[Vector1::new(10.0)], upper: &bounds, ..of_state(x) });
+        assert_eq!(step.status, Status::Optimal, "sample {sample}");
+        let next = step.input.x;
         assert!((next - u).abs() <= 0.2 + 1e-8 && next.abs() <= 1.0 + 1e-8, "sample {sample}: {u} to {next}");
         active += step.active;
         (x, u) = (advanced(x, next), next);
@@ -255,9 +259,7 @@ fn a_step_does_not_allocate() {
     let allocations = allocation_counter::measure(|| {
         let step = controller.step(
             &mut state,
-            &StateSpaceMpcSample::of_state(Vector2::zeros()),
-            &[Vector1::new(5.0)],
-            &[0.1, 0.1],
+            &Sample { preview: &[Vector1::new(5.0)], upper: &[0.1, 0.1], ..of_state(Vector2::zeros()) },
         );
         assert!(step.active > 0);
     });

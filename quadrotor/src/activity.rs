@@ -1,6 +1,6 @@
 //! How the controllers came to their last inputs.
 
-use lmpc::{ConstrainedStep, Status as ControllerStatus};
+use lmpc::{Status as ControllerStatus, Step};
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,7 @@ pub struct Activity {
 impl ControllerActivity {
     /// Of a step some axes of whose input were cut off behind it.
     pub(crate) fn of<const P: usize>(
-        step: &ConstrainedStep<P>,
+        step: &Step<P>,
         wanted: &SVector<f64, P>,
         applied: &SVector<f64, P>,
     ) -> Self {
@@ -57,9 +57,9 @@ impl Default for ControllerActivity {
     }
 }
 
-impl<const P: usize> From<&ConstrainedStep<P>> for ControllerActivity {
-    fn from(step: &ConstrainedStep<P>) -> Self {
+impl<const P: usize> From<&Step<P>> for ControllerActivity {
+    fn from(step: &Step<P>) -> Self {
         let active = u32::try_from(step.active).unwrap_or(u32::MAX);
-        Self { status: step.step.status, iterations: step.iterations, active }
+        Self { status: step.status, iterations: step.iterations, active }
     }
 }

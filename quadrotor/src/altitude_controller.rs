@@ -1,15 +1,14 @@
 //! Altitude: from z and its rate to the vertical acceleration G of (7).
 
-use lmpc::{ConstrainedState, ControllerState};
+use lmpc::{ControllerState, Sample};
 use nalgebra::{Vector1, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::activity::ControllerActivity;
-use crate::cascade_design::ALTITUDE_UNKNOWNS;
+use crate::capacities::ALTITUDE_MANY;
 use crate::controller_limits::altitude_bounds;
 use crate::governor::{Governor, integral_rate};
 use crate::reference_motion::ReferenceMotion;
-use crate::tracking_law::TrackingSample;
 use crate::vehicle_motion::VehicleMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -19,7 +18,7 @@ const BRAKING_SHARE: f64 = 0.5;
 /// State of the altitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AltitudeController {
-    controller: ConstrainedState<2, 1, ALTITUDE_UNKNOWNS>,
+    controller: ControllerState<2, 1, ALTITUDE_MANY>,
     reference: ReferenceMotion<1>,
 }
 
@@ -28,7 +27,7 @@ impl AltitudeController {
     /// counts as motion to be explained, and is damped from the first sample on.
     pub fn new(z_m: f64) -> Self {
         let start = ControllerState::new(Vector2::new(z_m, 0.0), Vector1::zeros(), Vector1::zeros());
-        Self { controller: ConstrainedState::new(start), reference: ReferenceMotion::default() }
+        Self { controller: start, reference: ReferenceMotion::default() }
     }
 
     /// One sample: G, m/s² down, within `range`, and how it was found.
@@ -56,20 +55,22 @@ impl AltitudeController {
             error = governor.seen_vector(&error);
         }
         let rate_m_s = reference.velocity.x;
-        let sample = TrackingSample {
+        let moving_m_s = law.uncounted(&reference.velocity).x;
+        let sample = Sample {
             measured,
-            delta: measured - self.controller.controller.measured() - explained,
+            increment: measured - self.controller.measured() - explained,
             deviation: Vector2::new(error.x, seen.velocity_m_s.x - rate_m_s),
+            error,
             input_reference: reference.acceleration_ahead,
             disturbance: seen.disturbance_m_s2,
+            upper: &altitude_bounds(limits, range, rate_m_s, moving_m_s),
+            ..Sample::default()
         };
-        let moving_m_s = if law.bounds_deviations() { rate_m_s } else { 0.0 };
-        let bounds = altitude_bounds(limits, range, rate_m_s, moving_m_s);
-        let step = law.step(&mut self.controller, &sample, &bounds);
+        let step = law.step(&mut self.controller, &sample);
         self.reference = *reference;
-        let wanted = step.step.input;
+        let wanted = step.input;
         let applied = Vector1::new(wanted.x.clamp(range.0, range.1));
-        self.controller.controller.apply(&applied);
+        self.controller.apply(&applied);
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
     }
 }

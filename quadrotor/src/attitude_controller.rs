@@ -1,14 +1,13 @@
 //! Attitude: from the attitude and body rates to torques.
 
-use lmpc::{ConstrainedState, ControllerState};
+use lmpc::{ControllerState, Sample};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::activity::ControllerActivity;
 use crate::attitude::{attitude_error, turned};
-use crate::cascade_design::ATTITUDE_UNKNOWNS;
+use crate::capacities::ATTITUDE_MANY;
 use crate::governor::{Governor, proportional_rate};
-use crate::tracking_law::TrackingSample;
 use crate::{CascadeDesign, Configuration, Limits};
 
 /// Share of the torque-limited angular acceleration that braking a large rotation counts on.
@@ -35,7 +34,7 @@ pub(crate) struct VehicleRotation {
 /// attitude reference moves continuously.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AttitudeController {
-    controller: ConstrainedState<6, 3, ATTITUDE_UNKNOWNS>,
+    controller: ControllerState<6, 3, ATTITUDE_MANY>,
     attitude: UnitQuaternion<f64>,
     /// The error that the controller saw last, rad.
     error_rad: Vector3<f64>,
@@ -69,7 +68,7 @@ impl AttitudeController {
     pub fn new(attitude: &UnitQuaternion<f64>) -> Self {
         let start = ControllerState::new(Vector6::zeros(), Vector3::zeros(), Vector3::zeros());
         Self {
-            controller: ConstrainedState::new(start),
+            controller: start,
             attitude: *attitude,
             error_rad: Vector3::zeros(),
             rate_error_rad_s: Vector3::zeros(),
@@ -95,7 +94,6 @@ impl AttitudeController {
         let to_body = attitude.inverse() * reference;
         let whole = attitude_error(reference, attitude);
         let error_rad = governed(design, &configuration.limits, &whole);
-        let integrated = integrable(&whole, &error_rad);
         let rate_error_rad_s = seen.body_rate_rad_s - to_body * reference_rate_rad_s;
         self.reference.go_on(reference_rate_rad_s, configuration.controllers.attitude.sample_time_s());
         let law = &design.attitude;
@@ -106,20 +104,25 @@ impl AttitudeController {
             (to_body * self.reference.acceleration_rad_s2)
                 .component_mul(&configuration.believed_inertia_kg_m2())
         };
-        // An incremental law sees in y − r only what may be integrated; the proportional part is in the motion.
-        let error = if law.is_incremental() { &integrated } else { &error_rad };
-        let sample = TrackingSample {
+        let sample = Sample {
             measured: interleaved(&error_rad, &rate_error_rad_s),
-            delta: interleaved(&(error_rad - self.error_rad), &(rate_error_rad_s - self.rate_error_rad_s)),
-            deviation: interleaved(error, &rate_error_rad_s),
+            increment: interleaved(
+                &(error_rad - self.error_rad),
+                &(rate_error_rad_s - self.rate_error_rad_s),
+            ),
+            deviation: interleaved(&error_rad, &rate_error_rad_s),
+            // What an incremental law integrates; its proportional part is in the motion.
+            error: integrable(&whole, &error_rad),
             input_reference,
             disturbance: seen.disturbance_n_m,
+            upper: bounds,
+            ..Sample::default()
         };
-        let step = law.step(&mut self.controller, &sample, bounds);
+        let step = law.step(&mut self.controller, &sample);
         self.error_rad = error_rad;
         self.rate_error_rad_s = rate_error_rad_s;
-        self.integral_n_m = step.step.integral;
-        (step.step.input, ControllerActivity::from(&step))
+        self.integral_n_m = step.integral;
+        (step.input, ControllerActivity::from(&step))
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -127,7 +130,7 @@ impl AttitudeController {
     fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
         let spun_rad = turned(&self.attitude, attitude).z;
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, -spun_rad));
-        self.controller.controller.turn_feedback(|torque| turn * torque);
+        self.controller.turn_feedback(|torque| turn * torque);
         self.error_rad = turn * self.error_rad;
         self.rate_error_rad_s = turn * self.rate_error_rad_s;
         self.attitude = *attitude;
@@ -135,7 +138,7 @@ impl AttitudeController {
 
     /// Reports the torques, N·m, that the rotors were asked for.
     pub(crate) fn apply(&mut self, design: &CascadeDesign, torque_n_m: &Vector3<f64>) {
-        let controller = &mut self.controller.controller;
+        let controller = &mut self.controller;
         if design.attitude.is_incremental() {
             controller.apply_holding_integral(torque_n_m, &self.integral_n_m);
         } else {

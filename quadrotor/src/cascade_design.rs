@@ -3,27 +3,20 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Augmented, Controller, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateSpace,
+    Augmented, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateFeedback, StateSpace,
     Weighting, Weights, spectral_radius,
 };
 use nalgebra::{DMatrix, DVector};
 
+use crate::capacities::{
+    ALTITUDE_FEW, ALTITUDE_MANY, ATTITUDE_FEW, ATTITUDE_MANY, POSITION_FEW, POSITION_MANY,
+};
 use crate::controller_limits::{altitude_limits, attitude_limits, position_limits};
 use crate::estimator::EstimatorDesign;
 use crate::linear_models::{altitude_model, attitude_model, position_model};
 use crate::tracking_law::TrackingLaw;
 use crate::validation::validate;
 use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
-
-/// Terms or moves per input that the larger programs have room for.
-const LARGE: usize = 30;
-/// Laguerre terms per input that the smaller programs have room for.
-const SMALL: usize = 7;
-
-/// Unknowns of the larger programs, slack included.
-pub(crate) const ALTITUDE_UNKNOWNS: usize = LARGE + 1;
-pub(crate) const POSITION_UNKNOWNS: usize = 2 * LARGE + 1;
-pub(crate) const ATTITUDE_UNKNOWNS: usize = 3 * LARGE + 1;
 
 /// The figures of one finished design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,13 +36,13 @@ pub struct DesignReport {
 /// the paper's forward Euler would leave a bias of T²/2 times the acceleration of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CascadeDesign {
-    pub(crate) altitude: TrackingLaw<2, 1, { SMALL + 1 }, ALTITUDE_UNKNOWNS>,
-    pub(crate) position: TrackingLaw<4, 2, { 2 * SMALL + 1 }, POSITION_UNKNOWNS>,
-    pub(crate) attitude: TrackingLaw<6, 3, { 3 * SMALL + 1 }, ATTITUDE_UNKNOWNS>,
+    pub(crate) altitude: TrackingLaw<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>,
+    pub(crate) position: TrackingLaw<4, 2, POSITION_FEW, POSITION_MANY>,
+    pub(crate) attitude: TrackingLaw<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>,
     /// Without limits: how fast the loops close.
-    pub(crate) altitude_gains: Controller<2, 1, 1>,
-    pub(crate) position_gains: Controller<4, 2, 2>,
-    pub(crate) attitude_gains: Controller<6, 3, 3>,
+    pub(crate) altitude_gains: StateFeedback<2, 1, 1>,
+    pub(crate) position_gains: StateFeedback<4, 2, 2>,
+    pub(crate) attitude_gains: StateFeedback<6, 3, 3>,
     pub(crate) estimator: EstimatorDesign,
     reports: [DesignReport; 3],
 }
@@ -114,7 +107,7 @@ impl CascadeDesign {
 /// One finished controller.
 struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> {
     law: TrackingLaw<N, P, S, L>,
-    gains: Controller<N, P, P>,
+    gains: StateFeedback<N, P, P>,
     report: DesignReport,
 }
 
@@ -127,13 +120,12 @@ fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
 ) -> Result<Designed<N, P, S, L>, ConfigurationError> {
     let finished = || {
         let design = laguerre_design(settings, model(settings.sample_time_s())?)?;
-        let output = design.model().plant().c();
         Ok(Designed {
             law: TrackingLaw::new(kind, settings, &design, limits)?,
             gains: match kind {
-                ControllerKind::Lmpc => Controller::from_design(&design, output)?,
+                ControllerKind::Lmpc => StateFeedback::from_design(&design)?,
                 ControllerKind::StateSpaceMpc | ControllerKind::Dlqr => {
-                    Controller::new(design.dlqr().gain(), output)?
+                    StateFeedback::new(design.dlqr().gain())?
                 }
             },
             report: report(&design)?,

@@ -6,6 +6,9 @@ use core::f64::consts::PI;
 use lmpc::{Limit, Quantity};
 use nalgebra::{DMatrix, Vector2, Vector3};
 
+use crate::capacities::{
+    ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
+};
 use crate::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
 use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits};
 
@@ -16,24 +19,11 @@ pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
 /// its command, by half in the worst of many steps tried.
 pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.6;
 
-/// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
-const TILT_SIDES: usize = 16;
-/// Sides of the polygon for the rate of the tilt.
-const RATE_SIDES: usize = 8;
-/// Sides of the polygon for the speed.
-const SPEED_SIDES: usize = 16;
 /// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
 const CATCHING_UP: f64 = 0.1;
 /// And by so much at least, m/s: with less room a gust, or the start of a motion, is beyond the bound, and what brings the speed
 /// back by full tilt overshoots it on the other side.
 const LEAST_CATCHING_UP_M_S: f64 = 0.3;
-
-/// Number of bounds of the position controller.
-pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
-/// Number of bounds of the altitude controller.
-pub(crate) const ALTITUDE_BOUNDS: usize = 4;
-/// Number of bounds of the attitude controller.
-pub(crate) const ATTITUDE_BOUNDS: usize = 6;
 
 /// Growth of predicted moves up to which limits are placed on them.
 const GROWTH: f64 = 10.0;

@@ -3,7 +3,7 @@
 //! The unconstrained controllers know nothing of saturation: a large error would ask for a speed from
 //! which the vehicle cannot brake in time. The governor shortens it.
 
-use lmpc::Controller;
+use lmpc::StateFeedback;
 use nalgebra::SVector;
 
 /// Bounds on the speed with which an error is closed.
@@ -49,7 +49,7 @@ impl Governor {
 ///
 /// Channel `i` of a chain of double integrators, states position and rate.
 pub(crate) fn integral_rate<const N: usize, const P: usize>(
-    law: &Controller<N, P, P>,
+    law: &StateFeedback<N, P, P>,
     channel: usize,
     sample_time_s: f64,
 ) -> f64 {
@@ -59,7 +59,7 @@ pub(crate) fn integral_rate<const N: usize, const P: usize>(
 /// κ of a controller whose set-point enters through the state as well: the rate at which the proportional
 /// and the derivative term balance, K_position / K_rate.
 pub(crate) fn proportional_rate<const N: usize, const P: usize>(
-    law: &Controller<N, P, P>,
+    law: &StateFeedback<N, P, P>,
     channel: usize,
 ) -> f64 {
     law.state_gain()[(channel, 2 * channel)] / law.state_gain()[(channel, 2 * channel + 1)]

@@ -40,6 +40,7 @@ mod altitude_controller;
 mod attitude;
 mod attitude_controller;
 mod attitude_target;
+mod capacities;
 mod cascade;
 mod cascade_design;
 mod configuration;

@@ -2,6 +2,7 @@
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
 use crate::ControllerKind;
+use crate::capacities::{MOST_MOVES, MOST_TERMS};
 use crate::parameter::{Access, Choice, Parameter, Unit};
 
 /// A real parameter: name, unit, variability, range, place and description.
@@ -23,7 +24,7 @@ macro_rules! real {
 }
 
 macro_rules! integer {
-    ($name:literal, $minimum:literal..=$maximum:literal, $($field:tt).+, $description:literal) => {
+    ($name:literal, $minimum:literal..=$maximum:expr, $($field:tt).+, $description:literal) => {
         Parameter {
             name: $name,
             description: $description,
@@ -31,7 +32,7 @@ macro_rules! integer {
             tunable: FIXED,
             access: Access::Integer {
                 minimum: $minimum,
-                maximum: $maximum,
+                maximum: $maximum as i32,
                 get: |configuration| i32::try_from(configuration.$($field).+).unwrap_or(i32::MAX),
                 set: |configuration, value| configuration.$($field).+ = u32::try_from(value).unwrap_or(0),
             },
@@ -140,20 +141,20 @@ pub static PARAMETERS: &[Parameter] = &[
     boolean!("controller.governor", controllers.governor, "Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can brake from the speed that it calls for"),
     real!("controller.mass_factor", One, FIXED, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
-    integer!("controller.altitude.terms", 1..=20, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
+    integer!("controller.altitude.terms", 1..=MOST_TERMS, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
     real!("controller.altitude.scale", One, FIXED, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
     integer!("controller.altitude.prediction_horizon", 1..=1000, controllers.altitude.prediction_horizon, "N_p: prediction horizon of the altitude controller, samples"),
-    integer!("controller.altitude.control_horizon", 1..=30, controllers.altitude.control_horizon, "N_c: moves of the state-space MPC of the altitude controller"),
+    integer!("controller.altitude.control_horizon", 1..=MOST_MOVES, controllers.altitude.control_horizon, "N_c: moves of the state-space MPC of the altitude controller"),
     real!("controller.altitude.alpha", One, FIXED, 1.0..=2.0, controllers.altitude.alpha, "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"),
     real!("controller.altitude.lambda", One, FIXED, 0.5..=1.0, controllers.altitude.lambda, "lambda: degree of stability of the altitude controller"),
     real!("controller.altitude.output_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.output_weight[0], "Q: weight of the altitude error"),
     real!("controller.altitude.rate_weight", One, TUNABLE, 0.0..=1e9, controllers.altitude.rate_weight[0], "Q: weight of the increment of the vertical velocity"),
     real!("controller.altitude.increment_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.increment_weight[0], "R: weight of the increment of the vertical acceleration G"),
     sample_time!("controller.position.sample_time", position, "Sample time of the position controller"),
-    integer!("controller.position.terms", 1..=20, controllers.position.terms, "N: Laguerre terms of the position controller, per input"),
+    integer!("controller.position.terms", 1..=MOST_TERMS, controllers.position.terms, "N: Laguerre terms of the position controller, per input"),
     real!("controller.position.scale", One, FIXED, 0.0..=0.99, controllers.position.scale, "a: Laguerre scaling factor of the position controller"),
     integer!("controller.position.prediction_horizon", 1..=1000, controllers.position.prediction_horizon, "N_p: prediction horizon of the position controller, samples"),
-    integer!("controller.position.control_horizon", 1..=30, controllers.position.control_horizon, "N_c: moves of the state-space MPC of the position controller, per input"),
+    integer!("controller.position.control_horizon", 1..=MOST_MOVES, controllers.position.control_horizon, "N_c: moves of the state-space MPC of the position controller, per input"),
     real!("controller.position.alpha", One, FIXED, 1.0..=2.0, controllers.position.alpha, "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"),
     real!("controller.position.lambda", One, FIXED, 0.5..=1.0, controllers.position.lambda, "lambda: degree of stability of the position controller"),
     real!("controller.position.output_weight.x", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[0], "Q: weight of the error north"),
@@ -163,10 +164,10 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("controller.position.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[0], "R: weight of the increment of the pitch command, which moves north"),
     real!("controller.position.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[1], "R: weight of the increment of the roll command, which moves east"),
     sample_time!("controller.attitude.sample_time", attitude, "Sample time of the attitude controller"),
-    integer!("controller.attitude.terms", 1..=20, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
+    integer!("controller.attitude.terms", 1..=MOST_TERMS, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
     real!("controller.attitude.scale", One, FIXED, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
     integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller, samples"),
-    integer!("controller.attitude.control_horizon", 1..=30, controllers.attitude.control_horizon, "N_c: moves of the state-space MPC of the attitude controller, per input"),
+    integer!("controller.attitude.control_horizon", 1..=MOST_MOVES, controllers.attitude.control_horizon, "N_c: moves of the state-space MPC of the attitude controller, per input"),
     real!("controller.attitude.alpha", One, FIXED, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
     real!("controller.attitude.lambda", One, FIXED, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
     real!("controller.attitude.output_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[0], "Q: weight of the roll error"),

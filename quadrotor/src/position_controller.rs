@@ -1,15 +1,14 @@
 //! Position: from x, y and their rates to tilt commands.
 
-use lmpc::{ConstrainedState, ControllerState};
+use lmpc::{ControllerState, Sample};
 use nalgebra::{Vector2, Vector4};
 use serde::{Deserialize, Serialize};
 
 use crate::activity::ControllerActivity;
-use crate::cascade_design::POSITION_UNKNOWNS;
+use crate::capacities::POSITION_MANY;
 use crate::controller_limits::position_bounds;
 use crate::governor::{Governor, integral_rate};
 use crate::reference_motion::ReferenceMotion;
-use crate::tracking_law::TrackingSample;
 use crate::vehicle_motion::VehicleMotion;
 use crate::{CascadeDesign, Configuration, GRAVITY_M_S2};
 
@@ -24,7 +23,7 @@ const BRAKING_SHARE: f64 = 0.25;
 /// a direction of the thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
-    controller: ConstrainedState<4, 2, POSITION_UNKNOWNS>,
+    controller: ControllerState<4, 2, POSITION_MANY>,
     reference: ReferenceMotion<2>,
 }
 
@@ -33,7 +32,7 @@ impl PositionController {
     pub fn new(position_m: Vector2<f64>) -> Self {
         let measured = Vector4::new(position_m.x, 0.0, position_m.y, 0.0);
         let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
-        Self { controller: ConstrainedState::new(start), reference: ReferenceMotion::default() }
+        Self { controller: start, reference: ReferenceMotion::default() }
     }
 
     /// One sample: horizontal acceleration in NED, m/s², and how it was found. `tilt` is the largest |a|/g,
@@ -63,20 +62,22 @@ impl PositionController {
             };
             error = governor.seen_vector(&error);
         }
-        let sample = TrackingSample {
+        let moving = law.uncounted(&reference.velocity);
+        let sample = Sample {
             measured,
-            delta: measured - self.controller.controller.measured() - explained,
+            increment: measured - self.controller.measured() - explained,
             deviation: interleaved(&error, &(seen.velocity_m_s - reference.velocity)),
+            error,
             input_reference: tilt_of(&reference.acceleration_ahead),
             disturbance: tilt_of(&seen.disturbance_m_s2),
+            upper: &position_bounds(limits, tilt, period_s, &reference.velocity, &moving),
+            ..Sample::default()
         };
-        let moving = if law.bounds_deviations() { reference.velocity } else { Vector2::zeros() };
-        let bounds = position_bounds(limits, tilt, period_s, &reference.velocity, &moving);
-        let step = law.step(&mut self.controller, &sample, &bounds);
+        let step = law.step(&mut self.controller, &sample);
         self.reference = *reference;
-        let wanted = acceleration_of(&step.step.input);
+        let wanted = acceleration_of(&step.input);
         let applied = limited(wanted);
-        self.controller.controller.apply(&tilt_of(&applied));
+        self.controller.apply(&tilt_of(&applied));
         (applied, ControllerActivity::of(&step, &wanted, &applied))
     }
 }

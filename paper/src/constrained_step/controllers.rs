@@ -1,9 +1,8 @@
 //! The controllers that fly a step on one axis.
 
 use lmpc::{
-    Augmented, ConstrainedController, ConstrainedState, ConstrainedStep, ControllerState, DesignError, Dlqr,
-    LaguerreBasis, LmpcDesign, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample, StateSpaceMpcWeights,
-    Weighting,
+    Augmented, Controller as _, ControllerState, DesignError, Dlqr, LaguerreBasis, LaguerreMpc, LmpcDesign,
+    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step, Weighting,
 };
 use nalgebra::{Vector1, Vector2, dmatrix};
 
@@ -40,7 +39,7 @@ pub type Placing<'a> = &'a [usize];
 /// Laguerre MPC of an axis, with E ≥ N + 1.
 ///
 /// # Errors
-/// As [`LmpcDesign::new`] and [`ConstrainedController::new`].
+/// As [`LmpcDesign::new`] and [`LaguerreMpc::new`].
 pub fn laguerre<const E: usize>(
     axis: &Axis,
     terms: usize,
@@ -55,12 +54,17 @@ pub fn laguerre<const E: usize>(
     // A Laguerre function moves for ever, pulses (a = 0) do not.
     let moves = if scale == 0.0 { terms } else { usize::MAX };
     let (limits, bounds) = axis.limits(placing, moves);
-    let controller = ConstrainedController::<2, 1, 1, E>::new(&design, &limits)?;
-    let mut state = at_rest::<E>();
+    let controller = LaguerreMpc::<2, 1, 1, E>::new(&design, &limits)?;
+    let mut state = ControllerState::<2, 1, E>::at_rest();
     Ok(Box::new(move |sample| {
-        let error = Vector1::new(sample.state[0] - sample.goal);
-        let (measured, delta) = (sample.state.into(), sample.delta.into());
-        moved(&controller.step_from(&mut state, &measured, &delta, &error, &Vector1::zeros(), &bounds))
+        let now = lmpc::Sample {
+            measured: sample.state.into(),
+            increment: sample.delta.into(),
+            error: Vector1::new(sample.state[0] - sample.goal),
+            upper: &bounds,
+            ..lmpc::Sample::default()
+        };
+        moved(&controller.step(&mut state, &now))
     }))
 }
 
@@ -86,12 +90,13 @@ pub fn state_space<const E: usize>(
     let design = state_space_design(axis, moves, end)?;
     let (limits, bounds) = axis.limits(placing, moves);
     let controller = StateSpaceMpc::<2, 1, 1, E>::new(&design, &limits)?;
-    let mut state = at_rest::<E>();
+    let mut state = ControllerState::<2, 1, E>::at_rest();
     Ok(Box::new(move |sample| {
         // The goal as the origin: nothing to preview, which would cost time for the same move.
         let [y, rate] = sample.state;
-        let now = StateSpaceMpcSample::of_state(Vector2::new(y - sample.goal, rate));
-        moved(&controller.step(&mut state, &now, &[], &bounds))
+        let deviation = Vector2::new(y - sample.goal, rate);
+        let now = lmpc::Sample { deviation, upper: &bounds, ..lmpc::Sample::default() };
+        moved(&controller.step(&mut state, &now))
     }))
 }
 
@@ -136,11 +141,7 @@ pub fn clipped_regulator(axis: &Axis) -> Result<Controller, DesignError> {
     }))
 }
 
-fn at_rest<const E: usize>() -> ConstrainedState<2, 1, E> {
-    ConstrainedState::new(ControllerState::new(Vector2::zeros(), Vector1::zeros(), Vector1::zeros()))
-}
-
-fn moved(step: &ConstrainedStep<1>) -> Move {
+fn moved(step: &Step<1>) -> Move {
     let limited = step.iterations > 0 || step.active > 0;
-    Move { input: step.step.input.x, iterations: step.iterations, limited }
+    Move { input: step.input.x, iterations: step.iterations, limited }
 }

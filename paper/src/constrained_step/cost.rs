@@ -1,6 +1,6 @@
 //! closed_loop_cost\[\]: every controller on every step, in one run.
 
-use lmpc::{DesignError, Weighting};
+use lmpc::{DesignError, Weighting, unknowns};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -123,13 +123,13 @@ fn contenders(axis: &Axis) -> Result<Vec<Entry>, Error> {
         entry(name(n, PAPER_SCALE, "α = 1.2"), n, controller)
     };
     Ok(vec![
-        own(1, laguerre::<2>(axis, 1, scale, terminal, placing))?,
-        own(3, laguerre::<4>(axis, 3, scale, terminal, placing))?,
-        own(5, laguerre::<6>(axis, 5, scale, terminal, placing))?,
-        own(7, laguerre::<8>(axis, 7, scale, terminal, placing))?,
-        own(9, laguerre::<10>(axis, 9, scale, terminal, placing))?,
-        papers(5, laguerre::<6>(axis, 5, PAPER_SCALE, paper, placing))?,
-        papers(9, laguerre::<10>(axis, 9, PAPER_SCALE, paper, placing))?,
+        own(1, laguerre::<{ unknowns(1, 1) }>(axis, 1, scale, terminal, placing))?,
+        own(3, laguerre::<{ unknowns(1, 3) }>(axis, 3, scale, terminal, placing))?,
+        own(5, laguerre::<{ unknowns(1, 5) }>(axis, 5, scale, terminal, placing))?,
+        own(7, laguerre::<{ unknowns(1, 7) }>(axis, 7, scale, terminal, placing))?,
+        own(9, laguerre::<{ unknowns(1, 9) }>(axis, 9, scale, terminal, placing))?,
+        papers(5, laguerre::<{ unknowns(1, 5) }>(axis, 5, PAPER_SCALE, paper, placing))?,
+        papers(9, laguerre::<{ unknowns(1, 9) }>(axis, 9, PAPER_SCALE, paper, placing))?,
         entry("DLQR, clipped".to_owned(), 0, clipped_regulator(axis))?,
     ])
 }
@@ -141,10 +141,10 @@ fn state_space_contenders(axis: &Axis, step: f64) -> Result<Vec<Entry>, Error> {
     let name = |n: usize| format!("SS-MPC, N_c = {n}");
     let weighted = |n: usize| format!("SS-MPC, N_c = {n}, terminal weight");
     let mut entries = vec![
-        entry(name(25), 25, state_space::<26>(axis, 25, End::Nothing, placing))?,
-        entry(name(50), 50, state_space::<51>(axis, 50, End::Nothing, placing))?,
-        entry(weighted(25), 25, state_space::<26>(axis, 25, End::Riccati, placing))?,
-        entry(weighted(50), 50, state_space::<51>(axis, 50, End::Riccati, placing))?,
+        entry(name(25), 25, state_space::<{ unknowns(1, 25) }>(axis, 25, End::Nothing, placing))?,
+        entry(name(50), 50, state_space::<{ unknowns(1, 50) }>(axis, 50, End::Nothing, placing))?,
+        entry(weighted(25), 25, state_space::<{ unknowns(1, 25) }>(axis, 25, End::Riccati, placing))?,
+        entry(weighted(50), 50, state_space::<{ unknowns(1, 50) }>(axis, 50, End::Riccati, placing))?,
     ];
     if step.abs() == axis.steps[1].abs() {
         let clarabel = ClarabelMoves::new(axis, 25, placing)?.controller();

@@ -141,7 +141,7 @@ mod tests {
             let axis = Axis { horizon: 150, ..axis };
             let all: Vec<usize> = (0..120).collect();
             let terminal = Weighting::Terminal { lambda: 1.0 };
-            let controller = laguerre::<121>(&axis, 120, 0.0, terminal, &all).unwrap();
+            let controller = laguerre::<{ lmpc::unknowns(1, 120) }>(&axis, 120, 0.0, terminal, &all).unwrap();
             let (ours, theirs) = (fly(&axis, step, controller).cost, optimum(&axis, step).unwrap());
             assert!((ours / theirs - 1.0).abs() < 1e-5, "{}: {ours}, {theirs}", axis.name);
         }

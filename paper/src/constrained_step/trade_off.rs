@@ -1,6 +1,6 @@
 //! What N, a, α and the placing of limits cost: the excess over the optimum, for whole grids of designs.
 
-use lmpc::{DesignError, Weighting};
+use lmpc::{DesignError, Weighting, unknowns};
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,8 +13,8 @@ use super::optimum::optimum;
 use crate::error::Error;
 use crate::progress::Progress;
 
-/// Most Laguerre terms of a design here, and one slack.
-const CAPACITY: usize = 11;
+/// Unknowns of the largest design here.
+const CAPACITY: usize = unknowns(1, TERMS[TERMS.len() - 1]);
 /// N of the grids.
 pub const TERMS: [usize; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 /// a of the grids.

@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use lmpc::{
-    Augmented, ConstrainedController, ConstrainedState, ControllerState, DesignError, Discretization,
-    LaguerreBasis, Limit, LmpcDesign, Quantity, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcSample,
-    Weighting, Weights,
+    Augmented, Controller as _, ControllerState, DesignError, Discretization, LaguerreBasis, LaguerreMpc,
+    Limit, LmpcDesign, Quantity, Sample, StateSpaceMpc, StateSpaceMpcDesign, Weighting, Weights, unknowns,
 };
 use nalgebra::{DMatrix, Vector2, Vector4};
 use quadrotor::{GRAVITY_M_S2, position_model};
@@ -37,18 +36,18 @@ pub fn two_axes() -> Result<Vec<CostResult>, Error> {
     let terminal = Weighting::Terminal { lambda: 1.0 };
     let all: Vec<usize> = (0..FREE_MOVES).collect();
     let optimum =
-        fly(&axis, laguerre::<{ 2 * FREE_MOVES + 1 }>(&axis, FREE_MOVES, 0.0, terminal, &all)?).cost;
+        fly(&axis, laguerre::<{ unknowns(2, FREE_MOVES) }>(&axis, FREE_MOVES, 0.0, terminal, &all)?).cost;
     let name = |n: usize| format!("LMPC, N = {n}, a = {}, terminal weight", axis.scale);
     let moves = |n: usize| format!("SS-MPC, N_c = {n}");
     let (scale, placing) = (axis.scale, axis.limited);
     let entries = [
-        entry(name(1), 1, laguerre::<3>(&axis, 1, scale, terminal, placing))?,
-        entry(name(3), 3, laguerre::<7>(&axis, 3, scale, terminal, placing))?,
-        entry(name(5), 5, laguerre::<11>(&axis, 5, scale, terminal, placing))?,
-        entry(name(7), 7, laguerre::<15>(&axis, 7, scale, terminal, placing))?,
-        entry(name(9), 9, laguerre::<19>(&axis, 9, scale, terminal, placing))?,
-        entry(moves(25), 25, state_space::<51>(&axis, 25))?,
-        entry(moves(50), 50, state_space::<101>(&axis, 50))?,
+        entry(name(1), 1, laguerre::<{ unknowns(2, 1) }>(&axis, 1, scale, terminal, placing))?,
+        entry(name(3), 3, laguerre::<{ unknowns(2, 3) }>(&axis, 3, scale, terminal, placing))?,
+        entry(name(5), 5, laguerre::<{ unknowns(2, 5) }>(&axis, 5, scale, terminal, placing))?,
+        entry(name(7), 7, laguerre::<{ unknowns(2, 7) }>(&axis, 7, scale, terminal, placing))?,
+        entry(name(9), 9, laguerre::<{ unknowns(2, 9) }>(&axis, 9, scale, terminal, placing))?,
+        entry(moves(25), 25, state_space::<{ unknowns(2, 25) }>(&axis, 25))?,
+        entry(moves(50), 50, state_space::<{ unknowns(2, 50) }>(&axis, 50))?,
     ];
     let problem = "position step of 5 m north and 5 m east";
     let result = |(contender, controller): (Contender, Option<Controller>)| {
@@ -69,10 +68,6 @@ fn limits(axis: &Axis, samples: &[usize], moves: usize) -> ([Limit; 2], Vec<f64>
     (limits, bounds)
 }
 
-fn at_rest<const E: usize>() -> ConstrainedState<4, 2, E> {
-    ConstrainedState::new(ControllerState::new(Vector4::zeros(), Vector2::zeros(), Vector2::zeros()))
-}
-
 fn laguerre<const E: usize>(
     axis: &Axis,
     terms: usize,
@@ -86,11 +81,13 @@ fn laguerre<const E: usize>(
     let design = LmpcDesign::new(&model, &weights, &bases, axis.horizon, weighting)?;
     let moves = if scale == 0.0 { terms } else { usize::MAX };
     let (limits, bounds) = limits(axis, placing, moves);
-    let controller = ConstrainedController::<4, 2, 2, E>::new(&design, &limits)?;
-    let mut state = at_rest::<E>();
+    let controller = LaguerreMpc::<4, 2, 2, E>::new(&design, &limits)?;
+    let mut state = ControllerState::<4, 2, E>::at_rest();
     Ok(Box::new(move |x, delta| {
-        let result = controller.step_from(&mut state, x, delta, &error(x), &Vector2::zeros(), &bounds);
-        (result.step.input, result.iterations, result.active)
+        let sample =
+            Sample { measured: *x, increment: *delta, error: error(x), upper: &bounds, ..Sample::default() };
+        let result = controller.step(&mut state, &sample);
+        (result.input, result.iterations, result.active)
     }))
 }
 
@@ -101,11 +98,11 @@ fn state_space<const E: usize>(axis: &Axis, moves: usize) -> Result<Controller, 
     let design = StateSpaceMpcDesign::new(&plant, &output, &increment, axis.horizon, moves)?;
     let (limits, bounds) = limits(axis, axis.limited, moves);
     let controller = StateSpaceMpc::<4, 2, 2, E>::new(&design, &limits)?;
-    let mut state = at_rest::<E>();
+    let mut state = ControllerState::<4, 2, E>::at_rest();
     Ok(Box::new(move |x, _| {
-        let from_goal = x - Vector4::new(GOAL_M[0], 0.0, GOAL_M[1], 0.0);
-        let result = controller.step(&mut state, &StateSpaceMpcSample::of_state(from_goal), &[], &bounds);
-        (result.step.input, result.iterations, result.active)
+        let deviation = x - Vector4::new(GOAL_M[0], 0.0, GOAL_M[1], 0.0);
+        let result = controller.step(&mut state, &Sample { deviation, upper: &bounds, ..Sample::default() });
+        (result.input, result.iterations, result.active)
     }))
 }
 

@@ -1,13 +1,17 @@
-//! The run-time control law with limits.
+//! Laguerre MPC under limits, at run time.
 
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
 
+use crate::controller_state::Decision;
 use crate::laguerre_walk::LaguerreWalk;
 use crate::limit_row::{LimitRow, limit_rows};
-use crate::relaxable::{RelaxableProgram, RelaxableWarmStart};
-use crate::{ConstrainedState, ConstrainedStep, Controller, DesignError, Limit, LmpcDesign};
+use crate::model_increment::ModelIncrement;
+use crate::relaxable::RelaxableProgram;
+use crate::{
+    Controller, ControllerState, DesignError, Limit, LmpcDesign, Sample, StateFeedback, StateSpace, Step,
+};
 
 /// Relative violation that rounding may leave.
 const ROUNDING: f64 = 1e-9;
@@ -20,8 +24,9 @@ const ROUNDING: f64 = 1e-9;
 /// When no η keeps them, they are relaxed by a common slack that is charged quadratically, soft limits
 /// before hard ones, and the status says so.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ConstrainedController<const N: usize, const P: usize, const Q: usize, const E: usize> {
-    unconstrained: Controller<N, P, Q>,
+pub struct LaguerreMpc<const N: usize, const P: usize, const Q: usize, const E: usize> {
+    unconstrained: StateFeedback<N, P, Q>,
+    model_increment: Option<ModelIncrement<N, P>>,
     /// Ψ, E×N and E×Q, in η; zero for the slack.
     psi_state: SMatrix<f64, E, N>,
     psi_output: SMatrix<f64, E, Q>,
@@ -46,7 +51,7 @@ struct KnownPart<const N: usize, const P: usize, const Q: usize> {
 }
 
 /// What the limits need of one sample.
-struct Sample<const N: usize, const P: usize, const Q: usize> {
+struct Known<const N: usize, const P: usize, const Q: usize> {
     delta: SVector<f64, N>,
     error: SVector<f64, Q>,
     /// u_r(k) + v(k−1)
@@ -56,27 +61,23 @@ struct Sample<const N: usize, const P: usize, const Q: usize> {
     measured: SVector<f64, N>,
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize> ConstrainedController<N, P, Q, E> {
+impl<const N: usize, const P: usize, const Q: usize, const E: usize> LaguerreMpc<N, P, Q, E> {
     /// The controller of a design under some limits.
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics or E is too small,
     /// [`DesignError::NotFinite`], [`DesignError::NotPositiveDefinite`] (Ω with slack).
     pub fn new(design: &LmpcDesign, limits: &[Limit]) -> Result<Self, DesignError> {
-        let unconstrained = Controller::from_design(design, design.model().plant().c())?;
+        let unconstrained = StateFeedback::from_design(design)?;
         let (omega, psi) = (design.prediction().omega(), design.prediction().psi());
         let terms = omega.nrows();
         let rows = limit_rows(limits, LaguerreWalk::new(design))?;
-        let soft: Vec<bool> = rows.iter().map(|row| row.soft).collect();
-        let mut g = DMatrix::zeros(rows.len(), terms);
-        for (index, row) in rows.iter().enumerate() {
-            g.set_row(index, &row.decision);
-        }
-        let program = RelaxableProgram::new(omega, &g, &soft)?;
+        let program = RelaxableProgram::new(omega, &rows)?;
 
         let first_move = design.first_move();
         Ok(Self {
             unconstrained,
+            model_increment: None,
             psi_state: SMatrix::from_fn(|i, j| if i < terms { psi[(i, j)] } else { 0.0 }),
             psi_output: SMatrix::from_fn(|i, j| if i < terms { psi[(i, N + j)] } else { 0.0 }),
             first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
@@ -86,44 +87,52 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constrained
         })
     }
 
+    /// The same controller with Δx(k) from the model instead of the measured motion: the motion that leads to the
+    /// deviation from the reference under v(k−1) + d(k). The disturbance of each sample is then its integral action.
+    ///
+    /// An actuator that answers late shows as a disturbance in the measured motion, and under limits that makes the
+    /// closed loop cycle.
+    ///
+    /// # Errors
+    /// [`DesignError::NotFinite`] when A of the plant cannot be inverted.
+    pub fn with_model_increment(self, plant: &StateSpace) -> Result<Self, DesignError> {
+        Ok(Self { model_increment: Some(ModelIncrement::new(plant)?), ..self })
+    }
+
     /// Number of run-time bounds: one per direction of each limit, in their order.
     pub fn bounds(&self) -> usize {
         self.bounds
     }
 
     /// The law without limits.
-    pub fn unconstrained(&self) -> &Controller<N, P, Q> {
+    pub fn unconstrained(&self) -> &StateFeedback<N, P, Q> {
         &self.unconstrained
     }
+}
 
-    /// One sample, as [`Controller::step_from`], with the values of the bounds. Bounds that are missing are
-    /// no limit.
-    pub fn step_from<const W: usize>(
-        &self,
-        state: &mut ConstrainedState<N, P, W>,
-        measured: &SVector<f64, N>,
-        delta: &SVector<f64, N>,
-        error: &SVector<f64, Q>,
-        input_reference: &SVector<f64, P>,
-        upper: &[f64],
-    ) -> ConstrainedStep<P> {
-        let sample = Sample {
-            delta: *delta,
-            error: *error,
-            input: input_reference + state.controller.feedback(),
-            step: input_reference - state.controller.input_reference(),
-            measured: *measured,
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize> Controller<N, P, Q, W>
+    for LaguerreMpc<N, P, Q, E>
+{
+    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
+        let increment = self.model_increment.as_ref().map_or(sample.increment, |model| {
+            model.that_led_to(&sample.deviation, &(state.feedback() + sample.disturbance))
+        });
+        let sample = &Sample { increment, ..*sample };
+        let known = Known {
+            delta: sample.increment,
+            error: sample.error,
+            input: sample.input_reference + state.feedback(),
+            step: sample.input_reference - state.input_reference(),
+            measured: sample.measured,
         };
-        if self.rows.iter().all(|row| row.holds_unconstrained(&sample, upper)) {
-            let controller = &mut state.controller;
-            let step = self.unconstrained.step_from(controller, measured, delta, error, input_reference);
-            state.warm_start = RelaxableWarmStart::default();
-            return ConstrainedStep { step, iterations: 0, active: 0 };
+        if self.rows.iter().all(|row| row.holds_unconstrained(&known, sample.upper)) {
+            return self.unconstrained.step(state, sample);
         }
-        let f = self.psi_state * sample.delta + self.psi_output * sample.error;
-        let bound = |row: usize| self.rows[row].room(&sample, upper);
-        let (solution, status) = self.program.solve(&f, bound, &mut state.warm_start);
-        state.taken(measured, input_reference, self.first_move * solution.x, &solution, status)
+        let f = self.psi_state * known.delta + self.psi_output * known.error;
+        let room = |row: usize| self.rows[row].room(&known, sample.upper);
+        let (solution, status) = self.program.solve(&f, room, &mut state.warm_start);
+        let first_move = self.first_move * solution.x;
+        state.take(sample, &Decision::solved(state.feedback(), first_move, &solution, status))
     }
 }
 
@@ -148,19 +157,19 @@ impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
     }
 
     /// The known part but for \[Δx_m; y − r\].
-    fn base(&self, sample: &Sample<N, P, Q>) -> f64 {
-        (self.input * sample.input + self.step * sample.step + self.measured * sample.measured).x
+    fn base(&self, known: &Known<N, P, Q>) -> f64 {
+        (self.input * known.input + self.step * known.step + self.measured * known.measured).x
     }
 
     /// What is left for η.
-    fn room(&self, sample: &Sample<N, P, Q>, upper: &[f64]) -> f64 {
-        self.upper(upper) - self.base(sample) - (self.state * sample.delta + self.output * sample.error).x
+    fn room(&self, known: &Known<N, P, Q>, upper: &[f64]) -> f64 {
+        self.upper(upper) - self.base(known) - (self.state * known.delta + self.output * known.error).x
     }
 
-    fn holds_unconstrained(&self, sample: &Sample<N, P, Q>, upper: &[f64]) -> bool {
+    fn holds_unconstrained(&self, known: &Known<N, P, Q>, upper: &[f64]) -> bool {
         let upper = self.upper(upper);
-        let value = self.base(sample)
-            + (self.unconstrained_state * sample.delta + self.unconstrained_output * sample.error).x;
+        let value = self.base(known)
+            + (self.unconstrained_state * known.delta + self.unconstrained_output * known.error).x;
         value <= upper + ROUNDING * (1.0 + libm::fabs(upper))
     }
 }

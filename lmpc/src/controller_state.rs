@@ -1,0 +1,160 @@
+//! What a controller remembers from one sample to the next.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use crate::relaxable::RelaxableWarmStart;
+use crate::{Sample, Solution, Status, Step};
+
+/// Relative difference that the actuators' own arithmetic may make between an input asked for and applied.
+const ROUNDING: f64 = 1e-9;
+
+/// All that a [`Controller`](crate::Controller) of N states and P inputs remembers from one sample to the next: the
+/// last state, the last input, and the active set of its last solution, of up to W limits. A law without limits
+/// needs no room for them: W = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ControllerState<const N: usize, const P: usize, const W: usize = 0> {
+    measured: SVector<f64, N>,
+    /// v(k−1) = u(k−1) − u_r(k−1): the part of the applied input that feedback added.
+    feedback: SVector<f64, P>,
+    input_reference: SVector<f64, P>,
+    pub(crate) warm_start: RelaxableWarmStart<W>,
+}
+
+impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
+    /// A controller that takes over a plant whose last state was `measured`, under the input `applied`
+    /// of which `input_reference` was feed-forward.
+    pub fn new(
+        measured: SVector<f64, N>,
+        applied: SVector<f64, P>,
+        input_reference: SVector<f64, P>,
+    ) -> Self {
+        Self {
+            measured,
+            feedback: applied - input_reference,
+            input_reference,
+            warm_start: RelaxableWarmStart::default(),
+        }
+    }
+
+    /// A controller that takes over a plant at rest at x = 0 under no input.
+    pub fn at_rest() -> Self {
+        Self::new(SVector::zeros(), SVector::zeros(), SVector::zeros())
+    }
+
+    /// Reports the input that was applied in truth, so that saturation further down cannot wind the
+    /// integral action up. A value that is not finite is ignored.
+    pub fn apply(&mut self, applied: &SVector<f64, P>) {
+        let feedback = applied - self.input_reference;
+        if finite(&feedback) {
+            self.feedback = feedback;
+        }
+    }
+
+    /// As [`ControllerState::apply`], but an input that saturated keeps its state feedback and loses only
+    /// the integral action `integral` of the step that asked for it.
+    ///
+    /// For inputs that saturate on kicks of a few samples: the state feedback of a kick that was cut off is
+    /// still there when the state has come back, and the integral action waits.
+    pub fn apply_holding_integral(&mut self, applied: &SVector<f64, P>, integral: &SVector<f64, P>) {
+        let cut = applied - self.applied();
+        for input in 0..P {
+            // Rounding of the actuators' own arithmetic is not saturation.
+            let held = self.feedback[input] - integral[input];
+            if libm::fabs(cut[input]) > ROUNDING * (1.0 + libm::fabs(applied[input])) && held.is_finite() {
+                self.feedback[input] = held;
+            }
+        }
+    }
+
+    /// Replaces v(k−1), for a plant whose input axes have turned since. A value that is not finite is ignored.
+    pub fn turn_feedback(&mut self, turned: impl Fn(&SVector<f64, P>) -> SVector<f64, P>) {
+        let feedback = turned(&self.feedback);
+        if finite(&feedback) {
+            self.feedback = feedback;
+        }
+    }
+
+    /// v(k−1), the part of the applied input that feedback added.
+    pub fn feedback(&self) -> SVector<f64, P> {
+        self.feedback
+    }
+
+    /// u_r(k−1).
+    pub(crate) fn input_reference(&self) -> SVector<f64, P> {
+        self.input_reference
+    }
+
+    /// The last measured state, x(k−1).
+    pub fn measured(&self) -> SVector<f64, N> {
+        self.measured
+    }
+
+    /// The input that was applied last, u(k−1).
+    pub fn applied(&self) -> SVector<f64, P> {
+        self.feedback + self.input_reference
+    }
+
+    /// Takes over what a law has decided at a sample and says so; holds the input if any of it is not finite.
+    pub(crate) fn take<const Q: usize>(
+        &mut self,
+        sample: &Sample<'_, N, P, Q>,
+        decision: &Decision<P>,
+    ) -> Step<P> {
+        let before = self.applied();
+        let accepted = finite(&sample.measured) && finite(&(sample.input_reference + decision.feedback));
+        if accepted {
+            self.measured = sample.measured;
+            self.feedback = decision.feedback;
+            self.input_reference = sample.input_reference;
+        }
+        let input = self.applied();
+        Step {
+            input,
+            increment: input - before,
+            integral: if accepted { decision.integral } else { SVector::zeros() },
+            status: if accepted { decision.status } else { Status::Held },
+            iterations: decision.iterations,
+            active: decision.active,
+        }
+    }
+}
+
+/// What a law has decided at a sample.
+pub(crate) struct Decision<const P: usize> {
+    /// v(k), what feedback adds to the input.
+    feedback: SVector<f64, P>,
+    integral: SVector<f64, P>,
+    status: Status,
+    iterations: u32,
+    active: usize,
+}
+
+impl<const P: usize> Decision<P> {
+    /// Feedback v(k) from a gain, `integral` of which is the integral action of this sample.
+    pub(crate) fn linear(feedback: SVector<f64, P>, integral: SVector<f64, P>) -> Self {
+        Self { feedback, integral, status: Status::Optimal, iterations: 0, active: 0 }
+    }
+
+    /// The first move Δv that a solution stands for, on top of v(k−1); none if the solution is of no use.
+    pub(crate) fn solved<const E: usize>(
+        previous: SVector<f64, P>,
+        first_move: SVector<f64, P>,
+        solution: &Solution<E>,
+        status: Status,
+    ) -> Self {
+        let usable = matches!(status, Status::Optimal | Status::Relaxed);
+        let increment = if usable { first_move } else { SVector::zeros() };
+        Self {
+            feedback: previous + increment,
+            integral: SVector::zeros(),
+            status,
+            iterations: solution.iterations,
+            active: solution.active,
+        }
+    }
+}
+
+fn finite<const R: usize>(vector: &SVector<f64, R>) -> bool {
+    vector.iter().all(|value| value.is_finite())
+}

@@ -1,0 +1,80 @@
+//! What a controller is told at one sample.
+
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+/// What a controller is told at sample k, with N states, P inputs and Q outputs. Which fields a law reads stands at
+/// [`Controller`](crate::Controller); what is left at its default is zero, and no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<'a, const N: usize, const P: usize, const Q: usize> {
+    /// x(k), the state, measured or estimated.
+    pub measured: SVector<f64, N>,
+    /// Δx(k) = x(k) − x(k−1) − Δx_r(k), the motion that the reference does not explain.
+    pub increment: SVector<f64, N>,
+    /// x(k) − x_r(k), the deviation from the reference trajectory.
+    pub deviation: SVector<f64, N>,
+    /// y(k) − r(k), the output error.
+    pub error: SVector<f64, Q>,
+    /// u_r(k), the input that keeps the plant on the reference trajectory (feed-forward).
+    pub input_reference: SVector<f64, P>,
+    /// d(k), an estimated disturbance that acts on the plant as if it were added to the input, taken to last.
+    pub disturbance: SVector<f64, P>,
+    /// The value of each bound: one per direction of each [`Limit`](crate::Limit), in their order. Those that are
+    /// missing do not bound.
+    pub upper: &'a [f64],
+    /// r(k), r(k+1), … as deviations from the reference trajectory, as far as they are known; the last one lasts.
+    pub preview: &'a [SVector<f64, Q>],
+}
+
+impl<const N: usize, const P: usize, const Q: usize> Default for Sample<'_, N, P, Q> {
+    fn default() -> Self {
+        Self {
+            measured: SVector::zeros(),
+            increment: SVector::zeros(),
+            deviation: SVector::zeros(),
+            error: SVector::zeros(),
+            input_reference: SVector::zeros(),
+            disturbance: SVector::zeros(),
+            upper: &[],
+            preview: &[],
+        }
+    }
+}
+
+/// What the plant is asked to do at one sample, with N states and P inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference<const N: usize, const P: usize> {
+    /// x_r(k), the reference state.
+    pub state: SVector<f64, N>,
+    /// What a plant that follows the reference moves by from sample k−1 to k. Zero for a set-point: a
+    /// jump of the set-point itself is *not* part of it, so that it enters through y − r alone.
+    pub increment: SVector<f64, N>,
+    /// u_r(k), the input that keeps the plant on the reference (feed-forward).
+    pub input: SVector<f64, P>,
+}
+
+impl<const N: usize, const P: usize> Reference<N, P> {
+    /// A state to go to and stay at, with the input that holds it there.
+    pub fn set_point(state: SVector<f64, N>, input: SVector<f64, P>) -> Self {
+        Self { state, increment: SVector::zeros(), input }
+    }
+
+    /// The sample of a plant with the output matrix C, Q×N, whose state was x(k−1) = `previous` and is
+    /// x(k) = `measured`. Without bounds, disturbance and preview.
+    pub fn sample<const Q: usize>(
+        &self,
+        output: &SMatrix<f64, Q, N>,
+        previous: &SVector<f64, N>,
+        measured: &SVector<f64, N>,
+    ) -> Sample<'static, N, P, Q> {
+        let deviation = measured - self.state;
+        Sample {
+            measured: *measured,
+            increment: measured - previous - self.increment,
+            deviation,
+            error: output * deviation,
+            input_reference: self.input,
+            ..Sample::default()
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Linear state feedback with integral action: the law of every design without limits.
+
+use nalgebra::{DMatrix, SMatrix};
+
+use crate::controller_state::Decision;
+use crate::relaxable::RelaxableWarmStart;
+use crate::{Controller, ControllerState, DesignError, LmpcDesign, Sample, Step, validate};
+
+/// The unconstrained receding-horizon law Δu = −K \[Δx_m; y − r\] in incremental form, for a plant of N
+/// states, P inputs and Q outputs: Laguerre MPC without limits, or the [regulator](crate::Dlqr).
+///
+/// ```text
+/// Δe(k) = x(k) − x(k−1) − Δx_r(k)          motion that the reference does not explain
+/// Δv(k) = −K_x Δe(k) − K_y (y(k) − r(k))
+/// u(k)  = u_r(k) + v(k−1) + Δv(k)
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StateFeedback<const N: usize, const P: usize, const Q: usize> {
+    state_gain: SMatrix<f64, P, N>,
+    output_gain: SMatrix<f64, P, Q>,
+}
+
+impl<const N: usize, const P: usize, const Q: usize> StateFeedback<N, P, Q> {
+    /// From the gain K, P×(N+Q), for instance a [regulator's](crate::Dlqr::gain).
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`] when the sizes differ from the const generics,
+    /// [`DesignError::NotFinite`].
+    pub fn new(gain: &DMatrix<f64>) -> Result<Self, DesignError> {
+        validate::shape("K", gain, (P, N + Q))?;
+        Ok(Self {
+            state_gain: SMatrix::from_fn(|row, column| gain[(row, column)]),
+            output_gain: SMatrix::from_fn(|row, column| gain[(row, N + column)]),
+        })
+    }
+
+    /// The law of a Laguerre MPC design without limits.
+    ///
+    /// # Errors
+    /// As [`StateFeedback::new`].
+    pub fn from_design(design: &LmpcDesign) -> Result<Self, DesignError> {
+        Self::new(design.gain())
+    }
+
+    /// K_x, the part of the gain on Δx_m, P×N.
+    pub fn state_gain(&self) -> &SMatrix<f64, P, N> {
+        &self.state_gain
+    }
+
+    /// K_y, the part of the gain on y − r, P×Q.
+    pub fn output_gain(&self) -> &SMatrix<f64, P, Q> {
+        &self.output_gain
+    }
+}
+
+impl<const N: usize, const P: usize, const Q: usize, const W: usize> Controller<N, P, Q, W>
+    for StateFeedback<N, P, Q>
+{
+    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
+        let integral = -(self.output_gain * sample.error);
+        let feedback = state.feedback() - self.state_gain * sample.increment + integral;
+        state.warm_start = RelaxableWarmStart::default();
+        state.take(sample, &Decision::linear(feedback, integral))
+    }
+}

@@ -1,0 +1,35 @@
+//! What a control step yields.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+/// How a control step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Status {
+    /// The input minimises the cost within all limits.
+    Optimal,
+    /// No input keeps all limits: this one minimises cost and violation together.
+    Relaxed,
+    /// The solver ran out of iterations: the previous input is held.
+    IterationLimit,
+    /// The sample or the result was not finite: the previous input is held.
+    Held,
+}
+
+/// The outcome of one control step with P inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<const P: usize> {
+    /// u(k), the input to apply. Report what was applied instead, if it differs, with
+    /// [`ControllerState::apply`](crate::ControllerState::apply).
+    pub input: SVector<f64, P>,
+    /// Δu(k) = u(k) − u(k−1), feed-forward included.
+    pub increment: SVector<f64, P>,
+    /// −K_y (y − r), the share of the integral action in Δu; zero from a step that a program solved.
+    pub integral: SVector<f64, P>,
+    /// How the input was found.
+    pub status: Status,
+    /// Iterations of the solver; 0 when the unconstrained optimum or the last active set was right.
+    pub iterations: u32,
+    /// How many limits hold with equality.
+    pub active: usize,
+}

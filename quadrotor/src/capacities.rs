@@ -1,0 +1,42 @@
+//! How much the cascade's controllers have room for. A larger configuration is refused by the ranges of its
+//! parameters, which derive from these sizes, as the programs do.
+
+use lmpc::unknowns;
+
+/// Most Laguerre terms per input: five give the regulator's gain to 0.1 %, twenty leave room to study how it converges.
+pub(crate) const MOST_TERMS: usize = 20;
+
+/// Most moves per input of the state-space MPC: the paper's 25, and some to compare with.
+pub(crate) const MOST_MOVES: usize = 30;
+
+/// Laguerre terms per input up to which the smaller programs are used: N = 5 flies by default, seven come within
+/// 0.3 % of the optimum. Their square matrices have a fifteenth of the elements that those of the larger programs have,
+/// or less, and a step under active limits clears two of them.
+pub(crate) const FEW_TERMS: usize = 7;
+
+/// Coefficients per input of the larger programs.
+const MANY: usize = if MOST_TERMS > MOST_MOVES { MOST_TERMS } else { MOST_MOVES };
+
+/// Unknowns of the smaller programs, by the number of inputs: G; θ, φ; τ_φ, τ_θ, τ_ψ.
+pub(crate) const ALTITUDE_FEW: usize = unknowns(1, FEW_TERMS);
+pub(crate) const POSITION_FEW: usize = unknowns(2, FEW_TERMS);
+pub(crate) const ATTITUDE_FEW: usize = unknowns(3, FEW_TERMS);
+
+/// Unknowns of the larger programs, and active limits that a controller's state can remember.
+pub(crate) const ALTITUDE_MANY: usize = unknowns(1, MANY);
+pub(crate) const POSITION_MANY: usize = unknowns(2, MANY);
+pub(crate) const ATTITUDE_MANY: usize = unknowns(3, MANY);
+
+/// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
+pub(crate) const TILT_SIDES: usize = 16;
+/// Sides of the polygon for the rate of the tilt: 8 % further in, which the rate does not need finer.
+pub(crate) const RATE_SIDES: usize = 8;
+/// Sides of the polygon for the speed, as those of the tilt.
+pub(crate) const SPEED_SIDES: usize = 16;
+
+/// Bounds of the position controller: the sides of its polygons.
+pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
+/// Bounds of the altitude controller: acceleration and speed, each down and up.
+pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
+/// Bounds of the attitude controller: three torques, each both ways.
+pub(crate) const ATTITUDE_BOUNDS: usize = 2 * 3;
