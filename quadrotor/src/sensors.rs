@@ -7,7 +7,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use crate::RigidBody;
-use crate::configuration::Sensors;
+use crate::configuration::settings::Sensors;
 
 /// Words of the generator's stream that belong to one reading: far more than its twelve numbers take.
 const WORDS_PER_READING: u128 = 1 << 10;

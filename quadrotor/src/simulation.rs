@@ -4,14 +4,14 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::cascade::Cascade;
-use crate::estimator::Command;
-use crate::guidance::Guidance;
-use crate::observer::{Observation, Observer};
-use crate::plant::Plant;
-use crate::recovery::Recovery;
+use crate::configuration::validation::only_tunables_differ;
+use crate::control::cascade::Cascade;
+use crate::control::estimator::Command;
+use crate::control::observer::{Observation, Observer};
+use crate::control::recovery::Recovery;
+use crate::guidance::reference_guidance::Guidance;
+use crate::plant::dynamics::Plant;
 use crate::schedule::{next_event_us, ticks};
-use crate::validation::only_tunables_differ;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
     Outputs, PositionReference, RigidBody, RotorFault, SimulationError,

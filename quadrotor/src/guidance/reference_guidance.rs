@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::setpoint::Setpoint;
+use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
-use crate::shaper::Shaper;
+use crate::guidance::shaper::Shaper;
 use crate::{Configuration, Limits, PositionReference};
 
 /// State of the reference: shaped towards a goal, or passed on as it comes.

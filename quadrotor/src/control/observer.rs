@@ -3,11 +3,11 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude_controller::VehicleRotation;
-use crate::estimator::{Command, Estimator, EstimatorDesign};
-use crate::plant::Plant;
+use crate::control::attitude_controller::VehicleRotation;
+use crate::control::estimator::{Command, Estimator, EstimatorDesign};
+use crate::control::vehicle_motion::VehicleMotion;
+use crate::plant::dynamics::Plant;
 use crate::sensors::NoiseState;
-use crate::vehicle_motion::VehicleMotion;
 use crate::{Configuration, ControllerKind, RigidBody, Sensors};
 
 /// State of the sensors' noise and of the estimator.

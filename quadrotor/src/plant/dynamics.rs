@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::ground::contact;
-use crate::rigid_body::RigidBody;
+use crate::plant::ground::contact;
+use crate::plant::rigid_body::RigidBody;
 use crate::{Configuration, Disturbance, Wrench, wrench_of_rotors};
 
 /// State of the plant: rigid body and rotor speeds.

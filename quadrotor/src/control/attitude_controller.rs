@@ -4,11 +4,11 @@ use lmpc::{ConstrainedState, ControllerState};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::ControllerActivity;
 use crate::attitude::{attitude_error, turned};
-use crate::cascade_design::ATTITUDE_UNKNOWNS;
-use crate::governor::{Governor, proportional_rate};
-use crate::tracking_law::TrackingSample;
+use crate::control::activity::ControllerActivity;
+use crate::control::governor::{Governor, proportional_rate};
+use crate::control::tracking_law::TrackingSample;
+use crate::design::cascade_design::ATTITUDE_UNKNOWNS;
 use crate::{CascadeDesign, Configuration, Limits};
 
 /// Share of the torque-limited angular acceleration that braking a large rotation counts on.

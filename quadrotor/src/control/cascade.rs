@@ -3,18 +3,20 @@
 use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::Activity;
-use crate::altitude_controller::AltitudeController;
 use crate::attitude::{tilt_angles, turned};
-use crate::attitude_controller::AttitudeController;
-use crate::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt};
-use crate::estimator::Command;
-use crate::guidance::Heading;
-use crate::observer::Observation;
-use crate::position_controller::PositionController;
-use crate::ramp::Ramp;
-use crate::reference_motion::ReferenceMotion;
-use crate::setpoint::Setpoint;
+use crate::control::activity::Activity;
+use crate::control::altitude_controller::AltitudeController;
+use crate::control::attitude_controller::AttitudeController;
+use crate::control::estimator::Command;
+use crate::control::observer::Observation;
+use crate::control::position_controller::PositionController;
+use crate::design::controller_limits::{
+    COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
+};
+use crate::guidance::ramp::Ramp;
+use crate::guidance::reference_guidance::Heading;
+use crate::guidance::reference_motion::ReferenceMotion;
+use crate::guidance::setpoint::Setpoint;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench,
     wrench_of_rotors,

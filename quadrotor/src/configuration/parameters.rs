@@ -2,7 +2,7 @@
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
 use crate::ControllerKind;
-use crate::parameter::{Access, Choice, Parameter, Unit};
+use crate::configuration::parameter::{Access, Choice, Parameter, Unit};
 
 /// A real parameter: name, unit, variability, range, place and description.
 macro_rules! real {

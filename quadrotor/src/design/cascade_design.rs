@@ -8,11 +8,11 @@ use lmpc::{
 };
 use nalgebra::{DMatrix, DVector};
 
-use crate::controller_limits::{altitude_limits, attitude_limits, position_limits};
-use crate::estimator::EstimatorDesign;
-use crate::linear_models::{altitude_model, attitude_model, position_model};
-use crate::tracking_law::TrackingLaw;
-use crate::validation::validate;
+use crate::configuration::validation::validate;
+use crate::control::estimator::EstimatorDesign;
+use crate::control::tracking_law::TrackingLaw;
+use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
+use crate::design::linear_models::{altitude_model, attitude_model, position_model};
 use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
 
 /// Terms or moves per input that the larger programs have room for.

@@ -3,7 +3,7 @@
 use lmpc::DesignError;
 use nalgebra::{Vector3, Vector6};
 
-use crate::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
+use crate::design::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
 use crate::{Airframe, Configuration, GRAVITY_M_S2, PositionReference, RigidBody};
 
 /// Feedback of position, 1/s², and velocity, 1/s, on the way to the wanted acceleration.

@@ -1,0 +1,7 @@
+//! What is computed before a flight: linear models, limits and gains of the controllers.
+
+pub(crate) mod cascade_design;
+pub(crate) mod controller_limits;
+pub mod limited_samples;
+pub(crate) mod linear_models;
+pub(crate) mod reduced_attitude;
