@@ -45,8 +45,10 @@ mod plant;
 mod schedule;
 mod sensors;
 mod simulation;
+mod simulation_error;
+mod simulation_state;
 
-pub use configuration::error::{ConfigurationError, SimulationError};
+pub use configuration::error::ConfigurationError;
 pub use configuration::parameter::{Access, Choice, Parameter, Unit};
 pub use configuration::parameters::PARAMETERS;
 pub use configuration::settings::{
@@ -54,18 +56,29 @@ pub use configuration::settings::{
     ReferenceSettings, Sensors,
 };
 pub use control::activity::{Activity, ControllerActivity};
+pub use control::control_error::ControlError;
+pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
+pub use control::control_loop::ControlLoop;
+pub use control::control_state::ControlState;
+pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
 pub use control::rotor_monitor::RotorMonitor;
 pub use design::cascade_design::{CascadeDesign, DesignReport};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
 pub use guidance::attitude_target::AttitudeTarget;
-pub use inputs::{Disturbance, InputSignal, Inputs, PositionReference};
+pub use guidance::position_reference::PositionReference;
+pub use inputs::{InputSignal, Inputs};
 /// How a controller found its last input.
 pub use lmpc::Status as ControllerStatus;
 pub use outputs::Outputs;
 pub use plant::airframe::{Airframe, GRAVITY_M_S2};
+pub use plant::disturbance::Disturbance;
 pub use plant::dynamics::Plant;
+pub use plant::plant_inputs::{Actuation, PlantInputs};
+pub use plant::plant_state::PlantState;
 pub use plant::rigid_body::{External, RigidBody};
 pub use plant::rotor_fault::RotorFault;
-pub use simulation::{Simulation, SimulationState};
+pub use simulation::Simulation;
+pub use simulation_error::SimulationError;
+pub use simulation_state::SimulationState;

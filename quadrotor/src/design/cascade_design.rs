@@ -9,9 +9,9 @@ use lmpc::{
 use nalgebra::{DMatrix, DVector};
 
 use crate::configuration::validation::validate;
-use crate::control::estimator::EstimatorDesign;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
+use crate::design::estimator_design::EstimatorDesign;
 use crate::design::linear_models::{altitude_model, attitude_model, position_model};
 use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
 

@@ -2,6 +2,9 @@
 
 pub(crate) mod cascade_design;
 pub(crate) mod controller_limits;
+pub(crate) mod estimator_design;
 pub mod limited_samples;
 pub(crate) mod linear_models;
+pub(crate) mod loop_design;
 pub(crate) mod reduced_attitude;
+pub(crate) mod rotor_loss_design;

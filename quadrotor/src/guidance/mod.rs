@@ -3,6 +3,7 @@
 pub(crate) mod attitude_target;
 #[cfg(feature = "shaper")]
 pub(crate) mod motion_profile;
+pub(crate) mod position_reference;
 pub(crate) mod ramp;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;

@@ -21,7 +21,7 @@ impl Digest {
     /// Takes the state in, if it is time, and what the vehicle believes if that is something else.
     pub fn update(&mut self, vehicle: &Vehicle) {
         let time_us = vehicle.time_us();
-        self.update_with(time_us, vehicle.simulation().state());
+        self.update_with(time_us, &vehicle.simulation().state());
         if let Some(estimate) = vehicle.estimate() {
             self.update_with(time_us, &estimate.body);
         }
