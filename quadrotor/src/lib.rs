@@ -63,7 +63,7 @@ pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
 pub use control::rotor_monitor::RotorMonitor;
-pub use design::cascade_design::{CascadeDesign, DesignReport};
+pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
 pub use guidance::attitude_target::AttitudeTarget;

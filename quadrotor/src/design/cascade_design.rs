@@ -61,37 +61,9 @@ impl CascadeDesign {
     /// Every variant of [`ConfigurationError`] but `Fixed`.
     pub fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
         validate(configuration)?;
-        let settings = &configuration.controllers;
-        let inertia = configuration.believed_inertia_kg_m2().into();
-        let hold = Discretization::ZeroOrderHold;
-        let kind = settings.kind;
-        let altitude = designed(
-            "altitude",
-            kind,
-            &settings.altitude,
-            &altitude_limits(&settings.altitude),
-            |sample_time| altitude_model(sample_time, hold),
-        )?;
-        let position = designed(
-            "position",
-            kind,
-            &settings.position,
-            &position_limits(&settings.position),
-            |sample_time| position_model(sample_time, hold),
-        )?;
-        // Laguerre MPC goes by the motion of the attitude error, as the regulator does, and leaves the limits of the
-        // torques to the mixer: increments from a torque that was cut off would lose the damping that it had
-        // asked for, because the rotors answer late, which the model does not know.
-        let limits = if kind == ControllerKind::StateSpaceMpc {
-            attitude_limits(&settings.attitude)
-        } else {
-            Vec::new()
-        };
-        let attitude = designed("attitude", kind, &settings.attitude, &limits, |sample_time| {
-            attitude_model(&inertia, sample_time, hold)
-        })?;
-        let estimator = EstimatorDesign::new(configuration)
-            .map_err(|source| ConfigurationError::Design { controller: "estimator of the", source })?;
+        let altitude = altitude_design(configuration)?;
+        let position = position_design(configuration)?;
+        let attitude = attitude_design(configuration)?;
         Ok(Self {
             altitude: altitude.law,
             position: position.law,
@@ -99,9 +71,44 @@ impl CascadeDesign {
             altitude_gains: altitude.gains,
             position_gains: position.gains,
             attitude_gains: attitude.gains,
-            estimator,
+            estimator: estimator_design(configuration)?,
             reports: [altitude.report, position.report, attitude.report],
         })
+    }
+
+    /// Checks another configuration and designs anew what differs from the one that this was designed for: the result is
+    /// that of [`CascadeDesign::new`]. Limits are values at each sample and no part of a design.
+    ///
+    /// # Errors
+    /// Those of [`CascadeDesign::new`]; nothing has changed then.
+    pub fn redesign(
+        &mut self,
+        before: &Configuration,
+        configuration: &Configuration,
+    ) -> Result<Redesigned, ConfigurationError> {
+        validate(configuration)?;
+        let redesigned = Redesigned::between(before, configuration);
+        let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
+        let position = redesigned.position.then(|| position_design(configuration)).transpose()?;
+        let attitude = redesigned.attitude.then(|| attitude_design(configuration)).transpose()?;
+        let estimator = redesigned.estimator.then(|| estimator_design(configuration)).transpose()?;
+        let [altitude_report, position_report, attitude_report] = &mut self.reports;
+        if let Some(designed) = altitude {
+            (self.altitude, self.altitude_gains, *altitude_report) =
+                (designed.law, designed.gains, designed.report);
+        }
+        if let Some(designed) = position {
+            (self.position, self.position_gains, *position_report) =
+                (designed.law, designed.gains, designed.report);
+        }
+        if let Some(designed) = attitude {
+            (self.attitude, self.attitude_gains, *attitude_report) =
+                (designed.law, designed.gains, designed.report);
+        }
+        if let Some(designed) = estimator {
+            self.estimator = designed;
+        }
+        Ok(redesigned)
     }
 
     /// The figures of the three designs, by the controller's name.
@@ -111,11 +118,83 @@ impl CascadeDesign {
     }
 }
 
+/// What a change of the configuration has redesigned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Redesigned {
+    /// The altitude controller.
+    pub altitude: bool,
+    /// The position controller.
+    pub position: bool,
+    /// The attitude controller.
+    pub attitude: bool,
+    /// The Kalman predictor.
+    pub estimator: bool,
+}
+
+impl Redesigned {
+    /// What each design depends on, all of it in one place.
+    fn between(one: &Configuration, other: &Configuration) -> Self {
+        let (before, after) = (&one.controllers, &other.controllers);
+        let kind = before.kind != after.kind;
+        Self {
+            altitude: kind || before.altitude != after.altitude,
+            position: kind || before.position != after.position,
+            attitude: kind
+                || before.attitude != after.attitude
+                || one.believed_inertia_kg_m2() != other.believed_inertia_kg_m2(),
+            estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
+                || one.sensors.position_noise_m != other.sensors.position_noise_m
+                || one.sensors.attitude_noise_rad != other.sensors.attitude_noise_rad,
+        }
+    }
+}
+
 /// One finished controller.
 struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> {
     law: TrackingLaw<N, P, S, L>,
     gains: Controller<N, P, P>,
     report: DesignReport,
+}
+
+type Altitude = Designed<2, 1, { SMALL + 1 }, ALTITUDE_UNKNOWNS>;
+type Position = Designed<4, 2, { 2 * SMALL + 1 }, POSITION_UNKNOWNS>;
+type Attitude = Designed<6, 3, { 3 * SMALL + 1 }, ATTITUDE_UNKNOWNS>;
+
+fn altitude_design(configuration: &Configuration) -> Result<Altitude, ConfigurationError> {
+    let settings = &configuration.controllers;
+    let limits = altitude_limits(&settings.altitude);
+    designed("altitude", settings.kind, &settings.altitude, &limits, |sample_time| {
+        altitude_model(sample_time, Discretization::ZeroOrderHold)
+    })
+}
+
+fn position_design(configuration: &Configuration) -> Result<Position, ConfigurationError> {
+    let settings = &configuration.controllers;
+    let limits = position_limits(&settings.position);
+    designed("position", settings.kind, &settings.position, &limits, |sample_time| {
+        position_model(sample_time, Discretization::ZeroOrderHold)
+    })
+}
+
+fn attitude_design(configuration: &Configuration) -> Result<Attitude, ConfigurationError> {
+    let settings = &configuration.controllers;
+    let inertia = configuration.believed_inertia_kg_m2().into();
+    // Laguerre MPC goes by the motion of the attitude error, as the regulator does, and leaves the limits of the
+    // torques to the mixer: increments from a torque that was cut off would lose the damping that it had
+    // asked for, because the rotors answer late, which the model does not know.
+    let limits = if settings.kind == ControllerKind::StateSpaceMpc {
+        attitude_limits(&settings.attitude)
+    } else {
+        Vec::new()
+    };
+    designed("attitude", settings.kind, &settings.attitude, &limits, |sample_time| {
+        attitude_model(&inertia, sample_time, Discretization::ZeroOrderHold)
+    })
+}
+
+fn estimator_design(configuration: &Configuration) -> Result<EstimatorDesign, ConfigurationError> {
+    EstimatorDesign::new(configuration)
+        .map_err(|source| ConfigurationError::Design { controller: "estimator of the", source })
 }
 
 fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(

@@ -33,7 +33,7 @@ impl LoopDesign {
     /// changed then.
     pub(crate) fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
         only_tunables_differ(&self.configuration, configuration)?;
-        self.cascade = CascadeDesign::new(configuration)?;
+        self.cascade.redesign(&self.configuration, configuration)?;
         self.configuration = *configuration;
         Ok(())
     }
