@@ -149,7 +149,7 @@ impl Instance {
             clock: self.clock,
             settings: self.settings,
             derivatives: self.derivatives.clone(),
-            simulation: self.simulation.as_ref().map(|simulation| *simulation.state()),
+            simulation: self.simulation.as_ref().map(|simulation| simulation.state()),
         }
     }
 

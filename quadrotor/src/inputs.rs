@@ -1,55 +1,14 @@
 //! What acts on the closed loop from outside.
 
-use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::SimulationError;
+use crate::{
+    AttitudeTarget, ControlInputs, Disturbance, PositionReference, RigidBody, RotorFault, SimulationError,
+    Target,
+};
 
-/// Where the vehicle is asked to be, in NED.
-///
-/// With shaping on, position and yaw are a goal, and velocity is the velocity to pass it with. With
-/// shaping off it is one point of a trajectory: velocity and acceleration are fed forward.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PositionReference {
-    /// Position, m.
-    pub position_m: Vector3<f64>,
-    /// Velocity, m/s.
-    pub velocity_m_s: Vector3<f64>,
-    /// Acceleration, m/s².
-    pub acceleration_m_s2: Vector3<f64>,
-    /// Heading ψ, rad; any number of turns.
-    pub yaw_rad: f64,
-    /// Rate of the heading, rad/s.
-    pub yaw_rate_rad_s: f64,
-}
-
-/// A place to go to and stay at.
-impl PositionReference {
-    /// A position in NED, m, and a heading, rad, at rest.
-    pub fn goal(position_m: [f64; 3], yaw_rad: f64) -> Self {
-        Self {
-            position_m: position_m.into(),
-            velocity_m_s: Vector3::zeros(),
-            acceleration_m_s2: Vector3::zeros(),
-            yaw_rad,
-            yaw_rate_rad_s: 0.0,
-        }
-    }
-}
-
-/// Forces and torques from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct Disturbance {
-    /// Force at the centre of mass, NED, N.
-    pub force_n: Vector3<f64>,
-    /// Torque, FRD, N·m.
-    pub torque_n_m: Vector3<f64>,
-    /// Wind that drag is relative to, NED, m/s.
-    pub wind_m_s: Vector3<f64>,
-}
-
-/// All inputs of the closed loop. They are sampled on the engine's grid of events: the reference and
-/// `armed` by the controllers, the disturbance at each integration step.
+/// All inputs of the closed loop. They are sampled on the engine's grid of events: what is asked for by the control loop,
+/// the disturbance and the faults at each integration step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Where to be.
@@ -58,15 +17,33 @@ pub struct Inputs {
     pub disturbance: Disturbance,
     /// Whether the rotors turn.
     pub armed: bool,
+    /// Flown instead of the reference while there is one. When it goes, the position and altitude controllers take over the
+    /// vehicle where it is.
+    pub attitude_target: Option<AttitudeTarget>,
+    /// Switches the shaper on or off; `None` leaves it as it is: at the start, as configured.
+    pub shaping: Option<bool>,
+    /// The rotor that is known to be lost, by its index in the airframe's layout: the heading is given up, and the reference
+    /// is followed in position and velocity as it is, as far as three rotors can. It goes before an attitude target.
+    pub lost_rotor: Option<usize>,
+    /// What the controllers take the vehicle's motion for, in place of the true motion and the noise of
+    /// [`Sensors`](crate::Sensors). What the predictor of disturbances believes of its errors stays the configured noise.
+    pub estimate: Option<RigidBody>,
+    /// What is wrong with each rotor, in the order of the airframe's layout. Disarmed, all of them come to rest.
+    pub rotor_faults: [Option<RotorFault>; 4],
 }
 
-/// The paper's flight: armed, to 5 m north, 5 m east, 10 m up, no disturbance.
+/// The paper's flight: armed, to 5 m north, 5 m east, 10 m up, no disturbance, sound rotors.
 impl Default for Inputs {
     fn default() -> Self {
         Self {
             reference: PositionReference::goal([5.0, 5.0, -10.0], 0.0),
             disturbance: Disturbance::default(),
             armed: true,
+            attitude_target: None,
+            shaping: None,
+            lost_rotor: None,
+            estimate: None,
+            rotor_faults: [None; 4],
         }
     }
 }
@@ -90,22 +67,30 @@ impl<F: Fn(u64) -> Inputs> InputSignal for F {
 }
 
 impl Inputs {
-    /// Refuses what is not finite.
+    /// What the control loop is asked for.
+    pub fn control(&self) -> ControlInputs {
+        let target = match (self.lost_rotor, self.attitude_target) {
+            (Some(lost), _) => Target::WithoutRotor { lost, reference: self.reference },
+            (None, Some(target)) => Target::Attitude(target),
+            (None, None) => Target::Reference(self.reference),
+        };
+        ControlInputs { target, armed: self.armed, shaping: self.shaping }
+    }
+
+    /// Refuses what is not finite. What the control loop is asked for, it checks itself.
     pub(crate) fn check(&self, time_us: u64) -> Result<(), SimulationError> {
-        let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
-        let checks = [
-            ("reference.position", finite(&self.reference.position_m)),
-            ("reference.velocity", finite(&self.reference.velocity_m_s)),
-            ("reference.acceleration", finite(&self.reference.acceleration_m_s2)),
-            ("reference.yaw", self.reference.yaw_rad.is_finite()),
-            ("reference.yaw_rate", self.reference.yaw_rate_rad_s.is_finite()),
-            ("disturbance.force", finite(&self.disturbance.force_n)),
-            ("disturbance.torque", finite(&self.disturbance.torque_n_m)),
-            ("wind.velocity", finite(&self.disturbance.wind_m_s)),
-        ];
-        match checks.into_iter().find(|(_, finite)| !finite) {
-            Some((name, _)) => Err(SimulationError::InputNotFinite { name, time_us }),
-            None => Ok(()),
-        }
+        let usable = |body: &RigidBody| body.is_finite() && body.attitude.norm() > 0.5;
+        let wrong = if let Some(name) = self.reference.not_finite() {
+            Some(name)
+        } else if let Some(name) = self.disturbance.not_finite() {
+            Some(name)
+        } else if !self.estimate.as_ref().is_none_or(usable) {
+            Some("estimate")
+        } else if !self.rotor_faults.iter().flatten().all(|fault| fault.is_valid()) {
+            Some("rotor_faults")
+        } else {
+            None
+        };
+        wrong.map_or(Ok(()), |name| Err(SimulationError::InputNotFinite { name, time_us }))
     }
 }

@@ -34,71 +34,51 @@
 
 extern crate alloc;
 
-mod activity;
-mod airframe;
-mod altitude_controller;
 mod attitude;
-mod attitude_controller;
-mod attitude_target;
-mod capacities;
-mod cascade;
-mod cascade_design;
 mod configuration;
-mod controller_limits;
-mod error;
-mod estimator;
-mod governor;
-mod ground;
+mod control;
+mod design;
 mod guidance;
 mod inputs;
-pub mod limited_samples;
-mod linear_models;
-mod mixer;
-#[cfg(feature = "shaper")]
-mod motion_profile;
-mod observer;
 mod outputs;
-mod parameter;
-mod parameters;
 mod plant;
-mod position_controller;
-mod ramp;
-mod recovery;
-mod reduced_attitude;
-mod reference_motion;
-mod rigid_body;
-mod rotor_fault;
-mod rotor_monitor;
 mod schedule;
 mod sensors;
-mod setpoint;
-#[cfg(feature = "shaper")]
-mod shaper;
 mod simulation;
-mod tracking_law;
-mod validation;
-mod vehicle_motion;
+mod simulation_error;
+mod simulation_state;
 
-pub use activity::{Activity, ControllerActivity};
-pub use airframe::{Airframe, GRAVITY_M_S2};
-pub use attitude_target::AttitudeTarget;
-pub use cascade_design::{CascadeDesign, DesignReport};
-pub use configuration::{
+pub use configuration::error::ConfigurationError;
+pub use configuration::parameter::{Access, Choice, Parameter, Unit};
+pub use configuration::parameters::PARAMETERS;
+pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
     ReferenceSettings, Sensors,
 };
-pub use error::{ConfigurationError, SimulationError};
-pub use inputs::{Disturbance, InputSignal, Inputs, PositionReference};
+pub use control::activity::{Activity, ControllerActivity};
+pub use control::control_error::ControlError;
+pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
+pub use control::control_loop::ControlLoop;
+pub use control::control_state::ControlState;
+pub use control::measurement::{Instruments, Measurement};
+pub use control::mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
+pub use control::rotor_monitor::RotorMonitor;
+pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
+pub use design::limited_samples;
+pub use design::linear_models::{altitude_model, attitude_model, position_model};
+pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::position_reference::PositionReference;
+pub use inputs::{InputSignal, Inputs};
 /// How a controller found its last input.
 pub use lmpc::Status as ControllerStatus;
-
-pub use linear_models::{altitude_model, attitude_model, position_model};
-pub use mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
 pub use outputs::Outputs;
-pub use parameter::{Access, Choice, Parameter, Unit};
-pub use parameters::PARAMETERS;
-pub use plant::Plant;
-pub use rigid_body::{External, RigidBody};
-pub use rotor_fault::RotorFault;
-pub use rotor_monitor::RotorMonitor;
-pub use simulation::{Simulation, SimulationState};
+pub use plant::airframe::{Airframe, GRAVITY_M_S2};
+pub use plant::disturbance::Disturbance;
+pub use plant::dynamics::Plant;
+pub use plant::plant_inputs::{Actuation, PlantInputs};
+pub use plant::plant_state::PlantState;
+pub use plant::rigid_body::{External, RigidBody};
+pub use plant::rotor_fault::RotorFault;
+pub use simulation::Simulation;
+pub use simulation_error::SimulationError;
+pub use simulation_state::SimulationState;

@@ -6,8 +6,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-use crate::RigidBody;
-use crate::configuration::Sensors;
+use crate::control::measurement::{Instruments, Measurement};
+use crate::{PlantState, RigidBody, Sensors};
 
 /// Words of the generator's stream that belong to one reading: far more than its twelve numbers take.
 const WORDS_PER_READING: u128 = 1 << 10;
@@ -17,6 +17,40 @@ const WORDS_PER_READING: u128 = 1 << 10;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct NoiseState {
     readings: u64,
+}
+
+/// Sensors on a plant: between plant and control loop.
+#[derive(Debug)]
+pub(crate) struct SimulatedSensors<'a> {
+    /// Deviations of their noise.
+    pub(crate) sensors: &'a Sensors,
+    /// Its state.
+    pub(crate) noise: &'a mut NoiseState,
+    /// The truth.
+    pub(crate) plant: &'a PlantState,
+    /// What somebody outside has made of sensors of his own: then these are not read.
+    pub(crate) estimate: Option<&'a RigidBody>,
+}
+
+impl SimulatedSensors<'_> {
+    fn measurement(&self, motion: RigidBody) -> Measurement {
+        Measurement { motion, rotor_speed_rad_s: self.plant.rotor_speed_rad_s }
+    }
+}
+
+impl Instruments for SimulatedSensors<'_> {
+    fn read(&mut self, _time_us: u64) -> Measurement {
+        let motion = match self.estimate {
+            Some(estimate) => *estimate,
+            None => self.noise.read(self.sensors, &self.plant.body),
+        };
+        self.measurement(motion)
+    }
+
+    /// Without an estimate from outside, the true motion: the noise of one reading would displace the reference.
+    fn read_at_takeover(&mut self, _time_us: u64) -> Measurement {
+        self.measurement(*self.estimate.unwrap_or(&self.plant.body))
+    }
 }
 
 impl NoiseState {

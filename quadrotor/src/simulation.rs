@@ -1,108 +1,22 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::cascade::Cascade;
-use crate::estimator::Command;
-use crate::guidance::Guidance;
-use crate::observer::{Observation, Observer};
-use crate::plant::Plant;
-use crate::recovery::Recovery;
-use crate::schedule::{next_event_us, ticks};
-use crate::validation::only_tunables_differ;
+use crate::schedule::next_event_us;
+use crate::sensors::SimulatedSensors;
+use crate::simulation_state::{SimulationState, World};
 use crate::{
-    AttitudeTarget, CascadeDesign, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs,
-    Outputs, PositionReference, RigidBody, RotorFault, SimulationError,
+    CascadeDesign, Configuration, ConfigurationError, ControlLaw, ControlLoop, InputSignal, Inputs, Outputs,
+    Plant, PlantInputs, PlantState, RigidBody, Sensors, SimulationError,
 };
 
-/// Everything that changes during a flight, and all there is to save and restore.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SimulationState {
-    /// The present, µs after the start.
-    time_us: u64,
-    /// The last event, at or before the present: the state below is the one there.
-    event_us: u64,
-    /// Whether the controllers have sampled at the last event.
-    sampled: bool,
-    plant: Plant,
-    disturbance: Disturbance,
-    armed: bool,
-    guidance: Guidance,
-    observer: Observer,
-    cascade: Cascade,
-    /// Flown instead of the reference while there is one.
-    attitude_target: Option<AttitudeTarget>,
-    /// Whether reference and controllers take over the vehicle anew at the next sample.
-    engage: bool,
-}
-
-impl SimulationState {
-    /// Whether a flight can have been in this state: saved states may come from anywhere.
-    fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        // Nine thousand years: what is added to it below does not overflow.
-        const LATEST_US: u64 = u64::MAX / 64;
-        let wrong = |reason| Err(ConfigurationError::State { reason });
-        if self.time_us > LATEST_US || self.event_us > self.time_us {
-            return wrong("its last event lies in the future");
-        }
-        if self.time_us > next_event_us(configuration, self.event_us) {
-            return wrong("its last event is not the last");
-        }
-        if !self.plant.is_finite() {
-            return wrong("its plant is not finite");
-        }
-        if !self.attitude_target.is_none_or(|target| target.is_finite()) {
-            return wrong("its attitude target is not finite");
-        }
-        Ok(())
-    }
-
-    /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
-    fn track(
-        &mut self,
-        configuration: &Configuration,
-        design: &CascadeDesign,
-        seen: &Observation,
-        reference: &PositionReference,
-        (position, altitude, attitude): (bool, bool, bool),
-    ) {
-        let (controllers, limits) = (&configuration.controllers, &configuration.limits);
-        let time_us = self.event_us;
-        if position || altitude {
-            self.guidance.sample(reference, limits, time_us);
-        }
-        if position {
-            // Commands ramp up to the input until the next sample.
-            let setpoint = self.guidance.setpoint(time_us, controllers.position.sample_time_us);
-            self.cascade.sample_position(configuration, design, seen, &setpoint, time_us);
-        }
-        if altitude {
-            // … and the rotors lag behind the thrust command.
-            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
-            let setpoint = self.guidance.setpoint(time_us, controllers.altitude.sample_time_us + lag_us);
-            self.cascade.sample_altitude(configuration, design, seen, &setpoint, time_us);
-        }
-        if attitude {
-            let heading = self.guidance.sample_heading(reference, limits, time_us);
-            self.cascade.sample_attitude(configuration, design, seen, &heading, time_us);
-        }
-    }
-}
-
-/// A flight: configuration, controllers designed from it, and state.
+/// A flight: plant, sensors and control loop on one schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulation {
-    configuration: Configuration,
-    design: CascadeDesign,
-    state: SimulationState,
-    /// What the controllers take the vehicle's motion for, if somebody outside estimates it.
-    estimate: Option<RigidBody>,
-    /// What is wrong with the front, right, back and left rotor.
-    rotor_faults: [Option<RotorFault>; 4],
-    /// Flies in place of the cascade while a rotor is lost.
-    recovery: Option<Recovery>,
+    plant: Plant,
+    control: ControlLoop,
+    world: World,
 }
 
 impl Simulation {
@@ -112,24 +26,14 @@ impl Simulation {
     /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
     /// controller cannot be designed.
     pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
-        let design = CascadeDesign::new(configuration)?;
-        let plant = Plant::new(configuration, inputs.armed);
-        let observer = Observer::new(configuration, &plant, None, 0, None);
-        let (guidance, cascade) = engaged(configuration, &plant.body, &plant, 0);
-        let state = SimulationState {
-            time_us: 0,
-            event_us: 0,
-            sampled: false,
-            plant,
-            disturbance: inputs.disturbance,
-            armed: inputs.armed,
-            guidance,
-            observer,
-            cascade,
-            attitude_target: None,
-            engage: false,
-        };
-        Ok(Self::of(configuration, design, state))
+        let mut world = World::new(configuration, inputs);
+        let control = ControlLoop::new(
+            configuration,
+            &inputs.control(),
+            &mut sensors(&configuration.sensors, &mut world),
+            0,
+        )?;
+        Ok(Self::of(control, world))
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.
@@ -141,29 +45,32 @@ impl Simulation {
         state: SimulationState,
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
-        let design = CascadeDesign::new(configuration)?;
-        Ok(Self::of(configuration, design, state))
+        Ok(Self::of(ControlLoop::from_state(configuration, state.control)?, state.world))
     }
 
-    /// A flight that nothing outside has touched yet.
-    fn of(configuration: &Configuration, design: CascadeDesign, state: SimulationState) -> Self {
-        let configuration = *configuration;
-        Self { configuration, design, state, estimate: None, rotor_faults: [None; 4], recovery: None }
+    fn of(control: ControlLoop, world: World) -> Self {
+        let configuration = control.configuration();
+        Self { plant: Plant::new(&configuration.airframe, &configuration.environment), control, world }
     }
 
     /// The configuration.
     pub fn configuration(&self) -> &Configuration {
-        &self.configuration
+        self.control.configuration()
     }
 
     /// The controllers.
     pub fn design(&self) -> &CascadeDesign {
-        &self.design
+        self.control.design()
+    }
+
+    /// The control loop.
+    pub fn control(&self) -> &ControlLoop {
+        &self.control
     }
 
     /// The state, to be saved.
-    pub fn state(&self) -> &SimulationState {
-        &self.state
+    pub fn state(&self) -> SimulationState {
+        SimulationState { world: self.world, control: *self.control.state() }
     }
 
     /// Goes back, or on, to a saved state of this flight.
@@ -171,118 +78,35 @@ impl Simulation {
     /// # Errors
     /// [`ConfigurationError::State`]; nothing has changed then.
     pub fn restore(&mut self, state: SimulationState) -> Result<(), ConfigurationError> {
-        state.check(&self.configuration)?;
-        self.state = state;
+        state.check(self.configuration())?;
+        self.control.restore(state.control)?;
+        self.world = state.world;
         Ok(())
     }
 
     /// Time since the start, µs.
     pub fn time_us(&self) -> u64 {
-        self.state.time_us
+        self.world.time_us
     }
 
-    /// Changes tunable parameters during the flight and redesigns the controllers. Incremental controllers go on from the input that they applied last, without a bump.
+    /// Changes tunable parameters during the flight and redesigns the controllers that depend on them. Incremental
+    /// controllers go on from the input that they applied last, without a bump.
     ///
     /// # Errors
     /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`Simulation::new`];
     /// nothing has changed then.
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        only_tunables_differ(&self.configuration, configuration)?;
-        let design = CascadeDesign::new(configuration)?;
-        self.recovery = recovery(configuration, self.lost_rotor())?;
-        self.design = design;
-        self.configuration = *configuration;
-        Ok(())
+        self.control.reconfigure(configuration)
     }
 
-    /// Switches the shaper on or off during the flight. The reference goes on from where it is and as it moves.
-    ///
-    /// # Errors
-    /// [`ConfigurationError::Unavailable`] in a build without the shaper; nothing has changed then.
-    pub fn set_shaping(&mut self, shaping: bool) -> Result<(), ConfigurationError> {
-        if shaping == self.configuration.reference.shaping {
-            return Ok(());
-        }
-        if shaping && !cfg!(feature = "shaper") {
-            return Err(ConfigurationError::Unavailable { name: "reference.shaping" });
-        }
-        self.configuration.reference.shaping = shaping;
-        self.state.guidance = self.state.guidance.switched(&self.configuration, self.state.time_us);
-        Ok(())
+    /// The law that flies.
+    pub fn law(&self) -> ControlLaw {
+        self.control.state().law()
     }
 
-    /// Flies an attitude and a thrust instead of the reference of the inputs, until it is given `None`:
-    /// then the position and altitude controllers take over the vehicle where it is.
-    ///
-    /// # Errors
-    /// [`SimulationError::InputNotFinite`]; nothing has changed then.
-    pub fn set_attitude_target(&mut self, target: Option<AttitudeTarget>) -> Result<(), SimulationError> {
-        if target.is_some_and(|target| !target.is_finite()) {
-            return Err(SimulationError::InputNotFinite {
-                name: "attitude_target",
-                time_us: self.state.time_us,
-            });
-        }
-        self.state.engage |= self.state.attitude_target.is_some() && target.is_none();
-        self.state.attitude_target = target;
-        Ok(())
-    }
-
-    /// Lets the controllers fly by an estimate from outside from now on, in place of the true motion and the noise of
-    /// [`Sensors`](crate::Sensors), until it is given `None`. What the predictor of disturbances believes of its errors
-    /// stays the configured noise. It is an input, not a part of the state: whoever restores a flight gives it again.
-    ///
-    /// # Errors
-    /// [`SimulationError::InputNotFinite`]; nothing has changed then.
-    pub fn set_estimate(&mut self, estimate: Option<RigidBody>) -> Result<(), SimulationError> {
-        let usable = |body: &RigidBody| body.is_finite() && body.attitude.norm() > 0.5;
-        if !estimate.as_ref().is_none_or(usable) {
-            return Err(SimulationError::InputNotFinite { name: "estimate", time_us: self.state.time_us });
-        }
-        self.estimate = estimate;
-        Ok(())
-    }
-
-    /// Breaks rotors, front, right, back and left, or mends them, from now on. It is an input, not a part of the state:
-    /// whoever restores a flight gives it again.
-    ///
-    /// # Errors
-    /// [`SimulationError::InputNotFinite`] for a share of the thrust that is none; nothing has changed then.
-    pub fn set_rotor_faults(&mut self, faults: [Option<RotorFault>; 4]) -> Result<(), SimulationError> {
-        if !faults.iter().flatten().all(|fault| fault.is_valid()) {
-            return Err(SimulationError::InputNotFinite {
-                name: "rotor_faults",
-                time_us: self.state.time_us,
-            });
-        }
-        self.rotor_faults = faults;
-        Ok(())
-    }
-
-    /// Flies on without the front (0), right, back or left (3) rotor from now on, which is known to be lost: the heading
-    /// is given up, and the reference of the inputs is followed in position and velocity as it is, as far as three rotors
-    /// can. With `None` the cascade takes over the vehicle where it is. It is an input, not a part of the state.
-    ///
-    /// # Errors
-    /// [`ConfigurationError::OutOfRange`] when there is no such rotor, and [`ConfigurationError::Design`]; nothing has
-    /// changed then.
-    pub fn set_lost_rotor(&mut self, lost: Option<usize>) -> Result<(), ConfigurationError> {
-        if lost == self.lost_rotor() {
-            return Ok(());
-        }
-        self.recovery = recovery(&self.configuration, lost)?;
-        self.state.engage |= lost.is_none();
-        Ok(())
-    }
-
-    /// The rotor without which it flies.
-    pub fn lost_rotor(&self) -> Option<usize> {
-        self.recovery.as_ref().map(Recovery::lost)
-    }
-
-    /// Speeds that the rotors are commanded to turn with, front, right, back and left, rad/s.
+    /// Speeds that the rotors are commanded to turn with, in the order of the airframe's layout, rad/s.
     pub fn rotor_command_rad_s(&self) -> [f64; 4] {
-        if self.state.armed { self.state.cascade.rotor_command_rad_s() } else { [0.0; 4] }
+        self.control.state().rotor_command_rad_s()
     }
 
     /// Flies on to `time_us`. However the way there is split into calls, the flight is the same: inputs are
@@ -292,16 +116,16 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`]; the flight then stands at the last event before it.
     pub fn advance_to(&mut self, time_us: u64, inputs: &impl InputSignal) -> Result<(), SimulationError> {
-        if time_us < self.state.time_us {
-            return Err(SimulationError::Backwards { time_us: self.state.time_us, requested_us: time_us });
+        if time_us < self.world.time_us {
+            return Err(SimulationError::Backwards { time_us: self.world.time_us, requested_us: time_us });
         }
         // The events strictly before the goal; one at the goal belongs to the next call, whose inputs
         // apply from there on.
-        while self.state.event_us < time_us {
-            if !self.state.sampled {
-                self.sample(&inputs.at(self.state.event_us))?;
+        while self.world.event_us < time_us {
+            if self.control.next_sample_us() <= self.world.event_us {
+                self.sample(&inputs.at(self.world.event_us))?;
             }
-            let next_us = next_event_us(&self.configuration, self.state.event_us);
+            let next_us = next_event_us(self.configuration(), self.world.event_us);
             if next_us > time_us {
                 break;
             }
@@ -309,28 +133,27 @@ impl Simulation {
             if !plant.is_finite() {
                 return Err(SimulationError::Diverged { time_us: next_us });
             }
-            self.state.plant = plant;
-            self.state.event_us = next_us;
-            self.state.time_us = next_us;
-            self.state.sampled = false;
+            self.world.plant = plant;
+            self.world.event_us = next_us;
+            self.world.time_us = next_us;
         }
-        self.state.time_us = time_us;
+        self.world.time_us = time_us;
         Ok(())
     }
 
     /// What can be observed now.
     pub fn outputs(&self) -> Outputs {
-        let state = &self.state;
-        let plant = self.plant_at(state.time_us);
+        let (control, time_us) = (self.control.state(), self.world.time_us);
+        let plant = self.plant_at(time_us);
         let rotation = plant.body.rotation();
         let (phi, theta, psi) = rotation.euler_angles();
-        let wrench = plant.wrench(&self.configuration);
-        let setpoint = state.guidance.reference(state.time_us);
+        let wrench = self.plant.wrench(&plant);
+        let setpoint = control.reference(time_us);
         Outputs {
-            time_us: state.time_us,
+            time_us,
             position_m: plant.body.position_m,
             velocity_m_s: plant.body.velocity_m_s,
-            acceleration_m_s2: plant.acceleration_m_s2(&self.configuration, &state.disturbance),
+            acceleration_m_s2: self.plant.acceleration_m_s2(&plant, &self.plant_inputs()),
             body_velocity_m_s: rotation.inverse_transform_vector(&plant.body.velocity_m_s),
             attitude_rad: Vector3::new(phi, theta, psi),
             quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
@@ -338,11 +161,11 @@ impl Simulation {
             thrust_n: wrench.thrust_n,
             torque_n_m: wrench.torque_n_m,
             rotor_speed_rad_s: plant.rotor_speed_rad_s,
-            tilt_reference_rad: state.cascade.tilt_reference_rad(),
+            tilt_reference_rad: control.tilt_reference_rad(),
             setpoint,
             tracking_error_m: plant.body.position_m - setpoint.position_m,
             yaw_error_rad: wrapped(psi - setpoint.yaw_rad),
-            activity: state.cascade.activity(),
+            activity: control.activity(),
         }
     }
 
@@ -350,121 +173,46 @@ impl Simulation {
     /// Kalman predictor makes of the measurements while it flies, or the true motion with the noise of the latest
     /// reading.
     pub fn believed_motion(&self) -> Option<RigidBody> {
-        let state = &self.state;
-        let plant = self.plant_at(state.time_us);
-        self.estimate.or_else(|| {
-            state.observer.belief(&self.configuration.sensors, &plant, state.armed, state.time_us)
-        })
+        let World { time_us, estimate, noise, .. } = &self.world;
+        let sensors = &self.configuration().sensors;
+        let noisy = || (!sensors.is_exact()).then(|| noise.latest(sensors, &self.plant_at(*time_us).body));
+        estimate.or_else(|| self.control.estimated_motion(*time_us)).or_else(noisy)
+    }
+
+    /// What acts on the plant since the last event.
+    fn plant_inputs(&self) -> PlantInputs {
+        self.world.plant_inputs(self.rotor_command_rad_s(), self.control.state().is_armed())
     }
 
     /// The plant at `time_us`, not before the last event nor after the next.
-    fn plant_at(&self, time_us: u64) -> Plant {
-        let state = &self.state;
-        if time_us == state.event_us {
-            return state.plant;
+    fn plant_at(&self, time_us: u64) -> PlantState {
+        let World { event_us, plant, .. } = &self.world;
+        if time_us == *event_us {
+            return *plant;
         }
-        let mut command = self.rotor_command_rad_s();
-        for ((command, fault), present) in
-            command.iter_mut().zip(self.rotor_faults).zip(state.plant.rotor_speed_rad_s)
-        {
-            if let Some(fault) = fault.filter(|_| state.armed) {
-                *command = fault.goal_rad_s(*command, present);
-            }
-        }
-        let h_s = (time_us - state.event_us) as f64 / 1e6;
-        state.plant.step(&self.configuration, &command, &state.disturbance, h_s)
+        let h_s = (time_us - event_us) as f64 / 1e6;
+        self.plant.step(plant, &self.plant_inputs(), h_s)
     }
 
-    /// Samples the inputs and runs the controllers whose clocks tick at the last event.
+    /// Samples the inputs and the control loop at the last event.
     fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
-        inputs.check(self.state.event_us)?;
-        self.take(inputs);
-        if self.state.armed {
-            self.control(&inputs.reference);
-        }
-        self.state.sampled = true;
+        let event_us = self.world.event_us;
+        inputs.check(event_us)?;
+        let mut world = self.world;
+        world.take(inputs);
+        let noise = self.configuration().sensors;
+        self.control.advance_to(event_us, &inputs.control(), &mut sensors(&noise, &mut world))?;
+        self.world = world;
         Ok(())
     }
-
-    /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
-    fn take(&mut self, inputs: &Inputs) {
-        let (configuration, estimate) = (&self.configuration, self.estimate.as_ref());
-        let state = &mut self.state;
-        let time_us = state.event_us;
-        state.disturbance = inputs.disturbance;
-        if inputs.armed && (!state.armed || state.engage) {
-            let body = estimate.unwrap_or(&state.plant.body);
-            (state.guidance, state.cascade) = engaged(configuration, body, &state.plant, time_us);
-        }
-        if inputs.armed && !state.armed {
-            state.observer =
-                Observer::new(configuration, &state.plant, estimate, time_us, Some(&state.observer));
-        }
-        state.engage &= !inputs.armed;
-        state.armed = inputs.armed;
-    }
-
-    /// Runs the controllers whose clocks tick: those for the loss of a rotor, that of an attitude, or the cascade.
-    fn control(&mut self, reference: &PositionReference) {
-        let (configuration, design) = (&self.configuration, &self.design);
-        let state = &mut self.state;
-        let time_us = state.event_us;
-        let controllers = &configuration.controllers;
-        let position = ticks(time_us, controllers.position.sample_time_us);
-        let altitude = ticks(time_us, controllers.altitude.sample_time_us);
-        let attitude = ticks(time_us, controllers.attitude.sample_time_us);
-        if !(position || altitude || attitude) {
-            return;
-        }
-        let seen = state.observer.observe(configuration, &state.plant, self.estimate.as_ref(), time_us);
-        let directly = self.recovery.is_some() || state.attitude_target.is_some();
-        if directly && !attitude {
-            return;
-        }
-        if let Some(recovery) = &self.recovery {
-            let measured = &state.plant.rotor_speed_rad_s;
-            state.cascade.set_rotor_command(recovery.step(configuration, &seen.body, measured, reference));
-        } else if let Some(target) = &state.attitude_target {
-            state.cascade.sample_attitude_target(configuration, design, &seen, target);
-        } else {
-            state.track(configuration, design, &seen, reference, (position, altitude, attitude));
-        }
-        if attitude {
-            let command = if directly {
-                let rotor_speed_rad_s = state.cascade.rotor_command_rad_s();
-                Command { acceleration_m_s2: None, rotor_speed_rad_s }
-            } else {
-                state.cascade.command(configuration, time_us)
-            };
-            state.observer.predict(configuration, &design.estimator, &seen, &command, time_us);
-        }
-    }
 }
 
-/// The controller for the loss of a rotor.
-fn recovery(
-    configuration: &Configuration,
-    lost: Option<usize>,
-) -> Result<Option<Recovery>, ConfigurationError> {
-    let Some(lost) = lost else { return Ok(None) };
-    if lost > 3 {
-        let value = lost as f64;
-        return Err(ConfigurationError::OutOfRange { name: "lost_rotor", value, minimum: 0.0, maximum: 3.0 });
+/// The sensors on the plant of the last event.
+fn sensors<'a>(sensors: &'a Sensors, world: &'a mut World) -> SimulatedSensors<'a> {
+    SimulatedSensors {
+        sensors,
+        noise: &mut world.noise,
+        plant: &world.plant,
+        estimate: world.estimate.as_ref(),
     }
-    let designed = Recovery::new(configuration, lost);
-    designed.map(Some).map_err(|source| ConfigurationError::Design { controller: "recovery", source })
-}
-
-/// Reference and controllers that take over the vehicle where it is, or is estimated to be.
-fn engaged(
-    configuration: &Configuration,
-    body: &RigidBody,
-    plant: &Plant,
-    time_us: u64,
-) -> (Guidance, Cascade) {
-    let (_, _, psi) = body.rotation().euler_angles();
-    (
-        Guidance::new(configuration, &body.position_m, psi, time_us),
-        Cascade::new(body, plant.rotor_speed_rad_s, time_us),
-    )
 }

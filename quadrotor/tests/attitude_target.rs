@@ -1,7 +1,9 @@
 //! The direct entry to the attitude controller, and switching the shaper in flight.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use quadrotor::{AttitudeTarget, Configuration, GRAVITY_M_S2, Inputs, PositionReference, Simulation};
+use quadrotor::{
+    AttitudeTarget, Configuration, GRAVITY_M_S2, Inputs, PositionReference, Simulation, SimulationError,
+};
 
 fn hovering() -> (Simulation, Inputs) {
     let mut configuration = Configuration::default();
@@ -15,14 +17,14 @@ fn hovering() -> (Simulation, Inputs) {
 /// A lean of 0.1 rad to the right under a thrust that carries the weight: ÿ = g tan φ after the attitude has settled.
 #[test]
 fn a_lean_accelerates_as_its_thrust_axis_points() {
-    let (mut flight, inputs) = hovering();
+    let (mut flight, mut inputs) = hovering();
     let airframe = flight.configuration().airframe;
     let target = AttitudeTarget {
         attitude: UnitQuaternion::from_euler_angles(0.1, 0.0, 0.5),
         body_rate_rad_s: Vector3::zeros(),
         thrust_n: airframe.weight_n() / libm::cos(0.1),
     };
-    flight.set_attitude_target(Some(target)).expect("finite");
+    inputs.attitude_target = Some(target);
     flight.advance_to(9_000_000, &inputs).expect("flight");
     let outputs = flight.outputs();
     assert!((outputs.attitude_rad - Vector3::new(0.1, 0.0, 0.5)).norm() < 0.01, "{}", outputs.attitude_rad);
@@ -31,21 +33,23 @@ fn a_lean_accelerates_as_its_thrust_axis_points() {
     assert!(outputs.acceleration_m_s2.z.abs() < 0.05, "{}", outputs.acceleration_m_s2);
 
     // The position controller takes over where the vehicle is and brings it back.
-    flight.set_attitude_target(None).expect("none is finite");
+    inputs.attitude_target = None;
     flight.advance_to(60_000_000, &inputs).expect("flight");
     assert!((flight.outputs().position_m - inputs.reference.position_m).norm() < 0.02);
 }
 
 #[test]
 fn a_target_that_is_not_finite_is_refused() {
-    let (mut flight, _) = hovering();
+    let (mut flight, inputs) = hovering();
     let before = flight.clone();
     let target = AttitudeTarget {
         attitude: UnitQuaternion::identity(),
         body_rate_rad_s: Vector3::zeros(),
         thrust_n: f64::NAN,
     };
-    assert!(flight.set_attitude_target(Some(target)).is_err());
+    let refused = flight.advance_to(2_000_000, &Inputs { attitude_target: Some(target), ..inputs });
+    let name = "attitude_target";
+    assert_eq!(refused, Err(SimulationError::InputNotFinite { name, time_us: 1_000_000 }));
     assert_eq!(flight, before);
 }
 
@@ -54,11 +58,15 @@ fn a_target_that_is_not_finite_is_refused() {
 fn the_reference_goes_on_when_the_shaper_is_switched() {
     let (mut flight, mut inputs) = hovering();
     inputs.reference = PositionReference::goal([20.0, 0.0, -20.0], 0.0);
-    flight.advance_to(4_000_000, &inputs).expect("flight");
-    for shaping in [false, true] {
-        let before = flight.outputs().setpoint;
+    // Between two samples of the controllers.
+    flight.advance_to(4_001_000, &inputs).expect("flight");
+    for (shaping, time_us) in [(false, 4_001_001), (true, 4_002_001)] {
+        let mut unswitched = flight.clone();
+        unswitched.advance_to(time_us, &inputs).expect("flight");
+        let before = unswitched.outputs().setpoint;
         assert!(before.velocity_m_s.x > 1.0, "{before:?}");
-        flight.set_shaping(shaping).expect("the shaper is built in");
+        inputs.shaping = Some(shaping);
+        flight.advance_to(time_us, &inputs).expect("flight");
         let after = flight.outputs().setpoint;
         assert!((after.position_m - before.position_m).norm() < 1e-9, "{after:?}");
         assert!((after.velocity_m_s - before.velocity_m_s).norm() < 1e-9, "{after:?}");

@@ -72,7 +72,7 @@ proptest! {
     fn saved_and_restored_in_the_middle_is_the_same_flight(middle in 1u64..2_999_999, kind in 0..3_usize) {
         let configuration = Configuration { reference: unshaped().reference, ..noisy(kind) };
         let mut straight = flown_to(&configuration, &[middle]);
-        let bytes = postcard::to_allocvec(straight.state()).unwrap();
+        let bytes = postcard::to_allocvec(&straight.state()).unwrap();
         straight.advance_to(3_000_000, &eventful).unwrap();
         let mut resumed = Simulation::from_state(&configuration, postcard::from_bytes(&bytes).unwrap()).unwrap();
         resumed.advance_to(3_000_000, &eventful).unwrap();
@@ -117,11 +117,11 @@ fn redesign_in_flight_is_bumpless() {
     let mut simulation = Simulation::new(&configuration, &signal.at(0)).unwrap();
     simulation.advance_to(5_000_000, &signal).unwrap();
     let before = simulation.outputs();
-    let state = *simulation.state();
+    let state = simulation.state();
     configuration.controllers.attitude.increment_weight *= 2.0;
     configuration.controllers.position.increment_weight *= 0.5;
     simulation.reconfigure(&configuration).unwrap();
-    assert_eq!(*simulation.state(), state);
+    assert_eq!(simulation.state(), state);
     simulation.advance_to(5_050_000, &signal).unwrap();
     let after = simulation.outputs();
     assert!((after.torque_n_m - before.torque_n_m).amax() < 0.01);
@@ -153,7 +153,7 @@ fn a_flight_without_shaping_does_not_allocate() {
 fn impossible_states_are_refused() {
     let configuration = unshaped();
     let good = flown_to(&configuration, &[1_000_500]);
-    let bytes = postcard::to_allocvec(good.state()).unwrap();
+    let bytes = postcard::to_allocvec(&good.state()).unwrap();
     // Both clocks, 1 000 500 µs and 1 000 000 µs, stand first, as variable-length integers of three bytes.
     assert_eq!(bytes[..6], [0xb4, 0x88, 0x3d, 0xc0, 0x84, 0x3d]);
     let refused = |clocks: [u8; 6]| {

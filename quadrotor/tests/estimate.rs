@@ -1,7 +1,7 @@
 //! Flying by an estimate from outside.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, Inputs, PositionReference, RigidBody, Simulation};
+use quadrotor::{Configuration, Inputs, PositionReference, RigidBody, Simulation, SimulationError};
 
 fn hovering() -> (Simulation, Inputs) {
     let mut configuration = Configuration::default();
@@ -26,18 +26,17 @@ fn truth(flight: &Simulation) -> RigidBody {
 /// Controllers that believe to be a metre further north fly a metre further south.
 #[test]
 fn the_vehicle_goes_where_the_estimate_is_at_the_goal() {
-    let (mut flight, inputs) = hovering();
+    let (mut flight, mut inputs) = hovering();
     let off = Vector3::new(1.0, 0.0, -0.5);
     for tick in 1_000..16_000 {
         let truth = truth(&flight);
-        let estimate = RigidBody { position_m: truth.position_m + off, ..truth };
-        flight.set_estimate(Some(estimate)).expect("finite");
+        inputs.estimate = Some(RigidBody { position_m: truth.position_m + off, ..truth });
         flight.advance_to((tick + 1) * 1_000, &inputs).expect("flight");
     }
     let goal = inputs.reference.position_m;
     assert!((flight.outputs().position_m - (goal - off)).norm() < 0.01, "{}", flight.outputs().position_m);
     // The truth again: it comes back.
-    flight.set_estimate(None).expect("none is finite");
+    inputs.estimate = None;
     flight.advance_to(40_000_000, &inputs).expect("flight");
     assert!((flight.outputs().position_m - goal).norm() < 0.01, "{}", flight.outputs().position_m);
 }
@@ -49,8 +48,8 @@ fn the_truth_as_an_estimate_changes_nothing() {
     let mut plain = flight.clone();
     inputs.reference = PositionReference::goal([5.0, 5.0, -10.0], 0.5);
     for tick in 1_000..6_000 {
-        flight.set_estimate(Some(truth(&flight))).expect("finite");
-        flight.advance_to((tick + 1) * 1_000, &inputs).expect("flight");
+        let estimated = Inputs { estimate: Some(truth(&flight)), ..inputs };
+        flight.advance_to((tick + 1) * 1_000, &estimated).expect("flight");
         plain.advance_to((tick + 1) * 1_000, &inputs).expect("flight");
     }
     let apart = (flight.outputs().position_m - plain.outputs().position_m).norm();
@@ -60,13 +59,15 @@ fn the_truth_as_an_estimate_changes_nothing() {
 
 #[test]
 fn an_estimate_that_is_no_motion_is_refused() {
-    let (mut flight, _) = hovering();
+    let (mut flight, inputs) = hovering();
     let before = flight.clone();
     let right = truth(&flight);
     let nowhere = RigidBody { position_m: Vector3::new(f64::NAN, 0.0, 0.0), ..right };
     let no_attitude = RigidBody { attitude: nalgebra::Quaternion::new(0.0, 0.0, 0.0, 0.0), ..right };
     for wrong in [nowhere, no_attitude] {
-        assert!(flight.set_estimate(Some(wrong)).is_err());
+        let refused = flight.advance_to(2_000_000, &Inputs { estimate: Some(wrong), ..inputs });
+        let name = "estimate";
+        assert_eq!(refused, Err(SimulationError::InputNotFinite { name, time_us: 1_000_000 }));
         assert_eq!(flight, before);
     }
 }

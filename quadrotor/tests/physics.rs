@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
-    Airframe, Configuration, Disturbance, External, GRAVITY_M_S2, Inputs, Plant, RigidBody, Simulation,
-    Wrench,
+    Airframe, Configuration, External, GRAVITY_M_S2, Inputs, Plant, PlantInputs, PlantState, RigidBody,
+    Simulation, Wrench,
 };
 
 /// The paper's twelve states and equations (2)–(3), word for word: x y z u v w φ θ ψ p q r.
@@ -74,8 +74,9 @@ proptest! {
         configuration.initial.velocity_m_s = (rotation * Vector3::from(velocity)).into();
 
         let airframe = configuration.airframe;
-        let mut plant = Plant::new(&configuration, true);
-        let start = plant.rotor_speed_rad_s;
+        let plant = Plant::new(&airframe, &configuration.environment);
+        let mut flown = PlantState::hovering(&configuration.initial, &airframe);
+        let start = flown.rotor_speed_rad_s;
         let rotors = |time: f64| -> [f64; 4] {
             let share = (-time / airframe.rotor_time_constant_s).exp();
             std::array::from_fn(|i| commands[i] + (start[i] - commands[i]) * share)
@@ -83,19 +84,19 @@ proptest! {
         let [u, v, w] = velocity;
         let mut state = [0.0, 0.0, 0.0, u, v, w, phi, theta, psi, rates[0], rates[1], rates[2]];
         for step in 0..500 {
-            plant = plant.step(&configuration, &commands, &Disturbance::default(), 1e-3);
+            flown = plant.step(&flown, &PlantInputs::rotor_speeds(commands), 1e-3);
             state = euler_step(&airframe, &state, rotors, f64::from(step) * 1e-3, 1e-3);
             if state[7].abs() > 1.3 {
                 break; // The Euler form loses its accuracy here, not the quaternion.
             }
         }
-        let position = plant.body.position_m - Vector3::new(state[0], state[1], state[2]);
+        let position = flown.body.position_m - Vector3::new(state[0], state[1], state[2]);
         prop_assert!(position.norm() < 1e-7, "{position}");
-        let (phi, theta, psi) = plant.body.rotation().euler_angles();
+        let (phi, theta, psi) = flown.body.rotation().euler_angles();
         let turned = UnitQuaternion::from_euler_angles(phi, theta, psi)
             .angle_to(&UnitQuaternion::from_euler_angles(state[6], state[7], state[8]));
         prop_assert!(turned < 1e-6, "{turned}");
-        prop_assert!((plant.body.body_rate_rad_s - Vector3::new(state[9], state[10], state[11])).norm() < 1e-8);
+        prop_assert!((flown.body.body_rate_rad_s - Vector3::new(state[9], state[10], state[11])).norm() < 1e-8);
     }
 
     /// Without rotors, energy and angular momentum are conserved however it tumbles.
@@ -116,14 +117,15 @@ proptest! {
         };
         let momentum = |body: &RigidBody| body.rotation() * inertia.component_mul(&body.body_rate_rad_s);
 
-        let mut plant = Plant::new(&configuration, false);
-        let (energy_before, momentum_before) = (energy(&plant.body), momentum(&plant.body));
+        let plant = Plant::new(&airframe, &configuration.environment);
+        let mut fallen = PlantState::at_rest(&configuration.initial);
+        let (energy_before, momentum_before) = (energy(&fallen.body), momentum(&fallen.body));
         for _ in 0..2000 {
-            plant = plant.step(&configuration, &[0.0; 4], &Disturbance::default(), 1e-3);
+            fallen = plant.step(&fallen, &PlantInputs::default(), 1e-3);
         }
         let scale = energy_before.abs() + airframe.mass_kg * 20.0 * 20.0;
-        prop_assert!((energy(&plant.body) - energy_before).abs() < 1e-8 * scale);
-        let drift = (momentum(&plant.body) - momentum_before).norm();
+        prop_assert!((energy(&fallen.body) - energy_before).abs() < 1e-8 * scale);
+        let drift = (momentum(&fallen.body) - momentum_before).norm();
         prop_assert!(drift < 1e-7 * (1.0 + momentum_before.norm()), "{drift}");
     }
 }
@@ -132,8 +134,9 @@ proptest! {
 fn hover_is_an_equilibrium() {
     // f(x₀, u₀) = 0
     let configuration = Configuration::default();
-    let plant = Plant::new(&configuration, true);
-    let derivative = plant.derivative(&configuration, &plant.rotor_speed_rad_s, &Disturbance::default());
+    let plant = Plant::new(&configuration.airframe, &configuration.environment);
+    let hover = PlantState::hovering(&configuration.initial, &configuration.airframe);
+    let derivative = plant.derivative(&hover, &PlantInputs::rotor_speeds(hover.rotor_speed_rad_s));
     assert!(derivative.body.velocity_m_s.norm() < 1e-14);
     assert!(derivative.body.body_rate_rad_s.norm() < 1e-14);
     assert_eq!(derivative.rotor_speed_rad_s, [0.0; 4]);

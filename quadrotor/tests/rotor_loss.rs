@@ -1,7 +1,9 @@
 //! Flights with broken rotors.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, Inputs, Outputs, PositionReference, RotorFault, RotorMonitor, Simulation};
+use quadrotor::{
+    Configuration, ControlLaw, Inputs, Outputs, PositionReference, RotorFault, RotorMonitor, Simulation,
+};
 
 mod common;
 use common::tilt_rad;
@@ -69,7 +71,7 @@ fn course_of(
     for millisecond in 1..=(seconds * 1e3) as u64 {
         let (time_s, command) = (millisecond as f64 * 1e-3, flight.rotor_command_rad_s());
         inputs.reference = reference(time_s);
-        if flight.lost_rotor().is_some() {
+        if inputs.lost_rotor.is_some() {
             let now = flight.outputs();
             if course.known_after_s.is_some_and(|s| time_s > FAULT_S + s + 2.0)
                 && now.velocity_m_s.xy().norm() < 0.5
@@ -83,7 +85,7 @@ fn course_of(
             };
         }
         if time_s == FAULT_S {
-            flight.set_rotor_faults(faults).unwrap();
+            inputs.rotor_faults = faults;
             broke_at = flight.outputs().position_m;
         }
         flight.advance_to(millisecond * 1000, &inputs).unwrap();
@@ -92,9 +94,7 @@ fn course_of(
             monitor.update(&configuration.airframe, &command, &outputs.rotor_speed_rad_s, 1e-3)
         {
             course.known_after_s.get_or_insert(time_s - FAULT_S);
-            if flight.lost_rotor().is_none() {
-                flight.set_lost_rotor(Some(lost)).unwrap();
-            }
+            inputs.lost_rotor.get_or_insert(lost);
         }
         // A tilted vehicle's lowest foot.
         if outputs.position_m.z > -0.1 {
@@ -180,11 +180,12 @@ fn a_thrust_axis_needs_spin() {
 fn the_spin_settles_where_the_rotors_drag_balances() {
     let mut configuration = Configuration::default();
     configuration.initial.position_m[2] = -100.0;
-    let inputs = Inputs { reference: PositionReference::goal([0.0, 0.0, -100.0], 0.0), ..Inputs::default() };
+    let mut inputs =
+        Inputs { reference: PositionReference::goal([0.0, 0.0, -100.0], 0.0), ..Inputs::default() };
     let mut flight = Simulation::new(&configuration, &inputs).unwrap();
-    flight.set_rotor_faults(broken(0, RotorFault::Off)).unwrap();
+    inputs.rotor_faults = broken(0, RotorFault::Off);
     flight.advance_to(60_000, &inputs).unwrap();
-    flight.set_lost_rotor(Some(0)).unwrap();
+    inputs.lost_rotor = Some(0);
     let mut lost_m: f64 = 0.0;
     for step in 7..=6_000 {
         flight.advance_to(step * 10_000, &inputs).unwrap();
@@ -257,7 +258,7 @@ fn a_stuck_rotor_is_found_when_it_matters() {
 #[test]
 fn a_broken_flight_is_the_same_however_it_is_split() {
     let fly = |steps_us: &[u64]| {
-        let inputs = Inputs::default();
+        let mut inputs = Inputs::default();
         let mut flight = Simulation::new(&Configuration::default(), &inputs).unwrap();
         let mut steps = steps_us.iter().cycle();
         for until_us in [2_000_000, 2_080_000, 6_000_000] {
@@ -266,8 +267,8 @@ fn a_broken_flight_is_the_same_however_it_is_split() {
                 flight.advance_to(next_us, &inputs).unwrap();
             }
             match until_us {
-                2_000_000 => flight.set_rotor_faults(broken(2, RotorFault::Off)).unwrap(),
-                2_080_000 => flight.set_lost_rotor(Some(2)).unwrap(),
+                2_000_000 => inputs.rotor_faults = broken(2, RotorFault::Off),
+                2_080_000 => inputs.lost_rotor = Some(2),
                 _ => {}
             }
         }
@@ -281,9 +282,15 @@ fn what_is_no_fault_is_refused() {
     let inputs = Inputs::default();
     let mut flight = Simulation::new(&Configuration::default(), &inputs).unwrap();
     for share in [-0.1, 1.1, f64::NAN] {
-        assert!(flight.set_rotor_faults(broken(0, RotorFault::Weak { share })).is_err());
+        let rotor_faults = broken(0, RotorFault::Weak { share });
+        assert!(flight.advance_to(1_000_000, &Inputs { rotor_faults, ..inputs }).is_err());
     }
-    let error = flight.set_lost_rotor(Some(4)).unwrap_err().to_string();
+    let lost = Inputs { lost_rotor: Some(4), ..inputs };
+    let error = flight.advance_to(1_000_000, &lost).unwrap_err().to_string();
     assert_eq!(error, "lost_rotor = 4 is outside [0, 3]");
-    assert_eq!(flight.lost_rotor(), None);
+    assert_eq!(
+        flight.control().check_loss_of(4).unwrap_err().to_string(),
+        "lost_rotor = 4 is outside [0, 3]"
+    );
+    assert_eq!((flight.law(), flight.time_us()), (ControlLaw::Cascade, 0));
 }

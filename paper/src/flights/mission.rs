@@ -1,7 +1,7 @@
 //! What is flown.
 
 use nalgebra::Vector3;
-use quadrotor::{Disturbance, InputSignal, Inputs, PositionReference};
+use quadrotor::{InputSignal, Inputs, PositionReference};
 
 /// The paper's (5, 5, 10): 5 m north, 5 m east, 10 m up, in NED.
 pub const GOAL_M: [f64; 3] = [5.0, 5.0, -10.0];
@@ -46,7 +46,7 @@ impl InputSignal for Mission {
             Self::Smooth => smooth(time_us as f64 * 1e-6),
             Self::Step | Self::BareStep => PositionReference::goal(GOAL_M, HEADING_RAD),
         };
-        Inputs { reference, disturbance: Disturbance::default(), armed: true }
+        Inputs { reference, ..Inputs::default() }
     }
 }
 

@@ -39,7 +39,7 @@ pub fn fly(pilot: &Pilot, asking: Asking, index: u32) -> Trial {
     let inputs = |time_us: u64| Inputs {
         reference: PositionReference::goal(GOAL_M, HEADING_RAD),
         disturbance: Disturbance { wind_m_s: circumstances.wind_m_s(time_us), ..Disturbance::default() },
-        armed: true,
+        ..Inputs::default()
     };
     let lost = Trial { distance_m: f64::INFINITY, tilt_exceeded: false, speed_exceeded: false };
     let Ok(mut simulation) = Simulation::new(&configuration, &inputs(0)) else {

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // Each test binary uses its own selection.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use quadrotor::{Configuration, Disturbance, InputSignal, Inputs, Outputs, PositionReference, Simulation};
+use quadrotor::{Configuration, InputSignal, Inputs, Outputs, PositionReference, Simulation};
 
 /// Observation interval of the flights, µs.
 pub const STEP_US: u64 = 10_000;
@@ -46,8 +46,7 @@ pub fn smooth_flight(goal_m: [f64; 3], yaw_rad: f64, duration_s: f64) -> impl In
                 yaw_rad: yaw_rad * position,
                 yaw_rate_rad_s: 0.0,
             },
-            disturbance: Disturbance::default(),
-            armed: true,
+            ..Inputs::default()
         }
     }
 }

@@ -3,7 +3,8 @@
 use mavlink::dialects::common::MavMessage;
 use nalgebra::Vector3;
 use quadrotor::{
-    CascadeDesign, Configuration, ConfigurationError, Disturbance, GRAVITY_M_S2, Plant, SimulationError,
+    CascadeDesign, ConfigurationError, Disturbance, GRAVITY_M_S2, Plant, PlantInputs, PlantState,
+    SimulationError,
 };
 use vehicle::estimation::TrueMotion;
 use vehicle::world::{LocalFrame, Wind};
@@ -29,12 +30,12 @@ const STANDS_M: f64 = 0.03;
 /// A vehicle on the ground, its rotors at rest.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    configuration: Configuration,
     mount: Mount,
     frame: LocalFrame,
     wind: Wind,
     instruments: Instruments,
     plant: Plant,
+    state: PlantState,
     time_us: u64,
     command_rad_s: [f64; 4],
     controlled_us: Option<u64>,
@@ -58,13 +59,13 @@ impl Rig {
             frame: LocalFrame::new(settings.origin),
             wind: Wind::new(settings.wind),
             instruments: Instruments::new(settings.wind.seed),
-            plant: Plant::new(&configuration, false),
+            plant: Plant::new(&configuration.airframe, &configuration.environment),
+            state: PlantState::at_rest(&configuration.initial),
             time_us: 0,
             command_rad_s: [0.0; 4],
             controlled_us: None,
             truth_us: Some(TRUTH_US),
             digest: Digest::default(),
-            configuration,
         })
     }
 
@@ -74,8 +75,8 @@ impl Rig {
     }
 
     /// Rotors and rigid body.
-    pub fn plant(&self) -> &Plant {
-        &self.plant
+    pub fn plant(&self) -> &PlantState {
+        &self.state
     }
 
     /// Digest of the flight so far.
@@ -85,7 +86,7 @@ impl Rig {
 
     /// Turns the motors as told from now on: 0 is the lowest speed of an armed rotor, 1 the highest, linear between.
     pub fn control(&mut self, controls: &ActuatorControls) {
-        let airframe = &self.configuration.airframe;
+        let airframe = self.plant.airframe();
         let (lowest, highest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
         let speed = |motor: f64| if controls.armed { lowest + motor * (highest - lowest) } else { 0.0 };
         self.command_rad_s = Mount::rotors(controls.motors.map(speed));
@@ -113,24 +114,29 @@ impl Rig {
         let mut motion = self.motion(&Vector3::zeros());
         let mut wind_m_s = Vector3::zeros();
         while self.time_us < goal_us {
-            let height_m = -self.plant.body.position_m.z;
+            let height_m = -self.state.body.position_m.z;
             wind_m_s = self.wind.velocity_m_s(self.time_us, height_m);
             // What stands is held by static friction, which the contact lacks.
             if height_m < STANDS_M && self.command_rad_s == [0.0; 4] {
                 wind_m_s = Vector3::zeros();
             }
-            let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
             let h_s = TICK_US as f64 / 1e6;
-            self.plant = self.plant.step(&self.configuration, &self.command_rad_s, &disturbance, h_s);
+            self.state = self.plant.step(&self.state, &self.inputs(wind_m_s), h_s);
             self.time_us += TICK_US;
-            if !self.plant.is_finite() {
+            if !self.state.is_finite() {
                 return Err(SimulationError::Diverged { time_us: self.time_us });
             }
-            self.digest.update_with(self.time_us, &self.plant);
+            self.digest.update_with(self.time_us, &self.state);
             motion = self.motion(&wind_m_s);
             self.instruments.sample(&motion, &self.frame);
         }
         Ok(self.report(&motion, &wind_m_s))
+    }
+
+    /// What acts on the plant.
+    fn inputs(&self, wind_m_s: Vector3<f64>) -> PlantInputs {
+        let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
+        PlantInputs { disturbance, ..PlantInputs::rotor_speeds(self.command_rad_s) }
     }
 
     fn report(&mut self, motion: &TrueMotion, wind_m_s: &Vector3<f64>) -> Vec<MavMessage> {
@@ -150,9 +156,8 @@ impl Rig {
 
     /// What happens to the autopilot's instruments, in its axes.
     fn motion(&self, wind_m_s: &Vector3<f64>) -> TrueMotion {
-        let body = &self.plant.body;
-        let disturbance = Disturbance { wind_m_s: *wind_m_s, ..Disturbance::default() };
-        let acceleration = self.plant.acceleration_m_s2(&self.configuration, &disturbance);
+        let body = &self.state.body;
+        let acceleration = self.plant.acceleration_m_s2(&self.state, &self.inputs(*wind_m_s));
         let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
         let mount = self.mount.rotation();
         let attitude = body.rotation() * mount;

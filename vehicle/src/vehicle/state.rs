@@ -203,16 +203,20 @@ impl Vehicle {
         }
         let dt_s = TICK_US as f64 / 1e6;
         let time_us = self.outputs.time_us;
-        let reference = self.steering.apply(&mut self.simulation, &self.outputs, dt_s)?;
+        let asked = self.steering.apply(&self.simulation, &self.outputs, dt_s);
         let height_m = -self.truth.position_m.z;
         self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
         // The contact's friction grows with the slip; what stands is held by static friction, and does not creep.
         let stands = self.landed.is_landed() && !self.armed;
         let wind_m_s = if stands { Vector3::zeros() } else { self.wind_m_s };
         let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
-        let inputs = Inputs { reference, disturbance, armed: self.armed };
-        self.simulation.set_rotor_faults(self.faults.rotors())?;
-        self.simulation.set_estimate(self.estimate().map(|estimate| estimate.body))?;
+        let inputs = Inputs {
+            disturbance,
+            armed: self.armed,
+            estimate: self.estimate().map(|estimate| estimate.body),
+            rotor_faults: self.faults.rotors(),
+            ..asked
+        };
         self.simulation.advance_to(time_us + TICK_US, &inputs)?;
         self.perceive();
         self.watch_rotors(dt_s);
@@ -403,7 +407,7 @@ impl Vehicle {
     pub(super) fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
         match self.simulation.reconfigure(configuration) {
             Err(ConfigurationError::Fixed { .. }) if !self.armed && self.landed.is_landed() => {
-                self.simulation = Simulation::from_state(configuration, *self.simulation.state())?;
+                self.simulation = Simulation::from_state(configuration, self.simulation.state())?;
                 self.truth = self.simulation.outputs();
                 self.outputs = self.known();
                 Ok(())

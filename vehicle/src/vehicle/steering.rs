@@ -1,7 +1,7 @@
 //! What the closed loop is told, tick by tick.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use quadrotor::{AttitudeTarget, Outputs, PositionReference, Simulation, SimulationError};
+use quadrotor::{AttitudeTarget, Inputs, Outputs, PositionReference, Simulation};
 
 use super::motion::{Motion, at_rest};
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
@@ -122,67 +122,51 @@ impl Steering {
         }
     }
 
-    /// Tells the closed loop, and returns the reference for the tick that begins now.
-    pub fn apply(
-        &mut self,
-        simulation: &mut Simulation,
-        outputs: &Outputs,
-        dt_s: f64,
-    ) -> Result<PositionReference, SimulationError> {
+    /// What the closed loop is asked for in the tick that begins now.
+    pub fn apply(&mut self, simulation: &Simulation, outputs: &Outputs, dt_s: f64) -> Inputs {
         let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
-        fly_without(simulation, self.lost_rotor());
+        let lost_rotor = self.lost_rotor().filter(|rotor| can_fly_without(simulation, *rotor));
+        let along = |reference, shaping| Inputs { reference, shaping, lost_rotor, ..Inputs::default() };
         match self {
-            Self::Idle { yaw_rad } => {
-                simulation.set_attitude_target(Some(AttitudeTarget {
+            Self::Idle { yaw_rad } => Inputs {
+                attitude_target: Some(AttitudeTarget {
                     attitude: UnitQuaternion::from_euler_angles(0.0, 0.0, *yaw_rad),
                     body_rate_rad_s: Vector3::zeros(),
                     thrust_n: 0.0,
-                }))?;
-                Ok(at_rest(outputs.position_m, *yaw_rad))
-            }
+                }),
+                ..along(at_rest(outputs.position_m, *yaw_rad), None)
+            },
             Self::Attitude { set_point, reference } => {
                 if set_point.attitude.is_none() {
                     *reference = turned_on(reference, set_point, &attitude_of(outputs), dt_s);
                 }
-                simulation.set_attitude_target(Some(AttitudeTarget {
-                    attitude: *reference,
-                    body_rate_rad_s: set_point.body_rate_rad_s,
-                    thrust_n: set_point.thrust * strongest_n,
-                }))?;
-                Ok(at_rest(outputs.position_m, outputs.attitude_rad.z))
+                Inputs {
+                    attitude_target: Some(AttitudeTarget {
+                        attitude: *reference,
+                        body_rate_rad_s: set_point.body_rate_rad_s,
+                        thrust_n: set_point.thrust * strongest_n,
+                    }),
+                    ..along(at_rest(outputs.position_m, outputs.attitude_rad.z), None)
+                }
             }
-            Self::Descent { reference, .. } => {
-                simulation.set_attitude_target(None)?;
-                Ok(*reference)
-            }
-            Self::Goal(goal) => {
-                simulation.set_attitude_target(None)?;
-                shape(simulation, true);
-                Ok(*goal)
-            }
+            Self::Descent { reference, .. } => along(*reference, None),
+            Self::Goal(goal) => along(*goal, Some(true)),
             Self::Motion(motion) => {
-                simulation.set_attitude_target(None)?;
-                shape(simulation, false);
                 let reference = motion.reference(outputs.time_us);
                 motion.step(&simulation.configuration().limits, dt_s);
-                Ok(reference)
+                along(reference, Some(false))
             }
         }
     }
 }
 
-/// Changes to the controller for the loss of a rotor, or back. An airframe that has none flies on with the cascade.
-fn fly_without(simulation: &mut Simulation, lost_rotor: Option<usize>) {
-    if let Err(error) = simulation.set_lost_rotor(lost_rotor) {
+/// Whether there is a control law for the loss of a rotor. An airframe that has none flies on with the cascade.
+fn can_fly_without(simulation: &Simulation, rotor: usize) -> bool {
+    let checked = simulation.control().check_loss_of(rotor);
+    if let Err(error) = &checked {
         tracing::error!(%error, "no flight without a rotor");
     }
-}
-
-/// Switches the shaper. It cannot be missing: the crate is built with it, see the manifest.
-fn shape(simulation: &mut Simulation, shaping: bool) {
-    if let Err(error) = simulation.set_shaping(shaping) {
-        tracing::error!(%error, "the shaper cannot be switched");
-    }
+    checked.is_ok()
 }
 
 fn attitude_of(outputs: &Outputs) -> UnitQuaternion<f64> {

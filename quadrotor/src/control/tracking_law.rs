@@ -6,7 +6,7 @@ use lmpc::{
 };
 use nalgebra::{DMatrix, SVector};
 
-use crate::capacities::FEW_TERMS;
+use crate::design::capacities::FEW_TERMS;
 use crate::{ControllerKind, ControllerSettings};
 
 /// A controller with room for S unknowns, or L when it needs more.

@@ -3,18 +3,19 @@
 use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::Activity;
-use crate::altitude_controller::AltitudeController;
 use crate::attitude::{tilt_angles, turned};
-use crate::attitude_controller::AttitudeController;
-use crate::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt};
-use crate::estimator::Command;
-use crate::guidance::Heading;
-use crate::observer::Observation;
-use crate::position_controller::PositionController;
-use crate::ramp::Ramp;
-use crate::reference_motion::ReferenceMotion;
-use crate::setpoint::Setpoint;
+use crate::control::activity::Activity;
+use crate::control::altitude_controller::AltitudeController;
+use crate::control::attitude_controller::AttitudeController;
+use crate::control::observation::Observation;
+use crate::control::position_controller::PositionController;
+use crate::design::controller_limits::{
+    COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
+};
+use crate::guidance::ramp::Ramp;
+use crate::guidance::reference_guidance::Heading;
+use crate::guidance::reference_motion::ReferenceMotion;
+use crate::guidance::setpoint::Setpoint;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench,
     wrench_of_rotors,
@@ -35,13 +36,12 @@ pub struct Cascade {
     /// Vertical acceleration wanted, NED, m/s².
     vertical: Ramp<1>,
     tilt_reference_rad: [f64; 2],
-    rotor_command_rad_s: [f64; 4],
     activity: Activity,
 }
 
 impl Cascade {
-    /// Takes over a vehicle, with its rotors at `rotor_command_rad_s`.
-    pub fn new(body: &RigidBody, rotor_command_rad_s: [f64; 4], time_us: u64) -> Self {
+    /// Takes over a vehicle.
+    pub fn new(body: &RigidBody, time_us: u64) -> Self {
         Self {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
@@ -49,7 +49,6 @@ impl Cascade {
             horizontal: Ramp::still(time_us),
             vertical: Ramp::still(time_us),
             tilt_reference_rad: [0.0; 2],
-            rotor_command_rad_s,
             activity: Activity::default(),
         }
     }
@@ -64,25 +63,12 @@ impl Cascade {
         self.tilt_reference_rad
     }
 
-    /// Commanded rotor speeds, rad/s.
-    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
-        self.rotor_command_rad_s
-    }
-
-    /// Rotor speeds, rad/s, of another controller.
-    pub(crate) fn set_rotor_command(&mut self, rotor_command_rad_s: [f64; 4]) {
-        self.rotor_command_rad_s = rotor_command_rad_s;
-    }
-
-    /// What is commanded at `time_us`.
-    pub(crate) fn command(&self, configuration: &Configuration, time_us: u64) -> Command {
+    /// The acceleration that is commanded at `time_us`, NED, m/s².
+    pub(crate) fn acceleration_m_s2(&self, configuration: &Configuration, time_us: u64) -> Vector3<f64> {
         let controllers = &configuration.controllers;
         let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
         let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us);
-        Command {
-            acceleration_m_s2: Some(Vector3::new(horizontal.x, horizontal.y, vertical.x)),
-            rotor_speed_rad_s: self.rotor_command_rad_s,
-        }
+        Vector3::new(horizontal.x, horizontal.y, vertical.x)
     }
 
     /// A sample of the position controller.
@@ -146,7 +132,7 @@ impl Cascade {
         self.activity.altitude = activity;
     }
 
-    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds.
+    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds, rad/s.
     pub(crate) fn sample_attitude(
         &mut self,
         configuration: &Configuration,
@@ -154,7 +140,7 @@ impl Cascade {
         seen: &Observation,
         heading: &Heading,
         time_us: u64,
-    ) {
+    ) -> [f64; 4] {
         let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
         let controllers = &configuration.controllers;
@@ -171,7 +157,7 @@ impl Cascade {
         let rate = turned(&reference, &next) / period_s;
 
         let thrust_n = thrust(configuration, now.1, upright(&seen.body));
-        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n);
+        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n)
     }
 
     /// A sample of the attitude controller alone, for an attitude and a thrust from outside.
@@ -181,11 +167,11 @@ impl Cascade {
         design: &CascadeDesign,
         seen: &Observation,
         target: &AttitudeTarget,
-    ) {
+    ) -> [f64; 4] {
         let (phi, theta, _) = target.attitude.euler_angles();
         self.tilt_reference_rad = [phi, theta];
         let reference = (&target.attitude, &target.body_rate_rad_s);
-        self.command_rotors(configuration, design, seen, reference, target.thrust_n);
+        self.command_rotors(configuration, design, seen, reference, target.thrust_n)
     }
 
     /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N.
@@ -196,7 +182,7 @@ impl Cascade {
         seen: &Observation,
         reference: (&UnitQuaternion<f64>, &Vector3<f64>),
         thrust_n: f64,
-    ) {
+    ) -> [f64; 4] {
         let period_s = configuration.controllers.attitude.sample_time_s();
         let body = &seen.body;
         let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
@@ -211,11 +197,12 @@ impl Cascade {
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
         let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
-        self.rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
-        let made = wrench_of_rotors(&configuration.airframe, &self.rotor_command_rad_s);
+        let rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
+        let made = wrench_of_rotors(&configuration.airframe, &rotor_command_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
         self.attitude.apply(design, &(lead.inverse() * made.torque_n_m - gyroscopic));
+        rotor_command_rad_s
     }
 }
 

@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::setpoint::Setpoint;
+use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
-use crate::shaper::Shaper;
-use crate::{Configuration, Limits, PositionReference};
+use crate::guidance::shaper::Shaper;
+use crate::{Limits, PositionReference};
 
 /// State of the reference: shaped towards a goal, or passed on as it comes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,10 +42,16 @@ pub struct Heading {
 #[cfg_attr(not(feature = "shaper"), allow(unused_variables, irrefutable_let_patterns))]
 impl Guidance {
     /// A reference that rests in one place.
-    pub fn new(configuration: &Configuration, position_m: &Vector3<f64>, yaw_rad: f64, time_us: u64) -> Self {
+    pub fn new(
+        limits: &Limits,
+        shaping: bool,
+        position_m: &Vector3<f64>,
+        yaw_rad: f64,
+        time_us: u64,
+    ) -> Self {
         #[cfg(feature = "shaper")]
-        if configuration.reference.shaping {
-            return Self::Shaped(Shaper::at_rest(position_m, yaw_rad, &configuration.limits, time_us));
+        if shaping {
+            return Self::Shaped(Shaper::at_rest(position_m, yaw_rad, limits, time_us));
         }
         Self::Direct(Direct {
             latest: PositionReference::goal((*position_m).into(), yaw_rad),
@@ -55,12 +61,17 @@ impl Guidance {
         })
     }
 
-    /// The other kind of reference, as the configuration now has it, that goes on from where this one is.
-    pub fn switched(&self, configuration: &Configuration, time_us: u64) -> Self {
+    /// Whether it is shaped.
+    pub fn is_shaped(&self) -> bool {
+        !matches!(self, Self::Direct(_))
+    }
+
+    /// A reference, shaped or not, that goes on from where this one is.
+    pub fn switched(&self, limits: &Limits, shaping: bool, time_us: u64) -> Self {
         let now = self.reference(time_us);
         #[cfg(feature = "shaper")]
-        if configuration.reference.shaping {
-            return Self::Shaped(Shaper::moving(&now, &configuration.limits, time_us));
+        if shaping {
+            return Self::Shaped(Shaper::moving(&now, limits, time_us));
         }
         Self::Direct(Direct { latest: now, jerk_m_s3: Vector3::zeros(), time_us, yaw_time_us: time_us })
     }

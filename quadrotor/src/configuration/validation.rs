@@ -1,6 +1,6 @@
 //! Checks on a configuration: every range, then what must fit together.
 
-use crate::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
+use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.

@@ -6,10 +6,10 @@ use core::f64::consts::PI;
 use lmpc::{Limit, Quantity};
 use nalgebra::{DMatrix, Vector2, Vector3};
 
-use crate::capacities::{
+use crate::design::capacities::{
     ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
 };
-use crate::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
+use crate::design::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
 use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.

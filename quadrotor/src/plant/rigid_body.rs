@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::{Airframe, Disturbance, GRAVITY_M_S2, Wrench};
+use crate::{Airframe, GRAVITY_M_S2, Wrench};
 
 /// Position and velocity in NED, attitude FRD into NED, body rates in FRD.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,13 +72,5 @@ impl RigidBody {
     pub(crate) fn is_finite(&self) -> bool {
         self.position_m.iter().chain(&self.velocity_m_s).chain(&self.body_rate_rad_s).all(|x| x.is_finite())
             && self.attitude.coords.iter().all(|x| x.is_finite())
-    }
-}
-
-impl Disturbance {
-    /// The disturbance and the linear drag on a body that moves with `velocity_m_s` in NED.
-    pub(crate) fn external(&self, airframe: &Airframe, velocity_m_s: &Vector3<f64>) -> External {
-        let drag = Vector3::from(airframe.drag_n_s_m).component_mul(&(velocity_m_s - self.wind_m_s));
-        External { force_n: self.force_n - drag, torque_n_m: self.torque_n_m }
     }
 }

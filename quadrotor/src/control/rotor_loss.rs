@@ -3,7 +3,7 @@
 use lmpc::DesignError;
 use nalgebra::{Vector3, Vector6};
 
-use crate::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
+use crate::design::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
 use crate::{Airframe, Configuration, GRAVITY_M_S2, PositionReference, RigidBody};
 
 /// Feedback of position, 1/s², and velocity, 1/s, on the way to the wanted acceleration.
@@ -26,12 +26,12 @@ const THRUST_RANGE: [f64; 2] = [0.3, 1.5];
 /// The controller for the loss of one rotor. It remembers nothing: what it needs of the past is in the measured speeds of
 /// the rotors.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Recovery {
+pub(crate) struct RotorLossLaw {
     lost: usize,
     design: ReducedAttitudeDesign,
 }
 
-impl Recovery {
+impl RotorLossLaw {
     /// For the loss of the front (0), right, back or left (3) rotor.
     ///
     /// # Errors
@@ -44,11 +44,6 @@ impl Recovery {
             lost,
             design: ReducedAttitudeDesign::new(&configuration.airframe, inertia, sample_time_s)?,
         })
-    }
-
-    /// The lost rotor's index.
-    pub(crate) fn lost(&self) -> usize {
-        self.lost
     }
 
     /// Commanded rotor speeds, rad/s, from the vehicle's motion, the measured speeds and where it is asked to be; the

@@ -4,10 +4,10 @@ use lmpc::{ControllerState, Sample};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::ControllerActivity;
 use crate::attitude::{attitude_error, turned};
-use crate::capacities::ATTITUDE_MANY;
-use crate::governor::{Governor, proportional_rate};
+use crate::control::activity::ControllerActivity;
+use crate::control::governor::{Governor, proportional_rate};
+use crate::design::capacities::ATTITUDE_MANY;
 use crate::{CascadeDesign, Configuration, Limits};
 
 /// Share of the torque-limited angular acceleration that braking a large rotation counts on.

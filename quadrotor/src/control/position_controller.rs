@@ -4,12 +4,12 @@ use lmpc::{ControllerState, Sample};
 use nalgebra::{Vector2, Vector4};
 use serde::{Deserialize, Serialize};
 
-use crate::activity::ControllerActivity;
-use crate::capacities::POSITION_MANY;
-use crate::controller_limits::position_bounds;
-use crate::governor::{Governor, integral_rate};
-use crate::reference_motion::ReferenceMotion;
-use crate::vehicle_motion::VehicleMotion;
+use crate::control::activity::ControllerActivity;
+use crate::control::governor::{Governor, integral_rate};
+use crate::control::vehicle_motion::VehicleMotion;
+use crate::design::capacities::POSITION_MANY;
+use crate::design::controller_limits::position_bounds;
+use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration, GRAVITY_M_S2};
 
 /// Share of the acceleration limit that braking before a distant set-point counts on. The loop's own

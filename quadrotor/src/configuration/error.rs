@@ -1,4 +1,4 @@
-//! What can be wrong with a configuration, or happen to a flight.
+//! What can be wrong with a configuration.
 
 use lmpc::DesignError;
 use thiserror::Error;
@@ -58,33 +58,5 @@ pub enum ConfigurationError {
     Fixed {
         /// Public name of the parameter.
         name: &'static str,
-    },
-}
-
-/// Why a flight could not go on.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SimulationError {
-    /// An input is not finite.
-    #[error("the input {name} is not finite at {time_us} µs")]
-    InputNotFinite {
-        /// Public name of the input.
-        name: &'static str,
-        /// When.
-        time_us: u64,
-    },
-    /// Time only goes forward.
-    #[error("cannot advance to {requested_us} µs: the flight is already at {time_us} µs")]
-    Backwards {
-        /// Time of the flight.
-        time_us: u64,
-        /// Time asked for.
-        requested_us: u64,
-    },
-    /// The state has left the range of finite numbers.
-    #[error("the state is no longer finite at {time_us} µs")]
-    Diverged {
-        /// When.
-        time_us: u64,
     },
 }

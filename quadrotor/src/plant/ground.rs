@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::rigid_body::{External, RigidBody};
+use crate::plant::rigid_body::{External, RigidBody};
 use crate::{Airframe, GRAVITY_M_S2};
 
 /// Natural frequency of the vehicle on its four feet, rad/s: it rests 4 mm deep, and the integration

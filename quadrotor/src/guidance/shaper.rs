@@ -10,7 +10,7 @@ use rsruckig::prelude::{
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::motion_profile::{Motion, MotionProfile};
+use crate::guidance::motion_profile::{Motion, MotionProfile};
 use crate::{Limits, PositionReference};
 
 /// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.

@@ -1,0 +1,142 @@
+//! The control loop without a plant.
+
+use crate::control::control_error::ControlError;
+use crate::control::control_inputs::{ControlInputs, ControlSignal};
+use crate::control::control_state::ControlState;
+use crate::control::measurement::Instruments;
+use crate::design::loop_design::LoopDesign;
+use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody};
+
+/// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
+///
+/// It needs no plant of ours, does not allocate while it flies without the shaper, and samples at exact instants of its own
+/// whatever the caller's step: each millisecond it looks at its inputs, and each controller samples at the multiples of its
+/// sample time.
+///
+/// ```
+/// use quadrotor::{
+///     Configuration, ControlInputs, ControlLoop, InitialState, Measurement, PlantState, PositionReference, Target,
+/// };
+///
+/// let configuration = Configuration::default();
+/// let hover = PlantState::hovering(&InitialState::default(), &configuration.airframe);
+/// let mut measured = Measurement { motion: hover.body, rotor_speed_rad_s: hover.rotor_speed_rad_s };
+/// let goal = PositionReference::goal([0.0, 0.0, -1.0], 0.0);
+/// let inputs = ControlInputs::armed(Target::Reference(goal));
+/// let mut control = ControlLoop::new(&configuration, &inputs, &mut measured, 0)?;
+/// let command_rad_s = control.advance_to(250_000, &inputs, &mut measured)?;
+/// // It is asked to climb, and turns its rotors faster.
+/// assert!(command_rad_s.iter().sum::<f64>() > hover.rotor_speed_rad_s.iter().sum::<f64>());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControlLoop {
+    design: LoopDesign,
+    state: ControlState,
+}
+
+impl ControlLoop {
+    /// A loop that takes over a vehicle at `time_us`.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
+    /// controller cannot be designed.
+    pub fn new(
+        configuration: &Configuration,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Result<Self, ConfigurationError> {
+        let design = LoopDesign::new(configuration)?;
+        let state = ControlState::new(configuration, inputs, instruments, time_us);
+        Ok(Self { design, state })
+    }
+
+    /// A loop that goes on from a saved state of a loop with the same configuration.
+    ///
+    /// # Errors
+    /// As [`ControlLoop::new`], and [`ConfigurationError::State`].
+    pub fn from_state(
+        configuration: &Configuration,
+        state: ControlState,
+    ) -> Result<Self, ConfigurationError> {
+        state.check(configuration)?;
+        Ok(Self { design: LoopDesign::new(configuration)?, state })
+    }
+
+    /// The configuration.
+    pub fn configuration(&self) -> &Configuration {
+        &self.design.configuration
+    }
+
+    /// The cascade's controllers.
+    pub fn design(&self) -> &CascadeDesign {
+        &self.design.cascade
+    }
+
+    /// The state, to be looked at or saved.
+    pub fn state(&self) -> &ControlState {
+        &self.state
+    }
+
+    /// Goes back, or on, to a saved state of this loop.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::State`]; nothing has changed then.
+    pub fn restore(&mut self, state: ControlState) -> Result<(), ConfigurationError> {
+        state.check(&self.design.configuration)?;
+        self.state = state;
+        Ok(())
+    }
+
+    /// Changes tunable parameters during the flight and redesigns the controllers that depend on them. Incremental
+    /// controllers go on from the input that they applied last, without a bump.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`ControlLoop::new`]; nothing has changed
+    /// then.
+    pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        self.design.reconfigure(configuration)
+    }
+
+    /// Whether it can fly without this rotor.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::OutOfRange`] when there is no such rotor, [`ConfigurationError::Design`] when this airframe
+    /// has no law for its loss.
+    pub fn check_loss_of(&self, rotor: usize) -> Result<(), ConfigurationError> {
+        self.design.rotor_loss.check(rotor)
+    }
+
+    /// The next instant at which it samples, µs.
+    pub fn next_sample_us(&self) -> u64 {
+        self.state.next_us()
+    }
+
+    /// Samples at all of its instants that have not been sampled yet, up to and including `time_us`, and returns the rotor
+    /// speeds that are commanded from there on, rad/s, in the order of the airframe's layout. Between two instants nothing
+    /// happens.
+    ///
+    /// Inputs and measurements are asked for at each of these instants; constants hold over all of them.
+    ///
+    /// # Errors
+    /// [`ControlError`]; the loop then stands before the instant at which it happened.
+    pub fn advance_to(
+        &mut self,
+        time_us: u64,
+        inputs: &impl ControlSignal,
+        instruments: &mut impl Instruments,
+    ) -> Result<[f64; 4], ControlError> {
+        while self.state.next_us() <= time_us {
+            let inputs = inputs.at(self.state.next_us());
+            self.state.sample(&self.design, &inputs, instruments)?;
+        }
+        Ok(self.state.rotor_command_rad_s())
+    }
+
+    /// What the Kalman predictor takes the vehicle's motion for at `time_us`, while the loop flies by it.
+    pub fn estimated_motion(&self, time_us: u64) -> Option<RigidBody> {
+        let flies_by_it = self.design.configuration.sensors.output_feedback && self.state.is_armed();
+        flies_by_it.then(|| self.state.estimated_motion(time_us))
+    }
+}

@@ -1,0 +1,271 @@
+//! Everything that changes in a control loop, and one sample of it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::control::cascade::Cascade;
+use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
+use crate::control::estimator::{Command, Estimator};
+use crate::control::instants::{is_instant, next_instant_us, ticks};
+use crate::control::measurement::Instruments;
+use crate::control::observation::Observation;
+use crate::design::loop_design::LoopDesign;
+use crate::guidance::reference_guidance::Guidance;
+use crate::{
+    Activity, Configuration, ConfigurationError, ControlError, ControllerKind, Measurement,
+    PositionReference, RigidBody,
+};
+
+/// Everything that changes in a control loop, and all there is of it to save and restore.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ControlState {
+    /// The next instant at which it samples, µs.
+    next_us: u64,
+    armed: bool,
+    /// The law that flew last.
+    law: ControlLaw,
+    /// Whether reference and controllers take over the vehicle anew at the next sample.
+    engage: bool,
+    guidance: Guidance,
+    estimator: Estimator,
+    cascade: Cascade,
+    /// Commanded speeds of the rotors while armed, rad/s.
+    rotor_command_rad_s: [f64; 4],
+}
+
+/// Which controllers sample at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Due {
+    position: bool,
+    altitude: bool,
+    attitude: bool,
+}
+
+impl ControlState {
+    /// Takes over a vehicle at `time_us`.
+    pub(crate) fn new(
+        configuration: &Configuration,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Self {
+        let shaping = inputs.shaping.unwrap_or(configuration.reference.shaping);
+        let start = instruments.read_at_takeover(time_us);
+        let (guidance, cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        let first = instruments.read(time_us);
+        let at_once = is_instant(&configuration.controllers, time_us);
+        Self {
+            next_us: if at_once { time_us } else { next_instant_us(&configuration.controllers, time_us) },
+            armed: inputs.armed,
+            law: inputs.target.law(),
+            engage: false,
+            guidance,
+            estimator: estimator(configuration, &first, time_us),
+            cascade,
+            rotor_command_rad_s: start.rotor_speed_rad_s,
+        }
+    }
+
+    /// Whether a loop can have been in this state: saved states may come from anywhere.
+    pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        // Nine thousand years: what is added to it does not overflow.
+        const LATEST_US: u64 = u64::MAX / 64;
+        if self.next_us > LATEST_US || !is_instant(&configuration.controllers, self.next_us) {
+            return Err(ConfigurationError::State {
+                reason: "its controllers do not sample when they would",
+            });
+        }
+        Ok(())
+    }
+
+    /// The next instant at which it samples, µs.
+    pub fn next_us(&self) -> u64 {
+        self.next_us
+    }
+
+    /// Whether the rotors turn.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// The law that flies.
+    pub fn law(&self) -> ControlLaw {
+        self.law
+    }
+
+    /// Commanded speeds of the rotors, rad/s, in the order of the airframe's layout.
+    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
+        if self.armed { self.rotor_command_rad_s } else { [0.0; 4] }
+    }
+
+    /// The reference that the cascade tracks at `time_us`, after shaping.
+    pub fn reference(&self, time_us: u64) -> PositionReference {
+        self.guidance.reference(time_us)
+    }
+
+    /// φ and θ that the position controller asks of the attitude controller, rad.
+    pub fn tilt_reference_rad(&self) -> [f64; 2] {
+        self.cascade.tilt_reference_rad()
+    }
+
+    /// How the controllers came to their last inputs.
+    pub fn activity(&self) -> Activity {
+        self.cascade.activity()
+    }
+
+    /// The motion that the Kalman predictor expects at `time_us`, at most a sample away.
+    pub(crate) fn estimated_motion(&self, time_us: u64) -> RigidBody {
+        self.estimator.body_at(time_us)
+    }
+
+    /// One sample, at its next instant.
+    pub(crate) fn sample(
+        &mut self,
+        design: &LoopDesign,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+    ) -> Result<(), ControlError> {
+        let time_us = self.next_us;
+        inputs.check(time_us)?;
+        if let Target::WithoutRotor { lost, .. } = inputs.target {
+            design.rotor_loss.of(lost)?;
+        }
+        self.take(&design.configuration, inputs, instruments, time_us);
+        if self.armed {
+            self.control(design, &inputs.target, instruments, time_us)?;
+        }
+        self.next_us = next_instant_us(&design.configuration.controllers, time_us);
+        Ok(())
+    }
+
+    /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
+    fn take(
+        &mut self,
+        configuration: &Configuration,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) {
+        let law = inputs.target.law();
+        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
+        self.law = law;
+        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
+            self.guidance = self.guidance.switched(&configuration.limits, shaping, time_us);
+        }
+        if inputs.armed && (!self.armed || self.engage) {
+            let start = instruments.read_at_takeover(time_us);
+            let shaping = self.guidance.is_shaped();
+            (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
+            self.rotor_command_rad_s = start.rotor_speed_rad_s;
+        }
+        if inputs.armed && !self.armed {
+            self.estimator = estimator(configuration, &instruments.read(time_us), time_us);
+        }
+        self.engage &= !inputs.armed;
+        self.armed = inputs.armed;
+    }
+
+    /// Runs the controllers whose clocks tick.
+    fn control(
+        &mut self,
+        design: &LoopDesign,
+        target: &Target,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Result<(), ControlError> {
+        let configuration = &design.configuration;
+        let controllers = &configuration.controllers;
+        let due = Due {
+            position: ticks(time_us, controllers.position.sample_time_us),
+            altitude: ticks(time_us, controllers.altitude.sample_time_us),
+            attitude: ticks(time_us, controllers.attitude.sample_time_us),
+        };
+        if !(due.position || due.altitude || due.attitude) {
+            return Ok(());
+        }
+        let measurement = instruments.read(time_us);
+        let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
+        match target {
+            Target::Reference(reference) => self.track(design, &seen, reference, due, time_us),
+            // Only the attitude controller's clock counts for the other laws.
+            _ if !due.attitude => return Ok(()),
+            Target::Attitude(target) => {
+                self.rotor_command_rad_s =
+                    self.cascade.sample_attitude_target(configuration, &design.cascade, &seen, target);
+            }
+            Target::WithoutRotor { lost, reference } => {
+                let law = design.rotor_loss.of(*lost)?;
+                let measured = &measurement.rotor_speed_rad_s;
+                self.rotor_command_rad_s = law.step(configuration, &seen.body, measured, reference);
+            }
+        }
+        if due.attitude {
+            self.predict(design, &seen, time_us);
+        }
+        Ok(())
+    }
+
+    /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
+    fn track(
+        &mut self,
+        design: &LoopDesign,
+        seen: &Observation,
+        reference: &PositionReference,
+        due: Due,
+        time_us: u64,
+    ) {
+        let (configuration, cascade) = (&design.configuration, &design.cascade);
+        let (controllers, limits) = (&configuration.controllers, &configuration.limits);
+        if due.position || due.altitude {
+            self.guidance.sample(reference, limits, time_us);
+        }
+        if due.position {
+            // Commands ramp up to the input until the next sample.
+            let setpoint = self.guidance.setpoint(time_us, controllers.position.sample_time_us);
+            self.cascade.sample_position(configuration, cascade, seen, &setpoint, time_us);
+        }
+        if due.altitude {
+            // … and the rotors lag behind the thrust command.
+            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
+            let setpoint = self.guidance.setpoint(time_us, controllers.altitude.sample_time_us + lag_us);
+            self.cascade.sample_altitude(configuration, cascade, seen, &setpoint, time_us);
+        }
+        if due.attitude {
+            let heading = self.guidance.sample_heading(reference, limits, time_us);
+            self.rotor_command_rad_s =
+                self.cascade.sample_attitude(configuration, cascade, seen, &heading, time_us);
+        }
+    }
+
+    /// Takes the estimate on to the next sample of the attitude controller, if somebody asks for it.
+    fn predict(&mut self, design: &LoopDesign, seen: &Observation, time_us: u64) {
+        let configuration = &design.configuration;
+        let controllers = &configuration.controllers;
+        if !configuration.sensors.output_feedback && controllers.kind == ControllerKind::Dlqr {
+            return;
+        }
+        let acceleration_m_s2 =
+            (self.law == ControlLaw::Cascade).then(|| self.cascade.acceleration_m_s2(configuration, time_us));
+        let command = Command { acceleration_m_s2, rotor_speed_rad_s: self.rotor_command_rad_s };
+        let times = (time_us, controllers.attitude.sample_time_us);
+        self.estimator.predict(configuration, &design.cascade.estimator, &seen.measured, &command, times);
+    }
+}
+
+/// Reference and controllers that take over the vehicle where it is.
+fn engaged(
+    configuration: &Configuration,
+    shaping: bool,
+    body: &RigidBody,
+    time_us: u64,
+) -> (Guidance, Cascade) {
+    let (_, _, psi) = body.rotation().euler_angles();
+    (
+        Guidance::new(&configuration.limits, shaping, &body.position_m, psi, time_us),
+        Cascade::new(body, time_us),
+    )
+}
+
+/// An estimate that begins with a measurement.
+fn estimator(configuration: &Configuration, first: &Measurement, time_us: u64) -> Estimator {
+    Estimator::new(&configuration.sensors, &first.motion, first.rotor_speed_rad_s, time_us)
+}

@@ -1,0 +1,40 @@
+//! What a control loop sees of its vehicle.
+
+use serde::{Deserialize, Serialize};
+
+use crate::RigidBody;
+
+/// The vehicle as it is measured or estimated at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Its motion. With [`Sensors::output_feedback`](crate::Sensors) only position and attitude are looked at.
+    pub motion: RigidBody,
+    /// Speeds of its rotors in the order of the airframe's layout, rad/s. The cascade looks at them when it takes the
+    /// vehicle over, flight without a rotor at each sample.
+    pub rotor_speed_rad_s: [f64; 4],
+}
+
+/// Where a control loop reads its measurements: any `FnMut(u64) -> Measurement` of microseconds, or a held
+/// [`Measurement`].
+pub trait Instruments {
+    /// A reading at `time_us`.
+    fn read(&mut self, time_us: u64) -> Measurement;
+
+    /// The motion in which the loop takes the vehicle over. A reading, unless something better than one noisy reading is
+    /// known.
+    fn read_at_takeover(&mut self, time_us: u64) -> Measurement {
+        self.read(time_us)
+    }
+}
+
+impl Instruments for Measurement {
+    fn read(&mut self, _time_us: u64) -> Measurement {
+        *self
+    }
+}
+
+impl<F: FnMut(u64) -> Measurement> Instruments for F {
+    fn read(&mut self, time_us: u64) -> Measurement {
+        self(time_us)
+    }
+}

@@ -1,0 +1,69 @@
+//! What the controllers go by: the measurement, or what the Kalman predictor makes of it.
+
+use nalgebra::Vector3;
+
+use crate::control::attitude_controller::VehicleRotation;
+use crate::control::estimator::Estimator;
+use crate::control::vehicle_motion::VehicleMotion;
+use crate::{Configuration, RigidBody};
+
+/// The vehicle as the controllers see it at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Observation {
+    /// What the sensors say.
+    pub(crate) measured: RigidBody,
+    /// What the controllers go by.
+    pub(crate) body: RigidBody,
+    /// Acceleration that the thrust does not explain, NED, m/s².
+    disturbance_m_s2: Vector3<f64>,
+    /// Torque that the rotors do not explain, FRD, N·m.
+    disturbance_n_m: Vector3<f64>,
+}
+
+impl Observation {
+    /// Of a measurement, beside what has been estimated until now.
+    pub(crate) fn new(
+        configuration: &Configuration,
+        estimator: &Estimator,
+        measured: &RigidBody,
+        time_us: u64,
+    ) -> Self {
+        let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
+        let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);
+        Self {
+            measured: *measured,
+            body,
+            disturbance_m_s2: estimator.disturbance_m_s2(),
+            disturbance_n_m: estimator.disturbance_rad_s2().component_mul(&inertia)
+                * configuration.controllers.mass_factor,
+        }
+    }
+
+    /// Motion north and east.
+    pub(crate) fn horizontal(&self) -> VehicleMotion<2> {
+        VehicleMotion {
+            position_m: self.body.position_m.xy(),
+            velocity_m_s: self.body.velocity_m_s.xy(),
+            disturbance_m_s2: self.disturbance_m_s2.xy(),
+        }
+    }
+
+    /// Motion down.
+    pub(crate) fn vertical(&self) -> VehicleMotion<1> {
+        let down = |vector: &Vector3<f64>| [vector.z].into();
+        VehicleMotion {
+            position_m: down(&self.body.position_m),
+            velocity_m_s: down(&self.body.velocity_m_s),
+            disturbance_m_s2: down(&self.disturbance_m_s2),
+        }
+    }
+
+    /// Rotation.
+    pub(crate) fn rotation(&self) -> VehicleRotation {
+        VehicleRotation {
+            attitude: self.body.rotation(),
+            body_rate_rad_s: self.body.body_rate_rad_s,
+            disturbance_n_m: self.disturbance_n_m,
+        }
+    }
+}

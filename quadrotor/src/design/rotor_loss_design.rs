@@ -1,0 +1,39 @@
+//! The control laws for the loss of each rotor.
+
+use lmpc::DesignError;
+
+use crate::control::rotor_loss::RotorLossLaw;
+use crate::{Configuration, ConfigurationError, ControlError};
+
+/// The control laws for the loss of each rotor, as far as the airframe has them. What they depend on is fixed during a
+/// flight.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RotorLossDesign {
+    laws: [Result<RotorLossLaw, DesignError>; 4],
+}
+
+impl RotorLossDesign {
+    pub(crate) fn new(configuration: &Configuration) -> Self {
+        Self { laws: core::array::from_fn(|lost| RotorLossLaw::new(configuration, lost)) }
+    }
+
+    /// The law for the loss of a rotor.
+    pub(crate) fn of(&self, lost: usize) -> Result<&RotorLossLaw, ControlError> {
+        let law = self.laws.get(lost).ok_or(ControlError::NoSuchRotor { rotor: lost })?;
+        law.as_ref().map_err(|_| ControlError::NoRotorLossLaw { rotor: lost })
+    }
+
+    /// Why there is no law for the loss of a rotor, if there is none.
+    pub(crate) fn check(&self, lost: usize) -> Result<(), ConfigurationError> {
+        let value = lost as f64;
+        let no_such_rotor =
+            ConfigurationError::OutOfRange { name: "lost_rotor", value, minimum: 0.0, maximum: 3.0 };
+        match self.laws.get(lost) {
+            None => Err(no_such_rotor),
+            Some(Ok(_)) => Ok(()),
+            Some(Err(source)) => {
+                Err(ConfigurationError::Design { controller: "rotor loss", source: source.clone() })
+            }
+        }
+    }
+}

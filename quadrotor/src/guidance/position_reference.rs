@@ -1,0 +1,48 @@
+//! Where the vehicle is asked to be.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Where the vehicle is asked to be, in NED.
+///
+/// With shaping on, position and yaw are a goal, and velocity is the velocity to pass it with. With
+/// shaping off it is one point of a trajectory: velocity and acceleration are fed forward.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PositionReference {
+    /// Position, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Acceleration, m/s².
+    pub acceleration_m_s2: Vector3<f64>,
+    /// Heading ψ, rad; any number of turns.
+    pub yaw_rad: f64,
+    /// Rate of the heading, rad/s.
+    pub yaw_rate_rad_s: f64,
+}
+
+impl PositionReference {
+    /// A position in NED, m, and a heading, rad, at rest.
+    pub fn goal(position_m: [f64; 3], yaw_rad: f64) -> Self {
+        Self {
+            position_m: position_m.into(),
+            velocity_m_s: Vector3::zeros(),
+            acceleration_m_s2: Vector3::zeros(),
+            yaw_rad,
+            yaw_rate_rad_s: 0.0,
+        }
+    }
+
+    /// The name of its first component that is not finite.
+    pub(crate) fn not_finite(&self) -> Option<&'static str> {
+        let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
+        let checks = [
+            ("reference.position", finite(&self.position_m)),
+            ("reference.velocity", finite(&self.velocity_m_s)),
+            ("reference.acceleration", finite(&self.acceleration_m_s2)),
+            ("reference.yaw", self.yaw_rad.is_finite()),
+            ("reference.yaw_rate", self.yaw_rate_rad_s.is_finite()),
+        ];
+        checks.into_iter().find(|(_, finite)| !finite).map(|(name, _)| name)
+    }
+}

@@ -1,0 +1,10 @@
+//! The vehicle without its controllers: rotors, rigid body and ground, as f(x, u) and as an integrated step.
+
+pub(crate) mod airframe;
+pub(crate) mod disturbance;
+pub(crate) mod dynamics;
+pub(crate) mod ground;
+pub(crate) mod plant_inputs;
+pub(crate) mod plant_state;
+pub(crate) mod rigid_body;
+pub(crate) mod rotor_fault;

@@ -1,0 +1,59 @@
+//! What changes of the plant: x of f(x, u).
+
+use nalgebra::UnitQuaternion;
+use serde::{Deserialize, Serialize};
+
+use crate::plant::rigid_body::RigidBody;
+use crate::{Airframe, InitialState};
+
+/// Rigid body and rotor speeds, or their time derivatives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlantState {
+    /// The rigid body.
+    pub body: RigidBody,
+    /// Speeds of the rotors in the order of the airframe's layout, rad/s.
+    pub rotor_speed_rad_s: [f64; 4],
+}
+
+impl PlantState {
+    /// Where a flight begins, with rotors at rest.
+    pub fn at_rest(initial: &InitialState) -> Self {
+        let [phi, theta, psi] = initial.attitude_rad;
+        Self {
+            body: RigidBody {
+                position_m: initial.position_m.into(),
+                velocity_m_s: initial.velocity_m_s.into(),
+                attitude: UnitQuaternion::from_euler_angles(phi, theta, psi).into_inner(),
+                body_rate_rad_s: initial.body_rate_rad_s.into(),
+            },
+            rotor_speed_rad_s: [0.0; 4],
+        }
+    }
+
+    /// Where a flight begins, with rotors that carry the weight.
+    pub fn hovering(initial: &InitialState, airframe: &Airframe) -> Self {
+        Self { rotor_speed_rad_s: [airframe.hover_rotor_speed_rad_s(); 4], ..Self::at_rest(initial) }
+    }
+
+    /// self + h · derivative, each component for itself: what an explicit integrator adds up. The quaternion does not stay
+    /// unit; see [`PlantState::normalized`].
+    pub fn plus(&self, derivative: &Self, h_s: f64) -> Self {
+        Self {
+            body: self.body.plus(&derivative.body, h_s),
+            rotor_speed_rad_s: core::array::from_fn(|rotor| {
+                self.rotor_speed_rad_s[rotor] + derivative.rotor_speed_rad_s[rotor] * h_s
+            }),
+        }
+    }
+
+    /// The same with a unit quaternion: what ends a step of an integrator.
+    pub fn normalized(&self) -> Self {
+        let attitude = UnitQuaternion::new_normalize(self.body.attitude).into_inner();
+        Self { body: RigidBody { attitude, ..self.body }, ..*self }
+    }
+
+    /// Whether it has stayed within the range of numbers.
+    pub fn is_finite(&self) -> bool {
+        self.body.is_finite() && self.rotor_speed_rad_s.iter().all(|speed| speed.is_finite())
+    }
+}

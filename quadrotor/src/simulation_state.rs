@@ -1,0 +1,94 @@
+//! Everything that changes during a flight.
+
+use serde::{Deserialize, Serialize};
+
+use crate::control::control_state::ControlState;
+use crate::schedule::next_event_us;
+use crate::sensors::NoiseState;
+use crate::{
+    Configuration, ConfigurationError, Disturbance, Inputs, PlantInputs, PlantState, RigidBody, RotorFault,
+};
+
+/// Everything that changes during a flight, and all there is to save and restore.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulationState {
+    pub(crate) world: World,
+    pub(crate) control: ControlState,
+}
+
+/// What changes beside the control loop: the plant, what acts on it, and the sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct World {
+    /// The present, µs after the start.
+    pub(crate) time_us: u64,
+    /// The last event, at or before the present: the plant's state is the one there.
+    pub(crate) event_us: u64,
+    pub(crate) plant: PlantState,
+    disturbance: Disturbance,
+    rotor_faults: [Option<RotorFault>; 4],
+    /// What the controllers take the vehicle's motion for, if somebody outside estimates it.
+    pub(crate) estimate: Option<RigidBody>,
+    pub(crate) noise: NoiseState,
+}
+
+impl World {
+    /// The world at the start of a flight.
+    pub(crate) fn new(configuration: &Configuration, inputs: &Inputs) -> Self {
+        let initial = &configuration.initial;
+        let plant = if inputs.armed {
+            PlantState::hovering(initial, &configuration.airframe)
+        } else {
+            PlantState::at_rest(initial)
+        };
+        Self {
+            time_us: 0,
+            event_us: 0,
+            plant,
+            disturbance: inputs.disturbance,
+            rotor_faults: inputs.rotor_faults,
+            estimate: inputs.estimate,
+            noise: NoiseState::default(),
+        }
+    }
+
+    /// Takes in what acts on the plant and the sensors from now on.
+    pub(crate) fn take(&mut self, inputs: &Inputs) {
+        self.disturbance = inputs.disturbance;
+        self.rotor_faults = inputs.rotor_faults;
+        self.estimate = inputs.estimate;
+    }
+
+    /// What acts on the plant under these rotor commands, rad/s. Disarmed, broken rotors come to rest as all do.
+    pub(crate) fn plant_inputs(&self, command_rad_s: [f64; 4], armed: bool) -> PlantInputs {
+        PlantInputs {
+            disturbance: self.disturbance,
+            rotor_faults: if armed { self.rotor_faults } else { [None; 4] },
+            ..PlantInputs::rotor_speeds(command_rad_s)
+        }
+    }
+}
+
+impl SimulationState {
+    /// Whether a flight can have been in this state: saved states may come from anywhere.
+    pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        // Nine thousand years: what is added to it below does not overflow.
+        const LATEST_US: u64 = u64::MAX / 64;
+        let wrong = |reason| Err(ConfigurationError::State { reason });
+        let World { time_us, event_us, .. } = self.world;
+        if time_us > LATEST_US || event_us > time_us {
+            return wrong("its last event lies in the future");
+        }
+        let next_us = next_event_us(configuration, event_us);
+        if time_us > next_us {
+            return wrong("its last event is not the last");
+        }
+        let sample_us = self.control.next_us();
+        if sample_us < event_us || sample_us > next_us {
+            return wrong("its controllers do not sample when they would");
+        }
+        if !self.world.plant.is_finite() {
+            return wrong("its plant is not finite");
+        }
+        self.control.check(configuration)
+    }
+}
