@@ -106,5 +106,5 @@ pub fn path() -> PathBuf {
 /// The description that is generated now; that the file in the repository is the same has its own test.
 pub fn description() -> &'static Description {
     static DESCRIPTION: OnceLock<Description> = OnceLock::new();
-    DESCRIPTION.get_or_init(|| Description::parse(fmu::description::model_description()))
+    DESCRIPTION.get_or_init(|| Description::parse(fmi::description::model_description::<fmu::ClosedLoop>()))
 }
