@@ -13,6 +13,10 @@ pub struct Subject {
     pub sample: Sample,
 }
 
+/// Variables with values.
+type Reals = &'static [(&'static str, f64)];
+type Booleans = &'static [(&'static str, bool)];
+
 /// What the checks need to know of a model.
 pub struct Sample {
     /// File name of the library.
@@ -36,17 +40,17 @@ pub struct Sample {
     /// A tunable parameter, a value in its range that does not fit to the others, and one that does.
     pub contradiction: (&'static str, f64, f64),
     /// Values with which a run breaks within 5 s.
-    pub breaking: &'static [(&'static str, f64)],
+    pub breaking: Reals,
     /// What may be set together in a run.
-    pub good: &'static [(&'static str, f64)],
+    pub good: Reals,
     /// What may not be set in a run.
-    pub bad: &'static [(&'static str, f64)],
+    pub bad: Reals,
     /// A run in which much happens, so that its state is not a simple one.
     pub eventful: Eventful,
     /// Switches with which a derivative of the input acts within half a second.
-    pub unshaped: &'static [(&'static str, bool)],
+    pub unshaped: Booleans,
     /// Values from which each input and parameter is changed alone.
-    pub points: &'static [(&'static [(&'static str, f64)], &'static [(&'static str, bool)])],
+    pub points: &'static [(Reals, Booleans)],
     /// At least so many initial unknowns then change.
     pub dependent: usize,
     /// At least so many numbers are in a saved state.
@@ -57,10 +61,10 @@ pub struct Sample {
 
 /// Start values, and values and a derivative that are set on the way.
 pub struct Eventful {
-    pub reals: &'static [(&'static str, f64)],
+    pub reals: Reals,
     pub integers: &'static [(&'static str, i32)],
-    pub booleans: &'static [(&'static str, bool)],
-    pub on_the_way: &'static [(&'static str, f64)],
+    pub booleans: Booleans,
+    pub on_the_way: Reals,
     pub derivative: (&'static str, i32, f64),
 }
 

@@ -99,7 +99,7 @@ impl Model for Lag {
         if parameters.gain > parameters.limit {
             return Err(format!("gain = {} must be at most limit = {}", parameters.gain, parameters.limit));
         }
-        if !state.time_us.checked_sub(state.sample_us).is_some_and(|elapsed_us| elapsed_us <= PERIOD_US) {
+        if state.time_us.checked_sub(state.sample_us).is_none_or(|elapsed_us| elapsed_us > PERIOD_US) {
             return Err("the sample is not the last".to_owned());
         }
         Ok(Self { parameters: parameters.clone(), state: state.clone() })
