@@ -1,4 +1,4 @@
-//! The importer's time and the engine's.
+//! The importer's time and the model's.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,10 +6,10 @@ use crate::error::CallError;
 
 /// Relative tolerance for comparing times: importers accumulate t += h, or multiply i·h.
 const TOLERANCE: f64 = 1e-9;
-/// Longest flight, µs: up to here each microsecond is a floating-point number (285 years).
+/// Longest run, µs: up to here each microsecond is a floating-point number (285 years).
 const LONGEST_US: f64 = 9_007_199_254_740_992.0;
 
-/// Time base of an experiment: importer's seconds as floats, flight's microseconds as integers.
+/// Time base of an experiment: importer's seconds as floats, microseconds of the run as integers.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Clock {
     start_s: f64,
@@ -81,7 +81,7 @@ impl Clock {
         if time_us > LONGEST_US {
             return Err(CallError::Time { name: "the end of the step", value: end_s });
         }
-        // A communication point may lie a rounding error before the last one; the flight never goes back.
+        // A communication point may lie a rounding error before the last one; the run never goes back.
         let time_us = (time_us as u64).max(self.time_us());
         Ok(StepEnd { clock: Self { communication_point_s: end_s, ..*self }, time_us })
     }

@@ -16,7 +16,7 @@ pub(crate) enum Category {
     Warning = 2,
     /// Answers that are not available.
     Discard = 4,
-    /// Refused calls and failed flights.
+    /// Refused calls and failed runs.
     Error = 8,
     /// Caught panics.
     Fatal = 16,

@@ -108,8 +108,5 @@ pub(crate) const fn of_parameter(name: &str, unit: Si) -> &'static Quantity {
 
 /// Whether a parameter belongs to a rotor, by its name.
 const fn is_of_rotor(name: &str) -> bool {
-    matches!(
-        name.as_bytes(),
-        [b'a', b'i', b'r', b'f', b'r', b'a', b'm', b'e', b'.', b'r', b'o', b't', b'o', b'r', b'.', ..]
-    )
+    matches!(name.as_bytes().first_chunk(), Some(b"airframe.rotor."))
 }

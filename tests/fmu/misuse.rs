@@ -237,7 +237,7 @@ fn impossible_lengths_are_refused(subject: &'static Subject) {
     State::StepComplete.is_kept_by(&mut instance);
 }
 
-fn after_a_failed_flight_only_reset_and_saved_states_help(subject: &'static Subject) {
+fn after_a_failed_run_only_reset_and_saved_states_help(subject: &'static Subject) {
     let mut instance = Instance::new(subject);
     let saved = instance.get_state();
     diverge(subject, &mut instance);
@@ -259,5 +259,5 @@ for_each_model! {
     no_instance_is_an_error,
     null_pointers_are_refused,
     impossible_lengths_are_refused,
-    after_a_failed_flight_only_reset_and_saved_states_help,
+    after_a_failed_run_only_reset_and_saved_states_help,
 }

@@ -39,7 +39,7 @@ pub fn bytes_midway(subject: &'static Subject) -> Vec<u8> {
     bytes
 }
 
-fn restored_flight_is_the_same(subject: &'static Subject) {
+fn restored_run_is_the_same(subject: &'static Subject) {
     let mut instance = midway(subject);
     let state = instance.get_state();
     let first = continued(&mut instance);
@@ -53,7 +53,7 @@ fn restored_flight_is_the_same(subject: &'static Subject) {
     instance.free_state(state);
 }
 
-fn another_instance_continues_the_flight(subject: &'static Subject) {
+fn another_instance_continues_the_run(subject: &'static Subject) {
     let mut one = midway(subject);
     let state = one.get_state();
     let first = continued(&mut one);
@@ -80,7 +80,7 @@ fn serialized_state_continues_in_another_instance(subject: &'static Subject) {
     instance.free_state(state);
 }
 
-fn states_from_before_the_flight(subject: &'static Subject) {
+fn states_from_before_the_run(subject: &'static Subject) {
     let (parameter, value, observed) = subject.sample.initial;
     let mut instance = Instance::new(subject);
     assert_eq!(instance.set_real(&[(parameter, value)]), OK);
@@ -219,10 +219,10 @@ fn several_damaged_bytes_are_refused(subject: &'static Subject) {
 }
 
 for_each_model! {
-    restored_flight_is_the_same,
-    another_instance_continues_the_flight,
+    restored_run_is_the_same,
+    another_instance_continues_the_run,
     serialized_state_continues_in_another_instance,
-    states_from_before_the_flight,
+    states_from_before_the_run,
     state_is_reused,
     freed_state_is_null_and_may_be_freed_again,
     size_must_fit,

@@ -39,7 +39,7 @@ pub enum Status {
     Warning = 1,
     /// The answer is not available.
     Discard = 2,
-    /// The call was refused, or the flight cannot go on.
+    /// The call was refused, or the run cannot go on.
     Error = 3,
     /// The instance is lost.
     Fatal = 4,
