@@ -1,7 +1,6 @@
 //! `modelDescription.xml` as read by a parser that is not the writer's.
 
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
 use super::library::Reference;
 
@@ -44,7 +43,7 @@ pub struct Description {
 }
 
 impl Description {
-    fn parse(text: String) -> Self {
+    pub fn parse(text: String) -> Self {
         let document = roxmltree::Document::parse(&text).expect("well-formed XML");
         let root = document.root_element();
         let attribute = |node: roxmltree::Node<'_, '_>, name: &str| node.attribute(name).map(str::to_owned);
@@ -98,13 +97,7 @@ impl Description {
     }
 }
 
-/// Where the description lies in the repository.
+/// Where the description of the quadrotor lies in the repository.
 pub fn path() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("modelDescription.xml")
-}
-
-/// The description that is generated now; that the file in the repository is the same has its own test.
-pub fn description() -> &'static Description {
-    static DESCRIPTION: OnceLock<Description> = OnceLock::new();
-    DESCRIPTION.get_or_init(|| Description::parse(fmu::description::model_description()))
 }

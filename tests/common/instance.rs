@@ -4,8 +4,9 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr;
 use std::sync::Mutex;
 
-use super::description::description;
+use super::description::Description;
 use super::library::{Callbacks, Component, Library, OK, Reference, State, Status};
+use super::subject::Subject;
 
 /// One message that the library logged.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,7 @@ pub fn callbacks(log: &Log) -> Callbacks {
 /// An instance that frees itself.
 pub struct Instance<'l> {
     pub library: &'l Library,
+    pub description: &'l Description,
     pub component: Component,
     pub log: Box<Log>,
     _callbacks: Box<Callbacks>,
@@ -86,19 +88,19 @@ impl Drop for Instance<'_> {
 /// The functions of the interface with slices for arrays and names for value references.
 impl<'l> Instance<'l> {
     /// A fresh instance that logs everything.
-    pub fn new(library: &'l Library) -> Self {
-        Self::with_logging(library, true)
+    pub fn new(subject: &'l Subject) -> Self {
+        Self::with_logging(subject, true)
     }
 
     /// A fresh instance.
-    pub fn with_logging(library: &'l Library, logging_on: bool) -> Self {
+    pub fn with_logging(subject: &'l Subject, logging_on: bool) -> Self {
         let log = Box::new(Log::default());
         let callbacks = Box::new(callbacks(&log));
-        let guid = CString::new(description().guid.as_str()).expect("a GUID has no NUL");
+        let guid = CString::new(subject.description.guid.as_str()).expect("a GUID has no NUL");
         // SAFETY: all pointers are valid; `log` and the library outlive the instance.
         let component = unsafe {
-            (library.instantiate)(
-                c"quadrotor".as_ptr(),
+            (subject.library.instantiate)(
+                c"instance".as_ptr(),
                 1,
                 guid.as_ptr(),
                 ptr::null(),
@@ -108,12 +110,13 @@ impl<'l> Instance<'l> {
             )
         };
         assert!(!component.is_null(), "not instantiated: {:?}", log.take());
-        Self { library, component, log, _callbacks: callbacks }
+        let Subject { library, description, .. } = subject;
+        Self { library, description, component, log, _callbacks: callbacks }
     }
 
     /// An instance that is ready to step from 0 with the values that are set.
-    pub fn initialized(library: &'l Library, reals: &[(&str, f64)], booleans: &[(&str, bool)]) -> Self {
-        let mut instance = Self::new(library);
+    pub fn initialized(subject: &'l Subject, reals: &[(&str, f64)], booleans: &[(&str, bool)]) -> Self {
+        let mut instance = Self::new(subject);
         assert_eq!(instance.set_real(reals), OK, "{:?}", instance.log.take());
         assert_eq!(instance.set_boolean(booleans), OK, "{:?}", instance.log.take());
         instance.initialize();
@@ -169,7 +172,7 @@ impl<'l> Instance<'l> {
 
     pub fn set_real(&mut self, values: &[(&str, f64)]) -> Status {
         let (references, values): (Vec<_>, Vec<_>) =
-            values.iter().map(|(name, value)| (description().reference(name), *value)).unzip();
+            values.iter().map(|(name, value)| (self.description.reference(name), *value)).unzip();
         self.set_real_references(&references, &values)
     }
 
@@ -183,7 +186,7 @@ impl<'l> Instance<'l> {
 
     pub fn set_integer(&mut self, values: &[(&str, i32)]) -> Status {
         let (references, values): (Vec<_>, Vec<_>) =
-            values.iter().map(|(name, value)| (description().reference(name), *value)).unzip();
+            values.iter().map(|(name, value)| (self.description.reference(name), *value)).unzip();
         // SAFETY: see `setup`.
         unsafe {
             (self.library.set_integer)(self.component, references.as_ptr(), references.len(), values.as_ptr())
@@ -191,8 +194,10 @@ impl<'l> Instance<'l> {
     }
 
     pub fn set_boolean(&mut self, values: &[(&str, bool)]) -> Status {
-        let (references, values): (Vec<_>, Vec<_>) =
-            values.iter().map(|(name, value)| (description().reference(name), c_int::from(*value))).unzip();
+        let (references, values): (Vec<_>, Vec<_>) = values
+            .iter()
+            .map(|(name, value)| (self.description.reference(name), c_int::from(*value)))
+            .unzip();
         // SAFETY: see `setup`.
         unsafe {
             (self.library.set_boolean)(self.component, references.as_ptr(), references.len(), values.as_ptr())
@@ -201,7 +206,8 @@ impl<'l> Instance<'l> {
 
     /// Derivatives of inputs: name, order, value.
     pub fn set_input_derivatives(&mut self, derivatives: &[(&str, i32, f64)]) -> Status {
-        let references: Vec<_> = derivatives.iter().map(|(name, ..)| description().reference(name)).collect();
+        let references: Vec<_> =
+            derivatives.iter().map(|(name, ..)| self.description.reference(name)).collect();
         let orders: Vec<_> = derivatives.iter().map(|(_, order, _)| *order).collect();
         let values: Vec<_> = derivatives.iter().map(|(.., value)| *value).collect();
         let count = derivatives.len();
@@ -226,7 +232,7 @@ impl<'l> Instance<'l> {
     }
 
     pub fn reals<const N: usize>(&mut self, names: [&str; N]) -> [f64; N] {
-        let references = names.map(|name| description().reference(name));
+        let references = names.map(|name| self.description.reference(name));
         let values =
             self.try_reals(&references).unwrap_or_else(|_| panic!("{names:?}: {:?}", self.log.take()));
         values.try_into().expect("as many values as names")
@@ -247,7 +253,7 @@ impl<'l> Instance<'l> {
 
     pub fn integer(&mut self, name: &str) -> i32 {
         let mut value = 0;
-        let reference = description().reference(name);
+        let reference = self.description.reference(name);
         // SAFETY: see `setup`.
         let status = unsafe { (self.library.get_integer)(self.component, &reference, 1, &mut value) };
         assert_eq!(status, OK, "{name}");
@@ -256,7 +262,7 @@ impl<'l> Instance<'l> {
 
     pub fn boolean(&mut self, name: &str) -> bool {
         let mut value = -1;
-        let reference = description().reference(name);
+        let reference = self.description.reference(name);
         // SAFETY: see `setup`.
         let status = unsafe { (self.library.get_boolean)(self.component, &reference, 1, &mut value) };
         assert_eq!(status, OK, "{name}");
@@ -266,11 +272,15 @@ impl<'l> Instance<'l> {
 
     /// All outputs as bits, so that equal means equal.
     pub fn outputs(&mut self) -> Vec<u64> {
-        let of_type = |real: bool| description().outputs().filter(move |v| (v.value_type == "Real") == real);
-        let references: Vec<_> = of_type(true).map(|variable| variable.reference).collect();
+        let description = self.description;
+        let (reals, others): (Vec<_>, Vec<_>) = description.outputs().partition(|v| v.value_type == "Real");
+        let references: Vec<_> = reals.iter().map(|variable| variable.reference).collect();
         let values = self.try_reals(&references).unwrap_or_else(|_| panic!("{:?}", self.log.take()));
         let mut bits: Vec<u64> = values.into_iter().map(f64::to_bits).collect();
-        bits.extend(of_type(false).map(|variable| self.integer(&variable.name) as u64));
+        bits.extend(others.iter().map(|variable| match variable.value_type.as_str() {
+            "Boolean" => u64::from(self.boolean(&variable.name)),
+            _ => self.integer(&variable.name) as u64,
+        }));
         bits
     }
 

@@ -1,4 +1,4 @@
-//! The freshly built library and its 34 functions.
+//! A freshly built library and its 34 functions.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::{c_char, c_double, c_int, c_uint, c_void};
@@ -41,9 +41,9 @@ macro_rules! library {
         pub const SYMBOLS: &[&str] = &[$($symbol),*];
 
         impl Library {
-            /// Loads the library that was built together with this test.
-            pub fn load() -> Self {
-                let path = path();
+            /// Loads the library of this name that was built together with this test.
+            pub fn load(name: &str) -> Self {
+                let path = path(name);
                 // SAFETY: the library's initialisers are those of a Rust cdylib.
                 let handle = unsafe { libloading::Library::new(&path) }
                     .unwrap_or_else(|error| panic!("{} cannot be loaded: {error}", path.display()));
@@ -93,9 +93,9 @@ library! {
     get_string_status = "fmi2GetStringStatus": fn(Component, c_int, *mut *const c_char) -> Status;
 }
 
-/// Where Cargo puts the library that belongs to this test: beside the test itself. The copy one folder up
+/// Where Cargo puts a library that belongs to this test: beside the test itself. The copy one folder up
 /// may be missing or old.
-pub fn path() -> PathBuf {
+pub fn path(name: &str) -> PathBuf {
     let test = std::env::current_exe().expect("a test knows where it is");
-    test.with_file_name(format!("{DLL_PREFIX}fmu{DLL_SUFFIX}"))
+    test.with_file_name(format!("{DLL_PREFIX}{name}{DLL_SUFFIX}"))
 }

@@ -1,5 +1,5 @@
-//! The built library through its C interface, as an importer sees it, and its description as a validator
-//! reads it. The C types are written again from the headers, not taken from the library.
+//! The built libraries through its C interface, as an importer sees it, and their descriptions as a validator
+//! reads it. The C types are written again from the headers, not taken from the libraries.
 
 // Each test target uses its part.
 #![allow(dead_code)]
@@ -7,3 +7,4 @@
 pub mod description;
 pub mod instance;
 pub mod library;
+pub mod subject;

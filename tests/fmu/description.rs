@@ -2,33 +2,38 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::common::description::{Variable, description, path};
+use crate::closed_loop;
+use crate::common::description::{Variable, path};
 use crate::common::instance::Instance;
 use crate::common::library::OK;
-use crate::library;
+use crate::common::subject::Subject;
 
-fn variables() -> impl Iterator<Item = &'static Variable> {
-    description().variables.iter()
+fn variables(subject: &'static Subject) -> impl Iterator<Item = &'static Variable> {
+    subject.description.variables.iter()
 }
 
-fn indices(causality: &[&str]) -> Vec<usize> {
-    let places = (1..).zip(variables());
+fn indices(subject: &'static Subject, causality: &[&str]) -> Vec<usize> {
+    let places = (1..).zip(variables(subject));
     places.filter(|(_, v)| causality.contains(&v.causality.as_str())).map(|(index, _)| index).collect()
 }
 
 /// `cargo xtask model-description` rewrites it.
 #[test]
 fn file_in_the_repository_is_up_to_date() {
+    let subject = closed_loop();
     let path = path();
     let text = std::fs::read_to_string(&path)
         .unwrap_or_else(|error| panic!("{}: {error}; run: cargo xtask model-description", path.display()));
-    assert!(text == description().text, "{} is stale; run: cargo xtask model-description", path.display());
+    assert!(
+        text == subject.description.text,
+        "{} is stale; run: cargo xtask model-description",
+        path.display()
+    );
 }
 
-#[test]
-fn names_are_unique_and_structured() {
-    let names: BTreeSet<_> = variables().map(|v| v.name.as_str()).collect();
-    assert_eq!(names.len(), variables().count());
+fn names_are_unique_and_structured(subject: &'static Subject) {
+    let names: BTreeSet<_> = variables(subject).map(|v| v.name.as_str()).collect();
+    assert_eq!(names.len(), variables(subject).count());
     for name in names {
         for part in name.split('.') {
             let (stem, index) = part.split_once('[').unwrap_or((part, "1]"));
@@ -43,8 +48,9 @@ fn names_are_unique_and_structured() {
 /// The names that others rely on, from the issue.
 #[test]
 fn promised_variables_exist() {
+    let subject = closed_loop();
     let of = |causality: &str| -> BTreeSet<&str> {
-        variables().filter(|v| v.causality == causality).map(|v| v.name.as_str()).collect()
+        variables(subject).filter(|v| v.causality == causality).map(|v| v.name.as_str()).collect()
     };
     let expand = |names: &str| -> BTreeSet<String> {
         names
@@ -81,15 +87,14 @@ fn promised_variables_exist() {
             assert!(there.contains(name.as_str()), "no {causality} {name}");
         }
     }
-    assert_eq!(description().variable("armed").value_type, "Boolean");
-    assert_eq!(description().variable("reference.shaping").value_type, "Boolean");
-    assert_eq!(description().variable("reference.shaping").attribute("start"), Some("true"));
+    assert_eq!(subject.description.variable("armed").value_type, "Boolean");
+    assert_eq!(subject.description.variable("reference.shaping").value_type, "Boolean");
+    assert_eq!(subject.description.variable("reference.shaping").attribute("start"), Some("true"));
 }
 
 /// FMI 2.0.4, section 2.2.7: which combinations are legal, and who has a start value.
-#[test]
-fn attributes_are_a_legal_combination() {
-    for variable in variables() {
+fn attributes_are_a_legal_combination(subject: &'static Subject) {
+    for variable in variables(subject) {
         let initial = variable.initial.as_deref();
         let combination = (variable.causality.as_str(), variable.variability.as_str(), initial);
         let legal = [
@@ -109,23 +114,21 @@ fn attributes_are_a_legal_combination() {
     }
 }
 
-#[test]
-fn start_values_lie_in_their_ranges() {
+fn start_values_lie_in_their_ranges(subject: &'static Subject) {
     let mut numbers = 0;
-    for variable in variables().filter(|v| v.value_type != "Boolean") {
+    for variable in variables(subject).filter(|v| v.value_type != "Boolean") {
         let Some(start) = variable.number("start") else { continue };
         let [minimum, maximum] = ["min", "max"].map(|end| variable.number(end).expect("a range"));
         assert!(minimum < maximum && (minimum..=maximum).contains(&start), "{}", variable.name);
         numbers += 1;
     }
-    assert!(numbers > 50);
+    assert!(numbers >= subject.sample.numbers);
 }
 
-#[test]
-fn start_values_are_those_of_a_fresh_instance() {
-    let mut instance = Instance::new(library());
+fn start_values_are_those_of_a_fresh_instance(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.enter_initialization_mode(), OK);
-    for variable in variables().filter(|v| v.attribute("start").is_some()) {
+    for variable in variables(subject).filter(|v| v.attribute("start").is_some()) {
         let start = variable.attribute("start").expect("filtered");
         let name = variable.name.as_str();
         match variable.value_type.as_str() {
@@ -136,15 +139,19 @@ fn start_values_are_those_of_a_fresh_instance() {
     }
 }
 
-#[test]
-fn structure_lists_exactly_the_unknowns_in_order() {
+fn structure_lists_exactly_the_unknowns_in_order(subject: &'static Subject) {
     let listed = |unknowns: &[(usize, Vec<usize>)]| -> Vec<usize> {
         unknowns.iter().map(|(index, _)| *index).collect()
     };
-    assert_eq!(listed(&description().outputs), indices(&["output"]));
-    assert_eq!(listed(&description().initial_unknowns), indices(&["output", "calculatedParameter"]));
-    let known = indices(&["input", "parameter"]);
-    for (index, dependencies) in description().outputs.iter().chain(&description().initial_unknowns) {
+    assert_eq!(listed(&subject.description.outputs), indices(subject, &["output"]));
+    assert_eq!(
+        listed(&subject.description.initial_unknowns),
+        indices(subject, &["output", "calculatedParameter"])
+    );
+    let known = indices(subject, &["input", "parameter"]);
+    for (index, dependencies) in
+        subject.description.outputs.iter().chain(&subject.description.initial_unknowns)
+    {
         assert!(dependencies.is_sorted(), "{index}");
         assert!(dependencies.iter().all(|dependency| known.contains(dependency)), "{index}");
     }
@@ -152,40 +159,24 @@ fn structure_lists_exactly_the_unknowns_in_order() {
 
 /// Each input and parameter is changed alone, from several starting points; whatever then changes among
 /// the initial unknowns must be declared to depend on it.
-#[test]
-fn initial_dependencies_are_complete() {
-    let unknowns: Vec<_> = (description().initial_unknowns.iter())
-        .map(|(index, dependencies)| (&description().variables[index - 1], dependencies))
+fn initial_dependencies_are_complete(subject: &'static Subject) {
+    let unknowns: Vec<_> = (subject.description.initial_unknowns.iter())
+        .map(|(index, dependencies)| (&subject.description.variables[index - 1], dependencies))
         // Those of other types say how the controllers' last step went, and there has been none.
         .filter(|(unknown, _)| unknown.value_type == "Real")
         .collect();
     let references: Vec<_> = unknowns.iter().map(|(unknown, _)| unknown.reference).collect();
     let mut found = BTreeMap::<&str, usize>::new();
-    let tilted = [
-        ("initial.position.z", 0.0),
-        ("initial.velocity.x", 2.0),
-        ("initial.velocity.y", -1.0),
-        ("initial.attitude.phi", 0.4),
-        ("initial.attitude.theta", 0.3),
-        ("initial.attitude.psi", -1.0),
-        ("initial.body_rate.p", 0.2),
-        ("airframe.drag.x", 0.1),
-        ("airframe.drag.y", 0.1),
-        ("airframe.drag.z", 0.1),
-        ("wind.velocity.y", 3.0),
-    ];
-    for (start, switches) in
-        [(&[][..], [("environment.ground_plane", false)]), (&tilted, [("environment.ground_plane", true)])]
-    {
+    for (start, switches) in subject.sample.points {
         let prepared = || {
-            let mut instance = Instance::with_logging(library(), false);
+            let mut instance = Instance::with_logging(subject, false);
             assert_eq!(instance.set_real(start), OK);
-            assert_eq!(instance.set_boolean(&switches), OK);
+            assert_eq!(instance.set_boolean(switches), OK);
             assert_eq!(instance.enter_initialization_mode(), OK);
             instance
         };
         let before = prepared().try_reals(&references).expect("valid values");
-        for (index, known) in (1..).zip(variables()).filter(|(_, v)| v.attribute("start").is_some()) {
+        for (index, known) in (1..).zip(variables(subject)).filter(|(_, v)| v.attribute("start").is_some()) {
             let mut instance = prepared();
             if !nudge(&mut instance, known) {
                 continue;
@@ -200,7 +191,7 @@ fn initial_dependencies_are_complete() {
             }
         }
     }
-    assert!(found.len() > 30, "the changes showed too little: {found:?}");
+    assert!(found.len() >= subject.sample.dependent, "the changes showed too little: {found:?}");
 }
 
 /// Changes a variable's value a little.
@@ -226,9 +217,8 @@ fn nudge(instance: &mut Instance, variable: &Variable) -> bool {
 }
 
 /// Names in `declaredType`, `unit` and `displayUnit` are defined.
-#[test]
-fn units_and_types_are_defined() {
-    let document = roxmltree::Document::parse(&description().text).expect("well-formed XML");
+fn units_and_types_are_defined(subject: &'static Subject) {
+    let document = roxmltree::Document::parse(&subject.description.text).expect("well-formed XML");
     let names = |tag: &str| -> BTreeSet<&str> {
         document.descendants().filter(|n| n.has_tag_name(tag)).filter_map(|n| n.attribute("name")).collect()
     };
@@ -245,26 +235,36 @@ fn units_and_types_are_defined() {
             assert!(display.contains(&(unit.expect("a display unit needs a unit"), preferred)), "{real:?}");
         }
     }
-    for variable in variables().filter(|v| v.value_type == "Real") {
+    for variable in variables(subject).filter(|v| v.value_type == "Real") {
         assert!(variable.attribute("declaredType").is_some(), "{}", variable.name);
     }
 }
 
-#[test]
-fn head_is_what_importers_need() {
-    let document = roxmltree::Document::parse(&description().text).expect("well-formed XML");
+fn head_is_what_importers_need(subject: &'static Subject) {
+    let document = roxmltree::Document::parse(&subject.description.text).expect("well-formed XML");
     let root = document.root_element();
     let date = root.attribute("generationDateAndTime").expect("a date");
     assert!(date.len() == 20 && date.ends_with('Z'), "{date}");
     assert_eq!(root.attribute("fmiVersion"), Some("2.0"));
-    assert_eq!(root.attribute("modelName"), Some("LmpcQuadrotor"));
+    assert_eq!(root.attribute("modelName"), Some(subject.sample.model_name));
     assert_eq!(root.attribute("variableNamingConvention"), Some("structured"));
     let simulation = root.first_element_child().expect("a child");
     assert!(simulation.has_tag_name("CoSimulation"));
-    assert_eq!(simulation.attribute("modelIdentifier"), Some("LmpcQuadrotor"));
+    assert_eq!(simulation.attribute("modelIdentifier"), Some(subject.sample.model_identifier));
     let experiment = root.children().find(|n| n.has_tag_name("DefaultExperiment")).expect("an experiment");
     let number = |name| experiment.attribute(name).expect("given").parse::<f64>().expect("a number");
     // FMPy doubles the step until there are at most 1000 of them; a sample time must stay a multiple.
     let steps = (number("stopTime") - number("startTime")) / number("stepSize");
     assert!(steps <= 1000.0 && (0.05 / number("stepSize")).fract() == 0.0, "{steps} steps");
+}
+
+for_each_model! {
+    names_are_unique_and_structured,
+    attributes_are_a_legal_combination,
+    start_values_lie_in_their_ranges,
+    start_values_are_those_of_a_fresh_instance,
+    structure_lists_exactly_the_unknowns_in_order,
+    initial_dependencies_are_complete,
+    units_and_types_are_defined,
+    head_is_what_importers_need,
 }

@@ -2,9 +2,10 @@
 
 use quadrotor::{Configuration, Inputs, Simulation};
 
+use crate::closed_loop;
 use crate::common::instance::Instance;
 use crate::common::library::{ERROR, OK};
-use crate::library;
+use crate::common::subject::{Sample, Subject};
 
 const STEP_S: f64 = 0.2;
 const STEPS: u32 = 25;
@@ -20,7 +21,11 @@ fn climb(time_s: f64) -> [(&'static str, f64); 3] {
 
 fn ready() -> Instance<'static> {
     let origin = [("reference.position.x", 0.0), ("reference.position.y", 0.0)];
-    Instance::initialized(library(), &[origin[0], origin[1], climb(0.0)[0]], &[("reference.shaping", false)])
+    Instance::initialized(
+        closed_loop(),
+        &[origin[0], origin[1], climb(0.0)[0]],
+        &[("reference.shaping", false)],
+    )
 }
 
 /// Largest tracking error of the climb, m, against the true reference.
@@ -58,7 +63,7 @@ fn extrapolation_is_the_engines_signal() {
     configuration.reference.shaping = false;
     let mut inputs = Inputs::default();
     let mut engine = Simulation::new(&configuration, &inputs).expect("a valid configuration");
-    let mut instance = Instance::initialized(library(), &[], &[("reference.shaping", false)]);
+    let mut instance = Instance::initialized(closed_loop(), &[], &[("reference.shaping", false)]);
     for i in 0..STEPS {
         let (time_s, begin_us) = (f64::from(i) * STEP_S, u64::from(i) * 200_000);
         inputs.reference.position_m.x = time_s;
@@ -97,27 +102,29 @@ fn derivatives_end_with_the_step() {
     assert_eq!(flown(Some(0.0)), (first, held), "a derivative of zero is none");
 }
 
-#[test]
-fn newest_derivative_counts() {
+fn newest_derivative_counts(subject: &'static Subject) {
+    let Sample { input, .. } = subject.sample;
     let flown = |derivatives: &[(&str, i32, f64)]| {
-        let mut instance = ready();
+        let mut instance = Instance::initialized(subject, &[], subject.sample.unshaped);
         for derivative in derivatives {
             assert_eq!(instance.set_input_derivatives(&[*derivative]), OK);
         }
         instance.fly(0.0, 0.5, 1);
         instance.outputs()
     };
-    let x = "reference.position.x";
-    assert_eq!(flown(&[(x, 1, 9.0), (x, 2, 1.0), (x, 1, 0.5)]), flown(&[(x, 1, 0.5), (x, 2, 1.0)]));
-    assert_ne!(flown(&[(x, 1, 9.0)]), flown(&[(x, 1, 0.5)]));
+    assert_eq!(
+        flown(&[(input, 1, 9.0), (input, 2, 1.0), (input, 1, 0.5)]),
+        flown(&[(input, 1, 0.5), (input, 2, 1.0)])
+    );
+    assert_ne!(flown(&[(input, 1, 9.0)]), flown(&[(input, 1, 0.5)]));
 }
 
-#[test]
-fn impossible_derivatives_are_refused_together() {
+fn impossible_derivatives_are_refused_together(subject: &'static Subject) {
+    let Sample { input, switch, output, tunable, .. } = subject.sample;
     let flown = |wrong: Option<(&str, i32, f64)>| {
-        let mut instance = ready();
+        let mut instance = Instance::initialized(subject, &[], subject.sample.unshaped);
         if let Some(wrong) = wrong {
-            let derivatives = [("reference.position.x", 1, 1.0), wrong, ("reference.position.y", 1, 1.0)];
+            let derivatives = [(input, 1, 1.0), wrong, (input, 2, 1.0)];
             assert_eq!(instance.set_input_derivatives(&derivatives), ERROR, "{wrong:?}");
             let text = instance.log.last().text;
             assert!(text.contains(wrong.0), "{text}");
@@ -127,15 +134,15 @@ fn impossible_derivatives_are_refused_together() {
     };
     let untouched = flown(None);
     for wrong in [
-        ("reference.position.z", 0, 1.0),
-        ("reference.position.z", -1, 1.0),
-        ("reference.position.z", 4, 1.0),
-        ("reference.position.z", i32::MAX, 1.0),
-        ("reference.position.z", 1, f64::NAN),
-        ("reference.position.z", 1, f64::INFINITY),
-        ("armed", 1, 1.0),
-        ("position.x", 1, 1.0),
-        ("limits.tilt", 1, 1.0),
+        (input, 0, 1.0),
+        (input, -1, 1.0),
+        (input, 4, 1.0),
+        (input, i32::MAX, 1.0),
+        (input, 1, f64::NAN),
+        (input, 1, f64::INFINITY),
+        (switch, 1, 1.0),
+        (output, 1, 1.0),
+        (tunable, 1, 1.0),
     ] {
         assert_eq!(flown(Some(wrong)), untouched, "{wrong:?}");
     }
@@ -148,4 +155,9 @@ fn extrapolation_stays_in_range() {
     assert_eq!(instance.set_input_derivatives(&[("reference.position.x", 3, 1e300)]), OK);
     assert_eq!(instance.do_step(0.0, 1.0), OK, "{:?}", instance.log.take());
     assert!(instance.real("setpoint.position.x") <= 1e6);
+}
+
+for_each_model! {
+    newest_derivative_counts,
+    impossible_derivatives_are_refused_together,
 }

@@ -3,55 +3,52 @@
 use std::ffi::{CStr, CString, c_char, c_int};
 use std::ptr;
 
-use crate::common::description::description;
 use crate::common::instance::{Instance, Log, callbacks};
 use crate::common::library::{DISCARD, ERROR, OK};
-use crate::library;
+use crate::common::subject::Subject;
 
 /// Calls `fmi2Instantiate` and says what was logged if there is no instance.
-fn refusal(name: *const c_char, fmu_type: c_int, guid: *const c_char) -> String {
+fn refusal(subject: &Subject, name: *const c_char, fmu_type: c_int, guid: *const c_char) -> String {
     let log = Log::default();
     let callbacks = callbacks(&log);
     // SAFETY: pointers are NULL or valid; `log` outlives the call, and there is no instance after it.
-    let component = unsafe { (library().instantiate)(name, fmu_type, guid, c"".as_ptr(), &callbacks, 0, 0) };
+    let component =
+        unsafe { (subject.library.instantiate)(name, fmu_type, guid, c"".as_ptr(), &callbacks, 0, 0) };
     assert!(component.is_null());
     let message = log.last();
     assert_eq!((message.status, message.category.as_str()), (ERROR, "logStatusError"));
     message.text
 }
 
-#[test]
-fn instantiation_says_why_it_is_refused() {
-    let guid = CString::new(description().guid.as_str()).expect("no NUL");
+fn instantiation_says_why_it_is_refused(subject: &'static Subject) {
+    let guid = CString::new(subject.description.guid.as_str()).expect("no NUL");
     let (name, guid) = (c"q".as_ptr(), guid.as_ptr());
     let other = c"{00000000-0000-0000-0000-000000000000}";
-    assert!(refusal(ptr::null(), 1, guid).contains("instanceName"));
-    assert!(refusal(c"".as_ptr(), 1, guid).contains("instanceName"));
-    assert!(refusal(name, 0, guid).contains("fmuType = 0"));
-    assert!(refusal(name, 7, guid).contains("fmuType = 7"));
-    assert!(refusal(name, 1, ptr::null()).contains("fmuGUID"));
-    let text = refusal(name, 1, other.as_ptr());
-    assert!(text.contains("00000000-") && text.contains(&description().guid), "{text}");
+    assert!(refusal(subject, ptr::null(), 1, guid).contains("instanceName"));
+    assert!(refusal(subject, c"".as_ptr(), 1, guid).contains("instanceName"));
+    assert!(refusal(subject, name, 0, guid).contains("fmuType = 0"));
+    assert!(refusal(subject, name, 7, guid).contains("fmuType = 7"));
+    assert!(refusal(subject, name, 1, ptr::null()).contains("fmuGUID"));
+    let text = refusal(subject, name, 1, other.as_ptr());
+    assert!(text.contains("00000000-") && text.contains(&subject.description.guid), "{text}");
 }
 
-#[test]
-fn without_a_logger_there_is_no_instance_and_no_crash() {
-    let guid = CString::new(description().guid.as_str()).expect("no NUL");
+fn without_a_logger_there_is_no_instance_and_no_crash(subject: &'static Subject) {
+    let guid = CString::new(subject.description.guid.as_str()).expect("no NUL");
     let (name, guid) = (c"q".as_ptr(), guid.as_ptr());
     let log = Log::default();
     let mut silent = callbacks(&log);
     silent.logger = ptr::null();
     // SAFETY: pointers are NULL or valid.
     unsafe {
-        assert!((library().instantiate)(name, 1, guid, ptr::null(), &silent, 0, 1).is_null());
-        assert!((library().instantiate)(name, 1, guid, ptr::null(), ptr::null(), 0, 1).is_null());
-        (library().free_instance)(ptr::null_mut());
+        assert!((subject.library.instantiate)(name, 1, guid, ptr::null(), &silent, 0, 1).is_null());
+        assert!((subject.library.instantiate)(name, 1, guid, ptr::null(), ptr::null(), 0, 1).is_null());
+        (subject.library.free_instance)(ptr::null_mut());
     }
 }
 
-#[test]
-fn any_resource_location_is_good() {
-    let guid = CString::new(description().guid.as_str()).expect("no NUL");
+fn any_resource_location_is_good(subject: &'static Subject) {
+    let guid = CString::new(subject.description.guid.as_str()).expect("no NUL");
     let log = Log::default();
     let callbacks = callbacks(&log);
     let locations: [&CStr; 6] = [
@@ -66,35 +63,33 @@ fn any_resource_location_is_good() {
         // SAFETY: pointers are NULL or valid, and the instance is freed at once.
         unsafe {
             let component =
-                (library().instantiate)(c"q".as_ptr(), 1, guid.as_ptr(), location, &callbacks, 1, 0);
+                (subject.library.instantiate)(c"q".as_ptr(), 1, guid.as_ptr(), location, &callbacks, 1, 0);
             assert!(!component.is_null());
-            (library().free_instance)(component);
+            (subject.library.free_instance)(component);
         }
     }
     assert_eq!(log.take(), []);
 }
 
-#[test]
-fn from_instantiation_to_termination() {
-    let mut instance = Instance::new(library());
+fn from_instantiation_to_termination(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.setup(0.0, Some(1.0)), OK);
     assert_eq!(instance.enter_initialization_mode(), OK);
     assert_eq!(instance.exit_initialization_mode(), OK);
     instance.fly(0.0, 0.05, 20);
     assert_eq!(instance.terminate(), OK);
-    let height = -instance.real("position.z");
-    assert!(height > 0.1, "values can be read after the end: {height}");
+    let moved = instance.real(subject.sample.output).abs();
+    assert!(moved > 0.1, "values can be read after the end: {moved}");
     assert_eq!(instance.time(), 1.0);
 }
 
-#[test]
-fn setup_is_not_needed_and_may_be_repeated() {
-    let mut instance = Instance::new(library());
+fn setup_is_not_needed_and_may_be_repeated(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.enter_initialization_mode(), OK);
     assert_eq!(instance.exit_initialization_mode(), OK);
     assert_eq!(instance.do_step(0.0, 0.1), OK);
 
-    let mut instance = Instance::new(library());
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.setup(1.0, None), OK);
     assert_eq!(instance.setup(2.0, Some(3.0)), OK);
     assert_eq!(instance.enter_initialization_mode(), OK);
@@ -102,9 +97,8 @@ fn setup_is_not_needed_and_may_be_repeated() {
     assert_eq!(instance.do_step(2.0, 0.1), OK);
 }
 
-#[test]
-fn impossible_times_are_refused() {
-    let mut instance = Instance::new(library());
+fn impossible_times_are_refused(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     for (start, stop) in [
         (f64::NAN, None),
         (f64::INFINITY, None),
@@ -118,16 +112,15 @@ fn impossible_times_are_refused() {
 }
 
 /// FMPy resets directly after instantiation; others between runs.
-#[test]
-fn reset_from_everywhere_gives_a_fresh_instance() {
+fn reset_from_everywhere_gives_a_fresh_instance(subject: &'static Subject) {
     let flown = |instance: &mut Instance| {
         instance.initialize();
         instance.fly(0.0, 0.1, 10);
         instance.outputs()
     };
-    let fresh = flown(&mut Instance::new(library()));
+    let fresh = flown(&mut Instance::new(subject));
 
-    let mut instance = Instance::new(library());
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.reset(), OK);
     assert_eq!(instance.reset(), OK);
     assert_eq!(flown(&mut instance), fresh);
@@ -138,18 +131,17 @@ fn reset_from_everywhere_gives_a_fresh_instance() {
     assert_eq!(flown(&mut instance), fresh);
 
     assert_eq!(instance.reset(), OK);
-    assert_eq!(instance.set_real(&[("reference.position.x", -3.0), ("airframe.mass", 0.8)]), OK);
+    assert_eq!(instance.set_real(&[(subject.sample.input, -3.0), subject.sample.fixed]), OK);
     assert_eq!(instance.setup(7.0, Some(8.0)), OK);
     assert_eq!(instance.enter_initialization_mode(), OK);
     assert_eq!(instance.reset(), OK);
     assert_eq!(flown(&mut instance), fresh);
 }
 
-#[test]
-fn status_functions_answer_what_they_can() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
+fn status_functions_answer_what_they_can(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
     instance.fly(0.0, 0.25, 2);
-    let (c, l) = (instance.component, library());
+    let (c, l) = (instance.component, &subject.library);
     let (mut status, mut real, mut integer, mut boolean, mut string) = (9, 9.0, 9, 9, ptr::null());
     // SAFETY: the instance is alive and all pointers are valid.
     unsafe {
@@ -177,4 +169,15 @@ fn status_functions_answer_what_they_can() {
         assert_eq!((l.get_real_status)(c, 2, &mut real), OK);
     }
     assert_eq!(real, 0.5);
+}
+
+for_each_model! {
+    instantiation_says_why_it_is_refused,
+    without_a_logger_there_is_no_instance_and_no_crash,
+    any_resource_location_is_good,
+    from_instantiation_to_termination,
+    setup_is_not_needed_and_may_be_repeated,
+    impossible_times_are_refused,
+    reset_from_everywhere_gives_a_fresh_instance,
+    status_functions_answer_what_they_can,
 }

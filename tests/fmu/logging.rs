@@ -4,13 +4,13 @@ use std::ffi::CStr;
 
 use crate::common::instance::{Instance, Message};
 use crate::common::library::{ERROR, OK, Status};
-use crate::library;
+use crate::common::subject::Subject;
 
 fn select(instance: &Instance, logging_on: bool, categories: &[&CStr]) -> Status {
     let categories: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
     // SAFETY: the instance is alive and the strings end with NUL.
     unsafe {
-        (library().set_debug_logging)(
+        (instance.library.set_debug_logging)(
             instance.component,
             i32::from(logging_on),
             categories.len(),
@@ -27,9 +27,8 @@ fn categories(instance: &mut Instance) -> Vec<String> {
     instance.log.take().into_iter().map(|message| message.category).collect()
 }
 
-#[test]
-fn categories_are_selected() {
-    let mut instance = Instance::new(library());
+fn categories_are_selected(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     assert_eq!(categories(&mut instance), ["logEvents", "logStatusError"]);
     assert_eq!(select(&instance, false, &[]), OK);
     assert_eq!(categories(&mut instance), ["logStatusError"]);
@@ -43,28 +42,25 @@ fn categories_are_selected() {
     assert_eq!(categories(&mut instance), ["logEvents", "logStatusError"]);
 }
 
-#[test]
-fn without_logging_only_errors_are_heard() {
-    let mut instance = Instance::with_logging(library(), false);
+fn without_logging_only_errors_are_heard(subject: &'static Subject) {
+    let mut instance = Instance::with_logging(subject, false);
     assert_eq!(categories(&mut instance), ["logStatusError"]);
 }
 
-#[test]
-fn unknown_category_is_named_and_changes_nothing() {
-    let mut instance = Instance::with_logging(library(), false);
+fn unknown_category_is_named_and_changes_nothing(subject: &'static Subject) {
+    let mut instance = Instance::with_logging(subject, false);
     assert_eq!(select(&instance, true, &[c"logEvents", c"logNonsense"]), ERROR);
     assert!(instance.log.last().text.contains("logNonsense"));
     assert_eq!(categories(&mut instance), ["logStatusError"]);
 }
 
-#[test]
-fn messages_carry_instance_status_and_function() {
-    let mut instance = Instance::new(library());
+fn messages_carry_instance_status_and_function(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.do_step(0.0, 0.1), ERROR);
     assert_eq!(
         instance.log.take(),
         [Message {
-            instance: "quadrotor".into(),
+            instance: "instance".into(),
             status: ERROR,
             category: "logStatusError".into(),
             text: "fmi2DoStep: must not be called in the state \"instantiated\"".into(),
@@ -75,9 +71,16 @@ fn messages_carry_instance_status_and_function() {
 
 /// In messages of FMUs "#r1#" means a variable, so the sign itself is doubled; a percent sign must not be
 /// taken for a format.
-#[test]
-fn special_characters_arrive() {
-    let instance = Instance::new(library());
+fn special_characters_arrive(subject: &'static Subject) {
+    let instance = Instance::new(subject);
     assert_eq!(select(&instance, true, &[c"100 %s #1#"]), ERROR);
     assert!(instance.log.last().text.contains("100 %s ##1##"));
+}
+
+for_each_model! {
+    categories_are_selected,
+    without_logging_only_errors_are_heard,
+    unknown_category_is_named_and_changes_nothing,
+    messages_carry_instance_status_and_function,
+    special_characters_arrive,
 }

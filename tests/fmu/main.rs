@@ -1,10 +1,31 @@
-//! The built FMU library, loaded and called through its C interface.
+//! The built FMI libraries, loaded and called through their C interface. What does not speak of quadrotors is checked
+//! with a second model, too.
 
 #[path = "../common/mod.rs"]
 mod common;
 
+/// Runs each check on each model.
+macro_rules! for_each_model {
+    ($($check:ident),* $(,)?) => {
+        mod closed_loop {
+            $(#[test]
+            fn $check() {
+                super::$check(crate::closed_loop());
+            })*
+        }
+
+        mod lag {
+            $(#[test]
+            fn $check() {
+                super::$check(crate::lag());
+            })*
+        }
+    };
+}
+
 mod description;
 mod flight;
+mod forged;
 mod input_derivatives;
 mod lifecycle;
 mod logging;
@@ -18,10 +39,16 @@ mod values;
 
 use std::sync::OnceLock;
 
-use common::library::Library;
+use common::subject::Subject;
 
-/// The library, loaded once for all tests of this executable.
-fn library() -> &'static Library {
-    static LIBRARY: OnceLock<Library> = OnceLock::new();
-    LIBRARY.get_or_init(Library::load)
+/// The quadrotor, loaded once for all tests of this executable.
+fn closed_loop() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(Subject::closed_loop)
+}
+
+/// The second model.
+fn lag() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(Subject::lag)
 }

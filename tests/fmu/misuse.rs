@@ -4,7 +4,7 @@ use std::ptr;
 
 use crate::common::instance::Instance;
 use crate::common::library::{Component, DISCARD, ERROR, Library, OK, State as Saved, Status};
-use crate::library;
+use crate::common::subject::Subject;
 
 /// A state of the table that can be reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +21,11 @@ const STATES: [State; 5] =
 
 impl State {
     /// An instance in this state.
-    fn reached(self) -> Instance<'static> {
-        let mut instance = Instance::new(library());
+    fn reached(self, subject: &'static Subject) -> Instance<'static> {
+        let mut instance = Instance::new(subject);
         assert_eq!(instance.setup(0.0, Some(10.0)), OK);
         if self == State::Error {
-            diverge(&mut instance);
+            diverge(subject, &mut instance);
         } else if self != State::Instantiated {
             assert_eq!(instance.enter_initialization_mode(), OK);
             if self != State::Initialization {
@@ -60,22 +60,13 @@ impl State {
     }
 }
 
-/// Flies into a state that is not finite: a torque that no body of this size survives.
-fn diverge(instance: &mut Instance) {
-    assert_eq!(
-        instance.set_real(&[
-            ("airframe.inertia.x", 1e-6),
-            ("airframe.inertia.y", 2e-6),
-            ("airframe.inertia.z", 5e-6),
-            ("disturbance.torque.x", 1e3),
-            ("disturbance.torque.y", 1e3),
-        ]),
-        OK
-    );
+/// Runs until the model breaks.
+fn diverge(subject: &Subject, instance: &mut Instance) {
+    assert_eq!(instance.set_real(subject.sample.breaking), OK);
     instance.initialize();
     assert_eq!(instance.do_step(0.0, 5.0), ERROR);
     let message = instance.log.last();
-    assert!(message.text.contains("the flight cannot go on"), "{}", message.text);
+    assert!(message.text.contains(&format!("the {} cannot go on", subject.sample.run)), "{}", message.text);
 }
 
 /// A function: its name, the states in which it is legal, what it then returns, and a harmless call.
@@ -150,11 +141,10 @@ const TABLE: [Row; 30] = [
     ("fmi2GetStringStatus", mark::STATUS, DISCARD, |l, c, _| unsafe { (l.get_string_status)(c, 1, &mut ptr::null()) }),
 ];
 
-#[test]
-fn every_function_in_every_state() {
+fn every_function_in_every_state(subject: &'static Subject) {
     for state in STATES {
         for (name, legal, answer, call) in TABLE {
-            let mut instance = state.reached();
+            let mut instance = state.reached(subject);
             let saved = instance.get_state();
             let status = call(instance.library, instance.component, saved);
             let log = instance.log.take();
@@ -174,18 +164,16 @@ fn every_function_in_every_state() {
     }
 }
 
-#[test]
-fn no_instance_is_an_error() {
+fn no_instance_is_an_error(subject: &'static Subject) {
     for (name, _, _, call) in TABLE {
         // The calls that need a saved state ask the instance for it, and get nothing.
-        assert_eq!(call(library(), ptr::null_mut(), ptr::null_mut()), ERROR, "{name}");
+        assert_eq!(call(&subject.library, ptr::null_mut(), ptr::null_mut()), ERROR, "{name}");
     }
 }
 
-#[test]
-fn null_pointers_are_refused() {
-    let mut instance = State::StepComplete.reached();
-    let (l, c) = (library(), instance.component);
+fn null_pointers_are_refused(subject: &'static Subject) {
+    let mut instance = State::StepComplete.reached(subject);
+    let (l, c) = (&subject.library, instance.component);
     let (n, nm) = (ptr::null(), ptr::null_mut());
     let saved = instance.get_state();
     // SAFETY: the instance is alive; NULL is what is tested.
@@ -239,31 +227,37 @@ fn null_pointers_are_refused() {
     State::StepComplete.is_kept_by(&mut instance);
 }
 
-#[test]
-fn impossible_lengths_are_refused() {
-    let mut instance = State::StepComplete.reached();
+fn impossible_lengths_are_refused(subject: &'static Subject) {
+    let mut instance = State::StepComplete.reached(subject);
     for count in [usize::MAX, usize::MAX / 8 + 1] {
         // SAFETY: the length is what is tested; it is refused before anything is read.
-        let status = unsafe { (library().get_real)(instance.component, &0, count, &mut 0.0) };
+        let status = unsafe { (subject.library.get_real)(instance.component, &0, count, &mut 0.0) };
         assert_eq!(status, ERROR);
     }
     State::StepComplete.is_kept_by(&mut instance);
 }
 
-#[test]
-fn after_a_failed_flight_only_reset_and_saved_states_help() {
-    let mut instance = Instance::new(library());
+fn after_a_failed_run_only_reset_and_saved_states_help(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     let saved = instance.get_state();
-    diverge(&mut instance);
+    diverge(subject, &mut instance);
     assert_eq!(instance.do_step(0.0, 0.1), ERROR);
     assert_eq!(instance.set_state(saved), OK);
     instance.initialize();
     instance.fly(0.0, 0.1, 2);
     instance.free_state(saved);
 
-    let mut instance = Instance::new(library());
-    diverge(&mut instance);
+    let mut instance = Instance::new(subject);
+    diverge(subject, &mut instance);
     assert_eq!(instance.reset(), OK);
     instance.initialize();
     instance.fly(0.0, 0.1, 2);
+}
+
+for_each_model! {
+    every_function_in_every_state,
+    no_instance_is_an_error,
+    null_pointers_are_refused,
+    impossible_lengths_are_refused,
+    after_a_failed_run_only_reset_and_saved_states_help,
 }

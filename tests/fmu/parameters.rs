@@ -1,9 +1,9 @@
 //! Parameters: checked against one another, tunable in flight, and what follows from them.
 
-use crate::common::description::description;
+use crate::closed_loop;
 use crate::common::instance::Instance;
 use crate::common::library::{ERROR, OK};
-use crate::library;
+use crate::common::subject::Subject;
 
 const RADII: [&str; 3] = [
     "controller.altitude.spectral_radius",
@@ -11,24 +11,24 @@ const RADII: [&str; 3] = [
     "controller.attitude.spectral_radius",
 ];
 
-#[test]
-fn contradictions_are_found_when_initialization_ends_and_can_be_mended() {
-    let mut instance = Instance::new(library());
-    assert_eq!(instance.set_real(&[("limits.acceleration.horizontal", 15.0)]), OK, "alone it is in range");
+fn contradictions_are_found_when_initialization_ends_and_can_be_mended(subject: &'static Subject) {
+    let (name, wrong, right) = subject.sample.contradiction;
+    let mut instance = Instance::new(subject);
+    assert_eq!(instance.set_real(&[(name, wrong)]), OK, "alone it is in range");
     assert_eq!(instance.enter_initialization_mode(), OK);
     assert_eq!(instance.exit_initialization_mode(), ERROR);
-    assert!(instance.log.last().text.contains("limits.acceleration.horizontal"));
-    assert_eq!(instance.try_reals(&[description().reference("thrust")]), Err(ERROR));
-    assert!(instance.log.last().text.contains("limits.acceleration.horizontal"));
-    assert_eq!(instance.real("limits.acceleration.horizontal"), 15.0, "what needs no flight can be read");
-    assert_eq!(instance.set_real(&[("limits.acceleration.horizontal", 2.0)]), OK);
+    assert!(instance.log.last().text.contains(name));
+    assert_eq!(instance.try_reals(&[subject.description.reference(subject.sample.output)]), Err(ERROR));
+    assert!(instance.log.last().text.contains(name));
+    assert_eq!(instance.real(name), wrong, "what needs no run can be read");
+    assert_eq!(instance.set_real(&[(name, right)]), OK);
     assert_eq!(instance.exit_initialization_mode(), OK);
     instance.fly(0.0, 0.1, 1);
 }
 
 #[test]
 fn calculated_parameters_follow_at_once() {
-    let mut instance = Instance::new(library());
+    let mut instance = Instance::new(closed_loop());
     assert_eq!(instance.enter_initialization_mode(), OK);
     let first = instance.reals(RADII);
     assert!(first.iter().all(|radius| (0.5..1.0).contains(radius)), "{first:?}");
@@ -47,7 +47,7 @@ fn calculated_parameters_follow_at_once() {
 #[test]
 fn designs_are_those_of_the_regulator() {
     const CONTROLLERS: [&str; 3] = ["altitude", "position", "attitude"];
-    let mut instance = Instance::new(library());
+    let mut instance = Instance::new(closed_loop());
     for controller in CONTROLLERS {
         let set = |name: &str| format!("controller.{controller}.{name}");
         assert_eq!(instance.set_real(&[(&set("alpha"), 1.2), (&set("scale"), 0.8187)]), OK);
@@ -65,7 +65,7 @@ fn designs_are_those_of_the_regulator() {
 /// A tunable limit takes effect in flight.
 #[test]
 fn limits_are_tunable() {
-    let mut instance = Instance::initialized(library(), &[("reference.position.x", 500.0)], &[]);
+    let mut instance = Instance::initialized(closed_loop(), &[("reference.position.x", 500.0)], &[]);
     instance.fly(0.0, 0.1, 100);
     let fast = instance.real("velocity.x");
     assert!(fast > 6.0, "{fast} m/s");
@@ -78,21 +78,19 @@ fn limits_are_tunable() {
 
 /// A change to a value that makes the whole impossible is refused, and the flight goes on as if nothing
 /// had been asked.
-#[test]
-fn refused_tuning_leaves_no_trace() {
-    let start = |name| description().variable(name).number("start").expect("a start value");
-    let starts = ["limits.acceleration.horizontal", "reference.position.x"].map(start);
+fn refused_tuning_leaves_no_trace(subject: &'static Subject) {
+    let (name, wrong, _) = subject.sample.contradiction;
+    let names = [name, subject.sample.input];
+    let start = |name| subject.description.variable(name).number("start").expect("a start value");
+    let starts = names.map(start);
     let flown = |disturb: bool| {
-        let mut instance = Instance::initialized(library(), &[], &[]);
+        let mut instance = Instance::initialized(subject, &[], &[]);
         for i in 0..40 {
             if disturb {
-                let values = [("limits.acceleration.horizontal", 12.0), ("reference.position.x", 77.0)];
+                let values = [(name, wrong), (subject.sample.input, 7.0)];
                 assert_eq!(instance.set_real(&values), ERROR);
-                assert!(instance.log.last().text.contains("limits.acceleration.horizontal"));
-                assert_eq!(
-                    instance.reals(["limits.acceleration.horizontal", "reference.position.x"]),
-                    starts
-                );
+                assert!(instance.log.last().text.contains(name));
+                assert_eq!(instance.reals(names), starts);
             }
             assert_eq!(instance.do_step(f64::from(i) * 0.1, 0.1), OK);
         }
@@ -102,18 +100,23 @@ fn refused_tuning_leaves_no_trace() {
 }
 
 /// Setting a parameter to the value that it has is no change: the flight is the same.
-#[test]
-fn tuning_to_the_same_value_is_no_change() {
+fn tuning_to_the_same_value_is_no_change(subject: &'static Subject) {
     let flown = |tune: bool| {
-        let mut instance = Instance::initialized(library(), &[], &[]);
+        let mut instance = Instance::initialized(subject, &[], &[]);
         for i in 0..20 {
             if tune {
-                let tilt = instance.real("limits.tilt");
-                assert_eq!(instance.set_real(&[("limits.tilt", tilt)]), OK);
+                let value = instance.real(subject.sample.tunable);
+                assert_eq!(instance.set_real(&[(subject.sample.tunable, value)]), OK);
             }
             assert_eq!(instance.do_step(f64::from(i) * 0.1, 0.1), OK);
         }
         instance.outputs()
     };
     assert_eq!(flown(true), flown(false));
+}
+
+for_each_model! {
+    contradictions_are_found_when_initialization_ends_and_can_be_mended,
+    refused_tuning_leaves_no_trace,
+    tuning_to_the_same_value_is_no_change,
 }

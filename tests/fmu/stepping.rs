@@ -2,13 +2,14 @@
 
 use proptest::prelude::*;
 
+use crate::closed_loop;
 use crate::common::instance::Instance;
 use crate::common::library::{ERROR, OK};
-use crate::library;
+use crate::common::subject::Subject;
 
 /// Outputs after 2 s in the given steps, each a whole number of microseconds.
-fn flown(start: f64, steps_us: &[u32]) -> Vec<u64> {
-    let mut instance = Instance::new(library());
+fn run(subject: &'static Subject, start: f64, steps_us: &[u32]) -> Vec<u64> {
+    let mut instance = Instance::new(subject);
     assert_eq!(instance.setup(start, None), OK);
     assert_eq!(instance.enter_initialization_mode(), OK);
     assert_eq!(instance.exit_initialization_mode(), OK);
@@ -22,40 +23,41 @@ fn flown(start: f64, steps_us: &[u32]) -> Vec<u64> {
     instance.outputs()
 }
 
-fn reference() -> Vec<u64> {
-    flown(0.0, &[2_000_000])
+fn reference(subject: &'static Subject) -> Vec<u64> {
+    run(subject, 0.0, &[2_000_000])
 }
 
-#[test]
-fn any_equal_steps_give_the_same_flight() {
+fn any_equal_steps_give_the_same_run(subject: &'static Subject) {
     for step_us in [100, 125, 1_000, 2_500, 8_000, 10_000, 16_000, 25_000, 50_000, 400_000] {
-        assert_eq!(flown(0.0, &vec![step_us; (2_000_000 / step_us) as usize]), reference(), "{step_us} µs");
+        assert_eq!(
+            run(subject, 0.0, &vec![step_us; (2_000_000 / step_us) as usize]),
+            reference(subject),
+            "{step_us} µs"
+        );
     }
 }
 
-#[test]
-fn any_start_time_gives_the_same_flight() {
+fn any_start_time_gives_the_same_run(subject: &'static Subject) {
     for start in [-1.0, -0.05, 0.3, 1e3, 1e6] {
-        assert_eq!(flown(start, &[50_000; 40]), reference(), "from {start} s");
+        assert_eq!(run(subject, start, &[50_000; 40]), reference(subject), "from {start} s");
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    #[test]
-    fn any_split_gives_the_same_flight(mut cuts in prop::collection::btree_set(1_u32..2_000_000, 0..40)) {
+fn any_split_gives_the_same_run(subject: &'static Subject) {
+    let cuts = prop::collection::btree_set(1_u32..2_000_000, 0..40);
+    proptest!(ProptestConfig::with_cases(64), |(mut cuts in cuts)| {
         cuts.insert(2_000_000);
         let mut last = 0;
         let steps: Vec<u32> = cuts.into_iter().map(|cut| cut - std::mem::replace(&mut last, cut)).collect();
-        prop_assert_eq!(flown(0.0, &steps), reference());
-    }
+        prop_assert_eq!(run(subject, 0.0, &steps), reference(subject));
+    });
 }
 
 /// The state at odd communication points lies on the same smooth motion: nothing is rounded to a sample.
 #[test]
 fn arrival_is_exact() {
-    let mut instance = Instance::initialized(library(), &[("initial.velocity.x", 3.0)], &[("armed", false)]);
+    let mut instance =
+        Instance::initialized(closed_loop(), &[("initial.velocity.x", 3.0)], &[("armed", false)]);
     let mut time = 0.0;
     for step in [0.000_7, 0.001_3, 0.033_333, 0.1, 0.000_001, 0.017] {
         assert_eq!(instance.do_step(time, step), OK);
@@ -70,7 +72,8 @@ fn arrival_is_exact() {
 
 #[test]
 fn steps_below_a_microsecond_are_no_error_and_add_up() {
-    let mut instance = Instance::initialized(library(), &[("initial.velocity.x", 3.0)], &[("armed", false)]);
+    let mut instance =
+        Instance::initialized(closed_loop(), &[("initial.velocity.x", 3.0)], &[("armed", false)]);
     instance.fly(0.0, 1e-7, 1000);
     let x = instance.real("position.x");
     assert!((x - 3.0 * 1e-4).abs() < 1e-12, "{x}");
@@ -79,23 +82,21 @@ fn steps_below_a_microsecond_are_no_error_and_add_up() {
     assert_eq!(instance.do_step(1e-4, 0.1), OK);
 }
 
-#[test]
-fn accumulated_time_is_accepted() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
+fn accumulated_time_is_accepted(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
     let mut time = 0.0;
     for _ in 0..5000 {
         assert_eq!(instance.do_step(time, 0.001), OK, "{:?}", instance.log.take());
         time += 0.001;
     }
     assert_ne!(time, 5.0, "this test needs rounding errors");
-    let mut exact = Instance::initialized(library(), &[], &[]);
+    let mut exact = Instance::initialized(subject, &[], &[]);
     exact.fly(0.0, 5.0, 1);
     assert_eq!(instance.outputs(), exact.outputs());
 }
 
-#[test]
-fn wrong_steps_are_refused_and_change_nothing() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
+fn wrong_steps_are_refused_and_change_nothing(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
     instance.fly(0.0, 0.1, 5);
     let outputs = instance.outputs();
     for (point, step) in [
@@ -120,10 +121,9 @@ fn wrong_steps_are_refused_and_change_nothing() {
     assert_eq!(instance.do_step(0.5, 0.1), OK);
 }
 
-#[test]
-fn stop_time_is_respected_within_the_tolerance() {
+fn stop_time_is_respected_within_the_tolerance(subject: &'static Subject) {
     let ready = || {
-        let mut instance = Instance::new(library());
+        let mut instance = Instance::new(subject);
         assert_eq!(instance.setup(0.0, Some(0.3)), OK);
         assert_eq!(instance.enter_initialization_mode(), OK);
         assert_eq!(instance.exit_initialization_mode(), OK);
@@ -140,4 +140,31 @@ fn stop_time_is_respected_within_the_tolerance() {
     assert!(instance.log.last().text.contains("stopTime"));
     assert_eq!(ready().do_step(0.0, 0.300_1), ERROR);
     assert_eq!(ready().do_step(0.0, 0.3), OK);
+}
+
+/// FMI 2.0 says that an output in `ModelStructure` without dependencies does not change when an input is
+/// set at a communication point.
+fn outputs_do_not_depend_on_inputs_at_a_communication_point(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    instance.fly(0.0, 0.35, 1);
+    let before = instance.outputs();
+    let reals =
+        subject.description.variables.iter().filter(|v| v.causality == "input" && v.value_type == "Real");
+    for variable in reals {
+        assert_eq!(instance.set_real(&[(&variable.name, 3.0)]), OK);
+    }
+    assert_eq!(instance.set_boolean(&[(subject.sample.switch, false)]), OK);
+    assert_eq!(instance.outputs(), before);
+    instance.fly(0.35, 0.05, 1);
+    assert_ne!(instance.outputs(), before);
+}
+
+for_each_model! {
+    any_equal_steps_give_the_same_run,
+    any_start_time_gives_the_same_run,
+    any_split_gives_the_same_run,
+    accumulated_time_is_accepted,
+    wrong_steps_are_refused_and_change_nothing,
+    stop_time_is_respected_within_the_tolerance,
+    outputs_do_not_depend_on_inputs_at_a_communication_point,
 }

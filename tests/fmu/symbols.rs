@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::ffi::CStr;
 
+use object::{Object, ObjectSymbol};
+
 use crate::common::library::SYMBOLS;
-use crate::library;
+use crate::common::subject::Subject;
 
 #[test]
 fn there_are_34_functions() {
@@ -12,12 +14,12 @@ fn there_are_34_functions() {
 }
 
 /// Read from the file: the linker decides what is exported, and another one may decide otherwise.
-#[test]
-#[cfg(target_os = "linux")]
-fn exactly_the_functions_of_the_interface_are_exported() {
-    use object::{Object, ObjectSymbol};
-
-    let bytes = std::fs::read(crate::common::library::path()).expect("the library was built");
+fn exactly_the_functions_of_the_interface_are_exported(subject: &'static Subject) {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let bytes =
+        std::fs::read(crate::common::library::path(subject.sample.library)).expect("the library was built");
     let file = object::File::parse(&*bytes).expect("it is an ELF file");
     let exported: BTreeSet<&str> = file
         .dynamic_symbols()
@@ -27,11 +29,15 @@ fn exactly_the_functions_of_the_interface_are_exported() {
     assert_eq!(exported, SYMBOLS.iter().copied().collect());
 }
 
-#[test]
-fn version_and_platform() {
+fn version_and_platform(subject: &'static Subject) {
     // SAFETY: both functions take nothing and return static strings.
     unsafe {
-        assert_eq!(CStr::from_ptr((library().get_version)()), c"2.0");
-        assert_eq!(CStr::from_ptr((library().get_types_platform)()), c"default");
+        assert_eq!(CStr::from_ptr((subject.library.get_version)()), c"2.0");
+        assert_eq!(CStr::from_ptr((subject.library.get_types_platform)()), c"default");
     }
+}
+
+for_each_model! {
+    exactly_the_functions_of_the_interface_are_exported,
+    version_and_platform,
 }

@@ -1,17 +1,17 @@
 //! Getting and setting values: what is refused, and that nothing changes then.
 
-use crate::common::description::{Variable, description};
+use crate::common::description::Variable;
 use crate::common::instance::Instance;
 use crate::common::library::{ERROR, OK, Reference};
-use crate::library;
+use crate::common::subject::{Sample, Subject};
 
-fn settable() -> impl Iterator<Item = &'static Variable> {
-    description().variables.iter().filter(|v| v.causality == "input" || v.causality == "parameter")
+fn settable(subject: &'static Subject) -> impl Iterator<Item = &'static Variable> {
+    subject.description.variables.iter().filter(|v| v.causality == "input" || v.causality == "parameter")
 }
 
 /// All values that can be set, as bits.
-fn settings(instance: &mut Instance) -> Vec<u64> {
-    settable()
+fn settings(subject: &'static Subject, instance: &mut Instance) -> Vec<u64> {
+    settable(subject)
         .map(|variable| match variable.value_type.as_str() {
             "Real" => instance.real(&variable.name).to_bits(),
             "Integer" | "Enumeration" => instance.integer(&variable.name) as u64,
@@ -20,10 +20,9 @@ fn settings(instance: &mut Instance) -> Vec<u64> {
         .collect()
 }
 
-#[test]
-fn what_is_set_is_read_back() {
-    let mut instance = Instance::new(library());
-    for variable in settable() {
+fn what_is_set_is_read_back(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
+    for variable in settable(subject) {
         let name = variable.name.as_str();
         match variable.value_type.as_str() {
             "Real" => {
@@ -38,7 +37,7 @@ fn what_is_set_is_read_back() {
         }
     }
     assert_eq!(instance.enter_initialization_mode(), OK);
-    for variable in settable() {
+    for variable in settable(subject) {
         let name = variable.name.as_str();
         match variable.value_type.as_str() {
             "Real" => {
@@ -55,10 +54,11 @@ fn what_is_set_is_read_back() {
 }
 
 /// In each state in which values can be set, for each number there is.
-#[test]
-fn values_out_of_range_are_refused_by_name() {
+fn values_out_of_range_are_refused_by_name(subject: &'static Subject) {
     let check = |instance: &mut Instance, before: &[u64], all: bool| {
-        for variable in settable().filter(|v| all || v.causality == "input" || v.variability == "tunable") {
+        for variable in
+            settable(subject).filter(|v| all || v.causality == "input" || v.variability == "tunable")
+        {
             let name = variable.name.as_str();
             match variable.value_type.as_str() {
                 "Real" => {
@@ -95,13 +95,13 @@ fn values_out_of_range_are_refused_by_name() {
             }
         }
         if !before.is_empty() {
-            assert_eq!(settings(instance), before);
+            assert_eq!(settings(subject, instance), before);
         }
     };
-    let mut instance = Instance::new(library());
+    let mut instance = Instance::new(subject);
     check(&mut instance, &[], true);
     assert_eq!(instance.enter_initialization_mode(), OK);
-    let before = settings(&mut instance);
+    let before = settings(subject, &mut instance);
     check(&mut instance, &before, true);
     assert_eq!(instance.exit_initialization_mode(), OK);
     instance.fly(0.0, 0.1, 1);
@@ -112,54 +112,47 @@ fn values_out_of_range_are_refused_by_name() {
 }
 
 /// One bad value among five, at any place: none is set.
-#[test]
-fn one_call_is_one_transaction() {
-    let good = [
-        ("reference.position.x", 1.0),
-        ("limits.jerk.vertical", 5.0),
-        ("reference.position.y", 2.0),
-        ("limits.speed.up", 1.5),
-        ("disturbance.force.z", 0.5),
-    ];
-    let bad =
-        [("disturbance.torque.x", f64::NAN), ("limits.tilt", 9.0), ("airframe.mass", 0.8), ("thrust", 1.0)];
-    let mut instance = Instance::initialized(library(), &[], &[]);
-    let before = settings(&mut instance);
+fn one_call_is_one_transaction(subject: &'static Subject) {
+    let Sample { good, bad, .. } = subject.sample;
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    let before = settings(subject, &mut instance);
     for place in 0..=good.len() {
-        for wrong in bad {
+        for &wrong in bad {
             let mut values = good.to_vec();
             values.insert(place, wrong);
             assert_eq!(instance.set_real(&values), ERROR, "{wrong:?} at {place}");
             assert!(instance.log.last().text.contains(wrong.0));
-            assert_eq!(settings(&mut instance), before, "{wrong:?} at {place}");
+            assert_eq!(settings(subject, &mut instance), before, "{wrong:?} at {place}");
         }
     }
-    assert_eq!(instance.set_real(&good), OK);
-    assert_eq!(instance.reals(good.map(|(name, _)| name)), good.map(|(_, value)| value));
+    assert_eq!(instance.set_real(good), OK);
+    for (name, value) in good {
+        assert_eq!(instance.real(name), *value, "{name}");
+    }
 }
 
-#[test]
-fn of_two_values_for_one_variable_the_last_counts() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
-    assert_eq!(instance.set_real(&[("reference.yaw", 1.0), ("reference.yaw", 2.0)]), OK);
-    assert_eq!(instance.real("reference.yaw"), 2.0);
+fn of_two_values_for_one_variable_the_last_counts(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    assert_eq!(instance.set_real(&[(subject.sample.input, 1.0), (subject.sample.input, 2.0)]), OK);
+    assert_eq!(instance.real(subject.sample.input), 2.0);
 }
 
-#[test]
-fn unknown_references_and_wrong_types_are_refused() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
-    let before = settings(&mut instance);
-    let count = Reference::try_from(description().variables.len()).expect("a small number");
+fn unknown_references_and_wrong_types_are_refused(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    let before = settings(subject, &mut instance);
+    let count = Reference::try_from(subject.description.variables.len()).expect("a small number");
     for reference in [count, count + 1, Reference::MAX] {
-        let status =
-            instance.set_real_references(&[description().reference("reference.yaw"), reference], &[1.0; 2]);
+        let status = instance.set_real_references(
+            &[subject.description.reference(subject.sample.input), reference],
+            &[1.0; 2],
+        );
         assert_eq!(status, ERROR);
         assert!(instance.log.last().text.contains(&reference.to_string()));
         assert_eq!(instance.try_reals(&[0, reference]), Err(ERROR));
         assert!(instance.log.last().text.contains(&reference.to_string()));
     }
-    let (c, l) = (instance.component, library());
-    for variable in &description().variables {
+    let (c, l) = (instance.component, &subject.library);
+    for variable in &subject.description.variables {
         let reference = variable.reference;
         let real = variable.value_type == "Real";
         let text = |instance: &Instance| instance.log.last().text;
@@ -179,32 +172,31 @@ fn unknown_references_and_wrong_types_are_refused() {
             assert_eq!((l.set_string)(c, &reference, 1, &c"text".as_ptr()), ERROR);
         }
     }
-    assert_eq!(settings(&mut instance), before);
+    assert_eq!(settings(subject, &mut instance), before);
 }
 
 /// A refused read writes nothing, also not the values before the bad one.
-#[test]
-fn refused_reading_writes_nothing() {
-    let instance = Instance::initialized(library(), &[], &[]);
-    let references = [description().reference("thrust"), Reference::MAX];
+fn refused_reading_writes_nothing(subject: &'static Subject) {
+    let instance = Instance::initialized(subject, &[], &[]);
+    let references = [subject.description.reference(subject.sample.output), Reference::MAX];
     let mut values = [-7.0; 2];
     // SAFETY: the instance is alive; both arrays have two elements.
-    let status =
-        unsafe { (library().get_real)(instance.component, references.as_ptr(), 2, values.as_mut_ptr()) };
+    let status = unsafe {
+        (subject.library.get_real)(instance.component, references.as_ptr(), 2, values.as_mut_ptr())
+    };
     assert_eq!((status, values), (ERROR, [-7.0; 2]));
 }
 
-#[test]
-fn what_is_not_settable_stays() {
-    let mut instance = Instance::new(library());
+fn what_is_not_settable_stays(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
     for variable in
-        description().variables.iter().filter(|v| !["input", "parameter"].contains(&&*v.causality))
+        subject.description.variables.iter().filter(|v| !["input", "parameter"].contains(&&*v.causality))
     {
         assert_eq!(instance.set_real(&[(&variable.name, 0.5)]), ERROR, "{}", variable.name);
         assert!(instance.log.last().text.contains(&variable.name));
     }
     instance.initialize();
-    for variable in settable().filter(|v| v.variability == "fixed") {
+    for variable in settable(subject).filter(|v| v.variability == "fixed") {
         let name = variable.name.as_str();
         let status = match variable.value_type.as_str() {
             "Real" => instance.set_real(&[(name, variable.number("start").expect("a start value"))]),
@@ -218,15 +210,30 @@ fn what_is_not_settable_stays() {
 }
 
 /// C has no Booleans; anything but 0 is true.
-#[test]
-fn booleans_are_read_as_c_does() {
-    let mut instance = Instance::initialized(library(), &[], &[]);
+fn booleans_are_read_as_c_does(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
     for (value, expected) in [(0, false), (1, true), (0, false), (-1, true), (i32::MIN, true)] {
         // SAFETY: the instance is alive and the pointers are valid.
         let status = unsafe {
-            (library().set_boolean)(instance.component, &description().reference("armed"), 1, &value)
+            (subject.library.set_boolean)(
+                instance.component,
+                &subject.description.reference(subject.sample.switch),
+                1,
+                &value,
+            )
         };
         assert_eq!(status, OK);
-        assert_eq!(instance.boolean("armed"), expected);
+        assert_eq!(instance.boolean(subject.sample.switch), expected);
     }
+}
+
+for_each_model! {
+    what_is_set_is_read_back,
+    values_out_of_range_are_refused_by_name,
+    one_call_is_one_transaction,
+    of_two_values_for_one_variable_the_last_counts,
+    unknown_references_and_wrong_types_are_refused,
+    refused_reading_writes_nothing,
+    what_is_not_settable_stays,
+    booleans_are_read_as_c_does,
 }

@@ -7,7 +7,7 @@ use crate::workspace::Workspace;
 /// Rewrites modelDescription.xml at the root of the repository.
 pub fn write(workspace: &Workspace) -> Result<(), Failure> {
     let path = workspace.model_description();
-    files::write(&path, fmu::description::model_description().as_bytes())?;
+    files::write(&path, fmi::description::model_description::<fmu::ClosedLoop>().as_bytes())?;
     println!("{}", workspace.shown(&path));
     Ok(())
 }

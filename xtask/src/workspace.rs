@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use fmi::Model;
+use fmu::ClosedLoop;
+
 use crate::cargo;
 use crate::failure::Failure;
 
@@ -45,7 +48,7 @@ impl Workspace {
 
     /// The FMU that is built.
     pub fn fmu(&self) -> PathBuf {
-        self.target.join("fmu").join(format!("{}.fmu", fmu::MODEL_IDENTIFIER))
+        self.target.join("fmu").join(format!("{}.fmu", ClosedLoop::IDENTITY.model_identifier))
     }
 
     /// What the demo writes.

@@ -22,7 +22,8 @@ mod tests {
     #[test]
     fn every_place_holder_is_filled() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
-        let page = page(&workspace, &fmu::description::model_description()).expect("the page is made");
+        let page = page(&workspace, &fmi::description::model_description::<fmu::ClosedLoop>())
+            .expect("the page is made");
         assert!(!page.contains("{{") && !page.contains("}}"));
         // Well-formed, so that every browser shows the equations.
         let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");

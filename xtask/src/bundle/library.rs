@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use fmi::Model;
+use fmu::ClosedLoop;
 use serde::Deserialize;
 
 use crate::cargo::{cargo, metadata_with_dependencies};
@@ -46,7 +48,7 @@ pub fn build(workspace: &Workspace) -> Result<Library, Failure> {
     let path = built(&messages)?;
     let (platform, extension) = platform()?;
     Ok(Library {
-        entry: format!("binaries/{platform}/{}.{extension}", fmu::MODEL_IDENTIFIER),
+        entry: format!("binaries/{platform}/{}.{extension}", ClosedLoop::IDENTITY.model_identifier),
         bytes: files::read(&path)?,
     })
 }

@@ -1,7 +1,7 @@
 //! The FMU: an archive of the library, its description, documentation, icon and licences.
 //!
 //! ```text
-//! modelDescription.xml        fmu::description
+//! modelDescription.xml        fmi::description of fmu::ClosedLoop
 //! model.png                   fmu/assets
 //! binaries/linux64/….so       library, merge
 //! documentation/index.html    documentation ◄─ variables, picture
@@ -28,7 +28,7 @@ use archive::Archive;
 /// Builds the FMU, prints its path and size, and returns its path.
 pub fn make(workspace: &Workspace, progress: &Progress, others: &[PathBuf]) -> Result<PathBuf, Failure> {
     progress.step("Building the FMU");
-    let description = fmu::description::model_description();
+    let description = fmi::description::model_description::<fmu::ClosedLoop>();
     let library = library::build(workspace)?;
 
     let mut archive = Archive::default();

@@ -93,9 +93,11 @@ mod tests {
 
     #[test]
     fn lists_every_variable_with_unit_start_and_range() {
-        let html = tables(&fmu::description::model_description()).expect("the description is XML");
+        let html = tables(&fmi::description::model_description::<fmu::ClosedLoop>())
+            .expect("the description is XML");
         let rows = html.matches("<tr><td>").count();
-        let variables = fmu::description::model_description().matches("<ScalarVariable ").count();
+        let variables =
+            fmi::description::model_description::<fmu::ClosedLoop>().matches("<ScalarVariable ").count();
         assert_eq!(rows, variables, "variables of a causality that the documentation leaves out");
         assert!(html.contains("<td><code>airframe.mass</code></td><td>kg</td><td>0.7</td>"), "{html}");
     }

@@ -1,0 +1,172 @@
+//! The importer's time and the model's.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::CallError;
+
+/// Relative tolerance for comparing times: importers accumulate t += h, or multiply i·h.
+const TOLERANCE: f64 = 1e-9;
+/// Longest run, µs: up to here each microsecond is a floating-point number (285 years).
+const LONGEST_US: f64 = 9_007_199_254_740_992.0;
+
+/// Time base of an experiment: importer's seconds as floats, microseconds of the run as integers.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Clock {
+    start_s: f64,
+    stop_s: Option<f64>,
+    communication_point_s: f64,
+}
+
+/// Where a step ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StepEnd {
+    clock: Clock,
+    /// Time since the start, µs.
+    pub time_us: u64,
+}
+
+impl Clock {
+    /// A clock that stands at the start.
+    pub fn new(start_s: f64, stop_s: Option<f64>) -> Result<Self, CallError> {
+        if !start_s.is_finite() {
+            return Err(CallError::Time { name: "startTime", value: start_s });
+        }
+        if let Some(stop_s) = stop_s {
+            // An infinite stop time is as good as none.
+            if stop_s.is_nan() {
+                return Err(CallError::Time { name: "stopTime", value: stop_s });
+            }
+            if stop_s < start_s {
+                return Err(CallError::StopBeforeStart { start_s, stop_s });
+            }
+        }
+        Ok(Self { start_s, stop_s: stop_s.filter(|stop| stop.is_finite()), communication_point_s: start_s })
+    }
+
+    /// The present, s.
+    pub fn communication_point_s(&self) -> f64 {
+        self.communication_point_s
+    }
+
+    /// The present, µs since the start.
+    pub fn time_us(&self) -> u64 {
+        self.microseconds(self.communication_point_s) as u64
+    }
+
+    /// Whether these are times that a clock can have.
+    pub fn is_valid(&self) -> bool {
+        Self::new(self.start_s, self.stop_s).is_ok()
+            && (0.0..=LONGEST_US).contains(&self.microseconds(self.communication_point_s))
+    }
+
+    /// Where a step from `point_s` over `step_s` ends.
+    pub fn step(&self, point_s: f64, step_s: f64) -> Result<StepEnd, CallError> {
+        if !(step_s.is_finite() && step_s > 0.0) {
+            return Err(CallError::StepSize { step_s });
+        }
+        let expected_s = self.communication_point_s;
+        let end_s = point_s + step_s;
+        let scale_s =
+            [self.start_s, expected_s, point_s].into_iter().fold(step_s, |most, t| most.max(t.abs()));
+        let tolerance_s = TOLERANCE * scale_s;
+        if !(point_s.is_finite() && (point_s - expected_s).abs() <= tolerance_s) {
+            return Err(CallError::CommunicationPoint { given_s: point_s, expected_s });
+        }
+        if let Some(stop_s) = self.stop_s
+            && end_s > stop_s + tolerance_s
+        {
+            return Err(CallError::PastStop { end_s, stop_s });
+        }
+        let time_us = self.microseconds(end_s);
+        if time_us > LONGEST_US {
+            return Err(CallError::Time { name: "the end of the step", value: end_s });
+        }
+        // A communication point may lie a rounding error before the last one; the run never goes back.
+        let time_us = (time_us as u64).max(self.time_us());
+        Ok(StepEnd { clock: Self { communication_point_s: end_s, ..*self }, time_us })
+    }
+
+    /// Goes on to the end of a step.
+    pub fn advance_to(&mut self, end: &StepEnd) {
+        *self = end.clock;
+    }
+
+    fn microseconds(&self, time_s: f64) -> f64 {
+        ((time_s - self.start_s) * 1e6).round()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Clock;
+    use crate::error::CallError;
+
+    fn clock(start_s: f64, stop_s: Option<f64>) -> Clock {
+        Clock::new(start_s, stop_s).expect("usable times")
+    }
+
+    fn stepped(clock: &mut Clock, point_s: f64, step_s: f64) -> u64 {
+        let end = clock.step(point_s, step_s).expect("a legal step");
+        clock.advance_to(&end);
+        end.time_us
+    }
+
+    #[test]
+    fn accumulated_time_is_followed() {
+        for (start_s, step_s) in [(0.0, 0.1), (-10.0, 0.1), (1e6, 0.01), (0.0, 1.0 / 3.0)] {
+            let mut clock = clock(start_s, None);
+            let mut time_s = start_s;
+            let mut time_us = 0;
+            for _ in 0..1000 {
+                time_us = stepped(&mut clock, time_s, step_s);
+                time_s += step_s;
+            }
+            assert_eq!(time_us, (step_s * 1e9).round() as u64, "from {start_s} by {step_s}");
+        }
+    }
+
+    #[test]
+    fn multiplied_time_is_followed() {
+        let mut clock = clock(0.0, None);
+        for i in 0..100_000_u32 {
+            stepped(&mut clock, f64::from(i) * 0.1, 0.1);
+        }
+        assert_eq!(clock.time_us(), 10_000_000_000);
+    }
+
+    #[test]
+    fn steps_below_a_microsecond_add_up() {
+        let mut clock = clock(0.0, None);
+        for i in 0..1000_u32 {
+            stepped(&mut clock, f64::from(i) * 1e-7, 1e-7);
+        }
+        assert_eq!(clock.time_us(), 100);
+    }
+
+    #[test]
+    fn stop_time_has_the_same_tolerance() {
+        let clock = clock(0.0, Some(1.0));
+        assert!(clock.step(0.0, 1.0 + 1e-12).is_ok());
+        assert!(matches!(clock.step(0.0, 1.001), Err(CallError::PastStop { .. })));
+        assert!(Clock::new(0.0, Some(f64::INFINITY)).expect("no stop").step(0.0, 1e6).is_ok());
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let clock = clock(0.0, None);
+        for step_s in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+            assert!(matches!(clock.step(0.0, step_s), Err(CallError::StepSize { .. })), "{step_s}");
+        }
+        for point_s in [0.1, -0.1, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(
+                matches!(clock.step(point_s, 0.1), Err(CallError::CommunicationPoint { .. })),
+                "{point_s}"
+            );
+        }
+        assert!(matches!(clock.step(0.0, 1e300), Err(CallError::Time { .. })));
+        assert!(Clock::new(f64::NAN, None).is_err());
+        assert!(Clock::new(f64::INFINITY, None).is_err());
+        assert!(Clock::new(1.0, Some(0.5)).is_err());
+        assert!(Clock::new(1.0, Some(f64::NAN)).is_err());
+    }
+}

@@ -1,0 +1,274 @@
+//! What the 34 functions of an FMI 2.0 co-simulation library do, for any model.
+//!
+//! [`export_fmi2`](crate::export_fmi2) gives them their C names in the library of one model.
+
+use std::ffi::{CStr, c_char, c_int};
+
+use super::guard::call;
+use super::instantiate::{Request, free, instantiate as make};
+use super::lifecycle::Function;
+use super::status::{no_status, step_status};
+use super::types::{
+    Boolean, Byte, CallbackFunctions, Component, FALSE, FmuState, Integer, LAST_SUCCESSFUL_TIME, Real,
+    Status, StatusKind, String, TERMINATED, TRUE, ValueReference,
+};
+use crate::error::{CallError, SavedStateError};
+use crate::instance::Instance;
+use crate::model::Model;
+use crate::pointer::{array, array_mut, keep, reference, reference_mut, release, string};
+use crate::serialized::{deserialize, serialize};
+use crate::snapshot::Snapshot;
+use crate::variables::{Type, Value};
+
+/// Functions of an instance: name and arguments, entry in the table of legal calls, what is done.
+macro_rules! functions {
+    ($($(#[$documentation:meta])*
+    $name:ident($($argument:ident: $type:ty),* $(,)?), $function:ident => $body:expr;)*) => {$(
+        $(#[$documentation])*
+        ///
+        /// # Safety
+        /// As in the FMI 2.0 specification: `c` is an instance or NULL and is not in use by another call;
+        /// pointers are NULL or valid for as many elements as they are said to have.
+        pub unsafe fn $name<M: Model>(c: Component, $($argument: $type),*) -> Status {
+            // SAFETY: this function's contract is that of `call` and of the pointer conversions in `$body`.
+            #[allow(unused_unsafe)]
+            unsafe { call::<M>(c, &Function::$function, $body) }
+        }
+    )*};
+}
+
+/// Name of the set of C types.
+pub fn get_types_platform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// Version of the interface.
+pub fn get_version() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// Makes an instance; NULL if it cannot.
+///
+/// # Safety
+/// As in the FMI 2.0 specification: strings are NULL or end with NUL, `functions` is NULL or valid, its
+/// logger stays valid as long as the instance.
+pub unsafe fn instantiate<M: Model>(
+    instance_name: String,
+    fmu_type: c_int,
+    guid: String,
+    _resource_location: String,
+    functions: *const CallbackFunctions,
+    _visible: Boolean,
+    logging_on: Boolean,
+) -> Component {
+    // SAFETY: this function's contract.
+    let text = |text: String| (!text.is_null()).then(|| unsafe { CStr::from_ptr(text) });
+    // SAFETY: this function's contract.
+    let Some(functions) = (unsafe { functions.as_ref() }) else { return std::ptr::null_mut() };
+    // Without a logger there is nobody to tell what is wrong.
+    let Some(callback) = functions.logger else { return std::ptr::null_mut() };
+    let (name, guid, logging_on) = (text(instance_name), text(guid), logging_on != FALSE);
+    // SAFETY: this function's contract.
+    unsafe { make::<M>(&Request { name, fmu_type, guid, functions, callback, logging_on }) }
+}
+
+/// Frees an instance.
+///
+/// # Safety
+/// `c` is an instance or NULL, and is not used again.
+pub unsafe fn free_instance<M: Model>(c: Component) {
+    // SAFETY: this function's contract.
+    unsafe { free::<M>(c) }
+}
+
+functions! {
+    /// Selects what is logged.
+    set_debug_logging(logging_on: Boolean, count: usize, categories: *const String), SET_DEBUG_LOGGING =>
+        |instance| {
+            let names = array("categories", categories, count)?;
+            let names: Result<Vec<&CStr>, CallError> =
+                names.iter().map(|name| string("categories", *name)).collect();
+            instance.logger.select(logging_on != FALSE, &names?)
+        };
+
+    /// Sets the time base.
+    setup_experiment(
+        tolerance_defined: Boolean, tolerance: Real, start_time: Real, stop_time_defined: Boolean, stop_time: Real,
+    ), SETUP_EXPERIMENT => |instance| {
+        let tolerance = (tolerance_defined != FALSE).then_some(tolerance);
+        instance.setup_experiment(tolerance, start_time, (stop_time_defined != FALSE).then_some(stop_time))
+    };
+
+    /// Begins initialization.
+    enter_initialization_mode(), ENTER_INITIALIZATION_MODE => Instance::enter_initialization_mode;
+
+    /// Ends initialization: builds the run, which checks the values against one another.
+    exit_initialization_mode(), EXIT_INITIALIZATION_MODE => Instance::exit_initialization_mode;
+
+    /// Ends the run.
+    terminate(), TERMINATE => Instance::terminate;
+
+    /// Goes back to the state after instantiation.
+    reset(), RESET => Instance::reset;
+
+    /// Reads Real variables.
+    get_real(vr: *const ValueReference, count: usize, value: *mut Real), GET_REAL => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
+        instance.get(Type::Real, vr, |place, got| if let Value::Real(got) = got { value[place] = got })
+    };
+
+    /// Reads Integer variables.
+    get_integer(vr: *const ValueReference, count: usize, value: *mut Integer), GET_INTEGER => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
+        instance.get(Type::Integer, vr, |place, got| if let Value::Integer(got) = got { value[place] = got })
+    };
+
+    /// Reads Boolean variables.
+    get_boolean(vr: *const ValueReference, count: usize, value: *mut Boolean), GET_BOOLEAN => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
+        instance.get(Type::Boolean, vr, |place, got| {
+            if let Value::Boolean(got) = got { value[place] = boolean(got) }
+        })
+    };
+
+    /// Reads String variables, of which there are none.
+    get_string(vr: *const ValueReference, count: usize, value: *mut String), GET_STRING => |instance| {
+        let (vr, _) = (array("vr", vr, count)?, array_mut("value", value, count)?);
+        instance.no_strings(vr)
+    };
+
+    /// Sets Real variables.
+    set_real(vr: *const ValueReference, count: usize, value: *const Real), SET_REAL => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
+        instance.set(Type::Real, vr, |place| Value::Real(value[place]))
+    };
+
+    /// Sets Integer variables.
+    set_integer(vr: *const ValueReference, count: usize, value: *const Integer), SET_INTEGER => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
+        instance.set(Type::Integer, vr, |place| Value::Integer(value[place]))
+    };
+
+    /// Sets Boolean variables.
+    set_boolean(vr: *const ValueReference, count: usize, value: *const Boolean), SET_BOOLEAN => |instance| {
+        let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
+        instance.set(Type::Boolean, vr, |place| Value::Boolean(value[place] != FALSE))
+    };
+
+    /// Sets String variables, of which there are none.
+    set_string(vr: *const ValueReference, count: usize, value: *const String), SET_STRING => |instance| {
+        let (vr, _) = (array("vr", vr, count)?, array("value", value, count)?);
+        instance.no_strings(vr)
+    };
+
+    /// Saves the state. A state that `state` holds already is overwritten.
+    get_state(state: *mut FmuState), GET_STATE => |instance| {
+        keep(reference_mut("FMUstate", state)?, instance.snapshot());
+        Ok(())
+    };
+
+    /// Goes to a saved state, of this instance or another.
+    set_state(state: FmuState), SET_STATE =>
+        |instance| instance.restore(reference("FMUstate", state.cast::<Snapshot<M>>())?);
+
+    /// Frees a saved state and leaves NULL in its place.
+    free_state(state: *mut FmuState), FREE_STATE => |_| {
+        release::<Snapshot<M>>(state);
+        Ok(())
+    };
+
+    /// Number of bytes of a saved state.
+    serialized_state_size(state: FmuState, size: *mut usize), SERIALIZED_STATE_SIZE => |_| {
+        let (state, size) = (reference("FMUstate", state.cast::<Snapshot<M>>())?, reference_mut("size", size)?);
+        *size = serialize(state)?.len();
+        Ok(())
+    };
+
+    /// Writes a saved state into exactly as many bytes as it has.
+    serialize_state(state: FmuState, bytes: *mut Byte, size: usize), SERIALIZE_STATE => |_| {
+        let state = reference("FMUstate", state.cast::<Snapshot<M>>())?;
+        let bytes = array_mut("serializedState", bytes, size)?;
+        copy(&serialize(state)?, bytes)
+    };
+
+    /// Reads a saved state from bytes, and checks it.
+    deserialize_state(bytes: *const Byte, size: usize, state: *mut FmuState), DESERIALIZE_STATE => |_| {
+        let (bytes, state) = (array("serializedState", bytes, size)?, reference_mut("FMUstate", state)?);
+        keep(state, deserialize::<M>(bytes)?);
+        Ok(())
+    };
+
+    /// Not available: `providesDirectionalDerivative` is false.
+    get_directional_derivative(
+        _unknown: *const ValueReference, _unknowns: usize, _known: *const ValueReference, _knowns: usize,
+        _known_change: *const Real, _unknown_change: *mut Real,
+    ), GET_DIRECTIONAL_DERIVATIVE => |_| Err(CallError::NotOffered(
+        "directional derivatives are not available (providesDirectionalDerivative = false)",
+    ));
+
+    /// Sets derivatives of inputs for the next step.
+    set_real_input_derivatives(
+        vr: *const ValueReference, count: usize, order: *const Integer, value: *const Real,
+    ), SET_INPUT_DERIVATIVES => |instance| {
+        let (vr, order) = (array("vr", vr, count)?, array("order", order, count)?);
+        instance.set_input_derivatives(vr, order, array("value", value, count)?)
+    };
+
+    /// Not available: `maxOutputDerivativeOrder` is 0.
+    get_real_output_derivatives(
+        _vr: *const ValueReference, count: usize, _order: *const Integer, _value: *mut Real,
+    ), GET_OUTPUT_DERIVATIVES =>
+        |_| if count == 0 { Ok(()) } else { Err(CallError::NotOffered(
+            "output derivatives are not available (maxOutputDerivativeOrder = 0)",
+        )) };
+
+    /// Goes from a communication point to the next.
+    do_step(point: Real, step: Real, _no_set_state_prior_to_point: Boolean), DO_STEP =>
+        |instance| instance.do_step(point, step);
+
+    /// Never legal: no step is ever pending.
+    cancel_step(), CANCEL_STEP => |_| Ok(());
+
+    /// Status of the last step.
+    get_status(kind: StatusKind, value: *mut c_int), GET_STATUS => |instance| {
+        *reference_mut("value", value)? = step_status(instance, kind)? as c_int;
+        Ok(())
+    };
+
+    /// Time that the last successful step reached.
+    get_real_status(kind: StatusKind, value: *mut Real), GET_REAL_STATUS => |instance| {
+        *reference_mut("value", value)? = match kind {
+            LAST_SUCCESSFUL_TIME => instance.time_s(),
+            _ => return Err(no_status(kind)),
+        };
+        Ok(())
+    };
+
+    /// No status is an Integer.
+    get_integer_status(kind: StatusKind, _value: *mut Integer), GET_INTEGER_STATUS =>
+        |_| Err(no_status(kind));
+
+    /// Whether the model wants to end the simulation.
+    get_boolean_status(kind: StatusKind, value: *mut Boolean), GET_BOOLEAN_STATUS => |_| {
+        // No model wants to end the simulation.
+        *reference_mut("value", value)? = if kind == TERMINATED { FALSE } else { return Err(no_status(kind)) };
+        Ok(())
+    };
+
+    /// No status is a String: no step is ever pending.
+    get_string_status(kind: StatusKind, _value: *mut String), GET_STRING_STATUS =>
+        |_| Err(no_status(kind));
+}
+
+fn boolean(value: bool) -> Boolean {
+    if value { TRUE } else { FALSE }
+}
+
+fn copy(from: &[u8], to: &mut [u8]) -> Result<(), CallError> {
+    if from.len() != to.len() {
+        let (actual, expected) = (to.len(), from.len());
+        return Err(SavedStateError::Length { actual, expected }.into());
+    }
+    to.copy_from_slice(from);
+    Ok(())
+}

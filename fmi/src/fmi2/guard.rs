@@ -1,0 +1,96 @@
+//! The guard of the FMI 2.0 functions: from a component to an instance, and from an outcome to a status.
+
+use super::lifecycle::Function;
+use super::types::{Component, Status};
+use crate::error::{CallError, Severity};
+use crate::guard::guarded;
+use crate::instance::Instance;
+use crate::model::Model;
+
+/// Calls `body` with the instance.
+///
+/// # Safety
+/// `component` must be NULL or come from [`instantiate`](super::instantiate::instantiate) for the same `M`, not be
+/// freed, and not be in use by another call.
+pub(super) unsafe fn call<M: Model>(
+    component: Component,
+    function: &Function,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+) -> Status {
+    // SAFETY: the caller's promise.
+    match unsafe { component.cast::<Instance<M>>().as_mut() } {
+        Some(instance) => checked(instance, function, body),
+        None => Status::Error,
+    }
+}
+
+/// Calls `body` if the table of legal calls allows it.
+fn checked<M: Model>(
+    instance: &mut Instance<M>,
+    function: &Function,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+) -> Status {
+    let is_allowed = function.is_allowed_in(instance.phase());
+    match guarded(instance, function.name, is_allowed, body) {
+        Ok(()) => Status::Ok,
+        Err(Severity::Discard) => Status::Discard,
+        Err(Severity::Error) => Status::Error,
+        Err(Severity::Fatal) => Status::Fatal,
+    }
+}
+
+// The logger below cannot stand in for a variadic one on Apple's ARM.
+#[cfg(all(test, not(all(target_vendor = "apple", target_arch = "aarch64"))))]
+mod tests {
+    use std::ffi::{CStr, c_void};
+
+    use super::checked;
+    use crate::fmi2::lifecycle::Function;
+    use crate::fmi2::logger::sink;
+    use crate::fmi2::types::{CallbackLogger, ComponentEnvironment, Status, String as FmiString};
+    use crate::instance::Instance;
+    use crate::lag::Lag;
+    use crate::logger::Logger;
+
+    type Log = Vec<(Status, String, String)>;
+
+    /// Rust can call variadic functions but not define them; the arguments lie where a function with six
+    /// parameters finds them.
+    unsafe extern "C" fn record(
+        environment: ComponentEnvironment,
+        _instance: FmiString,
+        status: Status,
+        category: FmiString,
+        format: FmiString,
+        message: FmiString,
+    ) {
+        // SAFETY: the logger passes the environment it was given, and NUL-terminated strings.
+        unsafe {
+            assert_eq!(CStr::from_ptr(format), c"%s");
+            let text = |text| CStr::from_ptr(text).to_string_lossy().into_owned();
+            (*environment.cast::<Log>()).push((status, text(category), text(message)));
+        }
+    }
+
+    fn instance(log: &mut Log) -> Instance<Lag> {
+        // SAFETY: see `record`.
+        let callback =
+            unsafe { std::mem::transmute::<*const c_void, CallbackLogger>(record as *const c_void) };
+        // SAFETY: the log outlives the instance.
+        let sink = unsafe { sink(callback, std::ptr::from_mut(log).cast(), c"test".into()) };
+        Instance::new(Logger::new(sink, false))
+    }
+
+    #[test]
+    fn panic_becomes_fatal() {
+        let mut log = Log::new();
+        let mut instance = instance(&mut log);
+        let status = checked(&mut instance, &Function::RESET, |_| panic!("a defect #{}", 1));
+        assert_eq!(status, Status::Fatal);
+        assert_eq!(checked(&mut instance, &Function::RESET, Instance::reset), Status::Fatal);
+        assert_eq!(log.len(), 2);
+        assert_eq!((log[0].0, log[0].1.as_str()), (Status::Fatal, "logStatusFatal"));
+        assert_eq!(log[0].2, "fmi2Reset: internal fault, the instance is lost: a defect ##1");
+        assert_eq!(log[1].2, "fmi2Reset: must not be called in the state \"fatal\"");
+    }
+}

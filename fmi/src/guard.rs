@@ -1,0 +1,39 @@
+//! What stands between an importer and an instance, for every function: the call is legal now, no panic gets out,
+//! and what goes wrong is logged.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::error::{CallError, Severity};
+use crate::instance::Instance;
+use crate::model::Model;
+
+/// Calls `body` with the instance if `function` is allowed in its phase.
+pub(crate) fn guarded<M: Model>(
+    instance: &mut Instance<M>,
+    function: &str,
+    is_allowed: bool,
+    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+) -> Result<(), Severity> {
+    let outcome = if is_allowed {
+        // Unwind safety: after a panic the instance is given up, nobody sees it half changed.
+        catch_unwind(AssertUnwindSafe(|| body(instance)))
+            .unwrap_or_else(|payload| Err(CallError::Panic { message: message_of(&*payload) }))
+    } else {
+        Err(CallError::IllegalPhase { phase: instance.phase() })
+    };
+    outcome.map_err(|error| {
+        let severity = error.severity();
+        if severity == Severity::Fatal {
+            instance.abandon();
+        }
+        instance.logger.error(function, &error);
+        severity
+    })
+}
+
+/// What `panic!` was given.
+pub(crate) fn message_of(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().copied();
+    text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message").to_owned()
+}

@@ -1,0 +1,207 @@
+//! One instance of the model: everything behind the interface, without a pointer.
+
+use crate::clock::Clock;
+use crate::error::CallError;
+use crate::input_derivative::{Extrapolated, InputDerivative};
+use crate::lifecycle::Phase;
+use crate::logger::Logger;
+use crate::model::Model;
+use crate::snapshot::{SettingsOf, Snapshot};
+
+/// One instance.
+///
+/// Until initialization mode is left, the run is built when something is asked that needs it, and dropped
+/// whenever a value is set. From then on it lives until the instance is reset.
+pub(crate) struct Instance<M: Model> {
+    pub logger: Logger,
+    phase: Phase,
+    clock: Clock,
+    pub(super) settings: SettingsOf<M>,
+    pub(super) derivatives: Vec<InputDerivative>,
+    /// The run; its parameters are those of `settings`.
+    model: Option<Box<M>>,
+    /// Of the run where it is, once they were asked for.
+    outputs: Option<M::Outputs>,
+    last_step_failed: bool,
+}
+
+impl<M: Model> Instance<M> {
+    /// An instance with all values at their start values.
+    pub fn new(logger: Logger) -> Self {
+        Self {
+            logger,
+            phase: Phase::Instantiated,
+            clock: Clock::default(),
+            settings: SettingsOf::<M>::default(),
+            derivatives: Vec::new(),
+            model: None,
+            outputs: None,
+            last_step_failed: false,
+        }
+    }
+
+    /// Where it is in its life.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Gives it up after a panic.
+    pub fn abandon(&mut self) {
+        self.phase = Phase::Fatal;
+    }
+
+    /// The present, s.
+    pub fn time_s(&self) -> f64 {
+        self.clock.communication_point_s()
+    }
+
+    pub fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start_s: f64,
+        stop_s: Option<f64>,
+    ) -> Result<(), CallError> {
+        self.clock = Clock::new(start_s, stop_s)?;
+        if tolerance.is_some() {
+            self.logger.warning("the tolerance is ignored: the integration step is fixed");
+        }
+        Ok(())
+    }
+
+    pub fn enter_initialization_mode(&mut self) -> Result<(), CallError> {
+        self.phase = Phase::Initialization;
+        Ok(())
+    }
+
+    /// Builds the run, which checks the values against one another. When that fails, initialization mode goes on and
+    /// other values can be set.
+    pub fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        let message = self.model()?.initialized();
+        self.phase = Phase::StepComplete;
+        self.logger.event(&message);
+        Ok(())
+    }
+
+    pub fn terminate(&mut self) -> Result<(), CallError> {
+        self.phase = Phase::Terminated;
+        Ok(())
+    }
+
+    /// Back to where it was after instantiation; only the logger keeps its setting.
+    pub fn reset(&mut self) -> Result<(), CallError> {
+        self.phase = Phase::Instantiated;
+        self.clock = Clock::default();
+        self.settings = SettingsOf::<M>::default();
+        self.derivatives.clear();
+        self.model = None;
+        self.outputs = None;
+        self.last_step_failed = false;
+        self.logger.event("reset");
+        Ok(())
+    }
+
+    /// Goes from one communication point to the next. The derivatives of inputs hold for this one step.
+    pub fn do_step(&mut self, point_s: f64, step_s: f64) -> Result<(), CallError> {
+        let end = self.clock.step(point_s, step_s).inspect_err(|_| self.last_step_failed = true)?;
+        self.outputs = None;
+        let derivatives = std::mem::take(&mut self.derivatives);
+        let model = built(&mut self.model, &self.settings)?;
+        let inputs = &self.settings.inputs;
+        let outcome = if derivatives.is_empty() {
+            model.advance_to(end.time_us, &|_| inputs.clone())
+        } else {
+            let signal = Extrapolated::<M> { inputs, derivatives: &derivatives, begin_us: model.time_us() };
+            model.advance_to(end.time_us, &|time_us| signal.at(time_us))
+        };
+        match outcome {
+            Ok(()) => {
+                self.clock.advance_to(&end);
+                self.last_step_failed = false;
+                Ok(())
+            }
+            Err(error) => {
+                self.phase = Phase::Error;
+                self.last_step_failed = true;
+                Err(CallError::of_step::<M>(error))
+            }
+        }
+    }
+
+    /// Whether the last step was refused or failed.
+    pub fn last_step_failed(&self) -> bool {
+        self.last_step_failed
+    }
+
+    /// A copy of everything that changes.
+    pub fn snapshot(&self) -> Snapshot<M> {
+        Snapshot {
+            phase: self.phase,
+            clock: self.clock,
+            settings: self.settings.clone(),
+            derivatives: self.derivatives.clone(),
+            run: self.model.as_ref().map(|model| model.state()),
+        }
+    }
+
+    /// Goes to where the snapshot was taken, in this instance or another.
+    pub fn restore(&mut self, snapshot: &Snapshot<M>) -> Result<(), CallError> {
+        let parameters = &snapshot.settings.parameters;
+        match (&snapshot.run, &mut self.model) {
+            (None, model) => *model = None,
+            // Nothing that follows from the parameters has to be built again.
+            (Some(state), Some(model)) if self.settings.parameters == *parameters => {
+                model.restore(parameters, state).map_err(CallError::of_model)?;
+            }
+            (Some(state), model) => {
+                let restored = M::from_state(parameters, state).map_err(CallError::of_model)?;
+                *model = Some(Box::new(restored));
+            }
+        }
+        self.phase = snapshot.phase;
+        self.clock = snapshot.clock;
+        self.settings.clone_from(&snapshot.settings);
+        self.derivatives.clone_from(&snapshot.derivatives);
+        self.outputs = None;
+        self.last_step_failed = false;
+        Ok(())
+    }
+
+    /// Makes new settings the present ones; all of them or, on an error, none.
+    pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
+        if self.phase == Phase::StepComplete {
+            if settings.parameters != self.settings.parameters {
+                self.model()?.retune(&settings.parameters).map_err(CallError::of_model)?;
+                self.outputs = None;
+                self.logger.event(M::IDENTITY.words.retuned);
+            }
+        } else {
+            self.model = None;
+            self.outputs = None;
+        }
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// The run with the present settings.
+    pub(super) fn model(&mut self) -> Result<&mut M, CallError> {
+        built(&mut self.model, &self.settings)
+    }
+
+    /// The outputs at the present.
+    pub(super) fn outputs(&mut self) -> Result<&M::Outputs, CallError> {
+        let model = built(&mut self.model, &self.settings)?;
+        Ok(self.outputs.get_or_insert_with(|| model.outputs()))
+    }
+}
+
+/// The run that is there, or a new one.
+fn built<'a, M: Model>(
+    model: &'a mut Option<Box<M>>,
+    settings: &SettingsOf<M>,
+) -> Result<&'a mut M, CallError> {
+    let there = match model.take() {
+        Some(there) => there,
+        None => Box::new(M::new(&settings.parameters, &settings.inputs).map_err(CallError::of_model)?),
+    };
+    Ok(model.insert(there))
+}

@@ -1,0 +1,38 @@
+//! Where an instance is in its life.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Phase of an instance's life; each version of the interface says in its own table what may be called in it.
+///
+/// Steps are synchronous and never discarded, so there is no step in progress, canceled or failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[repr(u8)]
+pub(crate) enum Phase {
+    /// Values are set.
+    Instantiated = 1,
+    /// Values are set and looked at together.
+    Initialization = 2,
+    /// At a communication point.
+    StepComplete = 4,
+    /// The importer has ended the run.
+    Terminated = 8,
+    /// The run could not go on.
+    Error = 16,
+    /// A panic was caught; the instance can only be freed.
+    Fatal = 32,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Instantiated => "instantiated",
+            Self::Initialization => "initialization mode",
+            Self::StepComplete => "step complete",
+            Self::Terminated => "terminated",
+            Self::Error => "error",
+            Self::Fatal => "fatal",
+        })
+    }
+}

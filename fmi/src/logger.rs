@@ -1,0 +1,131 @@
+//! Messages to the importer.
+
+use std::ffi::CStr;
+
+use crate::error::{CallError, Severity};
+#[cfg(feature = "description")]
+use crate::model::Words;
+
+/// A log category, as a bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Category {
+    /// What happens to the instance.
+    Events = 1,
+    /// Requests that are ignored.
+    Warning = 2,
+    /// Answers that are not available.
+    Discard = 4,
+    /// Refused calls and failed runs.
+    Error = 8,
+    /// Caught panics.
+    Fatal = 16,
+}
+
+/// Categories by their standard names.
+const CATEGORIES: [(Category, &CStr); 5] = [
+    (Category::Events, c"logEvents"),
+    (Category::Warning, c"logStatusWarning"),
+    (Category::Discard, c"logStatusDiscard"),
+    (Category::Error, c"logStatusError"),
+    (Category::Fatal, c"logStatusFatal"),
+];
+const ALL: &CStr = c"logAll";
+const EVERY: u8 = u8::MAX;
+
+impl Category {
+    /// Its standard name.
+    pub fn name(self) -> &'static CStr {
+        CATEGORIES.iter().find(|(known, _)| *known == self).map_or(ALL, |(_, name)| *name)
+    }
+
+    #[cfg(feature = "description")]
+    fn description(self, words: &Words) -> &'static str {
+        match self {
+            Self::Events => words.events,
+            Self::Warning => "Requests that are ignored",
+            Self::Discard => "Answers that are not available",
+            Self::Error => words.errors,
+            Self::Fatal => "Internal faults; always logged",
+        }
+    }
+}
+
+/// Names and descriptions of the categories, for the description.
+#[cfg(feature = "description")]
+pub(crate) fn categories(words: &Words) -> impl Iterator<Item = (String, &'static str)> {
+    CATEGORIES
+        .into_iter()
+        .map(|(category, name)| (name, category.description(words)))
+        .chain([(ALL, "All messages")])
+        .map(|(name, description)| (name.to_string_lossy().into_owned(), description))
+}
+
+/// Passes one message on to the importer, as its version of the interface wants it.
+pub(crate) type Sink = Box<dyn Fn(Category, &str)>;
+
+/// What the importer wants to hear, and how it is told.
+pub(crate) struct Logger {
+    sink: Sink,
+    enabled: u8,
+}
+
+impl Logger {
+    /// A logger for one instance.
+    pub fn new(sink: Sink, logging_on: bool) -> Self {
+        Self { sink, enabled: if logging_on { EVERY } else { 0 } }
+    }
+
+    /// Selects categories; none named means all of them.
+    pub fn select(&mut self, logging_on: bool, names: &[&CStr]) -> Result<(), CallError> {
+        let mut enabled = if names.is_empty() { EVERY } else { 0 };
+        for name in names {
+            enabled |= bits(name)?;
+        }
+        self.enabled = if logging_on { enabled } else { 0 };
+        Ok(())
+    }
+
+    /// What happens to the instance.
+    pub fn event(&self, message: &str) {
+        self.log(Category::Events, message);
+    }
+
+    /// A request that is ignored.
+    pub fn warning(&self, message: &str) {
+        self.log(Category::Warning, message);
+    }
+
+    /// Why a function was not carried out.
+    pub fn error(&self, function: &str, error: &CallError) {
+        let category = match error.severity() {
+            Severity::Discard => Category::Discard,
+            Severity::Error => Category::Error,
+            Severity::Fatal => Category::Fatal,
+        };
+        self.log(category, &format!("{function}: {error}"));
+    }
+
+    /// Why there is no instance.
+    pub fn refused(&self, message: &str) {
+        self.log(Category::Error, message);
+    }
+
+    fn log(&self, category: Category, message: &str) {
+        let always = matches!(category, Category::Error | Category::Fatal);
+        if always || self.enabled & category as u8 != 0 {
+            (self.sink)(category, message);
+        }
+    }
+}
+
+fn bits(name: &CStr) -> Result<u8, CallError> {
+    if name == ALL {
+        return Ok(EVERY);
+    }
+    CATEGORIES
+        .iter()
+        .find(|(_, known)| *known == name)
+        .map(|(category, _)| *category as u8)
+        .ok_or_else(|| CallError::UnknownCategory { name: name.to_string_lossy().into_owned() })
+}

@@ -1,0 +1,160 @@
+//! What a model is to an importer.
+
+use std::fmt::{Debug, Display};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::variables::{Quantity, Variable};
+
+/// Plain data that can be copied, compared, saved and read again.
+pub trait Data: Clone + Debug + PartialEq + Serialize + DeserializeOwned {}
+
+impl<T: Clone + Debug + PartialEq + Serialize + DeserializeOwned> Data for T {}
+
+/// A model: what it is called, which variables it has, and how it goes on in time.
+///
+/// A value is one run: built from parameters and first inputs, and stepped from time 0. Everything else that an
+/// importer may do — set, get, save, restore, reset, in which order — is done by this crate.
+pub trait Model: Sized + 'static {
+    /// Names and texts.
+    const IDENTITY: Identity;
+
+    /// The table of variables, in groups. A variable's value reference is its place in all of them, from 0.
+    const VARIABLES: &'static [&'static [Variable<Self>]];
+
+    /// Quantities that the description lists first; others follow in the order in which variables use them.
+    const QUANTITIES: &'static [&'static Quantity] = &[];
+
+    /// What is set before the run, and some of it during the run. The default has the start values.
+    type Parameters: Data + Default;
+
+    /// What comes from outside at communication points. The default has the start values.
+    type Inputs: Data + Default;
+
+    /// Everything that changes during a run, and nothing that follows from the parameters.
+    type State: Data;
+
+    /// What can be observed.
+    type Outputs;
+
+    /// Why parameters or a state are refused, or a run cannot go on. It is logged as it is displayed.
+    type Error: Display;
+
+    /// A run at time 0.
+    ///
+    /// # Errors
+    /// When the parameters contradict one another; each alone is within its range.
+    fn new(parameters: &Self::Parameters, inputs: &Self::Inputs) -> Result<Self, Self::Error>;
+
+    /// A run that goes on from a state of a run with the same parameters.
+    ///
+    /// # Errors
+    /// As for [`Model::new`], and when no run can have been in this state: saved bytes may come from anywhere.
+    fn from_state(parameters: &Self::Parameters, state: &Self::State) -> Result<Self, Self::Error>;
+
+    /// Everything that changes.
+    fn state(&self) -> Self::State;
+
+    /// The present, µs since the start of the run.
+    fn time_us(&self) -> u64;
+
+    /// Goes on to `time_us`, under the inputs as a function of time in µs.
+    ///
+    /// # Errors
+    /// When the run cannot go on; what is observed then is where it failed.
+    fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
+
+    /// What can be observed at the present.
+    fn outputs(&self) -> Self::Outputs;
+
+    /// Takes over new values of tunable parameters during the run.
+    ///
+    /// # Errors
+    /// As for [`Model::new`]; nothing has changed then.
+    fn retune(&mut self, parameters: &Self::Parameters) -> Result<(), Self::Error> {
+        *self = Self::from_state(parameters, &self.state())?;
+        Ok(())
+    }
+
+    /// Goes to a state of a run with the same parameters as this one. A model that is costly to build does not build
+    /// it again.
+    ///
+    /// # Errors
+    /// As for [`Model::from_state`]; nothing has changed then.
+    fn restore(&mut self, parameters: &Self::Parameters, state: &Self::State) -> Result<(), Self::Error> {
+        *self = Self::from_state(parameters, state)?;
+        Ok(())
+    }
+
+    /// What is logged when initialization ends.
+    fn initialized(&self) -> String {
+        "initialized".to_owned()
+    }
+}
+
+/// Names and texts of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Identity {
+    /// `modelName`
+    pub name: &'static str,
+    /// `modelIdentifier`: the name that the library's file must have, without its extension.
+    pub model_identifier: &'static str,
+    /// What it is, for a person.
+    pub description: &'static str,
+    /// Version of the model; part of the GUID.
+    pub version: &'static str,
+    /// Licence of the model.
+    pub license: &'static str,
+    /// `generationTool`
+    pub generation_tool: &'static str,
+    /// `generationDateAndTime`, ending in Z: a fixed one, so that the same sources give the same bytes.
+    pub date: &'static str,
+    /// What an importer simulates when it is told nothing else.
+    pub default_experiment: Experiment,
+    /// How saved states begin.
+    pub saved_state: SavedStateFormat,
+    /// How the log speaks of the model.
+    pub words: Words,
+}
+
+/// A time span and the step in which it is simulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Experiment {
+    /// End, s; it starts at 0.
+    pub stop_time_s: f64,
+    /// Communication step, s.
+    pub step_size_s: f64,
+}
+
+/// How serialized states of a model begin.
+#[derive(Clone, Copy, Debug)]
+pub struct SavedStateFormat {
+    /// The first bytes.
+    pub magic: [u8; 8],
+    /// Raised whenever parameters, inputs or state change their layout; part of the GUID.
+    pub version: u32,
+}
+
+/// How the log and its categories speak of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// What a run is: "simulation", "flight", …
+    pub run: &'static str,
+    /// Logged when a tunable parameter has changed.
+    pub retuned: &'static str,
+    /// Description of the log category of events.
+    pub events: &'static str,
+    /// Description of the log category of errors.
+    pub errors: &'static str,
+}
+
+impl Words {
+    /// Words that fit any model.
+    pub const GENERAL: Self = Self {
+        run: "simulation",
+        retuned: "parameters changed",
+        events: "Initialization, changed parameters, reset",
+        errors: "Refused calls, and simulations that cannot go on; always logged",
+    };
+}

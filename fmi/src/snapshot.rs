@@ -1,0 +1,89 @@
+//! The state of an instance: what the importer saves and restores.
+
+use serde::{Deserialize, Serialize};
+
+use crate::clock::Clock;
+use crate::error::{CallError, SavedStateError};
+use crate::finite::is_finite;
+use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
+use crate::lifecycle::Phase;
+use crate::model::Model;
+use crate::variables::{Role, variables};
+
+/// What the importer has set.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Settings<P, I> {
+    /// Parameters.
+    pub parameters: P,
+    /// Inputs.
+    pub inputs: I,
+}
+
+/// The settings of a model.
+pub(crate) type SettingsOf<M> = Settings<<M as Model>::Parameters, <M as Model>::Inputs>;
+
+/// Everything that changes in an instance, as plain data. What follows from the parameters is built again where it is
+/// needed; the logger belongs to the instance and stays with it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct Snapshot<M: Model> {
+    /// Where the instance is in its life.
+    pub phase: Phase,
+    /// Its time base.
+    pub clock: Clock,
+    /// What the importer has set.
+    pub settings: SettingsOf<M>,
+    /// Derivatives of inputs for the next step.
+    pub derivatives: Vec<InputDerivative>,
+    /// The run, if it has begun.
+    pub run: Option<M::State>,
+}
+
+impl<M: Model> Snapshot<M> {
+    /// Refuses what no instance can have been in. A checksum does not protect against bytes that somebody
+    /// made on purpose.
+    pub fn check(&self) -> Result<(), CallError> {
+        if !is_finite(self) {
+            return Err(SavedStateError::NotFinite.into());
+        }
+        let contradiction = |what| Err(SavedStateError::Contradiction(what).into());
+        if !self.clock.is_valid() {
+            return contradiction("impossible times");
+        }
+        self.check_settings()?;
+        for derivative in &self.derivatives {
+            let is_continuous = continuous::<M>(derivative.reference).is_some();
+            if !(1..=MAXIMUM_ORDER).contains(&derivative.order) || !is_continuous {
+                return contradiction("impossible derivatives of inputs");
+            }
+        }
+        let name = M::IDENTITY.words.run;
+        match (self.phase, &self.run) {
+            (Phase::Fatal, _) => contradiction("it is of a lost instance"),
+            (Phase::Instantiated | Phase::Initialization, None) => Ok(()),
+            (_, None) => Err(SavedStateError::NoRun { run: name }.into()),
+            (phase, Some(state)) => {
+                let model = M::from_state(&self.settings.parameters, state).map_err(CallError::of_model)?;
+                // A failed step leaves the run where it failed.
+                if phase != Phase::Error && model.time_us() != self.clock.time_us() {
+                    return Err(SavedStateError::OtherTime { run: name }.into());
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Refuses parameters and inputs outside their ranges.
+    fn check_settings(&self) -> Result<(), CallError> {
+        for (_, variable) in variables::<M>() {
+            match &variable.role {
+                Role::Input(field) => variable.check_range(field.get(&self.settings.inputs))?,
+                Role::Parameter { field, .. } => {
+                    variable.check_range(field.get(&self.settings.parameters))?;
+                }
+                Role::Output { .. } | Role::CalculatedParameter { .. } => {}
+            }
+        }
+        Ok(())
+    }
+}

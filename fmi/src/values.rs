@@ -1,0 +1,121 @@
+//! Getting and setting the values of variables.
+
+use crate::error::CallError;
+use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
+use crate::instance::Instance;
+use crate::lifecycle::Phase;
+use crate::model::Model;
+use crate::variables::{Role, Type, Value, ValueReference, Variable, variable};
+
+impl<M: Model> Instance<M> {
+    /// Values of variables of one type, each given to `put` with its place. Nothing is put unless all
+    /// references are good.
+    pub fn get(
+        &mut self,
+        value_type: Type,
+        references: &[ValueReference],
+        mut put: impl FnMut(usize, Value),
+    ) -> Result<(), CallError> {
+        for &reference in references {
+            typed::<M>(reference, value_type)?;
+        }
+        for (place, &reference) in references.iter().enumerate() {
+            let value = self.value(typed::<M>(reference, value_type)?)?;
+            put(place, value);
+        }
+        Ok(())
+    }
+
+    /// Sets variables of one type to the values that `value` has for their places: all of them or, on an
+    /// error, none.
+    pub fn set(
+        &mut self,
+        value_type: Type,
+        references: &[ValueReference],
+        value: impl Fn(usize) -> Value,
+    ) -> Result<(), CallError> {
+        let mut settings = self.settings.clone();
+        for (place, &reference) in references.iter().enumerate() {
+            let variable = typed::<M>(reference, value_type)?;
+            let (name, value) = (variable.name, value(place));
+            variable.check_range(value)?;
+            match &variable.role {
+                Role::Input(field) => field.set(&mut settings.inputs, value),
+                Role::Parameter { tunable: false, .. } if self.phase() == Phase::StepComplete => {
+                    return Err(CallError::Fixed { name });
+                }
+                Role::Parameter { field, .. } => field.set(&mut settings.parameters, value),
+                Role::Output { .. } | Role::CalculatedParameter { .. } => {
+                    return Err(CallError::NotSettable { name, causality: variable.causality() });
+                }
+            }
+        }
+        self.commit(settings)
+    }
+
+    /// There are no String variables, so only an empty list of references is good.
+    pub fn no_strings(&self, references: &[ValueReference]) -> Result<(), CallError> {
+        let Some(&reference) = references.first() else { return Ok(()) };
+        variable::<M>(reference)?;
+        Err(CallError::NoStrings { reference })
+    }
+
+    /// Derivatives of inputs for the next step: all of them or, on an error, none.
+    pub fn set_input_derivatives(
+        &mut self,
+        references: &[ValueReference],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), CallError> {
+        let given = references.iter().zip(orders).zip(values);
+        let given = given.map(|((&reference, &order), &value)| InputDerivative { reference, order, value });
+        for derivative in given.clone() {
+            check_derivative::<M>(&derivative)?;
+        }
+        for derivative in given {
+            let same = |known: &&mut InputDerivative| {
+                known.reference == derivative.reference && known.order == derivative.order
+            };
+            match self.derivatives.iter_mut().find(same) {
+                Some(known) => *known = derivative,
+                None => self.derivatives.push(derivative),
+            }
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, variable: &Variable<M>) -> Result<Value, CallError> {
+        Ok(match &variable.role {
+            Role::Input(field) => field.get(&self.settings.inputs),
+            Role::Parameter { field, .. } => field.get(&self.settings.parameters),
+            Role::CalculatedParameter { get, .. } => Value::Real(get(self.model()?)),
+            Role::Output { signal, .. } => signal.get(self.outputs()?),
+        })
+    }
+}
+
+fn check_derivative<M: Model>(derivative: &InputDerivative) -> Result<(), CallError> {
+    let &InputDerivative { reference, order, value } = derivative;
+    let name = variable::<M>(reference)?.name;
+    if continuous::<M>(reference).is_none() {
+        return Err(CallError::NotContinuousInput { name });
+    }
+    if !(1..=MAXIMUM_ORDER).contains(&order) {
+        return Err(CallError::DerivativeOrder { name, order, maximum: MAXIMUM_ORDER });
+    }
+    if !value.is_finite() {
+        return Err(CallError::DerivativeNotFinite { name, order, value });
+    }
+    Ok(())
+}
+
+/// The variable with this reference, if it has this type.
+fn typed<M: Model>(reference: ValueReference, asked: Type) -> Result<&'static Variable<M>, CallError> {
+    let variable = variable::<M>(reference)?;
+    let declared = variable.value_type();
+    if declared.of_functions() == asked {
+        Ok(variable)
+    } else {
+        Err(CallError::WrongType { name: variable.name, reference, declared, asked })
+    }
+}

@@ -1,0 +1,12 @@
+//! The table of variables: the one source of value references, names, types, ranges, start values and units.
+
+mod access;
+mod quantity;
+mod value;
+mod variable;
+
+pub use access::{Field, Signal};
+pub use quantity::{Choice, Quantity, Unit};
+pub use value::{Type, Value};
+pub use variable::{Role, ValueReference, Variable};
+pub(crate) use variable::{variable, variables};

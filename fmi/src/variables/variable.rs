@@ -1,0 +1,216 @@
+//! One variable of a model.
+
+use super::access::Range;
+use super::{Choice, Field, Quantity, Signal, Type, Value};
+use crate::error::CallError;
+use crate::model::Model;
+
+/// Place of a variable in the table of its model.
+pub type ValueReference = u32;
+
+/// One variable: everything that the library and its description say about it.
+pub struct Variable<M: Model> {
+    /// Structured name.
+    pub name: &'static str,
+    /// What it is, for a person.
+    pub description: &'static str,
+    /// What the model does with it.
+    pub role: Role<M>,
+}
+
+/// What the model does with a variable.
+pub enum Role<M: Model> {
+    /// Comes from outside at communication points.
+    Input(Field<M::Inputs>),
+    /// Can be observed.
+    Output {
+        /// Names, or beginnings of names, of the inputs and parameters that its initial value depends on.
+        initially_depends_on: &'static [&'static str],
+        /// Type, range and place.
+        signal: Signal<M::Outputs>,
+    },
+    /// Is set before the run.
+    Parameter {
+        /// Whether it may change during the run.
+        tunable: bool,
+        /// Type, range and place.
+        field: Field<M::Parameters>,
+    },
+    /// A number that follows from parameters.
+    CalculatedParameter {
+        /// Names, or beginnings of names, of the parameters that it depends on.
+        depends_on: &'static [&'static str],
+        /// Its quantity.
+        quantity: &'static Quantity,
+        /// Reads it.
+        get: fn(&M) -> f64,
+    },
+}
+
+// Not derived: that would ask for `M: Copy`.
+impl<M: Model> Clone for Variable<M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Model> Copy for Variable<M> {}
+
+impl<M: Model> Clone for Role<M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Model> Copy for Role<M> {}
+
+impl<M: Model> Variable<M> {
+    /// An input.
+    pub const fn input(name: &'static str, description: &'static str, field: Field<M::Inputs>) -> Self {
+        Self { name, description, role: Role::Input(field) }
+    }
+
+    /// An output, with the names, or beginnings of names, of the inputs and parameters that its initial value depends
+    /// on.
+    pub const fn output(
+        name: &'static str,
+        description: &'static str,
+        initially_depends_on: &'static [&'static str],
+        signal: Signal<M::Outputs>,
+    ) -> Self {
+        Self { name, description, role: Role::Output { initially_depends_on, signal } }
+    }
+
+    /// A parameter that stays as it is during the run.
+    pub const fn fixed(name: &'static str, description: &'static str, field: Field<M::Parameters>) -> Self {
+        Self { name, description, role: Role::Parameter { tunable: false, field } }
+    }
+
+    /// A parameter that may change during the run.
+    pub const fn tunable(name: &'static str, description: &'static str, field: Field<M::Parameters>) -> Self {
+        Self { name, description, role: Role::Parameter { tunable: true, field } }
+    }
+
+    /// A number that follows from parameters, with their names, or beginnings of names.
+    pub const fn calculated(
+        name: &'static str,
+        description: &'static str,
+        depends_on: &'static [&'static str],
+        quantity: &'static Quantity,
+        get: fn(&M) -> f64,
+    ) -> Self {
+        Self { name, description, role: Role::CalculatedParameter { depends_on, quantity, get } }
+    }
+
+    /// Its type.
+    pub fn value_type(&self) -> Type {
+        match &self.role {
+            Role::Input(field) => field.value_type(),
+            Role::Output { signal, .. } => signal.value_type(),
+            Role::Parameter { field, .. } => field.value_type(),
+            Role::CalculatedParameter { .. } => Type::Real,
+        }
+    }
+
+    /// Its quantity, if it is a `Real`.
+    pub fn quantity(&self) -> Option<&'static Quantity> {
+        match &self.role {
+            Role::Input(field) => field.quantity(),
+            Role::Output { signal, .. } => signal.quantity(),
+            Role::Parameter { field, .. } => field.quantity(),
+            Role::CalculatedParameter { quantity, .. } => Some(quantity),
+        }
+    }
+
+    /// What it is chosen from, if it is an `Enumeration`.
+    pub fn choice(&self) -> Option<&Choice> {
+        match &self.role {
+            Role::Input(field) => field.choice(),
+            Role::Output { signal, .. } => signal.choice(),
+            Role::Parameter { field, .. } => field.choice(),
+            Role::CalculatedParameter { .. } => None,
+        }
+    }
+
+    /// Attribute `causality` of the description.
+    pub fn causality(&self) -> &'static str {
+        match self.role {
+            Role::Input(_) => "input",
+            Role::Output { .. } => "output",
+            Role::Parameter { .. } => "parameter",
+            Role::CalculatedParameter { .. } => "calculatedParameter",
+        }
+    }
+
+    /// Attribute `variability` of the description.
+    pub fn variability(&self) -> &'static str {
+        match self.role {
+            Role::Input(_) | Role::Output { .. } if self.value_type() == Type::Real => "continuous",
+            Role::Input(_) | Role::Output { .. } => "discrete",
+            Role::Parameter { tunable: false, .. } => "fixed",
+            // They may follow from tunable parameters.
+            Role::Parameter { tunable: true, .. } | Role::CalculatedParameter { .. } => "tunable",
+        }
+    }
+
+    /// Its smallest and largest value, as far as they are limited.
+    pub fn range(&self) -> (Option<Value>, Option<Value>) {
+        match &self.role {
+            Role::Input(field) => field.range(),
+            Role::Output { signal, .. } => signal.range(),
+            Role::Parameter { field, .. } => field.range(),
+            Role::CalculatedParameter { .. } => (None, None),
+        }
+    }
+
+    /// Its start value, if it has one: inputs and parameters do.
+    pub fn start(&self) -> Option<Value> {
+        match &self.role {
+            Role::Input(field) => Some(field.get(&M::Inputs::default())),
+            Role::Parameter { field, .. } => Some(field.get(&M::Parameters::default())),
+            Role::Output { .. } | Role::CalculatedParameter { .. } => None,
+        }
+    }
+
+    /// What its initial value depends on, as names or beginnings of names, if it is an unknown.
+    pub fn initially_depends_on(&self) -> Option<&'static [&'static str]> {
+        match self.role {
+            Role::Output { initially_depends_on, .. } => Some(initially_depends_on),
+            Role::CalculatedParameter { depends_on, .. } => Some(depends_on),
+            Role::Input(_) | Role::Parameter { .. } => None,
+        }
+    }
+
+    /// Refuses what is not between its smallest and its largest value; NaN never is.
+    pub(crate) fn check_range(&self, value: Value) -> Result<(), CallError> {
+        let number = |value| match value {
+            Value::Real(value) => Some(value),
+            Value::Integer(value) => Some(f64::from(value)),
+            Value::Boolean(_) => None,
+        };
+        let (Some(minimum), Some(maximum)): Range = self.range() else { return Ok(()) };
+        match (number(value), number(minimum), number(maximum)) {
+            (Some(given), Some(least), Some(most)) if !(least..=most).contains(&given) => {
+                Err(CallError::OutOfRange { name: self.name, value, minimum, maximum })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// All variables of a model with their value references.
+pub(crate) fn variables<M: Model>() -> impl Iterator<Item = (ValueReference, &'static Variable<M>)> {
+    (0..).zip(M::VARIABLES.iter().copied().flatten())
+}
+
+/// The variable with this value reference.
+pub(crate) fn variable<M: Model>(reference: ValueReference) -> Result<&'static Variable<M>, CallError> {
+    let mut place = usize::try_from(reference).unwrap_or(usize::MAX);
+    for group in M::VARIABLES {
+        match group.get(place) {
+            Some(variable) => return Ok(variable),
+            None => place -= group.len(),
+        }
+    }
+    Err(CallError::UnknownReference { reference })
+}

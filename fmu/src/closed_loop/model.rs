@@ -1,0 +1,89 @@
+//! The closed loop as an FMI model, over [`quadrotor::Simulation`].
+
+use fmi::variables::{Quantity, Variable};
+use fmi::{Identity, Model};
+use quadrotor::{
+    Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError, SimulationState,
+};
+use thiserror::Error;
+
+use super::{calculated, identity, inputs, outputs, parameters};
+use crate::quantities;
+
+/// The quadrotor with its controllers.
+pub struct ClosedLoop(Simulation);
+
+impl ClosedLoop {
+    /// The engine.
+    pub(super) fn flight(&self) -> &Simulation {
+        &self.0
+    }
+}
+
+/// What the engine refuses, in its own words.
+#[derive(Debug, Error)]
+pub enum FlightError {
+    /// A configuration or a saved state.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// To fly on.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl Model for ClosedLoop {
+    const IDENTITY: Identity = identity::IDENTITY;
+    /// Time is not among them: in co-simulation nobody needs it, and FMI Library wants a start value that FMI 2.0
+    /// forbids.
+    const VARIABLES: &'static [&'static [Variable<Self>]] =
+        &[&inputs::INPUTS, &outputs::OUTPUTS, &parameters::TABLE, &calculated::CALCULATED];
+    const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
+    type Parameters = Configuration;
+    type Inputs = Inputs;
+    type State = SimulationState;
+    type Outputs = Outputs;
+    type Error = FlightError;
+
+    fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, FlightError> {
+        Ok(Self(Simulation::new(configuration, inputs)?))
+    }
+
+    fn from_state(configuration: &Configuration, state: &SimulationState) -> Result<Self, FlightError> {
+        Ok(Self(Simulation::from_state(configuration, *state)?))
+    }
+
+    fn state(&self) -> SimulationState {
+        self.0.state()
+    }
+
+    fn time_us(&self) -> u64 {
+        self.0.time_us()
+    }
+
+    fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Inputs) -> Result<(), FlightError> {
+        Ok(self.0.advance_to(time_us, inputs)?)
+    }
+
+    fn outputs(&self) -> Outputs {
+        self.0.outputs()
+    }
+
+    fn retune(&mut self, configuration: &Configuration) -> Result<(), FlightError> {
+        Ok(self.0.reconfigure(configuration)?)
+    }
+
+    /// The controllers are the same: no need to design them again.
+    fn restore(
+        &mut self,
+        _configuration: &Configuration,
+        state: &SimulationState,
+    ) -> Result<(), FlightError> {
+        Ok(self.0.restore(*state)?)
+    }
+
+    fn initialized(&self) -> String {
+        let reports = self.0.design().reports();
+        let radii = reports.map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
+        format!("initialized; spectral radii of the closed loops: {}", radii.join(", "))
+    }
+}
