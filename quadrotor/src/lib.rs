@@ -61,7 +61,7 @@ pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Targ
 pub use control::control_loop::ControlLoop;
 pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
-pub use control::mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
+pub use control::mixer::Mixer;
 pub use control::rotor_monitor::RotorMonitor;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
@@ -79,6 +79,8 @@ pub use plant::plant_inputs::{Actuation, PlantInputs};
 pub use plant::plant_state::PlantState;
 pub use plant::rigid_body::{External, RigidBody};
 pub use plant::rotor_fault::RotorFault;
+pub use plant::rotor_layout::{Direction, Rotor, RotorLayout};
+pub use plant::rotor_map::{Wrench, wrench_of_rotors};
 pub use simulation::Simulation;
 pub use simulation_error::SimulationError;
 pub use simulation_state::SimulationState;

@@ -13,7 +13,7 @@ use crate::control::tracking_law::TrackingLaw;
 use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
 use crate::design::estimator_design::EstimatorDesign;
 use crate::design::linear_models::{altitude_model, attitude_model, position_model};
-use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
+use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, Mixer};
 
 /// Terms or moves per input that the larger programs have room for.
 const LARGE: usize = 30;
@@ -51,6 +51,7 @@ pub struct CascadeDesign {
     pub(crate) position_gains: Controller<4, 2, 2>,
     pub(crate) attitude_gains: Controller<6, 3, 3>,
     pub(crate) estimator: EstimatorDesign,
+    pub(crate) mixer: Mixer,
     reports: [DesignReport; 3],
 }
 
@@ -72,6 +73,7 @@ impl CascadeDesign {
             position_gains: position.gains,
             attitude_gains: attitude.gains,
             estimator: estimator_design(configuration)?,
+            mixer: Mixer::new(&configuration.airframe)?,
             reports: [altitude.report, position.report, attitude.report],
         })
     }

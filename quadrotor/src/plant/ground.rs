@@ -18,7 +18,7 @@ const FRICTION_SLIP_M_S: f64 = 0.1;
 /// Force and torque of the ground on four feet below the rotors, level with the centre of mass, so that
 /// a vehicle at rest on the ground is at z = 0 but for the compliance.
 pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
-    if body.position_m.z < -airframe.arm_length_m {
+    if body.position_m.z < -airframe.arm_length_m * airframe.layout.reach() {
         return External::default();
     }
     let mass = airframe.mass_kg / 4.0;
@@ -29,12 +29,7 @@ pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
 
     let rotation = body.rotation();
     let l = airframe.arm_length_m;
-    let feet = [
-        Vector3::new(l, 0.0, 0.0),
-        Vector3::new(0.0, l, 0.0),
-        Vector3::new(-l, 0.0, 0.0),
-        Vector3::new(0.0, -l, 0.0),
-    ];
+    let feet = airframe.layout.rotors.map(|rotor| Vector3::new(l * rotor.x, l * rotor.y, 0.0));
     let mut total = External::default();
     for foot in feet {
         let depth = body.position_m.z + (rotation * foot).z;
