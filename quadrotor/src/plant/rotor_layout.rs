@@ -107,6 +107,11 @@ impl RotorLayout {
         self.rotors.iter().map(|rotor| libm::hypot(rotor.x, rotor.y)).fold(0.0, f64::max)
     }
 
+    /// Distance of the innermost rotor from the centre of mass, arm lengths.
+    pub(crate) fn nearest(&self) -> f64 {
+        self.rotors.iter().map(|rotor| libm::hypot(rotor.x, rotor.y)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Thrust and torques, of the thrusts of the rotors: (1) without its constants. Rows F, τ_φ, τ_θ per arm length, and
     /// τ_ψ per drag torque.
     pub(crate) fn allocation(&self) -> Matrix4<f64> {
