@@ -92,7 +92,7 @@ mod tests {
             clock,
             settings,
             derivatives: Vec::new(),
-            simulation: Some(*simulation.state()),
+            simulation: Some(simulation.state()),
         }
     }
 

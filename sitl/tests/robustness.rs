@@ -132,7 +132,7 @@ fn the_flight_goes_on_undisturbed() {
             }
             bench.fly(0.01);
         }
-        *bench.autopilot.vehicle().simulation().state()
+        bench.autopilot.vehicle().simulation().state()
     };
     assert_eq!(state(false), state(true));
 }
