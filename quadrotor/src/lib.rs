@@ -1,18 +1,26 @@
 //! A quadrotor under a cascade of Laguerre model predictive controllers (Chipofya, Lee, Chong 2015).
 //!
 //! ```text
-//! Inputs ─► Guidance ─► Cascade ───────────────────────► rotors_of_wrench ─► Plant ─► Outputs
-//!  goal or   (shaper)    position 20 Hz → tilt θ, φ         (1)               rotor lag,   │
-//!  trajectory            altitude 20 Hz → thrust F                            rigid body,  │
-//!                        attitude 100 Hz → torques τ                          RK4 1 kHz    │
-//!                            ▲                                                             │
-//!                            └── Observer: noise, and a Kalman predictor ◄─────────────────┘
+//!            ┌──────────────────────── ControlLoop ────────────────────────┐     ┌────── Plant ──────┐
+//! Inputs ──► │ Guidance ─► position 20 Hz → tilt θ, φ                      │     │ rotor lag         │
+//!  goal or   │ (shaper)    altitude 20 Hz → thrust F   ─► Mixer: inverse   │ ──► │ rotor map (1)     │ ──► Outputs
+//!  trajectory│             attitude 100 Hz → torques τ    of (1)           │     │ rigid body (2)–(3)│
+//!            │                 ▲                                           │     │ ground            │
+//!            │                 └─ Kalman predictor (26) ◄──────────────────┼─────┼─ sensors, noise   │
+//!            └─────────────────────────────────────────────────────────────┘     └───────────────────┘
 //! ```
 //!
+//! * [`Plant`] is the vehicle without its controllers: f(x, u), and a step of it. Four rotors anywhere
+//!   ([`RotorLayout`]: "+", "X", "H" or your own).
+//! * [`ControlLoop`] is the controllers without a vehicle: references and measurements in, rotor commands out, at exact
+//!   instants of its own. It flies yours as well, see `examples/fly_another_plant.rs`.
+//! * [`Simulation`] composes both as a deterministic discrete-event simulation over integer microseconds.
+//!
 //! Each controller is a [`ControllerKind`]: Laguerre MPC, state-space MPC or DLQR on the same models and weights.
-//! World frame NED, body frame FRD, SI units, angles in rad; altitude is −z. [`Simulation`] runs all of it
-//! as a deterministic discrete-event simulation over integer microseconds; [`PARAMETERS`] names every
-//! setting.
+//! World frame NED, body frame FRD, SI units, angles in rad; altitude is −z. [`PARAMETERS`] names every
+//! setting. State is apart from configuration everywhere: [`PlantState`], [`ControlState`] and [`SimulationState`] are
+//! plain data to copy, save and restore. The crate builds without the standard library; only the shaper, a default
+//! feature, needs it.
 //!
 //! # Example: the paper's flight to 5 m north, 5 m east, 10 m up
 //!
@@ -26,6 +34,54 @@
 //! let goal = inputs.reference.position_m;
 //! assert!((flight.outputs().position_m - goal).norm() < 0.01);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Example: the control loop on a vehicle of your own
+//!
+//! ```
+//! use quadrotor::{
+//!     Configuration, ControlInputs, ControlLoop, InitialState, Measurement, Plant, PlantInputs, PlantState,
+//!     PositionReference, Target,
+//! };
+//!
+//! # if !cfg!(feature = "shaper") { return Ok(()); }
+//! let configuration = Configuration::default();
+//! // Ours stands in for it here.
+//! let plant = Plant::new(&configuration.airframe, &configuration.environment);
+//! let mut state = PlantState::hovering(&InitialState::default(), &configuration.airframe);
+//! let measured = |state: &PlantState| Measurement {
+//!     motion: state.body,
+//!     rotor_speed_rad_s: state.rotor_speed_rad_s,
+//! };
+//!
+//! let goal = PositionReference::goal([1.0, 0.0, -2.0], 0.0);
+//! let inputs = ControlInputs::armed(Target::Reference(goal));
+//! let mut control = ControlLoop::new(&configuration, &inputs, &mut measured(&state), 0)?;
+//! for millisecond in 0..10_000 {
+//!     let command_rad_s = control.advance_to(millisecond * 1_000, &inputs, &mut measured(&state))?;
+//!     state = plant.step(&state, &PlantInputs::rotor_speeds(command_rad_s), 1e-3);
+//! }
+//! assert!((state.body.position_m - goal.position_m).norm() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Example: the plant under an integrator of your own
+//!
+//! ```
+//! use quadrotor::{Airframe, Environment, InitialState, Plant, PlantInputs, PlantState, RotorLayout};
+//!
+//! let airframe = Airframe { layout: RotorLayout::x(), ..Airframe::default() };
+//! let plant = Plant::new(&airframe, &Environment::default());
+//! let mut state = PlantState::hovering(&InitialState::default(), &airframe);
+//! // The front rotors a little faster than hover: it pitches up.
+//! let [hover, ..] = state.rotor_speed_rad_s;
+//! let inputs = PlantInputs::rotor_speeds([hover + 1.0, hover, hover, hover + 1.0]);
+//! for _ in 0..2_000 {
+//!     // Euler's method on f(x, u).
+//!     state = state.plus(&plant.derivative(&state, &inputs), 1e-4).normalized();
+//! }
+//! let (_, pitch_rad, _) = state.body.rotation().euler_angles();
+//! assert!(pitch_rad > 0.0);
 //! ```
 
 #![no_std]
@@ -61,7 +117,7 @@ pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Targ
 pub use control::control_loop::ControlLoop;
 pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
-pub use control::mixer::{Wrench, rotors_of_wrench, wrench_of_rotors};
+pub use control::mixer::Mixer;
 pub use control::rotor_monitor::RotorMonitor;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
@@ -79,6 +135,8 @@ pub use plant::plant_inputs::{Actuation, PlantInputs};
 pub use plant::plant_state::PlantState;
 pub use plant::rigid_body::{External, RigidBody};
 pub use plant::rotor_fault::RotorFault;
+pub use plant::rotor_layout::{Direction, Rotor, RotorLayout};
+pub use plant::rotor_map::{Wrench, wrench_of_rotors};
 pub use simulation::Simulation;
 pub use simulation_error::SimulationError;
 pub use simulation_state::SimulationState;

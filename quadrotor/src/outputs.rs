@@ -27,7 +27,7 @@ pub struct Outputs {
     pub thrust_n: f64,
     /// τ_φ, τ_θ, τ_ψ of the four rotors, N·m.
     pub torque_n_m: Vector3<f64>,
-    /// Speeds of the front, right, back and left rotor, rad/s.
+    /// Speeds of the rotors in the order of the airframe's layout, rad/s.
     pub rotor_speed_rad_s: [f64; 4],
     /// φ and θ that the position controller asks of the attitude controller, rad.
     pub tilt_reference_rad: [f64; 2],

@@ -41,6 +41,12 @@ pub enum ConfigurationError {
         /// Why not.
         source: DesignError,
     },
+    /// The rotors are not laid out as those of a quadrotor.
+    #[error("airframe.layout cannot be flown: {reason}")]
+    Layout {
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// A function that this build was made without.
     #[error("{name} = true needs the cargo feature \"shaper\"")]
     Unavailable {

@@ -1,7 +1,7 @@
 //! Checks on a configuration: every range, then what must fit together.
 
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
-use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, PARAMETERS, Parameter};
+use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
@@ -35,7 +35,8 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     )?;
     // The roll and pitch torques in hover must be able to follow the tilt commands, at half their pace at least.
     let [jx, jy, _] = airframe.inertia_kg_m2;
-    let strongest_n_m = airframe.arm_length_m * airframe.weight_n() / 2.0;
+    let [roll_n_m, pitch_n_m, _] = Mixer::new(airframe)?.largest_torques_n_m(airframe.weight_n() / 4.0);
+    let strongest_n_m = roll_n_m.min(pitch_n_m);
     let followed = 2.0 * strongest_n_m / jx.max(jy);
     if limits.tilt_acceleration_rad_s2 > followed {
         return Err(ConfigurationError::Inconsistent {
@@ -74,6 +75,9 @@ pub(crate) fn only_tunables_differ(
     old: &Configuration,
     new: &Configuration,
 ) -> Result<(), ConfigurationError> {
+    if old.airframe.layout != new.airframe.layout {
+        return Err(ConfigurationError::Fixed { name: "airframe.layout" });
+    }
     for Parameter { name, tunable, access, .. } in PARAMETERS {
         if !tunable && !access.same(old, new) {
             return Err(ConfigurationError::Fixed { name });

@@ -17,8 +17,7 @@ use crate::guidance::reference_guidance::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{
-    AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, rotors_of_wrench,
-    wrench_of_rotors,
+    AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, wrench_of_rotors,
 };
 
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
@@ -191,13 +190,13 @@ impl Cascade {
             design,
             &seen.rotation(),
             reference,
-            &attitude_bounds(&configuration.airframe, thrust_n, &gyroscopic),
+            &attitude_bounds(&configuration.airframe, &design.mixer, thrust_n, &gyroscopic),
         );
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
         let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
-        let rotor_command_rad_s = rotors_of_wrench(&configuration.airframe, &wanted);
+        let rotor_command_rad_s = design.mixer.rotor_speeds_rad_s(&wanted);
         let made = wrench_of_rotors(&configuration.airframe, &rotor_command_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);

@@ -1,10 +1,10 @@
 //! Flight on the three rotors that are left: the thrust axis is steered, the heading is given up.
 
-use lmpc::DesignError;
 use nalgebra::{Vector3, Vector6};
 
 use crate::design::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
-use crate::{Airframe, Configuration, GRAVITY_M_S2, PositionReference, RigidBody};
+use crate::plant::rotor_layout::RotorsAround;
+use crate::{Airframe, Configuration, ConfigurationError, GRAVITY_M_S2, PositionReference, RigidBody};
 
 /// Feedback of position, 1/s², and velocity, 1/s, on the way to the wanted acceleration.
 const POSITION_GAIN: f64 = 0.3;
@@ -27,23 +27,28 @@ const THRUST_RANGE: [f64; 2] = [0.3, 1.5];
 /// the rotors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RotorLossLaw {
-    lost: usize,
+    rotors: RotorsAround,
+    /// Moments of inertia in the axes of the design, kg·m².
+    inertia_kg_m2: [f64; 3],
     design: ReducedAttitudeDesign,
 }
 
 impl RotorLossLaw {
-    /// For the loss of the front (0), right, back or left (3) rotor.
+    /// For the loss of one rotor, by its index in the airframe's layout.
     ///
     /// # Errors
-    /// [`DesignError`] when the airframe has no regulator.
-    pub(crate) fn new(configuration: &Configuration, lost: usize) -> Result<Self, DesignError> {
-        let [jx, jy, jz] = configuration.airframe.inertia_kg_m2;
-        let inertia = if lost.is_multiple_of(2) { [jx, jy, jz] } else { [jy, jx, jz] };
+    /// [`ConfigurationError::Layout`] when the rotors are not opposite in pairs that turn the same way,
+    /// [`ConfigurationError::Design`] when the airframe has no regulator.
+    pub(crate) fn new(configuration: &Configuration, lost: usize) -> Result<Self, ConfigurationError> {
+        let airframe = &configuration.airframe;
+        let rotors = airframe.layout.around(lost)?;
+        let [jx, jy, jz] = airframe.inertia_kg_m2;
+        let (x, y) = (rotors.towards.x * rotors.towards.x, rotors.towards.y * rotors.towards.y);
+        let inertia_kg_m2 = [jx * x + jy * y, jx * y + jy * x, jz];
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        Ok(Self {
-            lost,
-            design: ReducedAttitudeDesign::new(&configuration.airframe, inertia, sample_time_s)?,
-        })
+        let design = ReducedAttitudeDesign::new(airframe, &rotors, inertia_kg_m2, sample_time_s)
+            .map_err(|source| ConfigurationError::Design { controller: "rotor loss", source })?;
+        Ok(Self { rotors, inertia_kg_m2, design })
     }
 
     /// Commanded rotor speeds, rad/s, from the vehicle's motion, the measured speeds and where it is asked to be; the
@@ -100,54 +105,38 @@ impl RotorLossLaw {
     /// Lean towards the lost rotor, rad, and thrust of the opposite one, N, in equilibrium: it leans so that the opposite
     /// rotor brakes the spin, or drives it if the lost one, stuck, brakes it more than it should.
     fn trim(&self, airframe: &Airframe, thrust_n: f64, lost_n: f64, spin_rad_s: f64) -> (f64, f64) {
-        let [jx, jy, jz] = airframe.inertia_kg_m2;
-        let gyroscopic = jz - if self.lost.is_multiple_of(2) { jx } else { jy };
+        let [jx, _, jz] = self.inertia_kg_m2;
+        let gyroscopic = jz - jx;
         let towards = ((thrust_n / 2.0 - 2.0 * lost_n) / (thrust_n / 8.0)).clamp(-1.0, 1.0);
         let lean = LEAN_RAD * towards * if gyroscopic < 0.0 { -1.0 } else { 1.0 };
-        let trim = lost_n + gyroscopic * spin_rad_s * spin_rad_s * libm::tan(lean) / airframe.arm_length_m;
+        let distance_m = airframe.arm_length_m * self.rotors.distance;
+        let trim = lost_n + gyroscopic * spin_rad_s * spin_rad_s * libm::tan(lean) / distance_m;
         (lean, trim)
     }
 
     /// A vector of body axes in the axes of the design; rates (`true`) are mirrored as such.
     fn turned(&self, vector: &Vector3<f64>, is_rate: bool) -> Vector3<f64> {
-        let (x, y) = match self.lost {
-            0 => (vector.x, vector.y),
-            1 => (vector.y, -vector.x),
-            2 => (-vector.x, -vector.y),
-            _ => (-vector.y, vector.x),
-        };
-        match (self.is_mirrored(), is_rate) {
-            (false, _) => Vector3::new(x, y, vector.z),
-            (true, false) => Vector3::new(x, -y, vector.z),
-            (true, true) => Vector3::new(-x, y, -vector.z),
+        let plane = self.rotors.turned(&vector.xy());
+        match (self.rotors.mirrored, is_rate) {
+            (true, true) => Vector3::new(-plane.x, -plane.y, -vector.z),
+            _ => Vector3::new(plane.x, plane.y, vector.z),
         }
-    }
-
-    /// Without the right or left rotor the vehicle spins to the left.
-    fn is_mirrored(&self) -> bool {
-        !self.lost.is_multiple_of(2)
     }
 
     /// Values of the rotors in the order of the design: lost, right, opposite, left.
     fn turned_rotors(&self, rotors: &[f64; 4]) -> [f64; 4] {
-        self.places().map(|place| rotors.get(place).copied().unwrap_or(0.0))
+        self.rotors.places.map(|place| rotors.get(place).copied().unwrap_or(0.0))
     }
 
     /// The inverse.
     fn body_rotors(&self, turned: &[f64; 4]) -> [f64; 4] {
         let mut rotors = [0.0; 4];
-        for (place, value) in self.places().into_iter().zip(turned) {
+        for (place, value) in self.rotors.places.into_iter().zip(turned) {
             if let Some(rotor) = rotors.get_mut(place) {
                 *rotor = *value;
             }
         }
         rotors
-    }
-
-    /// Where the design's rotors are in the body.
-    fn places(&self) -> [usize; 4] {
-        let steps = if self.is_mirrored() { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
-        steps.map(|step| (self.lost + step) % 4)
     }
 }
 

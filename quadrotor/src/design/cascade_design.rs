@@ -16,7 +16,7 @@ use crate::design::capacities::{
 use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
 use crate::design::estimator_design::EstimatorDesign;
 use crate::design::linear_models::{altitude_model, attitude_model, position_model};
-use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings};
+use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, Mixer};
 
 /// The figures of one finished design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,7 @@ pub struct CascadeDesign {
     pub(crate) position_gains: StateFeedback<4, 2, 2>,
     pub(crate) attitude_gains: StateFeedback<6, 3, 3>,
     pub(crate) estimator: EstimatorDesign,
+    pub(crate) mixer: Mixer,
     reports: [DesignReport; 3],
 }
 
@@ -65,6 +66,7 @@ impl CascadeDesign {
             position_gains: position.gains,
             attitude_gains: attitude.gains,
             estimator: estimator_design(configuration)?,
+            mixer: Mixer::new(&configuration.airframe)?,
             reports: [altitude.report, position.report, attitude.report],
         })
     }

@@ -10,7 +10,7 @@ use crate::design::capacities::{
     ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
 };
 use crate::design::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
-use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits};
+use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -119,6 +119,7 @@ pub(crate) fn attitude_limits(settings: &ControllerSettings<3>) -> Vec<Limit> {
 /// Each axis for itself: what the mixer does when they add up (roll and pitch first) no convex limit tells.
 pub(crate) fn attitude_bounds(
     airframe: &Airframe,
+    mixer: &Mixer,
     thrust_n: f64,
     other_n_m: &Vector3<f64>,
 ) -> [f64; ATTITUDE_BOUNDS] {
@@ -126,9 +127,7 @@ pub(crate) fn attitude_bounds(
     let mean = thrust_n.clamp(weakest, strongest);
     // By how much each rotor may differ from the mean.
     let room = (mean - weakest).min(strongest - mean) / 4.0;
-    let tilting = 2.0 * airframe.arm_length_m * room;
-    let turning = 4.0 * airframe.torque_coefficient_n_m_s2 / airframe.thrust_coefficient_n_s2 * room;
-    let most = [tilting, tilting, turning];
+    let most = mixer.largest_torques_n_m(room);
     core::array::from_fn(|bound| {
         let axis = bound % 3;
         if bound < 3 { most[axis] - other_n_m[axis] } else { most[axis] + other_n_m[axis] }

@@ -7,9 +7,12 @@
 //! With n the wanted thrust axis (unit, down) in these axes and p, q, r the body rates:
 //!
 //! ```text
-//! ṅ₁ = r n₂ − q n₃             J_x ṗ = l (f_left − f_right) − (J_z − J_y) q r
-//! ṅ₂ = p n₃ − r n₁             J_y q̇ = l (f_lost − f_opposite) + (J_z − J_x) p r
+//! ṅ₁ = r n₂ − q n₃     J_x ṗ = y (f_left − f_right) − (J_z − J_y) q r
+//! ṅ₂ = p n₃ − r n₁     J_y q̇ = l (f_lost − f_opposite) − x (f_left − f_right) + (J_z − J_x) p r
 //! ```
+//!
+//! l is the distance of the lost rotor and the opposite one from the centre of mass, (x, y) the place of the right one: (0, l)
+//! but in an "H". Products of inertia, which an airframe with J_x ≠ J_y has in turned axes, are left out.
 //!
 //! A body that leans by β towards the lost rotor and turns about the wanted axis, ω ∥ n, is in equilibrium when the
 //! opposite rotor makes f_opposite = f_lost + (J_z − J_x) r² tan β / l. Its drag torque brakes the spin, so that the rate
@@ -21,6 +24,7 @@ use lmpc::{DesignError, Discretization, Dlqr, StateSpace};
 use nalgebra::{DMatrix, DVector, Matrix2x6, Vector2, Vector6};
 
 use crate::Airframe;
+use crate::plant::rotor_layout::RotorsAround;
 
 /// β, rad: the spin settles at 8 rad/s with the default airframe, and the vehicle touches down no more askew.
 pub(crate) const LEAN_RAD: f64 = 0.14;
@@ -46,6 +50,7 @@ impl ReducedAttitudeDesign {
     /// [`DesignError`] when a regulator does not exist.
     pub(crate) fn new(
         airframe: &Airframe,
+        rotors: &RotorsAround,
         inertia_kg_m2: [f64; 3],
         sample_time_s: f64,
     ) -> Result<Self, DesignError> {
@@ -60,7 +65,7 @@ impl ReducedAttitudeDesign {
         let r = DMatrix::from_diagonal_element(2, 2, THRUST_WEIGHT);
         let gain = |index: usize| {
             let spin_rad_s = FIRST_SPIN_RAD_S + SPIN_STEP_RAD_S * index as f64;
-            let model = model(airframe, inertia_kg_m2, spin_rad_s, sample_time_s)?;
+            let model = model(airframe, rotors, inertia_kg_m2, spin_rad_s, sample_time_s)?;
             let regulator = Dlqr::new(model.a(), model.b(), &q, &r, 1.0)?;
             Ok(Matrix2x6::from_fn(|row, column| regulator.gain()[(row, column)]))
         };
@@ -81,11 +86,14 @@ impl ReducedAttitudeDesign {
 /// The linear model about a steady spin, with the rotors' lag.
 fn model(
     airframe: &Airframe,
+    rotors: &RotorsAround,
     [jx, jy, jz]: [f64; 3],
     spin_rad_s: f64,
     sample_time_s: f64,
 ) -> Result<StateSpace, DesignError> {
     let (l, lag) = (airframe.arm_length_m, 1.0 / airframe.rotor_time_constant_s);
+    // l_o of the lost and the opposite rotor, and the place of the right one.
+    let (opposite, right) = (l * rotors.distance, rotors.right * l);
     let (n1, n3) = (libm::sin(LEAN_RAD), libm::cos(LEAN_RAD));
     let r = spin_rad_s;
     let p = r * n1 / n3;
@@ -93,8 +101,8 @@ fn model(
     // n₃ = √(1 − n₁² − n₂²) moves with n₁.
     (a[(0, 1)], a[(0, 3)]) = (r, -n3);
     (a[(1, 0)], a[(1, 2)]) = (-r - p * n1 / n3, n3);
-    (a[(2, 3)], a[(2, 5)]) = (-(jz - jy) * r / jx, l / jx);
-    (a[(3, 2)], a[(3, 4)]) = ((jz - jx) * r / jy, -l / jy);
+    (a[(2, 3)], a[(2, 5)]) = (-(jz - jy) * r / jx, right.y / jx);
+    (a[(3, 2)], a[(3, 4)], a[(3, 5)]) = ((jz - jx) * r / jy, -opposite / jy, -right.x / jy);
     (a[(4, 4)], a[(5, 5)]) = (-lag, -lag);
     let mut b = DMatrix::zeros(6, 2);
     (b[(4, 0)], b[(5, 1)]) = (lag, lag);
@@ -114,10 +122,12 @@ mod tests {
     #[test]
     fn the_thrust_axis_is_stable_at_every_spin_rate() {
         let airframe = Airframe::default();
-        let design = ReducedAttitudeDesign::new(&airframe, airframe.inertia_kg_m2, 0.01).expect("regulators");
+        let rotors = airframe.layout.around(0).expect("opposite rotors");
+        let design =
+            ReducedAttitudeDesign::new(&airframe, &rotors, airframe.inertia_kg_m2, 0.01).expect("regulators");
         for step in 0..4 * (SPINS - 1) {
             let spin_rad_s = FIRST_SPIN_RAD_S + SPIN_STEP_RAD_S * step as f64 / 4.0;
-            let model = model(&airframe, airframe.inertia_kg_m2, spin_rad_s, 0.01).expect("a model");
+            let model = model(&airframe, &rotors, airframe.inertia_kg_m2, spin_rad_s, 0.01).expect("a model");
             let gain = DMatrix::from_fn(2, 6, |row, column| {
                 let mut state = Vector6::zeros();
                 state[column] = 1.0;

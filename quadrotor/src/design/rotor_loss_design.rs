@@ -1,7 +1,5 @@
 //! The control laws for the loss of each rotor.
 
-use lmpc::DesignError;
-
 use crate::control::rotor_loss::RotorLossLaw;
 use crate::{Configuration, ConfigurationError, ControlError};
 
@@ -9,7 +7,7 @@ use crate::{Configuration, ConfigurationError, ControlError};
 /// flight.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RotorLossDesign {
-    laws: [Result<RotorLossLaw, DesignError>; 4],
+    laws: [Result<RotorLossLaw, ConfigurationError>; 4],
 }
 
 impl RotorLossDesign {
@@ -31,9 +29,7 @@ impl RotorLossDesign {
         match self.laws.get(lost) {
             None => Err(no_such_rotor),
             Some(Ok(_)) => Ok(()),
-            Some(Err(source)) => {
-                Err(ConfigurationError::Design { controller: "rotor loss", source: source.clone() })
-            }
+            Some(Err(error)) => Err(error.clone()),
         }
     }
 }

@@ -2,17 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::RotorLayout;
+
 /// Standard acceleration of free fall, m/s² (ISO 80000-3). The paper writes g and gives no number.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
 
-/// Mass, geometry, rotors and drag of a quadrotor in "+" configuration: rotors at the front, right,
-/// back and left (Figure 1).
+/// Mass, geometry, rotors and drag of a quadrotor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Airframe {
     /// m, kg.
     pub mass_kg: f64,
-    /// l, distance from the centre of mass to each rotor, m.
+    /// l, distance from the centre of mass to each rotor, m: the unit of the layout.
     pub arm_length_m: f64,
+    /// Where the rotors are and which way they turn: "+" unless it is given.
+    #[serde(default)]
+    pub layout: RotorLayout,
     /// Diagonal of the inertia tensor J_x, J_y, J_z, kg·m².
     pub inertia_kg_m2: [f64; 3],
     /// k₁ of (1), thrust per squared rotor speed, N·s².
@@ -34,6 +38,7 @@ pub struct Airframe {
 /// | constant | default | reason |
 /// | --- | --- | --- |
 /// | m, l, J | Table 1 | the paper |
+/// | layout | "+" | the paper, Figure 1 |
 /// | k₁ | 2.7e-5 N·s² | 12-inch propeller (D = 0.305 m, the largest that clears a 0.275 m arm): C_T ρ D⁴/4π² with C_T = 0.1 |
 /// | k₂ | 6.0e-7 N·m·s² | the same propeller: k₂/k₁ = D C_Q/C_T = 0.022 m with C_Q = 0.0073 |
 /// | ω min | 50 rad/s | idle at a fifth of the hover speed, keeps the motors synchronised |
@@ -45,6 +50,7 @@ impl Default for Airframe {
         Self {
             mass_kg: 0.7,
             arm_length_m: 0.275,
+            layout: RotorLayout::plus(),
             inertia_kg_m2: [0.1063, 0.1063, 0.2122],
             thrust_coefficient_n_s2: 2.7e-5,
             torque_coefficient_n_m_s2: 6.0e-7,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::plant::ground::contact;
+use crate::plant::ground::{contact, is_held};
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
 use crate::{Airframe, Environment, Wrench, wrench_of_rotors};
@@ -45,12 +45,15 @@ impl Plant {
         wrench_of_rotors(&self.airframe, &state.rotor_speed_rad_s)
     }
 
-    /// Acceleration in NED, m/s².
+    /// Acceleration in NED, m/s²; none along the ground while static friction holds the vehicle.
     pub fn acceleration_m_s2(&self, state: &PlantState, inputs: &PlantInputs) -> Vector3<f64> {
-        self.derivative(state, inputs).body.velocity_m_s
+        let acceleration = self.derivative(state, inputs).body.velocity_m_s;
+        if self.is_held(state, inputs) { Vector3::new(0.0, 0.0, acceleration.z) } else { acceleration }
     }
 
-    /// f(x, u): the time derivative of the state. It depends on nothing else, so that any integrator can use it.
+    /// f(x, u): the time derivative of the state. It depends on nothing else, and continuously, so that any integrator can
+    /// use it. On the ground it has the friction of feet that slip; that a vehicle stands still in spite of a wind is a rule
+    /// of [`Plant::step`].
     pub fn derivative(&self, state: &PlantState, inputs: &PlantInputs) -> PlantState {
         let airframe = &self.airframe;
         let mut external = inputs.disturbance.external(airframe, &state.body.velocity_m_s);
@@ -59,12 +62,8 @@ impl Plant {
             external.force_n += ground.force_n;
             external.torque_n_m += ground.torque_n_m;
         }
-        let wrench = match inputs.actuation {
-            Actuation::RotorSpeeds(_) => self.wrench(state),
-            Actuation::Wrench(wrench) => wrench,
-        };
         PlantState {
-            body: state.body.derivative(airframe, &wrench, &external),
+            body: state.body.derivative(airframe, &self.driving_wrench(state, inputs), &external),
             rotor_speed_rad_s: self.rotor_acceleration_rad_s2(state, inputs),
         }
     }
@@ -82,14 +81,60 @@ impl Plant {
         })
     }
 
-    /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
-    pub fn step(&self, state: &PlantState, inputs: &PlantInputs, h_s: f64) -> PlantState {
-        let f = |state: &PlantState| self.derivative(state, inputs);
-        let k1 = f(state);
-        let k2 = f(&state.plus(&k1, h_s / 2.0));
-        let k3 = f(&state.plus(&k2, h_s / 2.0));
-        let k4 = f(&state.plus(&k3, h_s));
-        // x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
-        state.plus(&k1, h_s / 6.0).plus(&k2, h_s / 3.0).plus(&k3, h_s / 3.0).plus(&k4, h_s / 6.0).normalized()
+    /// Thrust and torques that drive the body.
+    fn driving_wrench(&self, state: &PlantState, inputs: &PlantInputs) -> Wrench {
+        match inputs.actuation {
+            Actuation::RotorSpeeds(_) => self.wrench(state),
+            Actuation::Wrench(wrench) => wrench,
+        }
     }
+
+    /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
+    ///
+    /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
+    /// 0.1 m/s, and is pulled along the ground by less than μ N keeps its place and its heading exactly; it still settles
+    /// on its feet. Where it is pulled by more, it slips.
+    pub fn step(&self, state: &PlantState, inputs: &PlantInputs, h_s: f64) -> PlantState {
+        if !self.is_held(state, inputs) {
+            return runge_kutta(state, h_s, |state| self.derivative(state, inputs));
+        }
+        let mut still = *state;
+        hold(&mut still);
+        runge_kutta(&still, h_s, |state| {
+            let mut derivative = self.derivative(state, inputs);
+            (derivative.body.position_m.x, derivative.body.position_m.y) = (0.0, 0.0);
+            hold(&mut derivative);
+            derivative
+        })
+    }
+
+    /// Whether static friction holds the vehicle where it is.
+    fn is_held(&self, state: &PlantState, inputs: &PlantInputs) -> bool {
+        if !self.ground_plane {
+            return false;
+        }
+        // What it would be pulled by at rest.
+        let mut still = *state;
+        hold(&mut still);
+        let wrench = self.driving_wrench(&still, inputs);
+        let mut pull = inputs.disturbance.external(&self.airframe, &still.body.velocity_m_s);
+        pull.force_n += still.body.rotation() * Vector3::new(0.0, 0.0, -wrench.thrust_n);
+        pull.torque_n_m += wrench.torque_n_m;
+        is_held(&self.airframe, &state.body, &pull)
+    }
+}
+
+/// Stops the motion along the ground, or its change.
+fn hold(state: &mut PlantState) {
+    let body = &mut state.body;
+    (body.velocity_m_s.x, body.velocity_m_s.y, body.body_rate_rad_s.z) = (0.0, 0.0, 0.0);
+}
+
+fn runge_kutta(state: &PlantState, h_s: f64, f: impl Fn(&PlantState) -> PlantState) -> PlantState {
+    let k1 = f(state);
+    let k2 = f(&state.plus(&k1, h_s / 2.0));
+    let k3 = f(&state.plus(&k2, h_s / 2.0));
+    let k4 = f(&state.plus(&k3, h_s));
+    // x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
+    state.plus(&k1, h_s / 6.0).plus(&k2, h_s / 3.0).plus(&k3, h_s / 3.0).plus(&k4, h_s / 6.0).normalized()
 }

@@ -1,6 +1,6 @@
 //! Contact with a ground plane at z = 0.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::plant::rigid_body::{External, RigidBody};
 use crate::{Airframe, GRAVITY_M_S2};
@@ -17,33 +17,17 @@ const FRICTION_SLIP_M_S: f64 = 0.1;
 
 /// Force and torque of the ground on four feet below the rotors, level with the centre of mass, so that
 /// a vehicle at rest on the ground is at z = 0 but for the compliance.
+///
+/// Its friction is that of feet that slip: it is proportional to a slow slip, and none at rest. What keeps a vehicle at rest
+/// is [`is_held`].
 pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
-    if body.position_m.z < -airframe.arm_length_m {
-        return External::default();
-    }
-    let mass = airframe.mass_kg / 4.0;
-    let stiffness = mass * CONTACT_FREQUENCY_RAD_S * CONTACT_FREQUENCY_RAD_S;
-    let damping = 2.0 * CONTACT_DAMPING_RATIO * mass * CONTACT_FREQUENCY_RAD_S;
-    // A fall from any height stays a number: no foot pushes with more than 200 g.
-    let strongest = 200.0 * airframe.mass_kg * GRAVITY_M_S2;
-
-    let rotation = body.rotation();
-    let l = airframe.arm_length_m;
-    let feet = [
-        Vector3::new(l, 0.0, 0.0),
-        Vector3::new(0.0, l, 0.0),
-        Vector3::new(-l, 0.0, 0.0),
-        Vector3::new(0.0, -l, 0.0),
-    ];
     let mut total = External::default();
-    for foot in feet {
-        let depth = body.position_m.z + (rotation * foot).z;
-        if depth <= 0.0 {
-            continue;
-        }
-        let velocity = body.velocity_m_s + rotation * body.body_rate_rad_s.cross(&foot);
-        // The ground only pushes.
-        let normal = (stiffness * depth + damping * velocity.z).clamp(0.0, strongest);
+    if is_above(airframe, body) {
+        return total;
+    }
+    let rotation = body.rotation();
+    for foot in feet(airframe) {
+        let Some((normal, velocity)) = footing(airframe, body, &rotation, &foot) else { continue };
         let slip = libm::hypot(velocity.x, velocity.y);
         let friction = FRICTION_COEFFICIENT * normal / slip.max(FRICTION_SLIP_M_S);
         let force = Vector3::new(-friction * velocity.x, -friction * velocity.y, -normal);
@@ -51,4 +35,55 @@ pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
         total.torque_n_m += foot.cross(&rotation.inverse_transform_vector(&force));
     }
     total
+}
+
+/// Whether static friction holds the vehicle where it is: all feet carry load, it slips more slowly than
+/// friction needs to develop, and what pulls it along the ground, NED, N, and turns it, N·m, is less than the feet can take
+/// together. `pull` is beside the ground's own force.
+pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
+    let reach_m = airframe.arm_length_m * airframe.layout.reach();
+    let slip_m_s = body.velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z) * reach_m;
+    if is_above(airframe, body) || slip_m_s >= FRICTION_SLIP_M_S {
+        return false;
+    }
+    let rotation = body.rotation();
+    let normals = feet(airframe)
+        .map(|foot| footing(airframe, body, &rotation, &foot).map_or(0.0, |(normal, _)| normal));
+    // A foot at the nearest rotor bears |f|/4 + |τ|/4r of at most μ N/4.
+    let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
+    let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
+    let load_n: f64 = normals.iter().sum();
+    normals.iter().all(|normal| *normal > 0.0) && demand_n <= FRICTION_COEFFICIENT * load_n
+}
+
+/// Whether no foot can touch the ground in any attitude.
+fn is_above(airframe: &Airframe, body: &RigidBody) -> bool {
+    body.position_m.z < -airframe.arm_length_m * airframe.layout.reach()
+}
+
+/// Feet below the rotors, FRD, m.
+fn feet(airframe: &Airframe) -> [Vector3<f64>; 4] {
+    let l = airframe.arm_length_m;
+    airframe.layout.rotors.map(|rotor| Vector3::new(l * rotor.x, l * rotor.y, 0.0))
+}
+
+/// Load of a foot, N, and its velocity, NED, m/s, if it touches the ground.
+fn footing(
+    airframe: &Airframe,
+    body: &RigidBody,
+    rotation: &UnitQuaternion<f64>,
+    foot: &Vector3<f64>,
+) -> Option<(f64, Vector3<f64>)> {
+    let depth = body.position_m.z + (rotation * foot).z;
+    if depth <= 0.0 {
+        return None;
+    }
+    let mass = airframe.mass_kg / 4.0;
+    let stiffness = mass * CONTACT_FREQUENCY_RAD_S * CONTACT_FREQUENCY_RAD_S;
+    let damping = 2.0 * CONTACT_DAMPING_RATIO * mass * CONTACT_FREQUENCY_RAD_S;
+    // A fall from any height stays a number: no foot pushes with more than 200 g.
+    let strongest = 200.0 * airframe.mass_kg * GRAVITY_M_S2;
+    let velocity = body.velocity_m_s + rotation * body.body_rate_rad_s.cross(foot);
+    // The ground only pushes.
+    Some(((stiffness * depth + damping * velocity.z).clamp(0.0, strongest), velocity))
 }

@@ -8,3 +8,5 @@ pub(crate) mod plant_inputs;
 pub(crate) mod plant_state;
 pub(crate) mod rigid_body;
 pub(crate) mod rotor_fault;
+pub(crate) mod rotor_layout;
+pub(crate) mod rotor_map;

@@ -24,8 +24,6 @@ const HEARTBEAT_US: u64 = 1_000_000;
 const TRUTH_US: u64 = 20_000;
 /// Motors stop when controls have not come for so long, µs, as speed controllers do without a signal.
 const SIGNAL_LOSS_US: u64 = 200_000;
-/// Below this height, m, a vehicle whose motors rest stands.
-const STANDS_M: f64 = 0.03;
 
 /// A vehicle on the ground, its rotors at rest.
 #[derive(Clone, Debug)]
@@ -116,10 +114,6 @@ impl Rig {
         while self.time_us < goal_us {
             let height_m = -self.state.body.position_m.z;
             wind_m_s = self.wind.velocity_m_s(self.time_us, height_m);
-            // What stands is held by static friction, which the contact lacks.
-            if height_m < STANDS_M && self.command_rad_s == [0.0; 4] {
-                wind_m_s = Vector3::zeros();
-            }
             let h_s = TICK_US as f64 / 1e6;
             self.state = self.plant.step(&self.state, &self.inputs(wind_m_s), h_s);
             self.time_us += TICK_US;

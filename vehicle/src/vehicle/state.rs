@@ -206,10 +206,7 @@ impl Vehicle {
         let asked = self.steering.apply(&self.simulation, &self.outputs, dt_s);
         let height_m = -self.truth.position_m.z;
         self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
-        // The contact's friction grows with the slip; what stands is held by static friction, and does not creep.
-        let stands = self.landed.is_landed() && !self.armed;
-        let wind_m_s = if stands { Vector3::zeros() } else { self.wind_m_s };
-        let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
+        let disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
         let inputs = Inputs {
             disturbance,
             armed: self.armed,

@@ -40,7 +40,7 @@ pub fn of_default_flight() -> Result<String, Failure> {
             Line::dashed(axis(&|o| -o.setpoint.position_m.z)),
         ],
     });
-    let names = ["front", "right", "back", "left"];
+    let names = Configuration::default().airframe.layout.names();
     let rotors = (0..4)
         .map(|rotor| Line::solid(axis(&|o| o.rotor_speed_rad_s[rotor]), ROTORS[rotor], 1.6, names[rotor]));
     svg.draw(&Chart {

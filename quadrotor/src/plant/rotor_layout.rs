@@ -1,0 +1,218 @@
+//! Where the four rotors are and which way they turn.
+
+use nalgebra::{Matrix4, Vector2};
+use serde::{Deserialize, Serialize};
+
+use crate::ConfigurationError;
+
+/// Coordinates that differ by less than this, arm lengths, are the same.
+const SAME: f64 = 1e-9;
+/// Largest share of a rotor's thrust, per arm length, that may be needed for one unit of torque: beyond it rotors are too
+/// close to a line to control an axis.
+const LARGEST_SHARE: f64 = 100.0;
+
+/// Which way a rotor turns, seen from above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Direction {
+    /// To the right: its drag turns the body to the left.
+    Clockwise,
+    /// To the left: its drag turns the body to the right.
+    Counterclockwise,
+}
+
+impl Direction {
+    /// Sign of its drag torque about the body's down axis.
+    pub fn torque_sign(self) -> f64 {
+        match self {
+            Self::Clockwise => -1.0,
+            Self::Counterclockwise => 1.0,
+        }
+    }
+}
+
+/// One rotor, in the plane of the centre of mass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rotor {
+    /// Forward of the centre of mass, arm lengths.
+    pub x: f64,
+    /// Right of the centre of mass, arm lengths.
+    pub y: f64,
+    /// Which way it turns.
+    pub direction: Direction,
+}
+
+/// The four rotors, in the order of all arrays of rotor speeds. A foot of the vehicle is below each.
+///
+/// Equal thrusts make no torque: the rotors' centre is the centre of mass, and two turn each way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RotorLayout {
+    /// The rotors.
+    pub rotors: [Rotor; 4],
+}
+
+/// The paper's (Figure 1).
+impl Default for RotorLayout {
+    fn default() -> Self {
+        Self::plus()
+    }
+}
+
+impl RotorLayout {
+    /// "+": front, right, back and left; front and back turn clockwise.
+    pub fn plus() -> Self {
+        Self::alternating([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    }
+
+    /// "X": front right, back right, back left and front left, each an arm's length from the centre of mass; front right
+    /// and back left turn clockwise.
+    pub fn x() -> Self {
+        Self::h(1.0)
+    }
+
+    /// "H": as [`RotorLayout::x`], with a distance from front to back that is `ratio` times the one from left to right.
+    pub fn h(ratio: f64) -> Self {
+        let half_width = 1.0 / libm::hypot(1.0, ratio);
+        let (x, y) = (ratio * half_width, half_width);
+        Self::alternating([[x, y], [-x, y], [-x, -y], [x, -y]])
+    }
+
+    /// Rotors clockwise around the vehicle, the first of which turns clockwise.
+    fn alternating(places: [[f64; 2]; 4]) -> Self {
+        let directions = [Direction::Clockwise, Direction::Counterclockwise];
+        Self {
+            rotors: core::array::from_fn(|index| {
+                let [x, y] = places[index];
+                Rotor { x, y, direction: directions[index % 2] }
+            }),
+        }
+    }
+
+    /// Where each rotor is, for a person.
+    pub fn names(&self) -> [&'static str; 4] {
+        self.rotors.map(|rotor| match (sign(rotor.x), sign(rotor.y)) {
+            (1, 0) => "front",
+            (1, 1) => "front right",
+            (0, 1) => "right",
+            (-1, 1) => "back right",
+            (-1, 0) => "back",
+            (-1, -1) => "back left",
+            (0, -1) => "left",
+            (1, -1) => "front left",
+            _ => "centre",
+        })
+    }
+
+    /// Distance of the outermost rotor from the centre of mass, arm lengths.
+    pub(crate) fn reach(&self) -> f64 {
+        self.rotors.iter().map(|rotor| libm::hypot(rotor.x, rotor.y)).fold(0.0, f64::max)
+    }
+
+    /// Distance of the innermost rotor from the centre of mass, arm lengths.
+    pub(crate) fn nearest(&self) -> f64 {
+        self.rotors.iter().map(|rotor| libm::hypot(rotor.x, rotor.y)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Thrust and torques, of the thrusts of the rotors: (1) without its constants. Rows F, τ_φ, τ_θ per arm length, and
+    /// τ_ψ per drag torque.
+    pub(crate) fn allocation(&self) -> Matrix4<f64> {
+        let row = |value: fn(&Rotor) -> f64| self.rotors.map(|rotor| value(&rotor));
+        let rows = [
+            [1.0; 4],
+            row(|rotor| -rotor.y),
+            row(|rotor| rotor.x),
+            row(|rotor| rotor.direction.torque_sign()),
+        ];
+        Matrix4::from_fn(|i, j| rows[i][j])
+    }
+
+    /// The inverse of [`RotorLayout::allocation`].
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Layout`] when equal thrusts make a torque, or the rotors cannot make every torque.
+    pub(crate) fn inverse_allocation(&self) -> Result<Matrix4<f64>, ConfigurationError> {
+        let refused = |reason| Err(ConfigurationError::Layout { reason });
+        if self.rotors.iter().any(|rotor| !(rotor.x.is_finite() && rotor.y.is_finite())) {
+            return refused("a rotor's place is not finite");
+        }
+        let allocation = self.allocation();
+        let [_, roll, pitch, yaw]: [f64; 4] = allocation.column_sum().into();
+        if libm::fabs(roll) > SAME || libm::fabs(pitch) > SAME {
+            return refused("the rotors' centre is not the centre of mass");
+        }
+        if yaw != 0.0 {
+            return refused("as many rotors must turn one way as the other");
+        }
+        match allocation.try_inverse() {
+            Some(inverse) if inverse.amax() <= LARGEST_SHARE => Ok(inverse),
+            _ => refused("the rotors cannot make thrust and all three torques"),
+        }
+    }
+
+    /// How the rotors lie when one of them is lost, if they lie opposite one another in pairs that turn the same way.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Layout`] if they do not.
+    pub(crate) fn around(&self, lost: usize) -> Result<RotorsAround, ConfigurationError> {
+        let refused = || ConfigurationError::Layout {
+            reason: "its rotors are not opposite in pairs that turn the same way",
+        };
+        let rotor = self.rotors.get(lost).ok_or_else(refused)?;
+        let place = |rotor: &Rotor| Vector2::new(rotor.x, rotor.y);
+        let opposed = |one: &Rotor, other: &Rotor| {
+            one.direction == other.direction && (place(one) + place(other)).amax() < SAME
+        };
+        let opposite = self.rotors.iter().position(|other| opposed(rotor, other)).ok_or_else(refused)?;
+        let mut sides = (0..4).filter(|index| *index != lost && *index != opposite);
+        let (Some(one), Some(other)) = (sides.next(), sides.next()) else { return Err(refused()) };
+        if !opposed(&self.rotors[one], &self.rotors[other]) {
+            return Err(refused());
+        }
+        let distance = place(rotor).norm();
+        let towards = place(rotor) / distance;
+        let mirrored = rotor.direction == Direction::Counterclockwise;
+        let around = |right: usize, left: usize| {
+            let turned = turned(&towards, mirrored, &place(&self.rotors[right]));
+            RotorsAround { places: [lost, right, opposite, left], towards, mirrored, distance, right: turned }
+        };
+        let first = around(one, other);
+        Ok(if first.right.y > 0.0 { first } else { around(other, one) })
+    }
+}
+
+/// The rotors in axes that are turned so that a lost one is the front one, and mirrored, if need be, so that the two beside
+/// it drive a spin to the right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RotorsAround {
+    /// Indices of the lost rotor, and of those on the right, opposite and on the left.
+    pub(crate) places: [usize; 4],
+    /// Unit vector from the centre of mass to the lost rotor, in the body.
+    pub(crate) towards: Vector2<f64>,
+    /// Whether the axes are mirrored.
+    pub(crate) mirrored: bool,
+    /// Of the lost rotor and the opposite one from the centre of mass, arm lengths.
+    pub(crate) distance: f64,
+    /// Place of the right rotor in these axes, arm lengths; the left one is opposite to it.
+    pub(crate) right: Vector2<f64>,
+}
+
+impl RotorsAround {
+    /// A vector of the body's plane in these axes.
+    pub(crate) fn turned(&self, vector: &Vector2<f64>) -> Vector2<f64> {
+        turned(&self.towards, self.mirrored, vector)
+    }
+}
+
+fn turned(towards: &Vector2<f64>, mirrored: bool, vector: &Vector2<f64>) -> Vector2<f64> {
+    let across = towards.x * vector.y - towards.y * vector.x;
+    Vector2::new(towards.dot(vector), if mirrored { -across } else { across })
+}
+
+fn sign(coordinate: f64) -> i8 {
+    if libm::fabs(coordinate) < SAME {
+        0
+    } else if coordinate > 0.0 {
+        1
+    } else {
+        -1
+    }
+}

@@ -1,0 +1,140 @@
+//! A vehicle on the ground: what holds it, and what moves it.
+
+use nalgebra::Vector3;
+use quadrotor::{
+    Airframe, Configuration, Disturbance, Environment, GRAVITY_M_S2, InitialState, Inputs, Plant,
+    PlantInputs, PlantState, RotorLayout, Simulation, Wrench,
+};
+
+/// μ of the ground.
+const FRICTION: f64 = 0.7;
+
+fn draggy() -> Airframe {
+    Airframe { drag_n_s_m: [0.3; 3], ..Airframe::default() }
+}
+
+/// Rotors at rest, stood for a second.
+fn standing(airframe: &Airframe) -> (Plant, PlantState) {
+    let plant = Plant::new(airframe, &Environment { ground_plane: true });
+    let mut state = PlantState::at_rest(&InitialState::default());
+    for _ in 0..1_000 {
+        state = plant.step(&state, &PlantInputs::default(), 1e-3);
+    }
+    (plant, state)
+}
+
+fn pulled(disturbance: Disturbance) -> PlantInputs {
+    PlantInputs { disturbance, ..PlantInputs::default() }
+}
+
+#[test]
+fn in_a_wind_it_stays_exactly_where_it_stands() {
+    let airframe = draggy();
+    for layout in [RotorLayout::plus(), RotorLayout::x()] {
+        let (plant, start) = standing(&Airframe { layout, ..airframe });
+        let wind = pulled(Disturbance { wind_m_s: Vector3::new(3.0, -4.0, 0.0), ..Disturbance::default() });
+        let mut state = start;
+        for _ in 0..60_000 {
+            state = plant.step(&state, &wind, 1e-3);
+        }
+        assert_eq!(state.body.position_m.xy(), start.body.position_m.xy());
+        assert_eq!(state.body.velocity_m_s.xy().norm(), 0.0);
+        let turned = state.body.rotation().angle_to(&start.body.rotation());
+        assert!(turned < 1e-12, "{turned}");
+        // An accelerometer feels nothing sideways either.
+        assert_eq!(plant.acceleration_m_s2(&state, &wind).xy().norm(), 0.0);
+    }
+}
+
+/// Just below μ N it stays, just above it slips away, along the force; and it is held again when the force ends.
+#[test]
+fn it_lets_go_above_the_static_limit() {
+    let (plant, start) = standing(&draggy());
+    let limit_n = FRICTION * plant.airframe().weight_n();
+    let after_a_second = |force: f64| {
+        let push = pulled(Disturbance { force_n: Vector3::new(0.0, force, 0.0), ..Disturbance::default() });
+        (0..1_000).fold(start, |state, _| plant.step(&state, &push, 1e-3))
+    };
+    assert_eq!(after_a_second(0.99 * limit_n).body.position_m.y, start.body.position_m.y);
+    let slid = after_a_second(1.5 * limit_n);
+    // Half of μ g is left over: 3.4 m/s².
+    let expected_m = 0.25 * FRICTION * GRAVITY_M_S2;
+    assert!((slid.body.position_m.y - expected_m).abs() < 0.2 * expected_m, "{slid:?}");
+    assert!(slid.body.position_m.x.abs() < 1e-9);
+    let stopped = (0..2_000).fold(slid, |state, _| plant.step(&state, &PlantInputs::default(), 1e-3));
+    assert_eq!(stopped.body.velocity_m_s.xy().norm(), 0.0);
+}
+
+/// Torque about the vertical: r μ N holds it.
+#[test]
+fn it_turns_above_the_static_limit_of_its_feet() {
+    let (plant, start) = standing(&Airframe::default());
+    let airframe = plant.airframe();
+    let limit_n_m = FRICTION * airframe.weight_n() * airframe.arm_length_m;
+    let turned = |torque: f64| {
+        let wrench = Wrench { thrust_n: 0.0, torque_n_m: Vector3::new(0.0, 0.0, torque) };
+        let end = (0..500).fold(start, |state, _| plant.step(&state, &PlantInputs::wrench(wrench), 1e-3));
+        end.body.rotation().euler_angles().2
+    };
+    assert!(turned(0.99 * limit_n_m).abs() < 1e-12);
+    assert!(turned(1.5 * limit_n_m) > 0.05);
+}
+
+/// Dropped, aslant and sliding: the ground only takes energy, also when it holds the vehicle at last.
+#[test]
+fn a_landing_does_not_gain_energy() {
+    let airframe = Airframe::default();
+    let plant = Plant::new(&airframe, &Environment { ground_plane: true });
+    let inertia = Vector3::from(airframe.inertia_kg_m2);
+    // What the compliant feet hold is at most what came in: looked at is what is left above them.
+    let energy = |state: &PlantState| {
+        let (body, rate) = (&state.body, state.body.body_rate_rad_s);
+        let springs: f64 = airframe
+            .layout
+            .rotors
+            .iter()
+            .map(|rotor| {
+                let foot = Vector3::new(rotor.x, rotor.y, 0.0) * airframe.arm_length_m;
+                let depth = (body.position_m.z + (body.rotation() * foot).z).max(0.0);
+                airframe.mass_kg / 4.0 * 2500.0 * depth * depth / 2.0
+            })
+            .sum();
+        airframe.mass_kg * (body.velocity_m_s.norm_squared() / 2.0 - GRAVITY_M_S2 * body.position_m.z)
+            + rate.dot(&inertia.component_mul(&rate)) / 2.0
+            + springs
+    };
+    let initial = InitialState {
+        position_m: [0.0, 0.0, -0.3],
+        velocity_m_s: [0.8, -0.3, 0.0],
+        attitude_rad: [0.05, -0.03, 0.4],
+        body_rate_rad_s: [0.0, 0.0, 1.0],
+    };
+    let mut state = PlantState::at_rest(&initial);
+    let mut before = energy(&state);
+    for _ in 0..5_000 {
+        state = plant.step(&state, &PlantInputs::default(), 1e-3);
+        let after = energy(&state);
+        assert!(after <= before + 1e-6, "{before} J became {after} J: {state:?}");
+        before = after;
+    }
+    assert_eq!(state.body.velocity_m_s.xy().norm(), 0.0);
+}
+
+/// The same rule in a flight: disarmed it stands in the wind, armed it takes off from there.
+#[test]
+fn a_flight_begins_where_the_vehicle_stood() {
+    let mut configuration = Configuration { airframe: draggy(), ..Configuration::default() };
+    configuration.environment.ground_plane = true;
+    let mut inputs = Inputs { armed: false, ..Inputs::default() };
+    inputs.disturbance.wind_m_s = Vector3::new(5.0, 0.0, 0.0);
+    let mut flight = Simulation::new(&configuration, &inputs).unwrap();
+    // It begins without load on its feet, and sinks 4 mm.
+    flight.advance_to(1_000_000, &inputs).unwrap();
+    let stands = flight.outputs().position_m.xy();
+    assert!(stands.norm() < 1e-4);
+    flight.advance_to(60_000_000, &inputs).unwrap();
+    assert_eq!(flight.outputs().position_m.xy(), stands);
+    inputs.armed = true;
+    flight.advance_to(80_000_000, &inputs).unwrap();
+    assert!((flight.outputs().position_m - inputs.reference.position_m).norm() < 0.01);
+}
