@@ -61,6 +61,17 @@ pub struct VehicleSettings {
     pub plans: Plans,
 }
 
+impl VehicleSettings {
+    /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.
+    pub fn flown_configuration(&self) -> Configuration {
+        let mut configuration = self.configuration;
+        configuration.environment.ground_plane = true;
+        configuration.reference.shaping = true;
+        configuration.initial.attitude_rad[2] = self.heading_rad;
+        configuration
+    }
+}
+
 /// Where a return goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Home {
@@ -129,10 +140,7 @@ impl Vehicle {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
-        let mut configuration = settings.configuration;
-        configuration.environment.ground_plane = true;
-        configuration.reference.shaping = true;
-        configuration.initial.attitude_rad[2] = settings.heading_rad;
+        let configuration = settings.flown_configuration();
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
             let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
@@ -348,11 +356,6 @@ impl Vehicle {
     /// Its own parameters.
     pub fn conduct(&self) -> &Conduct {
         &self.conduct
-    }
-
-    /// Changes its own parameters.
-    pub fn set_conduct(&mut self, conduct: Conduct) {
-        self.conduct = conduct;
     }
 
     /// Home.
