@@ -22,7 +22,7 @@ use super::return_home::ReturnPhase;
 use super::rotor_loss::RotorWatch;
 use super::set_point::PositionSetPoint;
 use super::speeds::Speeds;
-use super::steering::{Steering, SteeringKind};
+use super::steering::{Steering, SteeringKind, TrackedAttitude};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
@@ -378,14 +378,10 @@ impl Vehicle {
         self.steering.kind()
     }
 
-    /// Attitude and thrust that are tracked now, if it is steered by them.
-    pub fn attitude_reference(&self) -> Option<(nalgebra::UnitQuaternion<f64>, Vector3<f64>, f64)> {
-        match &self.steering {
-            Steering::Attitude { set_point, reference } => {
-                Some((*reference, set_point.body_rate_rad_s, set_point.thrust))
-            }
-            _ => None,
-        }
+    /// What the attitude controller tracks now.
+    pub fn tracked_attitude(&self) -> TrackedAttitude {
+        let (_, strongest_n) = self.simulation.configuration().airframe.thrust_range_n();
+        self.steering.tracked_attitude(&self.outputs, strongest_n)
     }
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
