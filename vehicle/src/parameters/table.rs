@@ -19,7 +19,7 @@ pub const SPEED_PARAMETER: &str = "SIM_SPEEDUP";
 /// What a parameter that was set belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// Nothing has changed: it has the value already, in the precision of the protocol.
+    /// Nothing has changed: it has the value already, in single precision.
     Nothing,
     /// The closed loop.
     ClosedLoop,

@@ -67,6 +67,7 @@ pub fn local_position_setpoint(source: &LogSource<'_>, row: &mut Row) {
     row.reals([reference.yaw_rad, reference.yaw_rate_rad_s]);
 }
 
+/// In steps of 1e-7° and mm, as clients are told it: readers compare the two.
 pub fn global_position(source: &LogSource<'_>, row: &mut Row) {
     let place = source.vehicle.frame().to_geodetic(&source.vehicle.outputs().position_m);
     row.f64(stepped(place.latitude_deg, 1e7)).f64(stepped(place.longitude_deg, 1e7));

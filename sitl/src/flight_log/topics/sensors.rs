@@ -110,5 +110,7 @@ pub fn magnetometer(source: &LogSource<'_>, row: &mut Row) {
 pub fn air_data(source: &LogSource<'_>, row: &mut Row) {
     let reading = source.vehicle.readings().barometer;
     row.reals([reading.map_or(0.0, |reading| reading.altitude_m())]);
-    row.f32(reading.map_or(0.0, |reading| (reading.pressure_pa / 100.0) as f32) * 100.0);
+    // Rounded in hPa, as clients are told it: readers compare the two.
+    let pressure_hpa = reading.map_or(0.0, |reading| (reading.pressure_pa / 100.0) as f32);
+    row.f32(pressure_hpa * 100.0);
 }
