@@ -6,10 +6,10 @@ use std::collections::VecDeque;
 use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
 use quadrotor::{ConfigurationError, SimulationError};
 use vehicle::identity::Identity;
-use vehicle::parameters::{Host, ParameterTable, SPEED_PARAMETER, SetError, Speed, Value, View};
+use vehicle::parameters::{Change, ParameterTable, ParameterValues, SPEED_PARAMETER, SetError, Speed, Value};
 use vehicle::{MissionStatus, Refusal, Severity, Vehicle, VehicleSettings};
 
-use crate::codec::{Frame, Message, id, target_of};
+use crate::codec::{Frame, Message, id, parameter_hash, target_of};
 use crate::file_store::{FileStore, Nothing};
 use crate::service::command::Retries;
 use crate::service::command::calibration::Calibration;
@@ -92,9 +92,7 @@ impl Autopilot {
             logs: LogServer::default(),
         };
         autopilot.vehicle.set_unix_start_us(unix_start_us);
-        let parameters = 0..autopilot.table.entries().len();
-        autopilot.initial_parameters =
-            parameters.filter_map(|index| autopilot.parameter_value(index)).collect();
+        autopilot.initial_parameters = autopilot.parameters().map(|(_, value)| value).collect();
         heartbeat::update(&mut autopilot);
         status_text::send(&mut autopilot, Severity::Info, INTRODUCTION);
         Ok(autopilot)
@@ -279,13 +277,24 @@ impl Autopilot {
         &self.table
     }
 
-    fn view(&self) -> View<'_> {
-        View { vehicle: &self.vehicle, system_id: self.system_id, speed: self.speed }
+    /// What its parameters are read from.
+    fn parameter_values(&self) -> ParameterValues {
+        ParameterValues {
+            configuration: self.vehicle.kept_configuration(),
+            conduct: *self.vehicle.conduct(),
+            system_id: self.system_id,
+            speed: self.speed,
+        }
     }
 
     /// Value of the parameter at a position of the table.
     pub fn parameter_value(&self, index: usize) -> Option<Value> {
-        self.table.value(index, &self.view())
+        self.table.value(index, &self.parameter_values())
+    }
+
+    /// All parameters with their values, in the order of the table.
+    pub fn parameters(&self) -> impl Iterator<Item = (&str, Value)> {
+        self.table.values(self.parameter_values())
     }
 
     /// Parameters as they were at the start, in the order of the table.
@@ -294,15 +303,19 @@ impl Autopilot {
     }
 
     pub(crate) fn parameter_hash(&self) -> u32 {
-        self.table.hash(&self.view())
+        parameter_hash(self.parameters())
     }
 
     /// Changes a parameter.
     pub(crate) fn set_parameter(&mut self, id: &str, value: f64) -> Result<(), SetError> {
-        let mut host = Host { vehicle: &mut self.vehicle, system_id: self.system_id, speed: &mut self.speed };
-        let result = self.table.set(id, value, &mut host);
-        self.parameters_changed |= result.is_ok();
-        result
+        let mut values = self.parameter_values();
+        if self.table.set(id, value, &mut values)? != Change::Nothing {
+            let adopted = self.vehicle.adopt(&values.configuration, &values.conduct);
+            adopted.map_err(|source| SetError::refused(id, source))?;
+            self.speed = values.speed;
+        }
+        self.parameters_changed = true;
+        Ok(())
     }
 
     /// All parameters as at the start.
@@ -314,8 +327,8 @@ impl Autopilot {
         let now = self.vehicle.simulation().configuration();
         (configuration.initial, configuration.environment) = (now.initial, now.environment);
         configuration.reference = now.reference;
-        self.vehicle.reconfigure(&configuration).map_err(|error| Refusal::denied(error.to_string()))?;
-        self.vehicle.set_conduct(self.settings.conduct);
+        let adopted = self.vehicle.adopt(&configuration, &self.settings.conduct);
+        adopted.map_err(|error| Refusal::denied(error.to_string()))?;
         self.parameters_changed = true;
         Ok(())
     }
@@ -325,6 +338,6 @@ impl Autopilot {
         if !std::mem::take(&mut self.parameters_changed) {
             return None;
         }
-        Some(vehicle::parameters::render(&self.table, &self.view()))
+        Some(vehicle::parameters::render(&self.table, &self.parameter_values()))
     }
 }

@@ -40,6 +40,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             let settings = Settings::resolve(&arguments)?;
             let session = Session::new(settings.clone())?;
             say(banner(&settings, session.fleet()).trim_end());
+            log(&settings.notes);
             session.run(&stop)?
         }
     };
@@ -63,6 +64,7 @@ fn simulate(settings: HilSettings, stop: &Arc<AtomicBool>) -> Result<Summary, Fa
     let simulator = Simulator::open(settings.clone())?;
     ready_file.map(|path| ready::write_address(path, &simulator.address())).transpose()?;
     say(hil_banner(&settings, &simulator.address()).trim_end());
+    log(&settings.notes);
     simulator.run(stop)
 }
 
@@ -100,6 +102,11 @@ fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
     Ok(stop)
+}
+
+/// Lines of the log.
+fn log(notes: &[String]) {
+    notes.iter().for_each(|note| tracing::info!("{note}"));
 }
 
 /// A line on the standard output. Whoever has closed it does not want it.

@@ -39,7 +39,7 @@ pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
 }
 
 /// Major, minor, patch and the type of the release (0: development), a byte each.
-pub fn version() -> u32 {
+fn version() -> u32 {
     let number = |text: &str| text.parse::<u8>().unwrap_or(0);
     u32::from_be_bytes([
         number(env!("CARGO_PKG_VERSION_MAJOR")),

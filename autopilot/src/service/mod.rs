@@ -7,7 +7,7 @@ mod envelope;
 pub(crate) mod file_transfer;
 pub(crate) mod heartbeat;
 #[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
-pub mod identification;
+pub(crate) mod identification;
 pub(crate) mod log;
 pub(crate) mod manual_control;
 pub(crate) mod message_interval;
@@ -18,7 +18,7 @@ pub(crate) mod set_point;
 pub(crate) mod standard_mode;
 pub(crate) mod status_text;
 #[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
-pub mod telemetry;
+pub(crate) mod telemetry;
 #[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
 pub(crate) mod time_synchronization;
 

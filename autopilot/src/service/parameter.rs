@@ -2,11 +2,11 @@
 
 use mavlink::dialects::common::{MavMessage, MavParamType, PARAM_VALUE_DATA};
 use vehicle::Severity;
-use vehicle::parameters::{Encoding, Value};
+use vehicle::parameters::Value;
 
 use super::{Destination, Origin};
 use crate::autopilot::Autopilot;
-use crate::codec::Frame;
+use crate::codec::{Encoding, Frame};
 
 /// Name under which clients ask for the hash, and with which QGroundControl says that its cache is right.
 const HASH_CHECK: &str = "_HASH_CHECK";
@@ -52,7 +52,7 @@ pub fn set(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         // "Stop sending": the list is out already.
         return;
     }
-    let value = Value::decode(payload.f32(0), payload.u8(22), autopilot.table.encoding());
+    let value = Encoding::of(autopilot.identity()).decode(payload.f32(0), payload.u8(22));
     let result = autopilot.set_parameter(&name, value);
     if let Some(index) = autopilot.table.index_of(&name) {
         let to = if result.is_ok() { Destination::Everyone } else { Destination::Peer(origin.peer) };
@@ -74,7 +74,7 @@ fn send_value(autopilot: &mut Autopilot, index: usize, to: Destination) {
     let Some(value) = autopilot.parameter_value(index) else { return };
     let Some(entry) = autopilot.table.entries().get(index) else { return };
     let message = PARAM_VALUE_DATA {
-        param_value: value.encode(autopilot.table.encoding()),
+        param_value: Encoding::of(autopilot.identity()).encode(value),
         param_count: autopilot.table.entries().len() as u16,
         param_index: index as u16,
         param_id: entry.id.as_str().into(),
@@ -89,10 +89,7 @@ fn send_value(autopilot: &mut Autopilot, index: usize, to: Destination) {
 fn send_hash(autopilot: &mut Autopilot, to: Destination) {
     let hash = autopilot.parameter_hash();
     let message = PARAM_VALUE_DATA {
-        param_value: match autopilot.table.encoding() {
-            Encoding::Bytewise => f32::from_bits(hash),
-            Encoding::Cast => hash as f32,
-        },
+        param_value: Encoding::of(autopilot.identity()).encode_hash(hash),
         param_count: autopilot.table.entries().len() as u16,
         param_index: NO_INDEX,
         param_id: HASH_CHECK.into(),

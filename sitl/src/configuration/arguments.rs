@@ -116,11 +116,14 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max", allow_hyphen_values = true)]
     pub speed: Option<Speed>,
 
-    /// Steady wind: speed in m/s, 0 to 30, and the direction in degrees that it comes from [default: 0,0]
+    /// Steady wind: speed in m/s, 0 to 30, and the direction in degrees that it comes from. It acts through drag
+    /// (AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z), of which a vehicle in wind or gusts has 0.15 N s/m unless --set or --parameters
+    /// say otherwise [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true)]
     pub wind: Option<WindFrom>,
 
-    /// Standard deviation of gusts in m/s, 0 to 10 (Dryden's spectrum) [default: 0]
+    /// Standard deviation of gusts in m/s, 0 to 10 (Dryden's spectrum); they act through the same drag as --wind
+    /// [default: 0]
     #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", value_parser = number(0.0, 10.0), allow_hyphen_values = true)]
     pub gusts: Option<f64>,
 

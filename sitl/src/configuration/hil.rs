@@ -46,15 +46,17 @@ impl HilSettings {
         let Ok(Endpoint::TcpIn { host, port }) = link.map(|link| link.endpoint) else {
             return Err(wrong("hil", format!("`{address}` is not [HOST:]PORT")));
         };
+        let (vehicle, note) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
         Ok(Self {
             host,
             port,
             mount: arguments.hil_mount.unwrap_or_default(),
-            vehicle: vehicle(arguments, 0, 1, arguments.parameters.as_deref())?,
+            vehicle,
             system_id: first_system_id(arguments),
             speed,
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments),
+            notes: note.into_iter().collect(),
         })
     }
 }

@@ -13,7 +13,9 @@ mod plan_file;
 mod ranged;
 mod settings;
 mod sharing;
+mod start_parameters;
 mod wind;
+mod wind_drag;
 
 pub use addressed::Addressed;
 pub use arguments::Arguments;

@@ -8,20 +8,17 @@ use quadrotor::Configuration;
 use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::fault::ScheduledFault;
 use vehicle::identity::Identity;
-use vehicle::parameters::{Host, ParameterTable, Speed, identifier, parse};
+use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, Vehicle, VehicleSettings};
+use vehicle::{Conduct, VehicleSettings};
 
-use super::{Arguments, Clocks, Ports, read_plans};
+use super::start_parameters::set_parameters;
+use super::{Arguments, Clocks, Ports, read_plans, wind_drag};
 use crate::failure::Failure;
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
-
-/// Linear drag that the wind acts through when the airframe has none, N·s/m: 0.7 kg with an open frame drifts with
-/// 10 m/s of wind at a lean of 12°.
-const DRAG_IN_WIND_N_S_M: f64 = 0.15;
 
 /// What the program does.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +45,8 @@ pub struct Settings {
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
+    /// What the user is to be told at the start, a line each.
+    pub notes: Vec<String>,
 }
 
 /// One vehicle of them.
@@ -78,12 +77,16 @@ impl Settings {
             let parameters = arguments.parameters.as_deref();
             let parameters =
                 parameters.map(|path| if count > 1 { of_system(path, system_id) } else { path.to_owned() });
-            let vehicle = vehicle(arguments, number, count, parameters.as_deref())?;
-            Ok(MemberSettings { system_id, vehicle, hub: if shared { 0 } else { number }, parameters })
+            let (vehicle, note) = vehicle(arguments, number, count, parameters.as_deref())?;
+            let hub = if shared { 0 } else { number };
+            Ok((MemberSettings { system_id, vehicle, hub, parameters }, note))
         };
+        let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
+        let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
         let hubs = if shared { 1 } else { count };
         Ok(Self {
-            vehicles: ids.into_iter().enumerate().map(member).collect::<Result<_, Failure>>()?,
+            notes: notes(&vehicles, vehicle_notes),
+            vehicles,
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
@@ -115,6 +118,16 @@ impl Settings {
         };
         self.vehicles.iter().map(participant).collect()
     }
+}
+
+/// Notes about vehicles: one for all that have the same, else each with the system that it is about.
+fn notes(vehicles: &[MemberSettings], notes: Vec<Option<String>>) -> Vec<String> {
+    let same = notes.windows(2).all(|pair| pair.first() == pair.last());
+    if same {
+        return notes.into_iter().flatten().take(1).collect();
+    }
+    let of_each = vehicles.iter().zip(notes);
+    of_each.filter_map(|(own, note)| Some(format!("system {}: {}", own.system_id, note?))).collect()
 }
 
 /// End, µs of simulation time.
@@ -168,13 +181,13 @@ fn of_system(path: &Path, system_id: u8) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// The vehicle of a number among several, as the arguments describe it.
+/// The vehicle of a number among several, as the arguments describe it, and what to tell the user about it.
 pub(super) fn vehicle(
     arguments: &Arguments,
     number: usize,
     count: usize,
     parameters: Option<&Path>,
-) -> Result<VehicleSettings, Failure> {
+) -> Result<(VehicleSettings, Option<String>), Failure> {
     let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
     let identity: Identity = arguments.autopilot.unwrap_or_default().into();
     let home = arguments.home.unwrap_or_default();
@@ -202,16 +215,18 @@ pub(super) fn vehicle(
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
     vehicle.configuration.sensors.seed = noise_seed(arguments, number);
-    if (wind.speed_m_s > 0.0 || gusts_m_s > 0.0) && vehicle.configuration.airframe.drag_n_s_m == [0.0; 3] {
-        vehicle.configuration.airframe.drag_n_s_m = [DRAG_IN_WIND_N_S_M; 3];
+    let windy = wind.speed_m_s > 0.0 || gusts_m_s > 0.0;
+    if windy {
+        wind_drag::provide(&mut vehicle.configuration);
     }
-    set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
+    let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
+    let note = if windy { wind_drag::note(&vehicle.configuration, &chosen) } else { None };
     if let Some(path) = mission_of(arguments, system_id) {
         let frame = LocalFrame::new(vehicle.origin);
         let home_m = Vector3::from(vehicle.configuration.initial.position_m);
         vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
     }
-    Ok(vehicle)
+    Ok((vehicle, note))
 }
 
 /// Parameters that flags name: those of the noise, then `--set`.
@@ -288,52 +303,6 @@ fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, F
             Err(Failure::Value { name: "--fault".to_owned(), reason })
         }
     }
-}
-
-/// Sets the parameters of the file, then those of the command line, on a vehicle that is only made for that.
-fn set_parameters(
-    settings: &mut VehicleSettings,
-    file: Option<&Path>,
-    named: &[String],
-) -> Result<(), Failure> {
-    let text = match file {
-        Some(path) if path.exists() => {
-            Some((path, std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?))
-        }
-        // It will be written when a parameter changes: better now than in flight is said that it cannot be.
-        Some(path)
-            if path.parent().is_some_and(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) =>
-        {
-            return Err(Failure::write(path, std::io::ErrorKind::NotFound.into()));
-        }
-        _ => None,
-    };
-    if text.is_none() && named.is_empty() {
-        return Ok(());
-    }
-    let table = ParameterTable::new(settings.identity);
-    let mut vehicle = Vehicle::new(settings)?;
-    // Pace and system id are no matter of a file.
-    let mut speed = Speed::Factor(1.0);
-    let mut host = Host { vehicle: &mut vehicle, system_id: 1, speed: &mut speed };
-    if let Some((path, text)) = text {
-        parse(&text, &table, &mut host)
-            .map_err(|source| Failure::Parameters { path: path.to_owned(), source })?;
-    }
-    for setting in named {
-        let wrong = || Failure::Value {
-            name: "--set".to_owned(),
-            reason: format!("`{setting}` is not NAME=VALUE with a number"),
-        };
-        let (name, value) = setting.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
-        let name = name.trim();
-        let id = if name.contains('.') { identifier(name) } else { name.to_owned() };
-        table.set(&id, value, &mut host)?;
-    }
-    settings.conduct = *vehicle.conduct();
-    settings.configuration = vehicle.kept_configuration();
-    Ok(())
 }
 
 /// Numbers between commas; `None` unless all are finite.

@@ -11,7 +11,7 @@ use vehicle::parameters::Value;
 use super::log_file::LogFile;
 use super::row::Row;
 use super::settings::{LogSettings, LogStart};
-use super::topics::{GRID_US, TOPICS};
+use super::topics::{GRID_US, LogSource, TOPICS};
 use super::ulog::{self, Definitions};
 use crate::files::LogFolder;
 
@@ -135,7 +135,8 @@ impl FlightLog {
 
     fn sample(&mut self, autopilot: &Autopilot) {
         let Some(current) = &mut self.current else { return };
-        let time_us = autopilot.vehicle().time_us();
+        let source = LogSource::of(autopilot);
+        let time_us = source.vehicle.time_us();
         self.messages.clear();
         let mut row = Row::default();
         for ((number, topic), last) in (0..).zip(TOPICS).zip(&mut current.last) {
@@ -146,9 +147,7 @@ impl FlightLog {
             }
             row.0.clear();
             row.u64(time_us);
-            if !(topic.sample)(autopilot, &mut row) {
-                continue;
-            }
+            (topic.sample)(&source, &mut row);
             const TIMESTAMP: usize = 8;
             if due || last.0.get(TIMESTAMP..) != row.0.get(TIMESTAMP..) {
                 ulog::data(&mut self.messages, number, &row.0);
@@ -198,8 +197,18 @@ fn reason(error: &io::Error) -> String {
 }
 
 fn parameters(autopilot: &Autopilot) -> Vec<Value> {
-    let indices = 0..autopilot.parameter_table().entries().len();
-    indices.filter_map(|index| autopilot.parameter_value(index)).collect()
+    autopilot.parameters().map(|(_, value)| value).collect()
+}
+
+/// The version as PX4 numbers releases: major, minor, patch and the type of the release (0: development), a byte each.
+fn release() -> u32 {
+    let number = |text: &str| text.parse::<u8>().unwrap_or(0);
+    u32::from_be_bytes([
+        number(env!("CARGO_PKG_VERSION_MAJOR")),
+        number(env!("CARGO_PKG_VERSION_MINOR")),
+        number(env!("CARGO_PKG_VERSION_PATCH")),
+        0,
+    ])
 }
 
 /// PX4's number of the meaning of topics: from 2 on, readers look for places of the GPS receiver in degrees.
@@ -211,7 +220,7 @@ fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
     definitions.information("ver_hw", "LMPC_SITL");
     definitions.information("ver_sw", concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION")));
     definitions.number("ver_data_format", DATA_FORMAT);
-    definitions.number("ver_sw_release", autopilot::service::identification::version());
+    definitions.number("ver_sw_release", release());
     definitions.information("sys_uuid", &format!("lmpc-sitl-{:03}", autopilot.system_id()));
     for topic in TOPICS {
         definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));

@@ -1,7 +1,7 @@
 //! The log of a flight, in PX4's ULog format, which Flight Review, PlotJuggler and pyulog read.
 //!
 //! ```text
-//!  Autopilot ──► topics ──► ulog (bytes) ──► LogFile (flushed each second) ──► LogFolder (numbers, how many; in files/)
+//!    Vehicle ──► topics ──► ulog (bytes) ──► LogFile (flushed each second) ──► LogFolder (numbers, how many; in files/)
 //!                  └──────────── FlightLog: when one begins and ends ───────────────┘
 //! ```
 //!
@@ -22,5 +22,5 @@ pub use flight::FlightLog;
 pub use log_file::LogFile;
 pub use row::Row;
 pub use settings::{LogSettings, LogStart};
-pub use topics::{TOPICS, Topic};
+pub use topics::{LogSource, TOPICS, Topic};
 pub use ulog::Definitions;

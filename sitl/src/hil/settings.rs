@@ -26,4 +26,6 @@ pub struct HilSettings {
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
+    /// What the user is to be told at the start, a line each.
+    pub notes: Vec<String>,
 }

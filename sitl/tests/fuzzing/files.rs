@@ -8,7 +8,7 @@ use autopilot::service::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
 use sitl::record::{self, Digest, Header, Recorder};
 use sitl::signing::{Kept, SecretKey};
-use vehicle::parameters::Speed;
+use vehicle::parameters::{ParameterTable, ParameterValues, Speed, render};
 
 use super::bytes::Bytes;
 
@@ -106,10 +106,10 @@ fn fly(arguments: &Arguments) {
 /// The parameters as the vehicle writes them.
 fn parameters() -> String {
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
-    let vehicle = vehicle::Vehicle::new(&settings.vehicles[0].vehicle).expect("defaults");
-    let table = vehicle::parameters::ParameterTable::new(settings.vehicles[0].vehicle.identity);
-    let view = vehicle::parameters::View { vehicle: &vehicle, system_id: 1, speed: Speed::Max };
-    vehicle::parameters::render(&table, &view)
+    let vehicle = &settings.vehicles[0].vehicle;
+    let table = ParameterTable::new(vehicle.identity);
+    let (configuration, conduct) = (vehicle.configuration, vehicle.conduct);
+    render(&table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
 }
 
 /// A short record.

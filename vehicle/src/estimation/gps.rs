@@ -28,6 +28,10 @@ pub const VELOCITY_M_S: f64 = 0.05 / 1.177_4;
 pub const VELOCITY_CORRELATION_S: f64 = 0.5;
 /// Satellites of an open sky. Assumed.
 const SATELLITES: u8 = 12;
+/// Horizontal dilution of precision that the receiver tells. Assumed, for these satellites.
+pub const HORIZONTAL_DILUTION: f64 = 0.7;
+/// Vertical one.
+pub const VERTICAL_DILUTION: f64 = 1.1;
 /// A receiver whose last fix is older has none, µs.
 const FRESH_US: u64 = 1_000_000;
 

@@ -3,7 +3,7 @@
 use quadrotor::Parameter;
 
 use super::loop_access::read;
-use super::{ConductParameter, Value, View};
+use super::{ConductParameter, ParameterValues, Value};
 
 /// Where a parameter lives.
 #[derive(Clone, Copy, Debug)]
@@ -33,19 +33,19 @@ impl Entry {
     }
 
     /// Present value.
-    pub(super) fn value(&self, view: &View<'_>) -> Value {
+    pub(super) fn value(&self, values: &ParameterValues) -> Value {
         match self.source {
-            Source::Loop(parameter) => read(parameter, &view.vehicle.kept_configuration()),
+            Source::Loop(parameter) => read(parameter, &values.configuration),
             Source::Conduct(parameter, scale) => {
-                let value = (parameter.get)(view.vehicle.conduct());
+                let value = (parameter.get)(&values.conduct);
                 if parameter.integer {
                     Value::Integer(value as i32)
                 } else {
                     Value::Real((value * scale) as f32)
                 }
             }
-            Source::SystemId => Value::Integer(i32::from(view.system_id)),
-            Source::Speed => Value::Real(view.speed.to_parameter() as f32),
+            Source::SystemId => Value::Integer(i32::from(values.system_id)),
+            Source::Speed => Value::Real(values.speed.to_parameter() as f32),
         }
     }
 }

@@ -1,4 +1,7 @@
 //! Parameters by MAVLink identifiers: those of the closed loop and the vehicle's own.
+//!
+//! A [`ParameterTable`] reads and writes [`ParameterValues`], which are plain data. Whether a running vehicle takes changed
+//! values is its own matter: [`Vehicle::adopt`](crate::Vehicle::adopt).
 
 mod ardupilot_parameters;
 mod conduct_parameters;
@@ -7,9 +10,11 @@ mod entry;
 mod file;
 mod identifier;
 mod loop_access;
+mod set_error;
 mod speed;
 mod table;
 mod value;
+mod values;
 
 pub use ardupilot_parameters::ARDUPILOT_PARAMETERS;
 pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
@@ -17,6 +22,8 @@ pub use description::Description;
 pub use entry::Entry;
 pub use file::{ParameterFileError, parse, render};
 pub use identifier::identifier;
+pub use set_error::SetError;
 pub use speed::Speed;
-pub use table::{Host, ParameterTable, SPEED_PARAMETER, SetError, View};
-pub use value::{Encoding, Value};
+pub use table::{Change, ParameterTable, SPEED_PARAMETER};
+pub use value::Value;
+pub use values::ParameterValues;

@@ -1,14 +1,14 @@
-//! All parameters in their order, and changing one.
+//! All parameters in their order: reading and writing them.
 
-use quadrotor::{ConfigurationError, PARAMETERS, Parameter};
+use quadrotor::{PARAMETERS, Parameter};
 
 use super::ardupilot_parameters::{ARDUPILOT_PARAMETERS, REPLACED};
 use super::entry::{Entry, Source};
 use super::identifier::identifier;
 use super::loop_access::write;
-use super::{CONDUCT_PARAMETERS, ConductParameter, Encoding, Speed, Value};
+use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
 use crate::identity::Identity;
-use crate::vehicle::Vehicle;
+use crate::vehicle::Conduct;
 
 /// Dotted names that describe the start of a flight, not the vehicle: they are set by the command line.
 const NOT_THE_VEHICLE: [&str; 3] = ["initial.", "environment.", "reference."];
@@ -16,84 +16,23 @@ const NOT_THE_VEHICLE: [&str; 3] = ["initial.", "environment.", "reference."];
 /// Identifier of the pace of simulation time.
 pub const SPEED_PARAMETER: &str = "SIM_SPEEDUP";
 
-/// What the parameters are parameters of.
-#[derive(Debug)]
-pub struct Host<'a> {
-    /// The vehicle.
-    pub vehicle: &'a mut Vehicle,
-    /// Its system id.
-    pub system_id: u8,
+/// What a parameter that was set belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Nothing has changed: it has the value already, in single precision.
+    Nothing,
+    /// The closed loop.
+    ClosedLoop,
+    /// The vehicle's behaviour.
+    Conduct,
     /// The pace of its time.
-    pub speed: &'a mut Speed,
-}
-
-impl Host<'_> {
-    /// Only to be read.
-    pub fn view(&self) -> View<'_> {
-        View { vehicle: self.vehicle, system_id: self.system_id, speed: *self.speed }
-    }
-}
-
-/// What the parameters are read from.
-#[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
-    /// The vehicle.
-    pub vehicle: &'a Vehicle,
-    /// Its system id.
-    pub system_id: u8,
-    /// The pace of its time.
-    pub speed: Speed,
-}
-
-/// Why a parameter was not changed. Nothing has changed then.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SetError {
-    /// There is none of this name.
-    #[error("there is no parameter {0}")]
-    Unknown(String),
-    /// The value is no number that it can have.
-    #[error("{id} = {value} is outside [{minimum}, {maximum}]")]
-    OutOfRange {
-        /// Identifier.
-        id: String,
-        /// Given value.
-        value: f64,
-        /// Smallest allowed value.
-        minimum: f64,
-        /// Largest allowed value.
-        maximum: f64,
-    },
-    /// The value is none of those that mean something.
-    #[error("{id} = {value} has no meaning here: {meanings}")]
-    Meaningless {
-        /// Identifier.
-        id: String,
-        /// Given value.
-        value: f64,
-        /// Those that mean something, in words.
-        meanings: String,
-    },
-    /// It is fixed since the start.
-    #[error("{0} is set by the command line")]
-    ReadOnly(String),
-    /// It can only change while the vehicle is disarmed on the ground.
-    #[error("{0} is fixed while armed")]
-    Armed(String),
-    /// The closed loop refuses it.
-    #[error("{id}: {source}")]
-    Refused {
-        /// Identifier.
-        id: String,
-        /// Why.
-        source: Box<ConfigurationError>,
-    },
+    Speed,
 }
 
 /// All parameters, in alphabetical order: the order of their indices.
 #[derive(Clone, Debug)]
 pub struct ParameterTable {
     entries: Vec<Entry>,
-    encoding: Encoding,
 }
 
 impl ParameterTable {
@@ -119,12 +58,7 @@ impl ParameterTable {
         ];
         let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).collect();
         entries.sort_by(|one, other| one.id.cmp(&other.id));
-        Self { entries, encoding: if ardupilot { Encoding::Cast } else { Encoding::Bytewise } }
-    }
-
-    /// How integers travel.
-    pub fn encoding(&self) -> Encoding {
-        self.encoding
+        Self { entries }
     }
 
     /// The parameters in order.
@@ -138,59 +72,70 @@ impl ParameterTable {
     }
 
     /// Value of the parameter at a position.
-    pub fn value(&self, index: usize, view: &View<'_>) -> Option<Value> {
-        Some(self.entries.get(index)?.value(view))
+    pub fn value(&self, index: usize, values: &ParameterValues) -> Option<Value> {
+        Some(self.entries.get(index)?.value(values))
     }
 
-    /// PX4's hash over names and values: CRC-32 (IEEE, reflected) that begins with zero and is not inverted.
-    pub fn hash(&self, view: &View<'_>) -> u32 {
-        let mut hasher = crc32fast::Hasher::new_with_initial(u32::MAX);
-        for entry in &self.entries {
-            hasher.update(entry.id.as_bytes());
-            hasher.update(&entry.value(view).bytes());
-        }
-        !hasher.finalize()
+    /// All parameters with their values, in order.
+    pub fn values(&self, values: ParameterValues) -> impl Iterator<Item = (&str, Value)> {
+        self.entries.iter().map(move |entry| (entry.id.as_str(), entry.value(&values)))
     }
 
-    /// Changes a parameter. A value that is the present one, in the precision of the protocol, changes nothing.
+    /// Writes a parameter into the values, after a check of its own range. Whether all of them fit together is for
+    /// [`ParameterValues::check`] to say, or for the vehicle that takes them over.
     ///
     /// # Errors
     /// [`SetError`]; nothing has changed then.
-    pub fn set(&self, id: &str, value: f64, host: &mut Host<'_>) -> Result<(), SetError> {
-        let index = self.index_of(id).ok_or_else(|| SetError::Unknown(id.to_owned()))?;
-        let Some(entry) = self.entries.get(index) else { return Err(SetError::Unknown(id.to_owned())) };
-        let present = entry.value(&host.view());
-        let same = match present {
+    pub fn set(&self, id: &str, value: f64, values: &mut ParameterValues) -> Result<Change, SetError> {
+        let entry = self.index_of(id).and_then(|index| self.entries.get(index));
+        let entry = entry.ok_or_else(|| SetError::Unknown(id.to_owned()))?;
+        let same = match entry.value(values) {
             Value::Real(present) => present == value as f32,
             Value::Integer(present) => f64::from(present) == value,
         };
         if same {
-            return Ok(());
+            return Ok(Change::Nothing);
         }
         match entry.source {
-            Source::Loop(parameter) => set_loop(id, parameter, value, host.vehicle),
-            Source::Conduct(parameter, scale) => set_conduct(entry, parameter, value, scale, host.vehicle),
+            Source::Loop(parameter) => {
+                write(id, parameter, value, &mut values.configuration)?;
+                Ok(Change::ClosedLoop)
+            }
+            Source::Conduct(parameter, scale) => {
+                set_conduct(entry, parameter, value, scale, &mut values.conduct)?;
+                Ok(Change::Conduct)
+            }
             Source::SystemId => Err(SetError::ReadOnly(id.to_owned())),
             Source::Speed => {
-                *host.speed = Speed::from_parameter(value).ok_or_else(|| SetError::OutOfRange {
+                values.speed = Speed::from_parameter(value).ok_or_else(|| SetError::OutOfRange {
                     id: id.to_owned(),
                     value,
                     minimum: -1.0,
                     maximum: 1000.0,
                 })?;
-                Ok(())
+                Ok(Change::Speed)
             }
         }
     }
-}
 
-fn set_loop(id: &str, parameter: &Parameter, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
-    let mut configuration = vehicle.kept_configuration();
-    write(id, parameter, value, &mut configuration)?;
-    vehicle.reconfigure(&configuration).map_err(|source| match source {
-        ConfigurationError::Fixed { .. } => SetError::Armed(id.to_owned()),
-        source => SetError::Refused { id: id.to_owned(), source: Box::new(source) },
-    })
+    /// As [`set`](Self::set), for a vehicle that is still to be made: the closed loop must be able to fly the values.
+    ///
+    /// # Errors
+    /// [`SetError`]; nothing has changed then.
+    pub fn set_checked(
+        &self,
+        id: &str,
+        value: f64,
+        values: &mut ParameterValues,
+    ) -> Result<Change, SetError> {
+        let mut changed = *values;
+        let change = self.set(id, value, &mut changed)?;
+        if change == Change::ClosedLoop {
+            changed.check().map_err(|source| SetError::refused(id, source))?;
+        }
+        *values = changed;
+        Ok(change)
+    }
 }
 
 fn set_conduct(
@@ -198,10 +143,10 @@ fn set_conduct(
     parameter: &ConductParameter,
     value: f64,
     scale: f64,
-    vehicle: &mut Vehicle,
+    into: &mut Conduct,
 ) -> Result<(), SetError> {
     let (minimum, maximum) = (parameter.minimum * scale, parameter.maximum * scale);
-    let mut conduct = *vehicle.conduct();
+    let mut conduct = *into;
     // NaN is in no range.
     if !(minimum..=maximum).contains(&value) || !(parameter.set)(&mut conduct, value / scale) {
         let id = entry.id.clone();
@@ -212,6 +157,71 @@ fn set_conduct(
         let meanings: Vec<_> = names.into_iter().map(|(value, name)| format!("{value} {name}")).collect();
         return Err(SetError::Meaningless { id, value, meanings: meanings.join(", ") });
     }
-    vehicle.set_conduct(conduct);
+    *into = conduct;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use quadrotor::Configuration;
+
+    use super::{Change, ParameterTable};
+    use crate::identity::Identity;
+    use crate::parameters::{ParameterValues, SetError, Speed, Value, parse, render};
+    use crate::vehicle::Conduct;
+
+    fn defaults() -> (ParameterTable, ParameterValues) {
+        let (configuration, conduct) = (Configuration::default(), Conduct::new(false));
+        let values = ParameterValues { configuration, conduct, system_id: 7, speed: Speed::Factor(1.0) };
+        (ParameterTable::new(Identity::Px4), values)
+    }
+
+    #[test]
+    fn what_is_set_is_read_again_and_a_refusal_changes_nothing() {
+        let (table, mut values) = defaults();
+        for (id, value, expected) in [
+            ("AF_MASS", 0.8, Ok(Change::ClosedLoop)),
+            ("AF_MASS", f64::from(0.8_f32), Ok(Change::Nothing)),
+            ("MIS_TAKEOFF_ALT", 4.0, Ok(Change::Conduct)),
+            ("SIM_SPEEDUP", 5.0, Ok(Change::Speed)),
+            ("MAV_SYS_ID", 7.0, Ok(Change::Nothing)),
+            ("MAV_SYS_ID", 8.0, Err(())),
+            ("SIM_SPEEDUP", -2.0, Err(())),
+            ("AF_MASS", f64::NAN, Err(())),
+            ("COM_OBL_RC_ACT", 1.0, Err(())),
+            ("NO_SUCH", 1.0, Err(())),
+        ] {
+            let before = values;
+            assert_eq!(table.set(id, value, &mut values).map_err(|_| ()), expected, "{id} = {value}");
+            match table.index_of(id).and_then(|index| table.value(index, &values)).map(Value::number) {
+                Some(present) if expected.is_ok() => assert!((present - value).abs() < 1e-6, "{id}"),
+                _ => assert_eq!(values, before, "{id} = {value}"),
+            }
+        }
+    }
+
+    /// More mass needs stronger rotors, in whichever order a file has them.
+    #[test]
+    fn values_that_only_fit_together_come_in_any_order() {
+        let (table, start) = defaults();
+        let index = table.index_of("AF_ROT_K1").expect("there");
+        let k1 = table.value(index, &start).expect("there").number();
+        let (heavy, strong) = ("AF_MASS 5", format!("AF_ROT_K1 {}", 8.0 * k1));
+        let mut values = start;
+        assert_eq!(table.set("AF_MASS", 5.0, &mut values.clone()), Ok(Change::ClosedLoop));
+        let refused = table.set_checked("AF_MASS", 5.0, &mut values).expect_err("too heavy");
+        assert!(matches!(&refused, SetError::Refused { id, .. } if id == "AF_MASS"), "{refused}");
+        assert_eq!(values, start);
+        for text in [format!("{heavy}\n{strong}"), format!("{strong}\n{heavy}")] {
+            let mut values = start;
+            parse(&text, &table, &mut values).expect("both");
+            assert_eq!(values.configuration.airframe.mass_kg, 5.0);
+            let mut again = start;
+            parse(&render(&table, &values), &table, &mut again).expect("what was written");
+            assert_eq!(render(&table, &again), render(&table, &values));
+        }
+        assert!(
+            parse(heavy, &table, &mut values).expect_err("alone").to_string().starts_with("line 1: AF_MASS")
+        );
+    }
 }

@@ -47,10 +47,10 @@ pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, Fe
 pub use fence::FenceRecord;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
-pub use motion::wrapped;
+pub use motion::{heading_deg, wrapped};
 pub use notice::{Notice, Refusal, Severity};
 pub use requests::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 pub use state::{Home, TICK_US, Vehicle, VehicleSettings};
-pub use steering::SteeringKind;
+pub use steering::{SteeringKind, TrackedAttitude};
 pub use sticks::Sticks;

@@ -3,6 +3,7 @@
 
 use quadrotor::{Configuration, ConfigurationError, Limits};
 
+use super::conduct::Conduct;
 use super::notice::{Refusal, Severity};
 use super::state::Vehicle;
 
@@ -67,12 +68,21 @@ impl Vehicle {
         with(*self.simulation.configuration(), self.speeds.kept_m_s)
     }
 
-    /// Changes the closed loop's parameters. Tunable ones change in flight, without a bump; the others only while it is
-    /// disarmed on the ground.
+    /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,
+    /// and its own. Tunable parameters of the closed loop change in flight, without a bump; the others only while the vehicle
+    /// is disarmed on the ground.
     ///
     /// # Errors
     /// [`ConfigurationError`]; nothing has changed then.
-    pub fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
+    pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ConfigurationError> {
+        if *kept != self.kept_configuration() {
+            self.reconfigure(kept)?;
+        }
+        self.conduct = *conduct;
+        Ok(())
+    }
+
+    fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
         let mut speeds = self.speeds;
         speeds.keep(&kept.limits);
         self.configure(&with(*kept, speeds.in_force()))?;

@@ -22,7 +22,7 @@ use super::return_home::ReturnPhase;
 use super::rotor_loss::RotorWatch;
 use super::set_point::PositionSetPoint;
 use super::speeds::Speeds;
-use super::steering::{Steering, SteeringKind};
+use super::steering::{Steering, SteeringKind, TrackedAttitude};
 use super::sticks::Sticks;
 use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
 use crate::fault::{Faults, ScheduledFault};
@@ -59,6 +59,17 @@ pub struct VehicleSettings {
     /// What it is to fly, and where it may.
     #[serde(default)]
     pub plans: Plans,
+}
+
+impl VehicleSettings {
+    /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.
+    pub fn flown_configuration(&self) -> Configuration {
+        let mut configuration = self.configuration;
+        configuration.environment.ground_plane = true;
+        configuration.reference.shaping = true;
+        configuration.initial.attitude_rad[2] = self.heading_rad;
+        configuration
+    }
 }
 
 /// Where a return goes.
@@ -129,10 +140,7 @@ impl Vehicle {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
-        let mut configuration = settings.configuration;
-        configuration.environment.ground_plane = true;
-        configuration.reference.shaping = true;
-        configuration.initial.attitude_rad[2] = settings.heading_rad;
+        let configuration = settings.flown_configuration();
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
             let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
@@ -351,11 +359,6 @@ impl Vehicle {
         &self.conduct
     }
 
-    /// Changes its own parameters.
-    pub fn set_conduct(&mut self, conduct: Conduct) {
-        self.conduct = conduct;
-    }
-
     /// Home.
     pub fn home(&self) -> &Home {
         &self.home
@@ -376,14 +379,10 @@ impl Vehicle {
         self.steering.kind()
     }
 
-    /// Attitude and thrust that are tracked now, if it is steered by them.
-    pub fn attitude_reference(&self) -> Option<(nalgebra::UnitQuaternion<f64>, Vector3<f64>, f64)> {
-        match &self.steering {
-            Steering::Attitude { set_point, reference } => {
-                Some((*reference, set_point.body_rate_rad_s, set_point.thrust))
-            }
-            _ => None,
-        }
+    /// What the attitude controller tracks now.
+    pub fn tracked_attitude(&self) -> TrackedAttitude {
+        let (_, strongest_n) = self.simulation.configuration().airframe.thrust_range_n();
+        self.steering.tracked_attitude(&self.outputs, strongest_n)
     }
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.

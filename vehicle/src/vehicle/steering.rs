@@ -51,6 +51,17 @@ pub enum SteeringKind {
     Descent,
 }
 
+/// What the attitude controller tracks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackedAttitude {
+    /// FRD into NED.
+    pub attitude: UnitQuaternion<f64>,
+    /// FRD, rad/s.
+    pub body_rate_rad_s: Vector3<f64>,
+    /// Share of the thrust that the rotors can make, 0 to 1.
+    pub thrust: f64,
+}
+
 impl Steering {
     /// Without the data.
     pub fn kind(&self) -> SteeringKind {
@@ -119,6 +130,20 @@ impl Steering {
             }
             Self::Motion(motion) => !motion.leads_up(z_m),
             Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => false,
+        }
+    }
+
+    /// What the attitude controller tracks: the set-point, or else what the outer controllers ask for.
+    pub(super) fn tracked_attitude(&self, outputs: &Outputs, strongest_n: f64) -> TrackedAttitude {
+        if let Self::Attitude { set_point, reference } = self {
+            let AttitudeSetPoint { body_rate_rad_s, thrust, .. } = *set_point;
+            return TrackedAttitude { attitude: *reference, body_rate_rad_s, thrust };
+        }
+        let [phi, theta] = outputs.tilt_reference_rad;
+        TrackedAttitude {
+            attitude: UnitQuaternion::from_euler_angles(phi, theta, outputs.setpoint.yaw_rad),
+            body_rate_rad_s: Vector3::zeros(),
+            thrust: outputs.thrust_n / strongest_n,
         }
     }
 

@@ -4,7 +4,7 @@ use mavlink::dialects::common::{
     ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HOME_POSITION_DATA,
     LOCAL_POSITION_NED_DATA, MavEstimatorType, MavFrame, MavMessage, ODOMETRY_DATA, VFR_HUD_DATA,
 };
-use vehicle::Vehicle;
+use vehicle::{Vehicle, heading_deg};
 
 use super::boot_ms;
 use crate::codec::floats;
@@ -20,13 +20,6 @@ fn millimetres(metres: f64) -> i32 {
 
 fn centimetres_per_second(speed: f64) -> i16 {
     (speed * 1e2).round() as i16
-}
-
-/// Heading within [0, 360) degrees.
-pub fn heading_deg(yaw_rad: f64) -> f64 {
-    let degrees = yaw_rad.to_degrees();
-    let within = degrees - 360.0 * (degrees / 360.0).floor();
-    if within >= 360.0 { 0.0 } else { within }
 }
 
 /// LOCAL_POSITION_NED.

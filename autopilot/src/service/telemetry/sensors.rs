@@ -6,14 +6,15 @@ use mavlink::dialects::common::{
 };
 use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
-use vehicle::Vehicle;
 use vehicle::estimation::Readings;
+use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
 use vehicle::estimation::inertial::{ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COUNTS_PER_RAD_S};
 use vehicle::estimation::magnetometer::COUNTS_PER_GAUSS;
 use vehicle::world::atmospheric_temperature_degc;
+use vehicle::{Vehicle, heading_deg};
 
 use super::boot_ms;
-use super::position::{heading_deg, scaled_degrees};
+use super::position::scaled_degrees;
 
 /// GPS_RAW_INT: the latest fix, if it is young enough to be one.
 pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
@@ -34,14 +35,15 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
     let ground_m_s = fix.velocity_m_s.xy();
     let course_rad = libm::atan2(ground_m_s.y, ground_m_s.x);
     let millimetres = |accuracy_m: f64| (accuracy_m * 1e3).round() as u32;
+    let hundredths = |value: f64| (value * 1e2).round() as u16;
     MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
         time_usec: fix.time_us,
         lat: scaled_degrees(place.latitude_deg),
         lon: scaled_degrees(place.longitude_deg),
         alt: altitude_mm,
-        eph: 70,
-        epv: 110,
-        vel: (ground_m_s.norm() * 1e2).round() as u16,
+        eph: hundredths(HORIZONTAL_DILUTION),
+        epv: hundredths(VERTICAL_DILUTION),
+        vel: hundredths(ground_m_s.norm()),
         cog: (heading_deg(course_rad) * 1e2).floor() as u16,
         fix_type: GpsFixType::GPS_FIX_TYPE_3D_FIX,
         satellites_visible: fix.satellites,

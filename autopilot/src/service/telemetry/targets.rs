@@ -4,8 +4,7 @@ use mavlink::dialects::common::{
     ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, POSITION_TARGET_GLOBAL_INT_DATA,
     POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask,
 };
-use nalgebra::UnitQuaternion;
-use vehicle::{SteeringKind, Vehicle, wrapped};
+use vehicle::{SteeringKind, TrackedAttitude, Vehicle, wrapped};
 
 use super::boot_ms;
 use super::position::scaled_degrees;
@@ -13,15 +12,9 @@ use crate::codec::floats;
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
 pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {
-    let outputs = vehicle.outputs();
-    let (_, strongest_n) = vehicle.simulation().configuration().airframe.thrust_range_n();
-    let [phi, theta] = outputs.tilt_reference_rad;
-    let (attitude, rate, thrust) = vehicle.attitude_reference().unwrap_or_else(|| {
-        let attitude = UnitQuaternion::from_euler_angles(phi, theta, outputs.setpoint.yaw_rad);
-        (attitude, nalgebra::Vector3::zeros(), outputs.thrust_n / strongest_n)
-    });
+    let TrackedAttitude { attitude, body_rate_rad_s: rate, thrust } = vehicle.tracked_attitude();
     MavMessage::ATTITUDE_TARGET(ATTITUDE_TARGET_DATA {
-        time_boot_ms: boot_ms(outputs.time_us),
+        time_boot_ms: boot_ms(vehicle.outputs().time_us),
         q: [attitude.w as f32, attitude.i as f32, attitude.j as f32, attitude.k as f32],
         body_roll_rate: rate.x as f32,
         body_pitch_rate: rate.y as f32,

@@ -5,7 +5,7 @@ use autopilot::service::LinkProfile;
 use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
-use sitl::flight_log::{Row, TOPICS};
+use sitl::flight_log::{LogSource, Row, TOPICS};
 use vehicle::TICK_US;
 use vehicle::estimation::SensorModel;
 use vehicle::parameters::Speed;
@@ -101,11 +101,11 @@ impl Site {
 
     /// Takes in what a flight log would have now.
     fn log(&self, figures: &mut Figures) {
+        let source = LogSource::of(&self.autopilot);
         for topic in TOPICS {
             let mut row = Row::default();
-            if (topic.sample)(&self.autopilot, &mut row) {
-                figures.logged.bytes(row.bytes());
-            }
+            (topic.sample)(&source, &mut row);
+            figures.logged.bytes(row.bytes());
         }
     }
 

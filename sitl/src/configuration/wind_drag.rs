@@ -1,0 +1,33 @@
+//! The drag that the wind acts through.
+
+use quadrotor::Configuration;
+use vehicle::parameters::identifier;
+
+/// Linear drag of an airframe in a wind, unless the user chooses another, N·s/m: 0.7 kg with an open frame drifts with
+/// 10 m/s of wind at a lean of 12°.
+const DRAG_N_S_M: f64 = 0.15;
+/// The parameters, in the order of the axes.
+const NAMES: [&str; 3] = ["airframe.drag.x", "airframe.drag.y", "airframe.drag.z"];
+
+/// Gives an airframe without drag one that a wind can push. The user's parameters come on top.
+pub(super) fn provide(configuration: &mut Configuration) {
+    let drag_n_s_m = &mut configuration.airframe.drag_n_s_m;
+    if *drag_n_s_m == [0.0; 3] {
+        *drag_n_s_m = [DRAG_N_S_M; 3];
+    }
+}
+
+/// What the user needs to know about the drag in a wind: which of it was provided, or that there is none. `chosen` are the
+/// identifiers of the parameters that the user has set.
+pub(super) fn note(configuration: &Configuration, chosen: &[String]) -> Option<String> {
+    let ids = NAMES.map(identifier);
+    let provided: Vec<&str> = ids.iter().filter(|id| !chosen.contains(id)).map(String::as_str).collect();
+    if !provided.is_empty() {
+        return Some(format!(
+            "wind acts through drag, and the airframe has none: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
+            provided.join(", ")
+        ));
+    }
+    let none = configuration.airframe.drag_n_s_m == [0.0; 3];
+    none.then(|| format!("wind does not push the vehicle, which has no drag: {} are 0", ids.join(", ")))
+}

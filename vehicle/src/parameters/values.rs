@@ -1,0 +1,30 @@
+//! What the parameters are parameters of, as plain data.
+
+use quadrotor::{CascadeDesign, Configuration, ConfigurationError};
+
+use super::Speed;
+use crate::vehicle::Conduct;
+
+/// Everything that parameters are read from and written into. A running vehicle fills it from its state, and takes a changed
+/// one over with [`Vehicle::adopt`](crate::Vehicle::adopt); before a flight it is all that there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParameterValues {
+    /// The closed loop.
+    pub configuration: Configuration,
+    /// The vehicle's behaviour.
+    pub conduct: Conduct,
+    /// System id.
+    pub system_id: u8,
+    /// Pace of simulation time.
+    pub speed: Speed,
+}
+
+impl ParameterValues {
+    /// Whether a closed loop can be built with these values.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] when values contradict one another or a controller cannot be designed.
+    pub fn check(&self) -> Result<(), ConfigurationError> {
+        CascadeDesign::new(&self.configuration).map(drop)
+    }
+}
