@@ -1,16 +1,36 @@
 //! AUTOPILOT_VERSION and PROTOCOL_VERSION: what this is and what it can do.
 
+use mavlink::MessageData;
 use mavlink::dialects::common::{
     AUTOPILOT_VERSION_DATA, MavMessage, MavProtocolCapability, PROTOCOL_VERSION_DATA,
 };
-use vehicle::identity::Identity;
+use vehicle::Vehicle;
+
+use super::Service;
+use crate::parameters::Parameters;
+use crate::stream::{Build, Stream};
 
 /// Our own: "LM" and "PC".
 const VENDOR_ID: u16 = 0x4c4d;
 const PRODUCT_ID: u16 = 0x5043;
 
+const STREAMS: &[Stream] = &[
+    Stream::on_request(AUTOPILOT_VERSION_DATA::ID, Build::Component(autopilot_version)),
+    Stream::on_request(PROTOCOL_VERSION_DATA::ID, Build::Vehicle(protocol_version)),
+];
+
+/// Tells versions and capabilities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Identification;
+
+impl Service for Identification {
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
+    }
+}
+
 /// AUTOPILOT_VERSION. It names no other autopilot's version, and no commit.
-pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
+fn autopilot_version(vehicle: &Vehicle, parameters: &Parameters) -> MavMessage {
     let mut capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
@@ -23,14 +43,14 @@ pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
         | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
-    capabilities |= if identity.is_ardupilot() {
+    capabilities |= if vehicle.identity().is_ardupilot() {
         MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
     } else {
         MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
     };
     MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
         capabilities,
-        uid: u64::from(VENDOR_ID) << 48 | u64::from(PRODUCT_ID) << 32 | u64::from(system_id),
+        uid: u64::from(VENDOR_ID) << 48 | u64::from(PRODUCT_ID) << 32 | u64::from(parameters.system_id()),
         flight_sw_version: version(),
         vendor_id: VENDOR_ID,
         product_id: PRODUCT_ID,
@@ -50,7 +70,7 @@ pub fn version() -> u32 {
 }
 
 /// PROTOCOL_VERSION: MAVLink 1 is understood, 2 is spoken.
-pub fn protocol_version() -> MavMessage {
+fn protocol_version(_vehicle: &Vehicle) -> MavMessage {
     MavMessage::PROTOCOL_VERSION(PROTOCOL_VERSION_DATA {
         version: 200,
         min_version: 100,

@@ -4,7 +4,6 @@
 //! simulations.
 
 use autopilot::Autopilot;
-use autopilot::service::telemetry;
 use mavlink::dialects::common::{GpsFixType, MavMessage};
 use quadrotor::ControllerActivity;
 use vehicle::estimation::Validity;
@@ -159,7 +158,7 @@ pub static TOPICS: &[Topic] = &[
 
 fn attitude(autopilot: &Autopilot, row: &mut Row) -> bool {
     const ATTITUDE_QUATERNION: u32 = 31;
-    match telemetry::message(autopilot, ATTITUDE_QUATERNION) {
+    match autopilot.message(ATTITUDE_QUATERNION) {
         Some(MavMessage::ATTITUDE_QUATERNION(told)) => {
             row.floats([told.q1, told.q2, told.q3, told.q4]);
             true
@@ -175,7 +174,7 @@ fn true_attitude(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn attitude_setpoint(autopilot: &Autopilot, row: &mut Row) -> bool {
     const ATTITUDE_TARGET: u32 = 83;
-    match telemetry::message(autopilot, ATTITUDE_TARGET) {
+    match autopilot.message(ATTITUDE_TARGET) {
         Some(MavMessage::ATTITUDE_TARGET(told)) => {
             row.floats(told.q).floats([told.body_yaw_rate]).floats([0.0, 0.0, -told.thrust]);
             true
@@ -186,7 +185,7 @@ fn attitude_setpoint(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn angular_velocity(autopilot: &Autopilot, row: &mut Row) -> bool {
     const ATTITUDE_QUATERNION: u32 = 31;
-    match telemetry::message(autopilot, ATTITUDE_QUATERNION) {
+    match autopilot.message(ATTITUDE_QUATERNION) {
         Some(MavMessage::ATTITUDE_QUATERNION(told)) => {
             row.floats([told.rollspeed, told.pitchspeed, told.yawspeed]);
             true
@@ -216,7 +215,7 @@ fn local_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     const LOCAL_POSITION_NED: u32 = 32;
     const ATTITUDE: u32 = 30;
     let (Some(MavMessage::LOCAL_POSITION_NED(told)), Some(MavMessage::ATTITUDE(attitude))) =
-        (telemetry::message(autopilot, LOCAL_POSITION_NED), telemetry::message(autopilot, ATTITUDE))
+        (autopilot.message(LOCAL_POSITION_NED), autopilot.message(ATTITUDE))
     else {
         return false;
     };
@@ -252,7 +251,7 @@ fn local_position_setpoint(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn global_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     const GLOBAL_POSITION_INT: u32 = 33;
-    match telemetry::message(autopilot, GLOBAL_POSITION_INT) {
+    match autopilot.message(GLOBAL_POSITION_INT) {
         Some(MavMessage::GLOBAL_POSITION_INT(told)) => {
             row.f64(f64::from(told.lat) / 1e7).f64(f64::from(told.lon) / 1e7).f32(told.alt as f32 / 1e3);
             true
@@ -270,7 +269,7 @@ fn true_global_position(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn gps_position(autopilot: &Autopilot, row: &mut Row) -> bool {
     const GPS_RAW_INT: u32 = 24;
-    let Some(MavMessage::GPS_RAW_INT(told)) = telemetry::message(autopilot, GPS_RAW_INT) else {
+    let Some(MavMessage::GPS_RAW_INT(told)) = autopilot.message(GPS_RAW_INT) else {
         return false;
     };
     let hundredths = |value: u16| if value == u16::MAX { f32::NAN } else { f32::from(value) / 100.0 };
@@ -295,7 +294,7 @@ fn sensor_combined(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn imu_status(autopilot: &Autopilot, row: &mut Row) -> bool {
     const VIBRATION: u32 = 241;
-    let Some(MavMessage::VIBRATION(told)) = telemetry::message(autopilot, VIBRATION) else { return false };
+    let Some(MavMessage::VIBRATION(told)) = autopilot.message(VIBRATION) else { return false };
     row.u32(told.clipping_0).u32(told.clipping_1).u32(told.clipping_2);
     let level = [told.vibration_x, told.vibration_y, told.vibration_z];
     row.f32(level.iter().map(|axis| axis * axis).sum::<f32>().sqrt());
@@ -306,7 +305,7 @@ fn imu_status(autopilot: &Autopilot, row: &mut Row) -> bool {
 /// position, height.
 fn estimator_status(autopilot: &Autopilot, row: &mut Row) -> bool {
     const ESTIMATOR_STATUS: u32 = 230;
-    let Some(MavMessage::ESTIMATOR_STATUS(told)) = telemetry::message(autopilot, ESTIMATOR_STATUS) else {
+    let Some(MavMessage::ESTIMATOR_STATUS(told)) = autopilot.message(ESTIMATOR_STATUS) else {
         return false;
     };
     let ratios = [told.vel_ratio, told.pos_horiz_ratio, told.pos_vert_ratio, told.mag_ratio];
@@ -339,7 +338,7 @@ fn air_data(autopilot: &Autopilot, row: &mut Row) -> bool {
 
 fn imu(autopilot: &Autopilot) -> Option<mavlink::dialects::common::HIGHRES_IMU_DATA> {
     const HIGHRES_IMU: u32 = 105;
-    match telemetry::message(autopilot, HIGHRES_IMU) {
+    match autopilot.message(HIGHRES_IMU) {
         Some(MavMessage::HIGHRES_IMU(told)) => Some(told),
         _ => None,
     }

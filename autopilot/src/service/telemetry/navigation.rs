@@ -3,7 +3,7 @@
 use mavlink::dialects::common::{MavMessage, NAV_CONTROLLER_OUTPUT_DATA};
 use vehicle::{Mode, Vehicle};
 
-use super::position::heading_deg;
+use crate::codec::heading_deg;
 
 /// NAV_CONTROLLER_OUTPUT: the tracking errors of the controllers. Across the leg of a mission, else across the heading; in
 /// altitude and speed against the reference. A distance is that to the end of the leg, else to the reference.

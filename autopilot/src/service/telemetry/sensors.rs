@@ -12,8 +12,7 @@ use vehicle::estimation::inertial::{ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COU
 use vehicle::estimation::magnetometer::COUNTS_PER_GAUSS;
 use vehicle::world::atmospheric_temperature_degc;
 
-use super::boot_ms;
-use super::position::{heading_deg, scaled_degrees};
+use crate::codec::{boot_ms, heading_deg, scaled_degrees};
 
 /// GPS_RAW_INT: the latest fix, if it is young enough to be one.
 pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {

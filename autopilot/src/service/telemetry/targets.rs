@@ -7,9 +7,7 @@ use mavlink::dialects::common::{
 use nalgebra::UnitQuaternion;
 use vehicle::{SteeringKind, Vehicle, wrapped};
 
-use super::boot_ms;
-use super::position::scaled_degrees;
-use crate::codec::floats;
+use crate::codec::{boot_ms, floats, scaled_degrees};
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
 pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {

@@ -1,0 +1,162 @@
+//! The list of all services, and which of them takes what.
+
+use std::collections::BTreeMap;
+
+use super::command::CommandProtocol;
+use super::{Origin, PeerId, Repetition, Service};
+use super::{
+    action, calibration, component_metadata, custom_mode, file_transfer, global_origin, greeting, heartbeat,
+    identification, log, manual_control, message_interval, message_request, mission, notice, parameter,
+    set_point, standard_mode, telemetry, time_synchronization,
+};
+use crate::codec::{Command, Frame};
+use crate::context::Context;
+use crate::stream::StreamTable;
+
+/// All services. They are called in this order.
+fn all() -> Vec<Box<dyn Service>> {
+    vec![
+        Box::new(mission::Missions::default()),
+        Box::new(calibration::Calibrations::default()),
+        Box::new(notice::Notices),
+        Box::new(heartbeat::Heartbeat::default()),
+        Box::new(greeting::Greeting::default()),
+        Box::new(identification::Identification),
+        Box::new(component_metadata::ComponentMetadata),
+        Box::new(time_synchronization::TimeSynchronization),
+        Box::new(parameter::ParameterProtocol),
+        Box::new(custom_mode::CustomModes),
+        Box::new(standard_mode::StandardModes),
+        Box::new(action::Actions),
+        Box::new(set_point::SetPoints),
+        Box::new(manual_control::ManualControl),
+        Box::new(global_origin::GlobalOrigin),
+        Box::new(file_transfer::FileServer::default()),
+        Box::new(log::LogServer::default()),
+        Box::new(telemetry::Telemetry),
+        Box::new(message_request::MessageRequests),
+        Box::new(message_interval::MessageIntervals::default()),
+    ]
+}
+
+/// All services, found by what they take.
+#[derive(Debug)]
+pub struct Registry {
+    services: Vec<Box<dyn Service>>,
+    /// Positions of services by identifiers of messages.
+    messages: BTreeMap<u32, usize>,
+    /// Positions of services by numbers of commands.
+    commands: BTreeMap<u16, (usize, Repetition)>,
+    protocol: CommandProtocol,
+}
+
+impl Registry {
+    /// All services as they start.
+    pub fn new() -> Self {
+        let services = all();
+        let (mut messages, mut commands) = (BTreeMap::new(), BTreeMap::new());
+        for (index, service) in services.iter().enumerate() {
+            messages.extend(service.messages().iter().map(|id| (*id, index)));
+            let entries = service.commands().iter();
+            commands.extend(entries.map(|entry| (entry.number, (index, entry.repetition))));
+        }
+        Self { services, messages, commands, protocol: CommandProtocol::default() }
+    }
+
+    /// The table of all messages that the services make.
+    pub fn streams(&self) -> StreamTable {
+        StreamTable::new(self.services.iter().flat_map(|service| service.streams()))
+    }
+
+    fn each(&mut self, mut call: impl FnMut(&mut dyn Service)) {
+        for service in &mut self.services {
+            call(service.as_mut());
+        }
+    }
+
+    /// The vehicle has just started.
+    pub fn start(&mut self, context: &mut Context) {
+        self.each(|service| service.start(context));
+    }
+
+    /// Somebody was heard, whoever the message is for.
+    pub fn hear(&mut self, context: &mut Context, origin: &Origin) {
+        self.each(|service| service.hear(context, origin));
+    }
+
+    /// Hands a message or a command to the service that takes it.
+    pub fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        if let Some(command) = Command::read(frame) {
+            let entry = self.commands.get(&command.number).copied();
+            let taker = entry.and_then(|(index, repetition)| {
+                let service = self.services.get_mut(index)?;
+                Some((repetition, service.as_mut() as &mut dyn Service))
+            });
+            self.protocol.handle(context, origin, frame, &command, taker);
+            return;
+        }
+        let index = self.messages.get(&frame.message_id()).copied();
+        if let Some(service) = index.and_then(|index| self.services.get_mut(index)) {
+            service.receive(context, origin, frame);
+        }
+    }
+
+    /// A tick of simulation time is over.
+    pub fn tick(&mut self, context: &mut Context) {
+        self.each(|service| service.tick(context));
+    }
+
+    /// Tells what has changed.
+    pub fn announce(&mut self, context: &mut Context) {
+        self.each(|service| service.announce(context));
+    }
+
+    /// Sends what is due regularly.
+    pub fn stream(&mut self, context: &mut Context) {
+        self.each(|service| service.stream(context));
+    }
+
+    /// Sends up to this many messages of what is long.
+    pub fn transfer(
+        &mut self,
+        context: &mut Context,
+        messages: usize,
+        has_room: &dyn Fn(PeerId) -> Option<bool>,
+    ) {
+        self.each(|service| service.transfer(context, messages, has_room));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fmt::Debug;
+
+    use super::all;
+    use crate::codec::id;
+
+    fn assert_unique<T: Ord + Debug>(claims: impl Iterator<Item = T>) {
+        let mut seen = BTreeSet::new();
+        for claim in claims {
+            let text = format!("{claim:?}");
+            assert!(seen.insert(claim), "{text} is claimed twice");
+        }
+    }
+
+    /// Otherwise one of two services would never be asked.
+    #[test]
+    fn nothing_is_claimed_twice() {
+        let services = all();
+        assert_unique(services.iter().flat_map(|service| service.messages()));
+        assert_unique(services.iter().flat_map(|service| service.commands()).map(|entry| entry.number));
+        assert_unique(services.iter().flat_map(|service| service.streams()).map(|stream| stream.id));
+    }
+
+    /// Commands have their own protocol: a service would never see these.
+    #[test]
+    fn no_service_takes_the_messages_of_commands() {
+        let services = all();
+        let mut messages = services.iter().flat_map(|service| service.messages());
+        assert!(!messages.any(|message| [id::COMMAND_INT, id::COMMAND_LONG].contains(message)));
+    }
+}
