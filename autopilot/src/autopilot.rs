@@ -43,6 +43,7 @@ impl Autopilot {
             outbox: Outbox::new(system_id),
             files: Box::new(Nothing),
             streams: services.streams(),
+            capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
         };
         services.start(&mut context);
@@ -109,7 +110,7 @@ impl Autopilot {
 
     /// A message of now by its identifier, if there is one that can be sent regularly.
     pub fn message(&self, id: u32) -> Option<MavMessage> {
-        self.context.streams.get(id)?.message(&self.context.vehicle, &self.context.parameters)
+        self.context.streams.get(id)?.message(&self.context.component())
     }
 
     /// The vehicle.

@@ -1,5 +1,6 @@
 //! What a service works with.
 
+use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::identity::Identity;
 use vehicle::{Severity, Vehicle};
 
@@ -7,7 +8,7 @@ use crate::file_store::FileStore;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::LinkProfile;
-use crate::stream::StreamTable;
+use crate::stream::{Component, StreamTable};
 
 /// The vehicle, and the ways from it to its clients. A service keeps what it needs between two calls itself, and sees no
 /// other service.
@@ -23,6 +24,8 @@ pub struct Context {
     pub files: Box<dyn FileStore>,
     /// Messages that can be asked for.
     pub streams: StreamTable,
+    /// What its services can do.
+    pub capabilities: MavProtocolCapability,
     /// What each link is for.
     pub links: Vec<LinkProfile>,
 }
@@ -36,6 +39,11 @@ impl Context {
     /// System id of the vehicle.
     pub fn system_id(&self) -> u8 {
         self.parameters.system_id()
+    }
+
+    /// What messages are made of.
+    pub fn component(&self) -> Component<'_> {
+        Component { vehicle: &self.vehicle, parameters: &self.parameters, capabilities: self.capabilities }
     }
 
     /// Sends a line for the pilot to everyone, unless it was said a moment ago.

@@ -1,6 +1,6 @@
 //! The table of messages that are sent regularly or asked for.
 
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::common::{MavMessage, MavProtocolCapability};
 use vehicle::Vehicle;
 
 use crate::parameters::Parameters;
@@ -38,13 +38,24 @@ impl Group {
     ];
 }
 
+/// What messages are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Component<'a> {
+    /// The vehicle.
+    pub vehicle: &'a Vehicle,
+    /// Its parameters.
+    pub parameters: &'a Parameters,
+    /// What its services can do.
+    pub capabilities: MavProtocolCapability,
+}
+
 /// How a message is made of the state of now.
 #[derive(Clone, Copy, Debug)]
 pub enum Build {
     /// Of the vehicle.
     Vehicle(fn(&Vehicle) -> MavMessage),
     /// Of what this is and how it is set.
-    Component(fn(&Vehicle, &Parameters) -> MavMessage),
+    Component(fn(&Component<'_>) -> MavMessage),
     /// One or several, by parameter 2 of MAV_CMD_REQUEST_MESSAGE; on request only.
     Numbered(fn(&Vehicle, u32) -> Vec<MavMessage>),
 }
@@ -89,19 +100,19 @@ impl Stream {
     }
 
     /// The one message of now; `None` if it is sent on request only.
-    pub fn message(&self, vehicle: &Vehicle, parameters: &Parameters) -> Option<MavMessage> {
+    pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
         match self.build {
-            Build::Vehicle(build) => Some(build(vehicle)),
-            Build::Component(build) => Some(build(vehicle, parameters)),
+            Build::Vehicle(build) => Some(build(component.vehicle)),
+            Build::Component(build) => Some(build(component)),
             Build::Numbered(_) => None,
         }
     }
 
     /// What answers a request: one message, or those of a number.
-    pub fn messages(&self, vehicle: &Vehicle, parameters: &Parameters, number: u32) -> Vec<MavMessage> {
+    pub fn messages(&self, component: &Component<'_>, number: u32) -> Vec<MavMessage> {
         match self.build {
-            Build::Numbered(build) => build(vehicle, number),
-            _ => self.message(vehicle, parameters).into_iter().collect(),
+            Build::Numbered(build) => build(component.vehicle, number),
+            _ => self.message(component).into_iter().collect(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Commands that make the vehicle do something at once.
 
-use mavlink::dialects::common::MavCmd;
+use mavlink::dialects::common::{MavCmd, MavProtocolCapability};
 use vehicle::fault::Fault;
+use vehicle::identity::Identity;
 use vehicle::plan::{self, MissionItem};
 use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
@@ -63,6 +64,10 @@ pub struct Actions;
 impl Service for Actions {
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {

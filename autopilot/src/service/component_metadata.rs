@@ -3,14 +3,13 @@
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMPONENT_METADATA_DATA, MavMessage};
 use serde_json::{Map, Value as Json, json};
-use vehicle::Vehicle;
 use vehicle::parameters::Value;
 
 use super::Service;
 use crate::codec::boot_ms;
 use crate::codec::checksum::checksum;
 use crate::parameters::Parameters;
-use crate::stream::{Build, Stream};
+use crate::stream::{Build, Component, Stream};
 
 /// COMP_METADATA_TYPE_PARAMETER.
 const TYPE_PARAMETER: u8 = 1;
@@ -30,10 +29,10 @@ impl Service for ComponentMetadata {
 }
 
 /// COMPONENT_METADATA: where the general file is, and its checksum.
-fn message(vehicle: &Vehicle, parameters: &Parameters) -> MavMessage {
+fn message(component: &Component<'_>) -> MavMessage {
     MavMessage::COMPONENT_METADATA(COMPONENT_METADATA_DATA {
-        time_boot_ms: boot_ms(vehicle.time_us()),
-        file_crc: checksum(&general(parameters)),
+        time_boot_ms: boot_ms(component.vehicle.time_us()),
+        file_crc: checksum(&general(component.parameters)),
         uri: GENERAL_URI.into(),
     })
 }

@@ -44,7 +44,12 @@ impl Service for Heartbeat {
 
 /// The heartbeat of now.
 pub fn message(vehicle: &Vehicle) -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    MavMessage::HEARTBEAT(data(vehicle))
+}
+
+/// Its fields: other messages have some of them, too.
+pub fn data(vehicle: &Vehicle) -> HEARTBEAT_DATA {
+    HEARTBEAT_DATA {
         custom_mode: vehicle.identity().custom_mode(vehicle.mode()),
         mavtype: MavType::MAV_TYPE_QUADROTOR,
         autopilot: match vehicle.identity() {
@@ -55,7 +60,7 @@ pub fn message(vehicle: &Vehicle) -> MavMessage {
         base_mode: base_mode(vehicle),
         system_status: system_status(vehicle),
         mavlink_version: 3,
-    })
+    }
 }
 
 fn system_status(vehicle: &Vehicle) -> MavState {

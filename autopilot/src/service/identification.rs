@@ -5,10 +5,10 @@ use mavlink::dialects::common::{
     AUTOPILOT_VERSION_DATA, MavMessage, MavProtocolCapability, PROTOCOL_VERSION_DATA,
 };
 use vehicle::Vehicle;
+use vehicle::identity::Identity;
 
 use super::Service;
-use crate::parameters::Parameters;
-use crate::stream::{Build, Stream};
+use crate::stream::{Build, Component, Stream};
 
 /// Our own: "LM" and "PC".
 const VENDOR_ID: u16 = 0x4c4d;
@@ -27,30 +27,19 @@ impl Service for Identification {
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    }
 }
 
 /// AUTOPILOT_VERSION. It names no other autopilot's version, and no commit.
-fn autopilot_version(vehicle: &Vehicle, parameters: &Parameters) -> MavMessage {
-    let mut capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
-    capabilities |= if vehicle.identity().is_ardupilot() {
-        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
-    } else {
-        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
-    };
+fn autopilot_version(component: &Component<'_>) -> MavMessage {
     MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
-        capabilities,
-        uid: u64::from(VENDOR_ID) << 48 | u64::from(PRODUCT_ID) << 32 | u64::from(parameters.system_id()),
+        capabilities: component.capabilities,
+        uid: u64::from(VENDOR_ID) << 48
+            | u64::from(PRODUCT_ID) << 32
+            | u64::from(component.parameters.system_id()),
         flight_sw_version: version(),
         vendor_id: VENDOR_ID,
         product_id: PRODUCT_ID,

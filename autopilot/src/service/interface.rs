@@ -2,7 +2,9 @@
 
 use std::fmt::Debug;
 
+use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::Refusal;
+use vehicle::identity::Identity;
 
 use super::{Origin, PeerId};
 use crate::codec::{Command, Frame};
@@ -68,6 +70,11 @@ pub trait Service: Debug + Send {
     /// Messages that clients can ask of it, once or regularly.
     fn streams(&self) -> &'static [Stream] {
         &[]
+    }
+
+    /// What AUTOPILOT_VERSION tells that it can do, in the terms of an identity.
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::empty()
     }
 
     /// The vehicle has just started.

@@ -6,7 +6,7 @@ use vehicle::{Refusal, TICK_US};
 use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
-use crate::stream::{Group, Stream};
+use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;
 const SET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16;
@@ -96,11 +96,12 @@ impl Service for MessageIntervals {
 
     /// Sends what is due on every link.
     fn stream(&mut self, context: &mut Context) {
-        let Context { vehicle, parameters, outbox, .. } = context;
+        let Context { vehicle, parameters, outbox, capabilities, .. } = context;
+        let component = Component { vehicle, parameters, capabilities: *capabilities };
         let time_us = vehicle.time_us();
         for (link, schedule) in self.links.iter_mut().enumerate() {
             schedule.due(time_us, |stream| {
-                if let Some(message) = stream.message(vehicle, parameters) {
+                if let Some(message) = stream.message(&component) {
                     outbox.send(Destination::Link(link), message);
                 }
             });

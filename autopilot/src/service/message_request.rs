@@ -40,9 +40,7 @@ impl Service for MessageRequests {
             }
         };
         let stream = context.streams.get(id);
-        let messages = stream
-            .map(|stream| stream.messages(&context.vehicle, &context.parameters, number))
-            .unwrap_or_default();
+        let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
         if messages.is_empty() {
             return Err(Refusal::Unsupported(format!("there is no message {id}")));
         }

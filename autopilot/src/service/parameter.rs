@@ -1,6 +1,7 @@
 //! The parameter protocol.
 
-use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, PARAM_VALUE_DATA};
+use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA};
+use vehicle::identity::Identity;
 use vehicle::parameters::{Encoding, Value};
 use vehicle::{Refusal, Severity};
 
@@ -26,6 +27,15 @@ impl Service for ParameterProtocol {
 
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
+    }
+
+    fn capabilities(&self, identity: Identity) -> MavProtocolCapability {
+        let encoding = if identity.is_ardupilot() {
+            MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
+        } else {
+            MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+        };
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT | encoding
     }
 
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use mavlink::dialects::common::MavProtocolCapability;
+use vehicle::identity::Identity;
+
 use super::command::CommandProtocol;
 use super::{Origin, PeerId, Repetition, Service};
 use super::{
@@ -68,6 +71,12 @@ impl Registry {
         StreamTable::new(self.services.iter().flat_map(|service| service.streams()))
     }
 
+    /// What the services can do together.
+    pub fn capabilities(&self, identity: Identity) -> MavProtocolCapability {
+        let capabilities = self.services.iter().map(|service| service.capabilities(identity));
+        capabilities.fold(self.protocol.capabilities(), |all, one| all | one)
+    }
+
     fn each(&mut self, mut call: impl FnMut(&mut dyn Service)) {
         for service in &mut self.services {
             call(service.as_mut());
@@ -132,8 +141,18 @@ mod tests {
     use std::collections::BTreeSet;
     use std::fmt::Debug;
 
-    use super::all;
+    use mavlink::Message as _;
+    use vehicle::estimation::SensorSettings;
+    use vehicle::identity::Identity;
+    use vehicle::parameters::Speed;
+    use vehicle::plan::Plans;
+    use vehicle::world::{Geodetic, WindSettings};
+    use vehicle::{Conduct, Vehicle, VehicleSettings};
+
+    use super::{Registry, all};
     use crate::codec::id;
+    use crate::parameters::Parameters;
+    use crate::stream::Component;
 
     fn assert_unique<T: Ord + Debug>(claims: impl Iterator<Item = T>) {
         let mut seen = BTreeSet::new();
@@ -150,6 +169,32 @@ mod tests {
         assert_unique(services.iter().flat_map(|service| service.messages()));
         assert_unique(services.iter().flat_map(|service| service.commands()).map(|entry| entry.number));
         assert_unique(services.iter().flat_map(|service| service.streams()).map(|stream| stream.id));
+    }
+
+    /// The identifier of a row and its maker agree.
+    #[test]
+    fn every_row_makes_its_message() {
+        let settings = VehicleSettings {
+            identity: Identity::Px4,
+            configuration: quadrotor::Configuration::default(),
+            conduct: Conduct::new(false),
+            origin: Geodetic { latitude_deg: 47.4, longitude_deg: 8.5, altitude_m: 488.0 },
+            heading_rad: 0.0,
+            wind: WindSettings::default(),
+            faults: Vec::new(),
+            sensors: SensorSettings::default(),
+            plans: Plans::default(),
+        };
+        let vehicle = Vehicle::new(&settings).expect("valid settings");
+        let parameters = Parameters::new(&settings, &vehicle, 1, Speed::Factor(1.0));
+        let registry = Registry::new();
+        let capabilities = registry.capabilities(settings.identity);
+        let component = Component { vehicle: &vehicle, parameters: &parameters, capabilities };
+        for stream in registry.streams().iter() {
+            let messages = stream.messages(&component, 0);
+            assert!(!messages.is_empty(), "{}", stream.id);
+            assert!(messages.iter().all(|message| message.message_id() == stream.id), "{}", stream.id);
+        }
     }
 
     /// Commands have their own protocol: a service would never see these.

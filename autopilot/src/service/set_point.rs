@@ -10,7 +10,9 @@
 //! | other frames, FORCE_SET, nothing but yaw | refused | stop |
 //! | NaN | the axis is ignored | stop |
 
+use mavlink::dialects::common::MavProtocolCapability;
 use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
+use vehicle::identity::Identity;
 use vehicle::plan::{frame, is_global};
 use vehicle::world::{FARTHEST_M, Geodetic};
 use vehicle::{
@@ -48,6 +50,12 @@ pub struct SetPoints;
 impl Service for SetPoints {
     fn messages(&self) -> &'static [u32] {
         &[id::SET_ATTITUDE_TARGET, id::SET_POSITION_TARGET_LOCAL_NED, id::SET_POSITION_TARGET_GLOBAL_INT]
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
     }
 
     fn receive(&mut self, context: &mut Context, _origin: &Origin, frame: &Frame) {

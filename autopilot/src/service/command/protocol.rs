@@ -1,5 +1,6 @@
 //! How a command becomes an answer: its service carries it out, unless it is a retry of what was carried out already.
 
+use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::Severity;
 
 use super::acknowledgement::{acknowledge, acknowledge_outcome, result_of};
@@ -15,6 +16,11 @@ pub struct CommandProtocol {
 }
 
 impl CommandProtocol {
+    /// What AUTOPILOT_VERSION tells of it.
+    pub fn capabilities(&self) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    }
+
     /// Has a command carried out by the service that takes it, and answers it. Every command is answered, before
     /// everything that it makes the vehicle send.
     pub fn handle(

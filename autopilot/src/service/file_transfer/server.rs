@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
+use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::Severity;
+use vehicle::identity::Identity;
 use vehicle::plan::PlanKind;
 
 use super::message::{DATA, Nak, Reply, Request, opcode};
@@ -55,6 +57,10 @@ impl FileServer {
 impl Service for FileServer {
     fn messages(&self) -> &'static [u32] {
         &[id::FILE_TRANSFER_PROTOCOL]
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
     }
 
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {

@@ -1,7 +1,8 @@
 //! Which messages and commands are about missions, fences and rally points.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{MISSION_CURRENT_DATA, MavCmd};
+use mavlink::dialects::common::{MISSION_CURRENT_DATA, MavCmd, MavProtocolCapability};
+use vehicle::identity::Identity;
 
 use super::download;
 use super::progress::{self, MissionProgress};
@@ -52,6 +53,13 @@ impl Service for Missions {
 
     fn streams(&self) -> &'static [Stream] {
         STREAMS
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
     }
 
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
