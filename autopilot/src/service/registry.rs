@@ -7,38 +7,33 @@ use vehicle::identity::Identity;
 
 use super::command::CommandProtocol;
 use super::{Origin, PeerId, Repetition, Service};
-use super::{
-    action, calibration, component_metadata, custom_mode, file_transfer, global_origin, greeting, heartbeat,
-    identification, log, manual_control, message_interval, message_request, mission, notice, parameter,
-    set_point, standard_mode, telemetry, time_synchronization,
-};
 use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::stream::StreamTable;
 
-/// All services. They are called in this order.
+/// All services, called in this order: it is the order of what several of them tell at once.
 fn all() -> Vec<Box<dyn Service>> {
     vec![
-        Box::new(mission::Missions::default()),
-        Box::new(calibration::Calibrations::default()),
-        Box::new(notice::Notices),
-        Box::new(heartbeat::Heartbeat::default()),
-        Box::new(greeting::Greeting::default()),
-        Box::new(identification::Identification),
-        Box::new(component_metadata::ComponentMetadata),
-        Box::new(time_synchronization::TimeSynchronization),
-        Box::new(parameter::ParameterProtocol),
-        Box::new(custom_mode::CustomModes),
-        Box::new(standard_mode::StandardModes),
-        Box::new(action::Actions),
-        Box::new(set_point::SetPoints),
-        Box::new(manual_control::ManualControl),
-        Box::new(global_origin::GlobalOrigin),
-        Box::new(file_transfer::FileServer::default()),
-        Box::new(log::LogServer::default()),
-        Box::new(telemetry::Telemetry),
-        Box::new(message_request::MessageRequests),
-        Box::new(message_interval::MessageIntervals::default()),
+        Box::new(super::mission::Missions::default()),
+        Box::new(super::calibration::Calibrations::default()),
+        Box::new(super::notice::Notices),
+        Box::new(super::heartbeat::Heartbeat::default()),
+        Box::new(super::greeting::Greeting::default()),
+        Box::new(super::identification::Identification),
+        Box::new(super::component_metadata::ComponentMetadata),
+        Box::new(super::time_synchronization::TimeSynchronization),
+        Box::new(super::parameter::ParameterProtocol),
+        Box::new(super::custom_mode::CustomModes),
+        Box::new(super::standard_mode::StandardModes),
+        Box::new(super::action::Actions),
+        Box::new(super::set_point::SetPoints),
+        Box::new(super::manual_control::ManualControl),
+        Box::new(super::global_origin::GlobalOrigin),
+        Box::new(super::file_transfer::FileServer::default()),
+        Box::new(super::log::LogServer::default()),
+        Box::new(super::telemetry::Telemetry),
+        Box::new(super::message_request::MessageRequests),
+        Box::new(super::message_interval::MessageIntervals::default()),
     ]
 }
 
