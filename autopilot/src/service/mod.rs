@@ -23,6 +23,7 @@ mod file_transfer;
 mod global_origin;
 mod greeting;
 pub(crate) mod heartbeat;
+mod high_latency;
 pub mod identification;
 mod log;
 mod manual_control;
