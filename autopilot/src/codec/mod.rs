@@ -7,6 +7,7 @@ mod attitude_target;
 pub mod checksum;
 mod command;
 mod decoder;
+mod encode;
 mod frame;
 #[allow(deprecated)] // Clients still send what the dialect calls deprecated.
 pub mod id;

@@ -4,55 +4,46 @@ use mavlink::dialects::common::{MavCmd, MavProtocolCapability};
 use vehicle::fault::Fault;
 use vehicle::identity::Identity;
 use vehicle::plan::{self, MissionItem};
-use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
+use vehicle::{Mode, Refusal, Reposition, Severity};
 
 use super::command::{global_frame, told_frame, told_place};
 use super::{CommandEntry, Origin, Outcome, Progress, Service, parameter};
 use crate::codec::Command;
 use crate::context::Context;
 
-/// MAV_CMD.
-mod number {
-    use super::MavCmd;
+/// How a command is carried out.
+type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
-    pub const NAV_RETURN_TO_LAUNCH: u16 = MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH as u16;
-    pub const NAV_LAND: u16 = MavCmd::MAV_CMD_NAV_LAND as u16;
-    pub const NAV_TAKEOFF: u16 = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
-    pub const CONDITION_YAW: u16 = MavCmd::MAV_CMD_CONDITION_YAW as u16;
-    pub const DO_CHANGE_SPEED: u16 = MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16;
-    pub const DO_SET_HOME: u16 = MavCmd::MAV_CMD_DO_SET_HOME as u16;
-    pub const DO_FLIGHTTERMINATION: u16 = MavCmd::MAV_CMD_DO_FLIGHTTERMINATION as u16;
-    pub const DO_REPOSITION: u16 = MavCmd::MAV_CMD_DO_REPOSITION as u16;
-    pub const DO_PAUSE_CONTINUE: u16 = MavCmd::MAV_CMD_DO_PAUSE_CONTINUE as u16;
-    pub const DO_SET_ROI_LOCATION: u16 = MavCmd::MAV_CMD_DO_SET_ROI_LOCATION as u16;
-    pub const DO_SET_ROI_WPNEXT_OFFSET: u16 = MavCmd::MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET as u16;
-    pub const DO_SET_ROI_NONE: u16 = MavCmd::MAV_CMD_DO_SET_ROI_NONE as u16;
-    pub const DO_SET_ROI: u16 = MavCmd::MAV_CMD_DO_SET_ROI as u16;
-    pub const DO_FENCE_ENABLE: u16 = MavCmd::MAV_CMD_DO_FENCE_ENABLE as u16;
-    pub const COMPONENT_ARM_DISARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
-    pub const RUN_PREARM_CHECKS: u16 = MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16;
-    pub const INJECT_FAILURE: u16 = MavCmd::MAV_CMD_INJECT_FAILURE as u16;
-}
-
-const COMMANDS: &[CommandEntry] = &[
-    CommandEntry::action(number::NAV_RETURN_TO_LAUNCH),
-    CommandEntry::action(number::NAV_LAND),
-    CommandEntry::action(number::NAV_TAKEOFF),
-    CommandEntry::action(number::CONDITION_YAW),
-    CommandEntry::action(number::DO_CHANGE_SPEED),
-    CommandEntry::action(number::DO_SET_HOME),
-    CommandEntry::action(number::DO_FLIGHTTERMINATION),
-    CommandEntry::action(number::DO_REPOSITION),
-    CommandEntry::action(number::DO_PAUSE_CONTINUE),
-    CommandEntry::action(number::DO_SET_ROI_LOCATION),
-    CommandEntry::action(number::DO_SET_ROI_WPNEXT_OFFSET),
-    CommandEntry::action(number::DO_SET_ROI_NONE),
-    CommandEntry::action(number::DO_SET_ROI),
-    CommandEntry::action(number::DO_FENCE_ENABLE),
-    CommandEntry::action(number::COMPONENT_ARM_DISARM),
-    CommandEntry::action(number::RUN_PREARM_CHECKS),
-    CommandEntry::action(number::INJECT_FAILURE),
+/// Commands, and how they are carried out.
+const ACTIONS: [(MavCmd, CarryOut); 17] = [
+    (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
+    (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
+    (MavCmd::MAV_CMD_NAV_TAKEOFF, take_off),
+    (MavCmd::MAV_CMD_CONDITION_YAW, turn),
+    (MavCmd::MAV_CMD_DO_CHANGE_SPEED, change_speed),
+    (MavCmd::MAV_CMD_DO_SET_HOME, set_home),
+    (MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, terminate),
+    (MavCmd::MAV_CMD_DO_REPOSITION, reposition),
+    (MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI_NONE, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI, look),
+    (MavCmd::MAV_CMD_DO_FENCE_ENABLE, enable_fence),
+    (MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, pause),
+    (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm),
+    (MavCmd::MAV_CMD_RUN_PREARM_CHECKS, check),
+    (MavCmd::MAV_CMD_INJECT_FAILURE, inject_failure),
 ];
+
+const COMMANDS: [CommandEntry; ACTIONS.len()] = {
+    let mut commands = [CommandEntry::action(0); ACTIONS.len()];
+    let mut index = 0;
+    while index < ACTIONS.len() {
+        commands[index] = CommandEntry::action(ACTIONS[index].0 as u16);
+        index += 1;
+    }
+    commands
+};
 
 /// The number that arms or disarms whatever speaks against it.
 const FORCE: f64 = 21196.0;
@@ -63,7 +54,7 @@ pub struct Actions;
 
 impl Service for Actions {
     fn commands(&self) -> &'static [CommandEntry] {
-        COMMANDS
+        &COMMANDS
     }
 
     fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
@@ -71,43 +62,43 @@ impl Service for Actions {
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
-        carry_out(context, command).map(|()| Progress::Done)
+        let action = ACTIONS.into_iter().find(|(number, _)| *number as u16 == command.number);
+        let unknown = || Refusal::Unsupported(format!("Command {} is not supported", command.number));
+        let (_, carry_out) = action.ok_or_else(unknown)?;
+        carry_out(context, command)?;
+        Ok(Progress::Done)
     }
 }
 
-fn carry_out(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+fn change_speed(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    context.vehicle.change_speed(command.parameter(1), command.parameter(2))
+}
+
+fn terminate(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    if command.parameter(1) > 0.5 {
+        context.vehicle.terminate();
+    }
+    Ok(())
+}
+
+fn pause(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    match command.number {
-        number::NAV_RETURN_TO_LAUNCH => vehicle.set_mode(Mode::Return),
-        number::NAV_LAND => vehicle.set_mode(Mode::Land),
-        number::NAV_TAKEOFF => take_off(context, command),
-        number::CONDITION_YAW => turn(vehicle, command),
-        number::DO_CHANGE_SPEED => vehicle.change_speed(command.parameter(1), command.parameter(2)),
-        number::DO_SET_HOME => set_home(vehicle, command),
-        number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => {
-            vehicle.terminate();
-            Ok(())
-        }
-        number::DO_FLIGHTTERMINATION => Ok(()),
-        number::DO_REPOSITION => reposition(vehicle, command),
-        number::DO_SET_ROI_LOCATION
-        | number::DO_SET_ROI_WPNEXT_OFFSET
-        | number::DO_SET_ROI_NONE
-        | number::DO_SET_ROI => vehicle.look(&as_item(command)),
-        number::DO_FENCE_ENABLE => enable_fence(context, command),
-        number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.pause(),
-        number::DO_PAUSE_CONTINUE => vehicle.continue_mission(),
-        number::COMPONENT_ARM_DISARM => arm(vehicle, command),
-        number::RUN_PREARM_CHECKS => {
-            check(context);
-            Ok(())
-        }
-        number::INJECT_FAILURE => inject_failure(vehicle, command),
-        other => Err(Refusal::Unsupported(format!("Command {other} is not supported"))),
-    }
+    if command.parameter(1) == 0.0 { vehicle.pause() } else { vehicle.continue_mission() }
 }
 
-fn arm(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+/// The same as an item of a mission.
+fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    context.vehicle.look(&MissionItem {
+        frame: told_frame(command),
+        command: command.number,
+        parameters: command.parameters,
+        position: [command.x, command.y, command.z],
+        autocontinue: true,
+    })
+}
+
+fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
     let force = command.parameter(2) == FORCE;
     match command.parameter(1) {
         1.0 => vehicle.arm(force),
@@ -130,7 +121,7 @@ fn enable_fence(context: &mut Context, command: &Command) -> Result<(), Refusal>
 }
 
 /// Tells what speaks against arming.
-fn check(context: &mut Context) {
+fn check(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
     let obstacles = context.vehicle.arming_obstacles();
     if obstacles.is_empty() {
         context.say(Severity::Info, "Ready to arm");
@@ -138,6 +129,7 @@ fn check(context: &mut Context) {
     for obstacle in obstacles {
         context.say(Severity::Warning, &format!("Preflight: {obstacle}"));
     }
+    Ok(())
 }
 
 /// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
@@ -162,7 +154,8 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 }
 
 /// To an angle, degrees, from north or (parameter 4) from the present heading, in a direction if there is one.
-fn turn(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+fn turn(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
     let angle_rad = command.parameter(1).to_radians();
     if !angle_rad.is_finite() {
         return Err(Refusal::denied("CONDITION_YAW needs an angle"));
@@ -173,7 +166,8 @@ fn turn(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     vehicle.turn_to(goal)
 }
 
-fn set_home(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
     if command.parameter(1) == 1.0 {
         return vehicle.set_home(vehicle.outputs().position_m, None);
     }
@@ -188,7 +182,8 @@ fn set_home(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
 }
 
 /// NaN keeps what it stands for; nothing but NaN is a pause.
-fn reposition(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
     // Without a place it has no frame.
     let nowhere = command.x.is_nan() && command.y.is_nan() && !command.z.is_finite();
     let frame = if nowhere { plan::frame::GLOBAL } else { global_frame(command)? };
@@ -207,19 +202,9 @@ fn reposition(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     if speed_m_s > 0.0 { vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
 }
 
-/// The same as an item of a mission.
-fn as_item(command: &Command) -> MissionItem {
-    MissionItem {
-        frame: told_frame(command),
-        command: command.number,
-        parameters: command.parameters,
-        position: [command.x, command.y, command.z],
-        autocontinue: true,
-    }
-}
-
 /// FAILURE_UNIT, FAILURE_TYPE, instance.
-fn inject_failure(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+fn inject_failure(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
     // Nothing may be named instead of every instance.
     let instance = if command.parameter(3).is_nan() { Some(0) } else { command.whole(3) };
     let (Some(unit), Some(kind), Some(instance)) = (command.whole(1), command.whole(2), instance) else {
