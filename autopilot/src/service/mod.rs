@@ -8,7 +8,7 @@
 //!     └──────────────────────────────────────────►────┴──► vehicle, parameters, outbox, files
 //! ```
 //!
-//! A new service is a file with an implementation of [`Service`], named here and in the registry.
+//! A new service is a file with an implementation of the trait `Service`, named here and in the registry.
 
 mod envelope;
 mod interface;
