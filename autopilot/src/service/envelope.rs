@@ -51,6 +51,6 @@ pub enum LinkProfile {
     /// A ground station.
     #[default]
     Ground,
-    /// A program beside the context, with faster telemetry.
+    /// A program beside the autopilot, with faster telemetry.
     Onboard,
 }
