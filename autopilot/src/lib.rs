@@ -2,10 +2,10 @@
 //! [`Vehicle`](vehicle::Vehicle).
 //!
 //! ```text
-//!         frames                  requests                 inputs
-//!  ──────────────► service ◄──────────────► vehicle ◄──────────► quadrotor::Simulation
-//!  ◄──────────────  one file per             modes, arming,       closed loop
-//!         messages   microservice            set-points, landing
+//!         frames               claims             context
+//!  ──────────────► Autopilot ─────────► service ◄─────────► vehicle, parameters, files
+//!  ◄──────────────    │      registry    one file per           outbox
+//!        messages     └─ order of a tick microservice
 //! ```
 //!
 //! It owns no socket and reads no clock: frames and ticks of simulation time go in, messages come out, so that every
@@ -16,7 +16,14 @@
 
 mod autopilot;
 pub mod codec;
+mod context;
 pub mod file_store;
+mod outbox;
+mod parameters;
+#[allow(deprecated)] // Clients still use what the dialect calls deprecated.
 pub mod service;
+mod status_text;
+mod stream;
 
-pub use autopilot::{Autopilot, COMPONENT};
+pub use autopilot::Autopilot;
+pub use codec::COMPONENT;

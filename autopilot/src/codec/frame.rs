@@ -3,7 +3,7 @@
 use mavlink::dialects::common::MavMessage;
 use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message as _, calculate_crc};
 
-use super::{Message, Payload};
+use super::Payload;
 
 /// Version of the protocol on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,26 +80,23 @@ impl Frame {
         (calculate_crc(bytes.get(1..end)?, extra) == told).then_some(frame)
     }
 
-    /// A message as a frame; `None` if the version has no place for it.
-    pub fn encode(
-        message: &Message,
+    /// A payload as a frame; `None` if the version has no place for its message.
+    pub(super) fn of_payload(
+        id: u32,
+        payload: &[u8],
         version: Version,
         sequence: u8,
         (system, component): (u8, u8),
     ) -> Option<Self> {
-        let mut payload = [0; 255];
-        let length = message.serialize(version.into(), &mut payload);
-        let id = message.id();
+        let length = u8::try_from(payload.len()).ok()?;
         let mut bytes = match version {
-            Version::One => {
-                vec![MAV_STX, length as u8, sequence, system, component, u8::try_from(id).ok()?]
-            }
+            Version::One => vec![MAV_STX, length, sequence, system, component, u8::try_from(id).ok()?],
             Version::Two => {
                 let [low, middle, high, _] = id.to_le_bytes();
-                vec![MAV_STX_V2, length as u8, 0, 0, sequence, system, component, low, middle, high]
+                vec![MAV_STX_V2, length, 0, 0, sequence, system, component, low, middle, high]
             }
         };
-        bytes.extend(payload.iter().take(length));
+        bytes.extend(payload);
         let end = bytes.len();
         let checksum = calculate_crc(bytes.get(1..)?, extra_crc(id)?);
         bytes.extend(checksum.to_le_bytes());

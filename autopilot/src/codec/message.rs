@@ -2,7 +2,6 @@
 
 use mavlink::dialects::common::{COMMAND_ACK_DATA, MavMessage};
 use mavlink::{MavlinkVersion, Message as _, MessageData as _};
-use nalgebra::Vector3;
 
 use super::MissionItemMessage;
 
@@ -16,11 +15,6 @@ pub enum Message {
     CommandAck(CommandAck),
     /// An item of a plan, which need not be one of the dialect either.
     MissionItem(MissionItemMessage),
-}
-
-/// A vector in the precision of the protocol.
-pub fn floats(vector: &Vector3<f64>) -> [f32; 3] {
-    vector.data.0[0].map(|value| value as f32)
 }
 
 /// COMMAND_ACK, with any number of a command.

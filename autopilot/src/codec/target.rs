@@ -1,9 +1,12 @@
 //! Who a received message is for.
 
 use mavlink::Message as _;
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::common::{MavComponent, MavMessage};
 
 use super::{Frame, id};
+
+/// Component id of an autopilot.
+pub const COMPONENT: u8 = MavComponent::MAV_COMP_ID_AUTOPILOT1 as u8;
 
 /// System and component; zero means all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,9 +23,7 @@ impl Target {
 
     /// Whether the autopilot of this system is meant.
     pub fn is_autopilot(self, system: u8) -> bool {
-        const MAV_COMP_ID_AUTOPILOT1: u8 = 1;
-        (self.system == 0 || self.system == system)
-            && (self.component == 0 || self.component == MAV_COMP_ID_AUTOPILOT1)
+        (self.system == 0 || self.system == system) && (self.component == 0 || self.component == COMPONENT)
     }
 }
 

@@ -1,39 +1,55 @@
 //! Component metadata: what a ground station needs to show parameters that it does not know.
 
+use mavlink::MessageData;
 use mavlink::dialects::common::{COMPONENT_METADATA_DATA, MavMessage};
 use serde_json::{Map, Value as Json, json};
 use vehicle::parameters::Value;
 
-use super::file_transfer::checksum;
-use crate::autopilot::Autopilot;
+use super::Service;
+use crate::codec::boot_ms;
+use crate::codec::checksum::checksum;
+use crate::parameters::Parameters;
+use crate::stream::{Build, Component, Stream};
 
 /// COMP_METADATA_TYPE_PARAMETER.
 const TYPE_PARAMETER: u8 = 1;
 const GENERAL_URI: &str = "mftp:///metadata/general.json";
 const PARAMETERS_URI: &str = "mftp:///metadata/parameters.json";
 
+const STREAMS: &[Stream] = &[Stream::on_request(COMPONENT_METADATA_DATA::ID, Build::Component(message))];
+
+/// Tells where the general file is. File transfer serves it.
+#[derive(Clone, Copy, Debug)]
+pub struct ComponentMetadata;
+
+impl Service for ComponentMetadata {
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
+    }
+}
+
 /// COMPONENT_METADATA: where the general file is, and its checksum.
-pub fn message(autopilot: &Autopilot) -> MavMessage {
+fn message(component: &Component<'_>) -> MavMessage {
     MavMessage::COMPONENT_METADATA(COMPONENT_METADATA_DATA {
-        time_boot_ms: (autopilot.vehicle.time_us() / 1000) as u32,
-        file_crc: checksum(&general(autopilot)),
+        time_boot_ms: boot_ms(component.vehicle.time_us()),
+        file_crc: checksum(&general(component.parameters)),
         uri: GENERAL_URI.into(),
     })
 }
 
 /// The general file: which others there are.
-pub fn general(autopilot: &Autopilot) -> Vec<u8> {
+pub fn general(values: &Parameters) -> Vec<u8> {
     let types = json!([{
         "type": TYPE_PARAMETER,
         "uri": PARAMETERS_URI,
-        "fileCrc": checksum(&parameters(autopilot)),
+        "fileCrc": checksum(&parameters(values)),
     }]);
     json!({ "version": 1, "metadataTypes": types }).to_string().into_bytes()
 }
 
 /// The file about parameters. It stays the same however they are set: clients keep it by its checksum.
-pub fn parameters(autopilot: &Autopilot) -> Vec<u8> {
-    let entries = autopilot.table.entries().iter().zip(autopilot.initial_parameters());
+pub fn parameters(values: &Parameters) -> Vec<u8> {
+    let entries = values.table().entries().iter().zip(values.initial());
     let parameters: Vec<Json> = entries
         .map(|(entry, initial)| {
             let description = entry.describe();

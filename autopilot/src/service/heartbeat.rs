@@ -1,13 +1,17 @@
 //! HEARTBEAT: once a second, and at once when mode or arming change.
 
+use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType};
 use vehicle::identity::Identity;
 use vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
 
-use super::Destination;
-use crate::autopilot::Autopilot;
+use super::{Destination, Service};
+use crate::context::Context;
+use crate::stream::{Build, Stream};
 
 const PERIOD_US: u64 = 1_000_000;
+
+const STREAMS: &[Stream] = &[Stream::on_request(HEARTBEAT_DATA::ID, Build::Vehicle(message))];
 
 /// What was told last, and when to tell again.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,28 +20,36 @@ pub struct Heartbeat {
     due_us: u64,
 }
 
-/// Sends a heartbeat if one is due.
-pub fn update(autopilot: &mut Autopilot) {
-    let vehicle = &autopilot.vehicle;
-    let idle = vehicle.steering_kind() == SteeringKind::Idle;
-    let now = (vehicle.is_armed(), vehicle.mode(), idle, system_status(vehicle));
-    let time_us = vehicle.time_us();
-    if autopilot.heartbeat.told == Some(now) && time_us < autopilot.heartbeat.due_us {
-        return;
+impl Service for Heartbeat {
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
     }
-    autopilot.heartbeat = Heartbeat { told: Some(now), due_us: time_us + PERIOD_US };
-    beat(autopilot);
-}
 
-/// Sends a heartbeat.
-pub fn beat(autopilot: &mut Autopilot) {
-    let message = message(&autopilot.vehicle);
-    autopilot.send(Destination::Everyone, message);
+    fn start(&mut self, context: &mut Context) {
+        self.announce(context);
+    }
+
+    fn announce(&mut self, context: &mut Context) {
+        let vehicle = &context.vehicle;
+        let idle = vehicle.steering_kind() == SteeringKind::Idle;
+        let now = (vehicle.is_armed(), vehicle.mode(), idle, system_status(vehicle));
+        let time_us = vehicle.time_us();
+        if self.told == Some(now) && time_us < self.due_us {
+            return;
+        }
+        *self = Self { told: Some(now), due_us: time_us + PERIOD_US };
+        context.outbox.send(Destination::Everyone, message(vehicle));
+    }
 }
 
 /// The heartbeat of now.
 pub fn message(vehicle: &Vehicle) -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+    MavMessage::HEARTBEAT(data(vehicle))
+}
+
+/// Its fields: other messages have some of them, too.
+pub fn data(vehicle: &Vehicle) -> HEARTBEAT_DATA {
+    HEARTBEAT_DATA {
         custom_mode: vehicle.identity().custom_mode(vehicle.mode()),
         mavtype: MavType::MAV_TYPE_QUADROTOR,
         autopilot: match vehicle.identity() {
@@ -48,7 +60,7 @@ pub fn message(vehicle: &Vehicle) -> MavMessage {
         base_mode: base_mode(vehicle),
         system_status: system_status(vehicle),
         mavlink_version: 3,
-    })
+    }
 }
 
 fn system_status(vehicle: &Vehicle) -> MavState {

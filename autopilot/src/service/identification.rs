@@ -1,36 +1,45 @@
 //! AUTOPILOT_VERSION and PROTOCOL_VERSION: what this is and what it can do.
 
+use mavlink::MessageData;
 use mavlink::dialects::common::{
     AUTOPILOT_VERSION_DATA, MavMessage, MavProtocolCapability, PROTOCOL_VERSION_DATA,
 };
+use vehicle::Vehicle;
 use vehicle::identity::Identity;
+
+use super::Service;
+use crate::stream::{Build, Component, Stream};
 
 /// Our own: "LM" and "PC".
 const VENDOR_ID: u16 = 0x4c4d;
 const PRODUCT_ID: u16 = 0x5043;
 
+const STREAMS: &[Stream] = &[
+    Stream::on_request(AUTOPILOT_VERSION_DATA::ID, Build::Component(autopilot_version)),
+    Stream::on_request(PROTOCOL_VERSION_DATA::ID, Build::Vehicle(protocol_version)),
+];
+
+/// Tells versions and capabilities.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Identification;
+
+impl Service for Identification {
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    }
+}
+
 /// AUTOPILOT_VERSION. It names no other autopilot's version, and no commit.
-pub fn autopilot_version(identity: Identity, system_id: u8) -> MavMessage {
-    let mut capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_FENCE
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
-        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
-    capabilities |= if identity.is_ardupilot() {
-        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
-    } else {
-        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
-    };
+fn autopilot_version(component: &Component<'_>) -> MavMessage {
     MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
-        capabilities,
-        uid: u64::from(VENDOR_ID) << 48 | u64::from(PRODUCT_ID) << 32 | u64::from(system_id),
+        capabilities: component.capabilities,
+        uid: u64::from(VENDOR_ID) << 48
+            | u64::from(PRODUCT_ID) << 32
+            | u64::from(component.parameters.system_id()),
         flight_sw_version: version(),
         vendor_id: VENDOR_ID,
         product_id: PRODUCT_ID,
@@ -50,7 +59,7 @@ fn version() -> u32 {
 }
 
 /// PROTOCOL_VERSION: MAVLink 1 is understood, 2 is spoken.
-pub fn protocol_version() -> MavMessage {
+fn protocol_version(_vehicle: &Vehicle) -> MavMessage {
     MavMessage::PROTOCOL_VERSION(PROTOCOL_VERSION_DATA {
         version: 200,
         min_version: 100,

@@ -2,11 +2,29 @@
 
 use vehicle::Sticks;
 
-use crate::autopilot::Autopilot;
-use crate::codec::Frame;
+use super::{Origin, Service};
+use crate::codec::{Frame, id};
+use crate::context::Context;
+
+/// Hands sticks on to the vehicle.
+#[derive(Clone, Copy, Debug)]
+pub struct ManualControl;
+
+impl Service for ManualControl {
+    fn messages(&self) -> &'static [u32] {
+        &[id::MANUAL_CONTROL, id::RC_CHANNELS_OVERRIDE]
+    }
+
+    fn receive(&mut self, context: &mut Context, _origin: &Origin, frame: &Frame) {
+        match frame.message_id() {
+            id::MANUAL_CONTROL => manual_control(context, frame),
+            _ => channels_override(context, frame),
+        }
+    }
+}
 
 /// MANUAL_CONTROL: ±1000, the thrust stick 0 to 1000 with its centre at 500.
-pub fn manual_control(autopilot: &mut Autopilot, frame: &Frame) {
+fn manual_control(context: &mut Context, frame: &Frame) {
     let payload = frame.payload();
     // The largest negative number stands for an axis that is not there.
     let axis = |offset| match payload.i16(offset) {
@@ -18,11 +36,11 @@ pub fn manual_control(autopilot: &mut Autopilot, frame: &Frame) {
         value => (f64::from(value) - 500.0) / 500.0,
     };
     let sticks = Sticks { forward: axis(0), right: axis(2), up, turn: axis(6) };
-    autopilot.vehicle.move_sticks(sticks);
+    context.vehicle.move_sticks(sticks);
 }
 
 /// RC_CHANNELS_OVERRIDE: roll, pitch, throttle and yaw as pulses of 1000 to 2000 µs. All four released ends it.
-pub fn channels_override(autopilot: &mut Autopilot, frame: &Frame) {
+fn channels_override(context: &mut Context, frame: &Frame) {
     let payload = frame.payload();
     // 0 releases a channel, 65535 leaves it.
     let channel = |number: usize| match payload.u16(2 * number) {
@@ -35,5 +53,5 @@ pub fn channels_override(autopilot: &mut Autopilot, frame: &Frame) {
     }
     let [roll, pitch, throttle, yaw] = channels.map(|channel| channel.unwrap_or(0.0));
     // A pitch stick that is pulled is a long pulse.
-    autopilot.vehicle.move_sticks(Sticks { forward: -pitch, right: roll, up: throttle, turn: yaw });
+    context.vehicle.move_sticks(Sticks { forward: -pitch, right: roll, up: throttle, turn: yaw });
 }

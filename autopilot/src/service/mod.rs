@@ -1,25 +1,41 @@
-//! One file per MAVLink microservice. Each takes a received frame or a moment of simulation time, and puts answers
-//! into the outbox; none owns a socket or reads a clock.
+//! One file per MAVLink microservice. Each takes received messages, commands or a moment of simulation time, and puts
+//! answers into the outbox; none owns a socket, reads a clock or knows another.
+//!
+//! ```text
+//!             claims: messages, commands, streams
+//!  registry ◄───────────────────────────────────── service
+//!     │  frame, command, tick                         │ &mut Context
+//!     └──────────────────────────────────────────►────┴──► vehicle, parameters, outbox, files
+//! ```
+//!
+//! A new service is a file with an implementation of the trait `Service`, named here and in the registry.
 
-pub(crate) mod command;
-pub(crate) mod component_metadata;
 mod envelope;
-pub(crate) mod file_transfer;
+mod interface;
+pub(crate) mod registry;
+
+mod action;
+mod calibration;
+mod command;
+mod component_metadata;
+mod custom_mode;
+mod file_transfer;
+mod global_origin;
+mod greeting;
 pub(crate) mod heartbeat;
-#[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
-pub(crate) mod identification;
-pub(crate) mod log;
-pub(crate) mod manual_control;
-pub(crate) mod message_interval;
-#[allow(deprecated)] // Clients still use what the dialect calls deprecated.
-pub(crate) mod mission;
+mod high_latency;
+mod identification;
+mod log;
+mod manual_control;
+mod message_interval;
+mod message_request;
+mod mission;
+mod notice;
 pub(crate) mod parameter;
-pub(crate) mod set_point;
-pub(crate) mod standard_mode;
-pub(crate) mod status_text;
-#[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
-pub(crate) mod telemetry;
-#[allow(deprecated)] // Clients still ask for what the dialect calls deprecated.
-pub(crate) mod time_synchronization;
+mod set_point;
+mod standard_mode;
+mod telemetry;
+mod time_synchronization;
 
 pub use envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
+pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

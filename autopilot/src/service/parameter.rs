@@ -1,31 +1,69 @@
 //! The parameter protocol.
 
-use mavlink::dialects::common::{MavMessage, MavParamType, PARAM_VALUE_DATA};
-use vehicle::Severity;
+use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA};
+use vehicle::identity::Identity;
 use vehicle::parameters::Value;
+use vehicle::{Refusal, Severity};
 
-use super::{Destination, Origin};
-use crate::autopilot::Autopilot;
-use crate::codec::{Encoding, Frame};
+use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
+use crate::codec::{Command, Encoding, Frame, id};
+use crate::context::Context;
 
 /// Name under which clients ask for the hash, and with which QGroundControl says that its cache is right.
 const HASH_CHECK: &str = "_HASH_CHECK";
 /// Index of what is not in the list.
 const NO_INDEX: u16 = u16::MAX;
 
-/// PARAM_REQUEST_LIST: the hash first, so that a client whose cache is right can say so, then everything.
-pub fn request_list(autopilot: &mut Autopilot, origin: &Origin) {
-    let to = Destination::Peer(origin.peer);
-    if !autopilot.identity().is_ardupilot() {
-        send_hash(autopilot, to);
+const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u16)];
+
+/// Tells parameters and changes them.
+#[derive(Clone, Copy, Debug)]
+pub struct ParameterProtocol;
+
+impl Service for ParameterProtocol {
+    fn messages(&self) -> &'static [u32] {
+        &[id::PARAM_REQUEST_READ, id::PARAM_REQUEST_LIST, id::PARAM_SET]
     }
-    for index in 0..autopilot.table.entries().len() {
-        send_value(autopilot, index, to);
+
+    fn commands(&self) -> &'static [CommandEntry] {
+        COMMANDS
+    }
+
+    fn capabilities(&self, identity: Identity) -> MavProtocolCapability {
+        let encoding = if identity.is_ardupilot() {
+            MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
+        } else {
+            MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+        };
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT | encoding
+    }
+
+    fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        match frame.message_id() {
+            id::PARAM_REQUEST_READ => request_read(context, origin, frame),
+            id::PARAM_REQUEST_LIST => request_list(context, origin),
+            _ => set(context, origin, frame),
+        }
+    }
+
+    fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
+        storage(context, command).map(|()| Progress::Done)
+    }
+}
+
+/// PARAM_REQUEST_LIST: the hash first, so that a client whose cache is right can say so, then everything.
+fn request_list(context: &mut Context, origin: &Origin) {
+    let to = Destination::Peer(origin.peer);
+    if !context.identity().is_ardupilot() {
+        send_hash(context, to);
+    }
+    for index in 0..context.parameters.table().entries().len() {
+        send_value(context, index, to);
     }
 }
 
 /// PARAM_REQUEST_READ, by index or by name.
-pub fn request_read(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let to = Destination::Peer(origin.peer);
     let index = match usize::try_from(payload.i16(0)) {
@@ -33,49 +71,49 @@ pub fn request_read(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
         Err(_) => {
             let name = payload.name(4);
             if name == HASH_CHECK {
-                send_hash(autopilot, to);
+                send_hash(context, to);
                 return;
             }
-            autopilot.table.index_of(&name)
+            context.parameters.table().index_of(&name)
         }
     };
     if let Some(index) = index {
-        send_value(autopilot, index, to);
+        send_value(context, index, to);
     }
 }
 
 /// PARAM_SET: the new value goes to everyone; a refusal is answered with the present one and says why.
-pub fn set(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
+fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let name = payload.name(6);
     if name == HASH_CHECK {
         // "Stop sending": the list is out already.
         return;
     }
-    let value = Encoding::of(autopilot.identity()).decode(payload.f32(0), payload.u8(22));
-    let result = autopilot.set_parameter(&name, value);
-    if let Some(index) = autopilot.table.index_of(&name) {
+    let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
+    let result = context.parameters.set(&name, value, &mut context.vehicle);
+    if let Some(index) = context.parameters.table().index_of(&name) {
         let to = if result.is_ok() { Destination::Everyone } else { Destination::Peer(origin.peer) };
-        send_value(autopilot, index, to);
+        send_value(context, index, to);
     }
     if let Err(error) = result {
-        super::status_text::send(autopilot, Severity::Warning, &format!("Parameter refused: {error}"));
+        context.say(Severity::Warning, &format!("Parameter refused: {error}"));
     }
 }
 
 /// Tells a parameter that something else than PARAM_SET has changed.
-pub fn tell(autopilot: &mut Autopilot, id: &str) {
-    if let Some(index) = autopilot.table.index_of(id) {
-        send_value(autopilot, index, Destination::Everyone);
+pub fn tell(context: &mut Context, id: &str) {
+    if let Some(index) = context.parameters.table().index_of(id) {
+        send_value(context, index, Destination::Everyone);
     }
 }
 
-fn send_value(autopilot: &mut Autopilot, index: usize, to: Destination) {
-    let Some(value) = autopilot.parameter_value(index) else { return };
-    let Some(entry) = autopilot.table.entries().get(index) else { return };
+fn send_value(context: &mut Context, index: usize, to: Destination) {
+    let Some(value) = context.parameters.value(index, &context.vehicle) else { return };
+    let Some(entry) = context.parameters.table().entries().get(index) else { return };
     let message = PARAM_VALUE_DATA {
-        param_value: Encoding::of(autopilot.identity()).encode(value),
-        param_count: autopilot.table.entries().len() as u16,
+        param_value: Encoding::of(context.identity()).encode(value),
+        param_count: context.parameters.table().entries().len() as u16,
         param_index: index as u16,
         param_id: entry.id.as_str().into(),
         param_type: match value {
@@ -83,17 +121,27 @@ fn send_value(autopilot: &mut Autopilot, index: usize, to: Destination) {
             Value::Integer(_) => MavParamType::MAV_PARAM_TYPE_INT32,
         },
     };
-    autopilot.send(to, MavMessage::PARAM_VALUE(message));
+    context.outbox.send(to, MavMessage::PARAM_VALUE(message));
 }
 
-fn send_hash(autopilot: &mut Autopilot, to: Destination) {
-    let hash = autopilot.parameter_hash();
+fn send_hash(context: &mut Context, to: Destination) {
+    let hash = context.parameters.hash(&context.vehicle);
     let message = PARAM_VALUE_DATA {
-        param_value: Encoding::of(autopilot.identity()).encode_hash(hash),
-        param_count: autopilot.table.entries().len() as u16,
+        param_value: Encoding::of(context.identity()).encode_hash(hash),
+        param_count: context.parameters.table().entries().len() as u16,
         param_index: NO_INDEX,
         param_id: HASH_CHECK.into(),
         param_type: MavParamType::MAV_PARAM_TYPE_UINT32,
     };
-    autopilot.send(to, MavMessage::PARAM_VALUE(message));
+    context.outbox.send(to, MavMessage::PARAM_VALUE(message));
+}
+
+/// 0 reads, 1 writes, 2 resets the parameters.
+fn storage(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    match command.parameter(1) {
+        // They are read at the start, and always written when one changes.
+        0.0 | 1.0 => Ok(()),
+        2.0 => context.parameters.reset(&mut context.vehicle),
+        other => Err(Refusal::denied(format!("Parameter storage has no action {other}"))),
+    }
 }

@@ -10,15 +10,18 @@
 //! | other frames, FORCE_SET, nothing but yaw | refused | stop |
 //! | NaN | the axis is ignored | stop |
 
+use mavlink::dialects::common::MavProtocolCapability;
 use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
+use vehicle::identity::Identity;
 use vehicle::plan::{frame, is_global};
 use vehicle::world::{FARTHEST_M, Geodetic};
 use vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
 };
 
-use crate::autopilot::Autopilot;
-use crate::codec::{Frame, SetAttitudeTarget, SetPositionTarget, TargetPosition};
+use super::{Origin, Service};
+use crate::codec::{Frame, SetAttitudeTarget, SetPositionTarget, TargetPosition, id};
+use crate::context::Context;
 
 /// POSITION_TARGET_TYPEMASK.
 const FORCE_SET: u16 = 1 << 9;
@@ -40,22 +43,45 @@ const YAW_RATE_IGNORE_ATTITUDE: u8 = 4;
 const THRUST_IGNORE: u8 = 1 << 6;
 const ATTITUDE_IGNORE: u8 = 1 << 7;
 
+/// Hands set-points on to the vehicle.
+#[derive(Clone, Copy, Debug)]
+pub struct SetPoints;
+
+impl Service for SetPoints {
+    fn messages(&self) -> &'static [u32] {
+        &[id::SET_ATTITUDE_TARGET, id::SET_POSITION_TARGET_LOCAL_NED, id::SET_POSITION_TARGET_GLOBAL_INT]
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+            | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
+    }
+
+    fn receive(&mut self, context: &mut Context, _origin: &Origin, frame: &Frame) {
+        match frame.message_id() {
+            id::SET_ATTITUDE_TARGET => attitude(context, frame),
+            _ => position(context, frame),
+        }
+    }
+}
+
 /// Takes SET_POSITION_TARGET_LOCAL_NED or SET_POSITION_TARGET_GLOBAL_INT.
-pub fn position(autopilot: &mut Autopilot, frame: &Frame) {
+fn position(context: &mut Context, frame: &Frame) {
     let Some(target) = SetPositionTarget::read(frame) else { return };
-    let resolved = resolve(&target, &autopilot.vehicle);
-    take(autopilot, resolved.map(SetPoint::Position));
+    let resolved = resolve(&target, &context.vehicle);
+    take(context, resolved.map(SetPoint::Position));
 }
 
 /// Takes SET_ATTITUDE_TARGET.
-pub fn attitude(autopilot: &mut Autopilot, frame: &Frame) {
+fn attitude(context: &mut Context, frame: &Frame) {
     let Some(target) = SetAttitudeTarget::read(frame) else { return };
     let resolved = resolve_attitude(&target);
-    take(autopilot, resolved.map(SetPoint::Attitude));
+    take(context, resolved.map(SetPoint::Attitude));
 }
 
-fn take(autopilot: &mut Autopilot, resolved: Result<SetPoint, Refusal>) {
-    let vehicle = &mut autopilot.vehicle;
+fn take(context: &mut Context, resolved: Result<SetPoint, Refusal>) {
+    let vehicle = &mut context.vehicle;
     let ardupilot = vehicle.identity().is_ardupilot();
     let result = match resolved {
         // ArduPilot stops where it cannot make sense of a set-point.
@@ -65,7 +91,7 @@ fn take(autopilot: &mut Autopilot, resolved: Result<SetPoint, Refusal>) {
         resolved => resolved.and_then(|set_point| vehicle.set_point(set_point)),
     };
     if let Err(refusal) = result {
-        super::status_text::send(autopilot, Severity::Warning, &refusal.to_string());
+        context.say(Severity::Warning, &refusal.to_string());
     }
 }
 

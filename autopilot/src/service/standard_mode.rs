@@ -1,10 +1,44 @@
 //! Standard modes: AVAILABLE_MODES, CURRENT_MODE and DO_SET_STANDARD_MODE.
 
+use mavlink::MessageData;
 use mavlink::dialects::common::{
-    AVAILABLE_MODES_DATA, CURRENT_MODE_DATA, MavMessage, MavModeProperty, MavStandardMode,
+    AVAILABLE_MODES_DATA, CURRENT_MODE_DATA, MavCmd, MavMessage, MavModeProperty, MavStandardMode,
 };
-use vehicle::identity::Identity;
-use vehicle::{Mode, Vehicle};
+use vehicle::{Mode, Refusal, Vehicle};
+
+use super::{CommandEntry, Origin, Outcome, Progress, Service};
+use crate::codec::Command;
+use crate::context::Context;
+use crate::stream::{Build, Stream};
+
+const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_DO_SET_STANDARD_MODE as u16)];
+
+const STREAMS: &[Stream] = &[
+    Stream::on_request(AVAILABLE_MODES_DATA::ID, Build::Numbered(available)),
+    Stream::on_request(CURRENT_MODE_DATA::ID, Build::Vehicle(current)),
+];
+
+/// Lists modes and changes them.
+#[derive(Clone, Copy, Debug)]
+pub struct StandardModes;
+
+impl Service for StandardModes {
+    fn commands(&self) -> &'static [CommandEntry] {
+        COMMANDS
+    }
+
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
+    }
+
+    fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
+        let mode = command.whole(1).and_then(mode);
+        let mode =
+            mode.ok_or_else(|| Refusal::denied(format!("No standard mode {}", command.parameter(1))))?;
+        context.vehicle.set_mode(mode)?;
+        Ok(Progress::Done)
+    }
+}
 
 /// The standard mode that a mode is.
 fn standard(mode: Mode) -> MavStandardMode {
@@ -19,13 +53,14 @@ fn standard(mode: Mode) -> MavStandardMode {
 }
 
 /// The mode of a standard mode's number, if there is one.
-pub fn mode(number: u32) -> Option<Mode> {
+fn mode(number: u32) -> Option<Mode> {
     let non_standard = MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD as u32;
     Mode::ALL.into_iter().find(|mode| number != non_standard && standard(*mode) as u32 == number)
 }
 
 /// AVAILABLE_MODES of one mode, counted from one, or of all for zero; empty for any other number.
-pub fn available(identity: Identity, index: u32) -> Vec<MavMessage> {
+fn available(vehicle: &Vehicle, index: u32) -> Vec<MavMessage> {
+    let identity = vehicle.identity();
     let modes = identity.selectable_modes();
     let wanted = |number: u32| index == 0 || index == number;
     (1..)
@@ -50,7 +85,7 @@ pub fn available(identity: Identity, index: u32) -> Vec<MavMessage> {
 }
 
 /// CURRENT_MODE.
-pub fn current(vehicle: &Vehicle) -> MavMessage {
+fn current(vehicle: &Vehicle) -> MavMessage {
     let custom_mode = vehicle.identity().custom_mode(vehicle.mode());
     MavMessage::CURRENT_MODE(CURRENT_MODE_DATA {
         standard_mode: standard(vehicle.mode()),

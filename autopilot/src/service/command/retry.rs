@@ -1,5 +1,7 @@
 //! Commands that were carried out lately: a repeated one is answered again, not carried out again.
 
+use mavlink::dialects::common::MavResult;
+
 use crate::codec::{Command, CommandKind};
 use crate::service::Origin;
 
@@ -14,7 +16,7 @@ struct Done {
     command: Command,
     sequence: u8,
     time_us: u64,
-    code: u8,
+    result: MavResult,
 }
 
 /// The memory.
@@ -23,7 +25,13 @@ pub struct Retries(Vec<Done>);
 
 impl Retries {
     /// The answer to give again, if this is a retry (its sender says so) or a duplicate (the same frame once more).
-    pub fn answer(&self, origin: &Origin, command: &Command, sequence: u8, time_us: u64) -> Option<u8> {
+    pub fn answer(
+        &self,
+        origin: &Origin,
+        command: &Command,
+        sequence: u8,
+        time_us: u64,
+    ) -> Option<MavResult> {
         let retry = matches!(command.kind, CommandKind::Long { confirmation } if confirmation > 0);
         self.0
             .iter()
@@ -34,16 +42,23 @@ impl Retries {
                     && same(&done.command, command)
                     && (retry || done.sequence == sequence)
             })
-            .map(|done| done.code)
+            .map(|done| done.result)
     }
 
     /// Remembers what was answered.
-    pub fn remember(&mut self, origin: &Origin, command: &Command, sequence: u8, time_us: u64, code: u8) {
+    pub fn remember(
+        &mut self,
+        origin: &Origin,
+        command: &Command,
+        sequence: u8,
+        time_us: u64,
+        result: MavResult,
+    ) {
         if self.0.len() >= REMEMBERED {
             self.0.remove(0);
         }
         let sender = (origin.system, origin.component);
-        self.0.push(Done { sender, command: *command, sequence, time_us, code });
+        self.0.push(Done { sender, command: *command, sequence, time_us, result });
     }
 }
 

@@ -4,25 +4,24 @@
 //! a byte with the length of the name's beginning that is the previous name's (low half) and of its rest less one
 //! (high half), the rest of the name, the value.
 
+use crate::context::Context;
 use vehicle::parameters::Value;
-
-use crate::autopilot::Autopilot;
 
 const MAGIC: u16 = 0x671b;
 const INT32: u8 = 3;
 const REAL32: u8 = 4;
 
 /// All parameters, packed.
-pub fn pack(autopilot: &Autopilot) -> Vec<u8> {
-    let count = autopilot.table.entries().len();
+pub fn pack(context: &Context) -> Vec<u8> {
+    let count = context.parameters.table().entries().len();
     let mut bytes = Vec::with_capacity(8 + 16 * count);
     for number in [MAGIC, count as u16, count as u16] {
         bytes.extend(number.to_le_bytes());
     }
     let mut previous = String::new();
     for index in 0..count {
-        let Some(value) = autopilot.parameter_value(index) else { continue };
-        let Some(entry) = autopilot.table.entries().get(index) else { continue };
+        let Some(value) = context.parameters.value(index, &context.vehicle) else { continue };
+        let Some(entry) = context.parameters.table().entries().get(index) else { continue };
         let name = entry.id.clone();
         let shared = name.bytes().zip(previous.bytes()).take_while(|(one, other)| one == other).count();
         // The rest has at least one letter, and each half of the byte holds 15.

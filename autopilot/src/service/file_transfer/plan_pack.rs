@@ -5,8 +5,8 @@
 
 use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind};
 
-use crate::autopilot::Autopilot;
-use crate::codec::{MissionItemMessage, Payload, Target};
+use crate::codec::{COMPONENT, MissionItemMessage, Payload, Target};
+use crate::context::Context;
 
 /// The files' folder, and their names.
 pub const FOLDER: &str = "@MISSION";
@@ -27,8 +27,8 @@ pub fn largest(kind: PlanKind) -> usize {
 }
 
 /// A plan, packed.
-pub fn pack(autopilot: &Autopilot, kind: PlanKind) -> Vec<u8> {
-    let vehicle = &autopilot.vehicle;
+pub fn pack(context: &Context, kind: PlanKind) -> Vec<u8> {
+    let vehicle = &context.vehicle;
     let count = vehicle.plans().get(kind).items().len();
     let header = [MAGIC, u16::from(kind.number()), 0, 0, count as u16];
     let mut bytes: Vec<u8> = header.into_iter().flat_map(u16::to_le_bytes).collect();
@@ -39,7 +39,7 @@ pub fn pack(autopilot: &Autopilot, kind: PlanKind) -> Vec<u8> {
             item,
             current: u8::from(kind == PlanKind::Mission && index == current),
             kind: kind.number(),
-            target: Target { system: autopilot.system_id(), component: crate::autopilot::COMPONENT },
+            target: Target { system: context.system_id(), component: COMPONENT },
             int: true,
         };
         bytes.extend(message.payload());

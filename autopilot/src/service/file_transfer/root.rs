@@ -17,7 +17,7 @@ use super::parameter_pack;
 use super::plan_pack;
 use super::plan_text;
 use super::sessions::Content;
-use crate::autopilot::Autopilot;
+use crate::context::Context;
 use crate::file_store::{Access, Listed};
 use crate::service::component_metadata;
 
@@ -51,13 +51,13 @@ pub fn writable(path: &str) -> Result<String, Nak> {
 }
 
 /// Opens a file.
-pub fn open(autopilot: &mut Autopilot, path: &str, access: Access) -> Result<Content, Nak> {
+pub fn open(context: &mut Context, path: &str, access: Access) -> Result<Content, Nak> {
     if access != Access::Read {
         if let Some(kind) = plan_pack::kind_of(&plain(path)?) {
             return Ok(Content::Received(kind, Vec::new()));
         }
         let path = writable(path)?;
-        return Ok(Content::Stored(autopilot.store.open(&path, access)?));
+        return Ok(Content::Stored(context.files.open(&path, access)?));
     }
     // ArduPilot's clients put options behind a question mark.
     let name = plain(path)?;
@@ -66,28 +66,28 @@ pub fn open(autopilot: &mut Autopilot, path: &str, access: Access) -> Result<Con
         .filter(|rest| rest.starts_with('?'))
         .map_or(name.as_str(), |_| "@PARAM/param.pck");
     if let Some(kind) = plan_pack::kind_of(name) {
-        return Ok(Content::Made(plan_pack::pack(autopilot, kind)));
+        return Ok(Content::Made(plan_pack::pack(context, kind)));
     }
     let made = match name {
-        "@PARAM/param.pck" => parameter_pack::pack(autopilot),
-        "metadata/general.json" => component_metadata::general(autopilot),
-        "metadata/parameters.json" => component_metadata::parameters(autopilot),
-        "plans/mission.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Mission),
-        "plans/fence.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Fence),
-        "plans/rally.waypoints" => plan_text::render(&autopilot.vehicle, PlanKind::Rally),
-        other => return Ok(Content::Stored(autopilot.store.open(other, Access::Read)?)),
+        "@PARAM/param.pck" => parameter_pack::pack(context),
+        "metadata/general.json" => component_metadata::general(&context.parameters),
+        "metadata/parameters.json" => component_metadata::parameters(&context.parameters),
+        "plans/mission.waypoints" => plan_text::render(&context.vehicle, PlanKind::Mission),
+        "plans/fence.waypoints" => plan_text::render(&context.vehicle, PlanKind::Fence),
+        "plans/rally.waypoints" => plan_text::render(&context.vehicle, PlanKind::Rally),
+        other => return Ok(Content::Stored(context.files.open(other, Access::Read)?)),
     };
     Ok(Content::Made(made))
 }
 
 /// What is in a folder, from an entry on, as far as one message holds.
-pub fn list(autopilot: &mut Autopilot, path: &str, from: u32, room: usize) -> Result<Vec<u8>, Nak> {
+pub fn list(context: &mut Context, path: &str, from: u32, room: usize) -> Result<Vec<u8>, Nak> {
     let path = plain(path)?;
     let entries: Vec<Vec<u8>> = match MADE.iter().find(|(folder, _)| *folder == path) {
         Some((folder, names)) => {
             let mut entries = Vec::new();
             for name in *names {
-                let size = open(autopilot, &format!("{folder}/{name}"), Access::Read)?.size()?;
+                let size = open(context, &format!("{folder}/{name}"), Access::Read)?.size()?;
                 entries.push(format!("F{name}\t{size}\0").into_bytes());
             }
             entries
@@ -95,7 +95,7 @@ pub fn list(autopilot: &mut Autopilot, path: &str, from: u32, room: usize) -> Re
         None => {
             let made = if path.is_empty() { &MADE[..] } else { &[] };
             let made = made.iter().map(|(folder, _)| format!("D{folder}\0").into_bytes());
-            made.chain(autopilot.store.list(&path)?.iter().map(|listed| entry(listed, room))).collect()
+            made.chain(context.files.list(&path)?.iter().map(|listed| entry(listed, room))).collect()
         }
     };
     let rest = entries.get(from as usize..).unwrap_or_default();

@@ -4,8 +4,8 @@ use mavlink::dialects::common::{MISSION_ACK_DATA, MavMessage, MavMissionResult, 
 use vehicle::Severity;
 use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 
-use crate::autopilot::Autopilot;
-use crate::service::{Destination, Origin, status_text};
+use crate::context::Context;
+use crate::service::{Destination, Origin};
 
 /// MAV_MISSION_TYPE; what is none is answered as all of them.
 pub fn kind_of(number: u8) -> MavMissionType {
@@ -37,7 +37,7 @@ fn result_of(code: FaultCode) -> MavMissionResult {
     }
 }
 
-fn send(autopilot: &mut Autopilot, origin: &Origin, mission_type: u8, mavtype: MavMissionResult, id: u32) {
+fn send(context: &mut Context, origin: &Origin, mission_type: u8, mavtype: MavMissionResult, id: u32) {
     let message = MavMessage::MISSION_ACK(MISSION_ACK_DATA {
         target_system: origin.system,
         target_component: origin.component,
@@ -45,24 +45,24 @@ fn send(autopilot: &mut Autopilot, origin: &Origin, mission_type: u8, mavtype: M
         mission_type: kind_of(mission_type),
         opaque_id: id,
     });
-    autopilot.send(Destination::Peer(origin.peer), message);
+    context.outbox.send(Destination::Peer(origin.peer), message);
 }
 
 /// It is done; `id` is that of the plan that there is now.
-pub fn accepted(autopilot: &mut Autopilot, origin: &Origin, mission_type: u8, id: u32) {
-    send(autopilot, origin, mission_type, MavMissionResult::MAV_MISSION_ACCEPTED, id);
+pub fn accepted(context: &mut Context, origin: &Origin, mission_type: u8, id: u32) {
+    send(context, origin, mission_type, MavMissionResult::MAV_MISSION_ACCEPTED, id);
 }
 
 /// It is refused, without a line for the pilot.
-pub fn refused(autopilot: &mut Autopilot, origin: &Origin, mission_type: u8, code: FaultCode) {
-    send(autopilot, origin, mission_type, result_of(code), 0);
+pub fn refused(context: &mut Context, origin: &Origin, mission_type: u8, code: FaultCode) {
+    send(context, origin, mission_type, result_of(code), 0);
 }
 
 /// It is refused, and the pilot is told why.
-pub fn refused_aloud(autopilot: &mut Autopilot, origin: &Origin, mission_type: u8, fault: &PlanFault) {
-    refused(autopilot, origin, mission_type, fault.code);
+pub fn refused_aloud(context: &mut Context, origin: &Origin, mission_type: u8, fault: &PlanFault) {
+    refused(context, origin, mission_type, fault.code);
     let name = PlanKind::of(mission_type).map_or("Plan", PlanKind::name);
-    status_text::send(autopilot, Severity::Warning, &format!("{name} refused: {fault}"));
+    context.say(Severity::Warning, &format!("{name} refused: {fault}"));
 }
 
 #[cfg(test)]

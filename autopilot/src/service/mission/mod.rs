@@ -15,8 +15,7 @@
 mod answer;
 mod download;
 mod progress;
+mod protocol;
 mod upload;
 
-pub use download::{request, request_list, request_partial_list};
-pub use progress::{current, set_current, set_current_by_command, start, update_progress};
-pub use upload::{Uploads, acknowledge, clear_all, count, item, update, write_partial_list};
+pub use protocol::Missions;

@@ -6,40 +6,68 @@ use mavlink::dialects::common::{
 use vehicle::plan::PlanKind;
 use vehicle::{MissionState, MissionStatus, Refusal, Severity, Vehicle};
 
-use crate::autopilot::Autopilot;
 use crate::codec::{Command, Frame};
-use crate::service::{Destination, status_text};
+use crate::context::Context;
+use crate::service::Destination;
+
+/// What was told of the mission last.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MissionProgress {
+    told: Option<MissionStatus>,
+}
+
+impl MissionProgress {
+    /// MAV_CMD_DO_SET_MISSION_CURRENT: item (−1: the present one), and whether the mission begins anew.
+    pub fn set_current_by_command(
+        &mut self,
+        context: &mut Context,
+        command: &Command,
+    ) -> Result<(), Refusal> {
+        let reset = command.parameter(2) == 1.0;
+        let index = if command.parameter(1) == -1.0 {
+            context.vehicle.mission_status().current
+        } else {
+            command.whole(1).ok_or_else(|| Refusal::denied("A mission item has a number"))? as usize
+        };
+        context.vehicle.set_mission_item(index, reset)?;
+        self.tell(context);
+        Ok(())
+    }
+
+    /// MISSION_SET_CURRENT: answered to everyone, by the new item or by why there is none.
+    pub fn set_current(&mut self, context: &mut Context, frame: &Frame) {
+        match context.vehicle.set_mission_item(usize::from(frame.payload().u16(0)), false) {
+            Ok(()) => self.tell(context),
+            Err(refusal) => context.say(Severity::Error, &refusal.to_string()),
+        }
+    }
+
+    /// Tells at once what was reached, and what has changed.
+    pub fn update(&mut self, context: &mut Context) {
+        for seq in context.vehicle.take_reached_items() {
+            let message = MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq });
+            context.outbox.send(Destination::Everyone, message);
+        }
+        if self.told != Some(context.vehicle.mission_status()) {
+            self.tell(context);
+        }
+    }
+
+    fn tell(&mut self, context: &mut Context) {
+        self.told = Some(context.vehicle.mission_status());
+        context.outbox.send(Destination::Everyone, current(&context.vehicle));
+    }
+}
 
 /// MAV_CMD_MISSION_START: first item; zero or less begins where the mission is. PX4 arms for it, ArduPilot wants to be armed.
-pub fn start(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
+pub fn start(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let first = command.whole(1).filter(|first| *first > 0).map(|first| first as usize);
-    let vehicle = &mut autopilot.vehicle;
+    let vehicle = &mut context.vehicle;
     if !vehicle.is_armed() && vehicle.identity().is_ardupilot() {
         return Err(Refusal::Failed("Mission rejected: not armed".to_owned()));
     }
     vehicle.start_mission(first)?;
     vehicle.arm(false)
-}
-
-/// MAV_CMD_DO_SET_MISSION_CURRENT: item (−1: the present one), and whether the mission begins anew.
-pub fn set_current_by_command(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusal> {
-    let reset = command.parameter(2) == 1.0;
-    let index = if command.parameter(1) == -1.0 {
-        autopilot.vehicle.mission_status().current
-    } else {
-        command.whole(1).ok_or_else(|| Refusal::denied("A mission item has a number"))? as usize
-    };
-    autopilot.vehicle.set_mission_item(index, reset)?;
-    tell(autopilot);
-    Ok(())
-}
-
-/// MISSION_SET_CURRENT: answered to everyone, by the new item or by why there is none.
-pub fn set_current(autopilot: &mut Autopilot, frame: &Frame) {
-    match autopilot.vehicle.set_mission_item(usize::from(frame.payload().u16(0)), false) {
-        Ok(()) => tell(autopilot),
-        Err(refusal) => status_text::send(autopilot, Severity::Error, &refusal.to_string()),
-    }
 }
 
 /// MISSION_CURRENT.
@@ -62,21 +90,4 @@ pub fn current(vehicle: &Vehicle) -> MavMessage {
         fence_id: id(PlanKind::Fence),
         rally_points_id: id(PlanKind::Rally),
     })
-}
-
-fn tell(autopilot: &mut Autopilot) {
-    autopilot.mission_told = Some(autopilot.vehicle.mission_status());
-    let message = current(&autopilot.vehicle);
-    autopilot.send(Destination::Everyone, message);
-}
-
-/// Tells at once what was reached, and what has changed.
-pub fn update_progress(autopilot: &mut Autopilot) {
-    for seq in autopilot.vehicle.take_reached_items() {
-        let message = MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq });
-        autopilot.send(Destination::Everyone, message);
-    }
-    if autopilot.mission_told != Some(autopilot.vehicle.mission_status()) {
-        tell(autopilot);
-    }
 }

@@ -8,9 +8,9 @@ use vehicle::parameters::Speed;
 use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind, check};
 
 use super::answer;
-use crate::autopilot::Autopilot;
 use crate::codec::{Frame, MissionItemMessage};
-use crate::service::{Destination, Origin, status_text};
+use crate::context::Context;
+use crate::service::{Destination, Origin};
 
 /// An item is asked for again after this long, µs, as the protocol recommends.
 const RETRY_US: f64 = 250_000.0;
@@ -67,283 +67,284 @@ impl Upload {
     }
 }
 
-/// MISSION_COUNT: an upload begins.
-pub fn count(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let payload = frame.payload();
-    begin(autopilot, origin, frame, payload.u8(4), None, usize::from(payload.u16(0)));
-}
+impl Uploads {
+    /// MISSION_COUNT: an upload begins.
+    pub fn count(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let payload = frame.payload();
+        self.begin(context, origin, frame, payload.u8(4), None, usize::from(payload.u16(0)));
+    }
 
-/// MISSION_WRITE_PARTIAL_LIST: items of the plan are replaced, others may follow behind them.
-pub fn write_partial_list(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let payload = frame.payload();
-    let (start, end, number) = (payload.i16(0), payload.i16(2), payload.u8(6));
-    let there = PlanKind::of(number).map_or(0, |kind| autopilot.vehicle.plans().get(kind).items().len());
-    match (usize::try_from(start), usize::try_from(end)) {
-        (Ok(first), Ok(last)) if first <= last && first <= there => {
-            begin(autopilot, origin, frame, number, Some(first), last + 1);
-        }
-        _ => {
-            let reason = format!("items {start} to {end} of {there} cannot be written");
-            let fault = PlanFault::of_plan(FaultCode::InvalidSequence, reason);
-            answer::refused_aloud(autopilot, origin, number, &fault);
-        }
-    }
-}
-
-fn begin(
-    autopilot: &mut Autopilot,
-    origin: &Origin,
-    frame: &Frame,
-    number: u8,
-    partial_from: Option<usize>,
-    end: usize,
-) {
-    let Some(kind) = PlanKind::of(number) else {
-        answer::refused(autopilot, origin, number, FaultCode::Invalid);
-        return;
-    };
-    if is_copy(autopilot, origin, kind, frame.sequence()) {
-        return;
-    }
-    if denied(autopilot, origin, number) {
-        return;
-    }
-    if end > kind.capacity() {
-        let reason = format!("{end} items are more than {}", kind.capacity());
-        let fault = PlanFault::of_plan(FaultCode::NoSpace, reason);
-        answer::refused_aloud(autopilot, origin, number, &fault);
-        return;
-    }
-    autopilot.uploads.receiving = Some(Upload {
-        origin: *origin,
-        kind,
-        partial: partial_from.is_some(),
-        first: partial_from.unwrap_or(0),
-        end,
-        items: Vec::new(),
-        begun_by: frame.sequence(),
-        int: None,
-        asked_us: 0,
-        retries: 0,
-    });
-    go_on(autopilot);
-}
-
-/// Whether a message that begins an upload is a late copy of one that did.
-fn is_copy(autopilot: &Autopilot, origin: &Origin, kind: PlanKind, sequence: u8) -> bool {
-    let time_us = autopilot.vehicle.time_us();
-    let uploads = &autopilot.uploads;
-    let under_way = uploads
-        .receiving
-        .as_ref()
-        .is_some_and(|upload| (upload.origin, upload.kind, upload.begun_by) == (*origin, kind, sequence));
-    let over = uploads.finished.as_ref().is_some_and(|finished| {
-        (finished.origin, finished.kind, finished.begun_by) == (*origin, kind, sequence)
-            && time_us - finished.time_us < REMEMBERED_US
-    });
-    under_way || over
-}
-
-/// Refuses what would disturb somebody else's upload.
-fn denied(autopilot: &mut Autopilot, origin: &Origin, number: u8) -> bool {
-    let foreign = autopilot.uploads.receiving.as_ref().is_some_and(|upload| upload.origin != *origin);
-    if foreign {
-        let fault = PlanFault::of_plan(FaultCode::Denied, "another client is uploading");
-        answer::refused_aloud(autopilot, origin, number, &fault);
-    }
-    foreign
-}
-
-/// Asks for the next item, or takes the plan over if there is none left.
-fn go_on(autopilot: &mut Autopilot) {
-    let Some(upload) = &mut autopilot.uploads.receiving else { return };
-    if upload.next() < upload.end {
-        upload.retries = 0;
-        ask(autopilot);
-        return;
-    }
-    let Upload { kind, partial, first, end, .. } = *upload;
-    let items = std::mem::take(&mut upload.items);
-    let taken = if partial {
-        let mut plan = autopilot.vehicle.plans().get(kind).items().to_vec();
-        let end = end.min(plan.len());
-        plan.splice(first.min(end)..end, items);
-        autopilot.vehicle.amend_plan(kind, plan)
-    } else {
-        autopilot.vehicle.set_plan(kind, items)
-    };
-    match taken {
-        Ok(()) => {
-            let id = autopilot.vehicle.plans().get(kind).id();
-            finish(autopilot, Ok(id));
-        }
-        Err(fault) => fail(autopilot, &fault),
-    }
-}
-
-/// Asks for the next item. Clients differ in which of the two requests they understand.
-fn ask(autopilot: &mut Autopilot) {
-    let time_us = autopilot.vehicle.time_us();
-    let Some(upload) = &mut autopilot.uploads.receiving else { return };
-    upload.asked_us = time_us;
-    let older = match upload.int {
-        Some(true) => false,
-        // Some answer either request with the older item.
-        Some(false) => upload.retries % 2 == 0,
-        None => upload.retries >= OLDER_AFTER && upload.retries % 2 == 0,
-    };
-    let Origin { peer, system: target_system, component: target_component } = upload.origin;
-    let seq = u16::try_from(upload.next()).unwrap_or(u16::MAX);
-    let mission_type = answer::kind_of(upload.kind.number());
-    let message = if older {
-        let request = MISSION_REQUEST_DATA { seq, target_system, target_component, mission_type };
-        MavMessage::MISSION_REQUEST(request)
-    } else {
-        let request = MISSION_REQUEST_INT_DATA { seq, target_system, target_component, mission_type };
-        MavMessage::MISSION_REQUEST_INT(request)
-    };
-    autopilot.send(Destination::Peer(peer), message);
-}
-
-/// MISSION_ITEM_INT or MISSION_ITEM.
-pub fn item(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let Some(message) = MissionItemMessage::read(frame) else { return };
-    let sequence = usize::from(message.sequence);
-    let own = autopilot.uploads.receiving.as_mut().filter(|upload| upload.origin == *origin);
-    let Some(upload) = own else {
-        unexpected(autopilot, origin, &message);
-        return;
-    };
-    if message.kind != upload.kind.number() {
-        let wrong = format!("type {} in an upload of type {}", message.kind, upload.kind.number());
-        fail(autopilot, &PlanFault::of_item(sequence, FaultCode::Invalid, wrong));
-        return;
-    }
-    let next = upload.next();
-    if sequence != next {
-        // A copy of an earlier one needs no answer; one that came too early has lost its predecessor.
-        if sequence > next && sequence < upload.end {
-            ask(autopilot);
-        }
-        return;
-    }
-    upload.int = Some(message.int);
-    let kind = upload.kind;
-    match check::item(kind, sequence, &message.item, &autopilot.vehicle.site()) {
-        Ok(()) => {
-            if let Some(upload) = &mut autopilot.uploads.receiving {
-                upload.items.push(message.item);
+    /// MISSION_WRITE_PARTIAL_LIST: items of the plan are replaced, others may follow behind them.
+    pub fn write_partial_list(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let payload = frame.payload();
+        let (start, end, number) = (payload.i16(0), payload.i16(2), payload.u8(6));
+        let there = PlanKind::of(number).map_or(0, |kind| context.vehicle.plans().get(kind).items().len());
+        match (usize::try_from(start), usize::try_from(end)) {
+            (Ok(first), Ok(last)) if first <= last && first <= there => {
+                self.begin(context, origin, frame, number, Some(first), last + 1);
             }
-            go_on(autopilot);
+            _ => {
+                let reason = format!("items {start} to {end} of {there} cannot be written");
+                let fault = PlanFault::of_plan(FaultCode::InvalidSequence, reason);
+                answer::refused_aloud(context, origin, number, &fault);
+            }
         }
-        Err(fault) => fail(autopilot, &fault),
+    }
+
+    fn begin(
+        &mut self,
+        context: &mut Context,
+        origin: &Origin,
+        frame: &Frame,
+        number: u8,
+        partial_from: Option<usize>,
+        end: usize,
+    ) {
+        let Some(kind) = PlanKind::of(number) else {
+            answer::refused(context, origin, number, FaultCode::Invalid);
+            return;
+        };
+        if self.is_copy(context, origin, kind, frame.sequence()) {
+            return;
+        }
+        if self.denied(context, origin, number) {
+            return;
+        }
+        if end > kind.capacity() {
+            let reason = format!("{end} items are more than {}", kind.capacity());
+            let fault = PlanFault::of_plan(FaultCode::NoSpace, reason);
+            answer::refused_aloud(context, origin, number, &fault);
+            return;
+        }
+        self.receiving = Some(Upload {
+            origin: *origin,
+            kind,
+            partial: partial_from.is_some(),
+            first: partial_from.unwrap_or(0),
+            end,
+            items: Vec::new(),
+            begun_by: frame.sequence(),
+            int: None,
+            asked_us: 0,
+            retries: 0,
+        });
+        self.go_on(context);
+    }
+
+    /// Whether a message that begins an upload is a late copy of one that did.
+    fn is_copy(&self, context: &Context, origin: &Origin, kind: PlanKind, sequence: u8) -> bool {
+        let time_us = context.vehicle.time_us();
+        let under_way = self
+            .receiving
+            .as_ref()
+            .is_some_and(|upload| (upload.origin, upload.kind, upload.begun_by) == (*origin, kind, sequence));
+        let over = self.finished.as_ref().is_some_and(|finished| {
+            (finished.origin, finished.kind, finished.begun_by) == (*origin, kind, sequence)
+                && time_us - finished.time_us < REMEMBERED_US
+        });
+        under_way || over
+    }
+
+    /// Refuses what would disturb somebody else's upload.
+    fn denied(&self, context: &mut Context, origin: &Origin, number: u8) -> bool {
+        let foreign = self.receiving.as_ref().is_some_and(|upload| upload.origin != *origin);
+        if foreign {
+            let fault = PlanFault::of_plan(FaultCode::Denied, "another client is uploading");
+            answer::refused_aloud(context, origin, number, &fault);
+        }
+        foreign
+    }
+
+    /// Asks for the next item, or takes the plan over if there is none left.
+    fn go_on(&mut self, context: &mut Context) {
+        let Some(upload) = &mut self.receiving else { return };
+        if upload.next() < upload.end {
+            upload.retries = 0;
+            self.ask(context);
+            return;
+        }
+        let Upload { kind, partial, first, end, .. } = *upload;
+        let items = std::mem::take(&mut upload.items);
+        let taken = if partial {
+            let mut plan = context.vehicle.plans().get(kind).items().to_vec();
+            let end = end.min(plan.len());
+            plan.splice(first.min(end)..end, items);
+            context.vehicle.amend_plan(kind, plan)
+        } else {
+            context.vehicle.set_plan(kind, items)
+        };
+        match taken {
+            Ok(()) => {
+                let id = context.vehicle.plans().get(kind).id();
+                self.finish(context, Ok(id));
+            }
+            Err(fault) => self.fail(context, &fault),
+        }
+    }
+
+    /// Asks for the next item. Clients differ in which of the two requests they understand.
+    fn ask(&mut self, context: &mut Context) {
+        let time_us = context.vehicle.time_us();
+        let Some(upload) = &mut self.receiving else { return };
+        upload.asked_us = time_us;
+        let older = match upload.int {
+            Some(true) => false,
+            // Some answer either request with the older item.
+            Some(false) => upload.retries % 2 == 0,
+            None => upload.retries >= OLDER_AFTER && upload.retries % 2 == 0,
+        };
+        let Origin { peer, system: target_system, component: target_component } = upload.origin;
+        let seq = u16::try_from(upload.next()).unwrap_or(u16::MAX);
+        let mission_type = answer::kind_of(upload.kind.number());
+        let message = if older {
+            let request = MISSION_REQUEST_DATA { seq, target_system, target_component, mission_type };
+            MavMessage::MISSION_REQUEST(request)
+        } else {
+            let request = MISSION_REQUEST_INT_DATA { seq, target_system, target_component, mission_type };
+            MavMessage::MISSION_REQUEST_INT(request)
+        };
+        context.outbox.send(Destination::Peer(peer), message);
+    }
+
+    /// MISSION_ITEM_INT or MISSION_ITEM.
+    pub fn item(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let Some(message) = MissionItemMessage::read(frame) else { return };
+        let sequence = usize::from(message.sequence);
+        let own = self.receiving.as_mut().filter(|upload| upload.origin == *origin);
+        let Some(upload) = own else {
+            self.unexpected(context, origin, &message);
+            return;
+        };
+        if message.kind != upload.kind.number() {
+            let wrong = format!("type {} in an upload of type {}", message.kind, upload.kind.number());
+            self.fail(context, &PlanFault::of_item(sequence, FaultCode::Invalid, wrong));
+            return;
+        }
+        let next = upload.next();
+        if sequence != next {
+            // A copy of an earlier one needs no answer; one that came too early has lost its predecessor.
+            if sequence > next && sequence < upload.end {
+                self.ask(context);
+            }
+            return;
+        }
+        upload.int = Some(message.int);
+        let kind = upload.kind;
+        match check::item(kind, sequence, &message.item, &context.vehicle.site()) {
+            Ok(()) => {
+                if let Some(upload) = &mut self.receiving {
+                    upload.items.push(message.item);
+                }
+                self.go_on(context);
+            }
+            Err(fault) => self.fail(context, &fault),
+        }
+    }
+
+    /// An item that nobody has asked this client for: a copy, or its upload is over and it has not heard so.
+    fn unexpected(&self, context: &mut Context, origin: &Origin, message: &MissionItemMessage) {
+        let time_us = context.vehicle.time_us();
+        let own = self.finished.as_ref().filter(|finished| {
+            finished.origin == *origin
+                && finished.kind.number() == message.kind
+                && time_us - finished.time_us < REMEMBERED_US
+        });
+        let Some(finished) = own else {
+            if !self.denied(context, origin, message.kind) {
+                answer::refused(context, origin, message.kind, FaultCode::Error);
+            }
+            return;
+        };
+        if finished.last == Some(usize::from(message.sequence)) {
+            let answer = finished.answer;
+            repeat(context, origin, message.kind, answer);
+        }
+    }
+
+    /// MISSION_ACK from a client: the end of a download, or the cancellation of its upload.
+    pub fn acknowledge(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let payload = frame.payload();
+        let (result, number) = (payload.u8(2), payload.u8(3));
+        let own = self
+            .receiving
+            .as_ref()
+            .is_some_and(|upload| upload.origin == *origin && upload.kind.number() == number);
+        if own && result != MavMissionResult::MAV_MISSION_ACCEPTED as u8 {
+            self.receiving = None;
+            let name = PlanKind::of(number).map_or("Plan", PlanKind::name);
+            context.say(Severity::Info, &format!("{name} upload cancelled by the client"));
+        }
+    }
+
+    /// MISSION_CLEAR_ALL: of one kind or of all.
+    pub fn clear_all(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let number = frame.payload().u8(2);
+        let kinds: Vec<PlanKind> = match PlanKind::of(number) {
+            Some(kind) => vec![kind],
+            None if number == PlanKind::NUMBER_OF_ALL => PlanKind::ALL.to_vec(),
+            None => {
+                answer::refused(context, origin, number, FaultCode::Invalid);
+                return;
+            }
+        };
+        if self.denied(context, origin, number) {
+            return;
+        }
+        // Whoever clears has given its own upload up.
+        self.receiving = None;
+        for kind in kinds {
+            if let Err(fault) = context.vehicle.set_plan(kind, Vec::new()) {
+                answer::refused_aloud(context, origin, number, &fault);
+                return;
+            }
+        }
+        answer::accepted(context, origin, number, 0);
+    }
+
+    /// Asks again for what has not come, and gives up in the end. The client lives by the wall clock: when simulation time runs
+    /// faster, it has as many seconds of its own.
+    pub fn update(&mut self, context: &mut Context) {
+        let pace = match context.parameters.speed() {
+            Speed::Paused => 1.0,
+            Speed::Factor(factor) => factor.max(1.0),
+            Speed::Max => FULL_SPEED,
+        };
+        let Some(upload) = &mut self.receiving else { return };
+        let silent_us = context.vehicle.time_us() - upload.asked_us;
+        if silent_us < (RETRY_US * pace) as u64 {
+            return;
+        }
+        if upload.retries < MOST_RETRIES {
+            upload.retries += 1;
+            self.ask(context);
+            return;
+        }
+        let fault = PlanFault::of_item(upload.next(), FaultCode::Cancelled, "did not come, upload given up");
+        self.fail(context, &fault);
+    }
+
+    /// Ends an upload with the old plan in force.
+    fn fail(&mut self, context: &mut Context, fault: &PlanFault) {
+        let Some(upload) = &self.receiving else { return };
+        let name = upload.kind.name();
+        self.finish(context, Err(fault.code));
+        context.say(Severity::Warning, &format!("{name} refused: {fault}"));
+    }
+
+    fn finish(&mut self, context: &mut Context, answer: Result<u32, FaultCode>) {
+        let time_us = context.vehicle.time_us();
+        let Some(upload) = self.receiving.take() else { return };
+        let Upload { origin, kind, begun_by, .. } = upload;
+        // With the plan taken over, its items have left the upload.
+        let last = if answer.is_ok() { upload.end.checked_sub(1) } else { Some(upload.next()) };
+        self.finished = Some(Finished { origin, kind, begun_by, last, answer, time_us });
+        repeat(context, &origin, kind.number(), answer);
     }
 }
 
-/// An item that nobody has asked this client for: a copy, or its upload is over and it has not heard so.
-fn unexpected(autopilot: &mut Autopilot, origin: &Origin, message: &MissionItemMessage) {
-    let time_us = autopilot.vehicle.time_us();
-    let own = autopilot.uploads.finished.as_ref().filter(|finished| {
-        finished.origin == *origin
-            && finished.kind.number() == message.kind
-            && time_us - finished.time_us < REMEMBERED_US
-    });
-    let Some(finished) = own else {
-        if !denied(autopilot, origin, message.kind) {
-            answer::refused(autopilot, origin, message.kind, FaultCode::Error);
-        }
-        return;
-    };
-    if finished.last == Some(usize::from(message.sequence)) {
-        let answer = finished.answer;
-        repeat(autopilot, origin, message.kind, answer);
-    }
-}
-
-fn repeat(autopilot: &mut Autopilot, origin: &Origin, number: u8, answer: Result<u32, FaultCode>) {
+fn repeat(context: &mut Context, origin: &Origin, number: u8, answer: Result<u32, FaultCode>) {
     match answer {
-        Ok(id) => answer::accepted(autopilot, origin, number, id),
-        Err(code) => answer::refused(autopilot, origin, number, code),
+        Ok(id) => answer::accepted(context, origin, number, id),
+        Err(code) => answer::refused(context, origin, number, code),
     }
-}
-
-/// MISSION_ACK from a client: the end of a download, or the cancellation of its upload.
-pub fn acknowledge(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let payload = frame.payload();
-    let (result, number) = (payload.u8(2), payload.u8(3));
-    let own = autopilot
-        .uploads
-        .receiving
-        .as_ref()
-        .is_some_and(|upload| upload.origin == *origin && upload.kind.number() == number);
-    if own && result != MavMissionResult::MAV_MISSION_ACCEPTED as u8 {
-        autopilot.uploads.receiving = None;
-        let name = PlanKind::of(number).map_or("Plan", PlanKind::name);
-        status_text::send(autopilot, Severity::Info, &format!("{name} upload cancelled by the client"));
-    }
-}
-
-/// MISSION_CLEAR_ALL: of one kind or of all.
-pub fn clear_all(autopilot: &mut Autopilot, origin: &Origin, frame: &Frame) {
-    let number = frame.payload().u8(2);
-    let kinds: Vec<PlanKind> = match PlanKind::of(number) {
-        Some(kind) => vec![kind],
-        None if number == PlanKind::NUMBER_OF_ALL => PlanKind::ALL.to_vec(),
-        None => {
-            answer::refused(autopilot, origin, number, FaultCode::Invalid);
-            return;
-        }
-    };
-    if denied(autopilot, origin, number) {
-        return;
-    }
-    // Whoever clears has given its own upload up.
-    autopilot.uploads.receiving = None;
-    for kind in kinds {
-        if let Err(fault) = autopilot.vehicle.set_plan(kind, Vec::new()) {
-            answer::refused_aloud(autopilot, origin, number, &fault);
-            return;
-        }
-    }
-    answer::accepted(autopilot, origin, number, 0);
-}
-
-/// Asks again for what has not come, and gives up in the end. The client lives by the wall clock: when simulation time runs
-/// faster, it has as many seconds of its own.
-pub fn update(autopilot: &mut Autopilot) {
-    let pace = match autopilot.speed() {
-        Speed::Paused => 1.0,
-        Speed::Factor(factor) => factor.max(1.0),
-        Speed::Max => FULL_SPEED,
-    };
-    let Some(upload) = &mut autopilot.uploads.receiving else { return };
-    let silent_us = autopilot.vehicle.time_us() - upload.asked_us;
-    if silent_us < (RETRY_US * pace) as u64 {
-        return;
-    }
-    if upload.retries < MOST_RETRIES {
-        upload.retries += 1;
-        ask(autopilot);
-        return;
-    }
-    let fault = PlanFault::of_item(upload.next(), FaultCode::Cancelled, "did not come, upload given up");
-    fail(autopilot, &fault);
-}
-
-/// Ends an upload with the old plan in force.
-fn fail(autopilot: &mut Autopilot, fault: &PlanFault) {
-    let Some(upload) = &autopilot.uploads.receiving else { return };
-    let name = upload.kind.name();
-    finish(autopilot, Err(fault.code));
-    status_text::send(autopilot, Severity::Warning, &format!("{name} refused: {fault}"));
-}
-
-fn finish(autopilot: &mut Autopilot, answer: Result<u32, FaultCode>) {
-    let time_us = autopilot.vehicle.time_us();
-    let Some(upload) = autopilot.uploads.receiving.take() else { return };
-    let Upload { origin, kind, begun_by, .. } = upload;
-    // With the plan taken over, its items have left the upload.
-    let last = if answer.is_ok() { upload.end.checked_sub(1) } else { Some(upload.next()) };
-    autopilot.uploads.finished = Some(Finished { origin, kind, begun_by, last, answer, time_us });
-    repeat(autopilot, &origin, kind.number(), answer);
 }

@@ -3,8 +3,7 @@
 use mavlink::dialects::common::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
 use vehicle::Vehicle;
 
-use super::boot_ms;
-use crate::codec::floats;
+use crate::codec::{boot_ms, floats};
 
 /// ATTITUDE: ZYX Euler angles and body rates.
 pub fn attitude(vehicle: &Vehicle) -> MavMessage {

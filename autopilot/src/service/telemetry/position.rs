@@ -1,26 +1,12 @@
 //! Where the vehicle is, and how it moves.
 
 use mavlink::dialects::common::{
-    ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, GPS_GLOBAL_ORIGIN_DATA, HOME_POSITION_DATA,
-    LOCAL_POSITION_NED_DATA, MavEstimatorType, MavFrame, MavMessage, ODOMETRY_DATA, VFR_HUD_DATA,
+    ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MavEstimatorType,
+    MavFrame, MavMessage, ODOMETRY_DATA, VFR_HUD_DATA,
 };
 use vehicle::{Vehicle, heading_deg};
 
-use super::boot_ms;
-use crate::codec::floats;
-
-/// Degrees as the protocol scales them.
-pub fn scaled_degrees(degrees: f64) -> i32 {
-    (degrees * 1e7).round() as i32
-}
-
-fn millimetres(metres: f64) -> i32 {
-    (metres * 1e3).round() as i32
-}
-
-fn centimetres_per_second(speed: f64) -> i16 {
-    (speed * 1e2).round() as i16
-}
+use crate::codec::{boot_ms, centimetres_per_second, floats, millimetres, scaled_degrees};
 
 /// LOCAL_POSITION_NED.
 pub fn local_position_ned(vehicle: &Vehicle) -> MavMessage {
@@ -47,17 +33,6 @@ pub fn global_position_int(vehicle: &Vehicle) -> MavMessage {
         vy,
         vz,
         hdg: (heading_deg(outputs.attitude_rad.z) * 100.0).floor() as u16,
-    })
-}
-
-/// GPS_GLOBAL_ORIGIN: of the local frame.
-pub fn gps_global_origin(vehicle: &Vehicle) -> MavMessage {
-    let origin = vehicle.frame().origin();
-    MavMessage::GPS_GLOBAL_ORIGIN(GPS_GLOBAL_ORIGIN_DATA {
-        latitude: scaled_degrees(origin.latitude_deg),
-        longitude: scaled_degrees(origin.longitude_deg),
-        altitude: millimetres(origin.altitude_m),
-        time_usec: vehicle.time_us(),
     })
 }
 

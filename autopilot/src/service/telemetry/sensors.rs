@@ -13,8 +13,7 @@ use vehicle::estimation::magnetometer::COUNTS_PER_GAUSS;
 use vehicle::world::atmospheric_temperature_degc;
 use vehicle::{Vehicle, heading_deg};
 
-use super::boot_ms;
-use super::position::scaled_degrees;
+use crate::codec::{boot_ms, scaled_degrees};
 
 /// GPS_RAW_INT: the latest fix, if it is young enough to be one.
 pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {

@@ -8,7 +8,7 @@ use mavlink::dialects::common::{
 use vehicle::fence::Breach;
 use vehicle::{BATTERY_CELLS, LandedState, Vehicle};
 
-use super::boot_ms;
+use crate::codec::boot_ms;
 
 /// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
 pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
@@ -157,9 +157,9 @@ pub fn fence_status(vehicle: &Vehicle) -> MavMessage {
 }
 
 /// SYSTEM_TIME: the wall clock's time at the start, and simulation time from there on.
-pub fn system_time(vehicle: &Vehicle, unix_start_us: u64) -> MavMessage {
+pub fn system_time(vehicle: &Vehicle) -> MavMessage {
     MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
-        time_unix_usec: unix_start_us + vehicle.time_us(),
+        time_unix_usec: vehicle.unix_start_us() + vehicle.time_us(),
         time_boot_ms: boot_ms(vehicle.time_us()),
     })
 }

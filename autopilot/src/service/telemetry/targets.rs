@@ -6,9 +6,7 @@ use mavlink::dialects::common::{
 };
 use vehicle::{SteeringKind, TrackedAttitude, Vehicle, wrapped};
 
-use super::boot_ms;
-use super::position::scaled_degrees;
-use crate::codec::floats;
+use crate::codec::{boot_ms, floats, scaled_degrees};
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
 pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {

@@ -4,7 +4,7 @@ use mavlink::dialects::common::{MavMessage, SIM_STATE_DATA};
 use vehicle::Vehicle;
 use vehicle::estimation::TrueMotion;
 
-use super::position::scaled_degrees;
+use crate::codec::scaled_degrees;
 
 /// SIM_STATE: the true motion, whatever the vehicle flies by.
 pub fn sim_state(vehicle: &Vehicle) -> MavMessage {

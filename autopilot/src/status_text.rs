@@ -3,9 +3,6 @@
 use mavlink::dialects::common::{MavMessage, MavSeverity, STATUSTEXT_DATA};
 use vehicle::Severity;
 
-use super::Destination;
-use crate::autopilot::Autopilot;
-
 /// Characters of one message.
 const CHUNK: usize = 50;
 /// The same line is not sent again for this long, µs: refused set-points come many times a second.
@@ -15,51 +12,48 @@ const REMEMBERED: usize = 8;
 /// Lines that wait for a log.
 const MOST_UNLOGGED: usize = 64;
 
+/// A line for the log: simulation time, µs, importance and text.
+pub type Line = (u64, Severity, String);
+
 /// What was said lately.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct StatusTexts {
+    system_id: u8,
     said: Vec<(String, u64)>,
     next_id: u16,
-    /// For the log: time, µs, importance and line.
-    unlogged: Vec<(u64, Severity, String)>,
+    unlogged: Vec<Line>,
 }
 
 impl StatusTexts {
+    /// Nothing was said yet.
+    pub fn new(system_id: u8) -> Self {
+        Self { system_id, said: Vec::new(), next_id: 0, unlogged: Vec::new() }
+    }
+
+    /// A line in as many messages as it needs; none if the same was said a moment ago.
+    pub fn say(&mut self, time_us: u64, severity: Severity, text: &str) -> Vec<MavMessage> {
+        if self.said.iter().any(|(said, when_us)| said == text && time_us < when_us + REPEAT_US) {
+            return Vec::new();
+        }
+        self.said.retain(|(said, when_us)| said != text && time_us < when_us + REPEAT_US);
+        self.said.truncate(REMEMBERED - 1);
+        self.said.push((text.to_owned(), time_us));
+        if self.unlogged.len() >= MOST_UNLOGGED {
+            self.unlogged.remove(0);
+        }
+        self.unlogged.push((time_us, severity, text.to_owned()));
+        let system = self.system_id;
+        match severity {
+            Severity::Info => tracing::info!(system, "{text}"),
+            Severity::Warning => tracing::warn!(system, "{text}"),
+            Severity::Critical | Severity::Error => tracing::error!(system, "{text}"),
+        }
+        messages(severity, text, &mut self.next_id)
+    }
+
     /// Lines since the last call, as many as are remembered.
-    pub fn take_unlogged(&mut self) -> Vec<(u64, Severity, String)> {
+    pub fn take_unlogged(&mut self) -> Vec<Line> {
         std::mem::take(&mut self.unlogged)
-    }
-}
-
-/// Sends the vehicle's notices.
-pub fn send_notices(autopilot: &mut Autopilot) {
-    for notice in autopilot.vehicle.take_notices() {
-        send(autopilot, notice.severity, &notice.text);
-    }
-}
-
-/// Sends a line to everyone, in as many pieces as it needs.
-pub fn send(autopilot: &mut Autopilot, severity: Severity, text: &str) {
-    let time_us = autopilot.vehicle.time_us();
-    let texts = &mut autopilot.status_texts;
-    if texts.said.iter().any(|(said, when_us)| said == text && time_us < when_us + REPEAT_US) {
-        return;
-    }
-    texts.said.retain(|(said, when_us)| said != text && time_us < when_us + REPEAT_US);
-    texts.said.truncate(REMEMBERED - 1);
-    texts.said.push((text.to_owned(), time_us));
-    if texts.unlogged.len() >= MOST_UNLOGGED {
-        texts.unlogged.remove(0);
-    }
-    texts.unlogged.push((time_us, severity, text.to_owned()));
-    let system = autopilot.system_id();
-    match severity {
-        Severity::Info => tracing::info!(system, "{text}"),
-        Severity::Warning => tracing::warn!(system, "{text}"),
-        Severity::Critical | Severity::Error => tracing::error!(system, "{text}"),
-    }
-    for message in messages(severity, text, &mut autopilot.status_texts.next_id) {
-        autopilot.send(Destination::Everyone, message);
     }
 }
 

@@ -1,0 +1,53 @@
+//! What a service works with.
+
+use mavlink::dialects::common::MavProtocolCapability;
+use vehicle::identity::Identity;
+use vehicle::{Severity, Vehicle};
+
+use crate::file_store::FileStore;
+use crate::outbox::Outbox;
+use crate::parameters::Parameters;
+use crate::service::LinkProfile;
+use crate::stream::{Component, StreamTable};
+
+/// The vehicle, and the ways from it to its clients. A service keeps what it needs between two calls itself, and sees no
+/// other service.
+#[derive(Debug)]
+pub struct Context {
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// What is to be sent.
+    pub outbox: Outbox,
+    /// Files that clients can reach.
+    pub files: Box<dyn FileStore>,
+    /// Messages that can be asked for.
+    pub streams: StreamTable,
+    /// What its services can do.
+    pub capabilities: MavProtocolCapability,
+    /// What each link is for.
+    pub links: Vec<LinkProfile>,
+}
+
+impl Context {
+    /// Whose conventions the vehicle follows.
+    pub fn identity(&self) -> Identity {
+        self.vehicle.identity()
+    }
+
+    /// System id of the vehicle.
+    pub fn system_id(&self) -> u8 {
+        self.parameters.system_id()
+    }
+
+    /// What messages are made of.
+    pub fn component(&self) -> Component<'_> {
+        Component { vehicle: &self.vehicle, parameters: &self.parameters, capabilities: self.capabilities }
+    }
+
+    /// Sends a line for the pilot to everyone, unless it was said a moment ago.
+    pub fn say(&mut self, severity: Severity, text: &str) {
+        self.outbox.say(self.vehicle.time_us(), severity, text);
+    }
+}

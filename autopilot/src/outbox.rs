@@ -1,0 +1,92 @@
+//! What is on its way out: messages, and lines for the pilot.
+
+use vehicle::Severity;
+
+use crate::codec::Message;
+use crate::service::{Destination, Outgoing};
+use crate::status_text::{Line, StatusTexts};
+
+/// Messages in the order in which they are to be sent.
+#[derive(Debug)]
+pub struct Outbox {
+    messages: Vec<Outgoing>,
+    texts: StatusTexts,
+}
+
+impl Outbox {
+    /// The empty outbox of a system.
+    pub fn new(system_id: u8) -> Self {
+        Self { messages: Vec::new(), texts: StatusTexts::new(system_id) }
+    }
+
+    /// Puts a message behind all others.
+    pub fn send(&mut self, to: Destination, message: impl Into<Message>) {
+        self.messages.push(Outgoing { to, message: message.into() });
+    }
+
+    /// Sends a line for the pilot to everyone, unless it was said a moment ago. `time_us` is the simulation time, µs.
+    pub fn say(&mut self, time_us: u64, severity: Severity, text: &str) {
+        for message in self.texts.say(time_us, severity, text) {
+            self.send(Destination::Everyone, message);
+        }
+    }
+
+    /// A place in the order of what is to be sent: behind everything so far.
+    pub fn mark(&self) -> usize {
+        self.messages.len()
+    }
+
+    /// Moves the last message to a mark.
+    pub fn last_to(&mut self, mark: usize) {
+        if let Some(message) = self.messages.pop() {
+            self.messages.insert(mark.min(self.messages.len()), message);
+        }
+    }
+
+    /// Messages since the last call.
+    pub fn take(&mut self) -> Vec<Outgoing> {
+        std::mem::take(&mut self.messages)
+    }
+
+    /// Lines for the pilot since the last call, as many as are remembered.
+    pub fn take_lines(&mut self) -> Vec<Line> {
+        self.texts.take_unlogged()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mavlink::dialects::common::{MavMessage, SYSTEM_TIME_DATA};
+    use vehicle::Severity;
+
+    use super::{Destination, Outbox};
+
+    fn message(time_boot_ms: u32) -> MavMessage {
+        MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA { time_boot_ms, ..SYSTEM_TIME_DATA::default() })
+    }
+
+    /// An answer is known last and goes first.
+    #[test]
+    fn the_last_message_moves_to_a_mark() {
+        let mut outbox = Outbox::new(1);
+        outbox.send(Destination::Everyone, message(0));
+        let mark = outbox.mark();
+        outbox.send(Destination::Everyone, message(2));
+        outbox.send(Destination::Everyone, message(1));
+        outbox.last_to(mark);
+        let sent: Vec<_> = outbox.take().into_iter().map(|outgoing| outgoing.message).collect();
+        assert_eq!(sent, [message(0), message(1), message(2)].map(Into::into));
+        assert!(outbox.take().is_empty());
+    }
+
+    #[test]
+    fn a_line_is_said_once_a_second() {
+        let mut outbox = Outbox::new(1);
+        for time_us in [0, 999_999, 1_000_000] {
+            outbox.say(time_us, Severity::Info, "Landed");
+        }
+        assert_eq!(outbox.take().len(), 2);
+        let times: Vec<_> = outbox.take_lines().into_iter().map(|(time_us, ..)| time_us).collect();
+        assert_eq!(times, [0, 1_000_000]);
+    }
+}

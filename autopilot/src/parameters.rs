@@ -1,0 +1,130 @@
+//! The parameters of a running vehicle: their table, and what they are read from and written to.
+
+use quadrotor::ConfigurationError;
+use vehicle::parameters::{Change, ParameterTable, ParameterValues, SetError, Speed, Value};
+use vehicle::{Refusal, Vehicle, VehicleSettings};
+
+use crate::codec::parameter_hash;
+
+/// All parameters, with those of their values that the vehicle does not keep.
+#[derive(Debug)]
+pub struct Parameters {
+    table: ParameterTable,
+    system_id: u8,
+    speed: Speed,
+    settings: VehicleSettings,
+    initial: Vec<Value>,
+    changed: bool,
+}
+
+impl Parameters {
+    /// The parameters of a vehicle that has just been made of `settings`.
+    pub fn new(settings: &VehicleSettings, vehicle: &Vehicle, system_id: u8, speed: Speed) -> Self {
+        let mut parameters = Self {
+            table: ParameterTable::new(settings.identity),
+            system_id,
+            speed,
+            settings: settings.clone(),
+            initial: Vec::new(),
+            changed: false,
+        };
+        parameters.initial = parameters.all(vehicle).map(|(_, value)| value).collect();
+        parameters
+    }
+
+    /// All of them in their order.
+    pub fn table(&self) -> &ParameterTable {
+        &self.table
+    }
+
+    /// System id of the vehicle.
+    pub fn system_id(&self) -> u8 {
+        self.system_id
+    }
+
+    /// What the vehicle was started with.
+    pub fn settings(&self) -> &VehicleSettings {
+        &self.settings
+    }
+
+    /// The pace that is asked for.
+    pub fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// Asks for another pace.
+    pub fn set_speed(&mut self, speed: Speed) {
+        self.speed = speed;
+    }
+
+    /// Values as they were at the start, in the order of the table.
+    pub fn initial(&self) -> &[Value] {
+        &self.initial
+    }
+
+    /// What the table reads.
+    fn values(&self, vehicle: &Vehicle) -> ParameterValues {
+        ParameterValues {
+            configuration: vehicle.kept_configuration(),
+            conduct: *vehicle.conduct(),
+            system_id: self.system_id,
+            speed: self.speed,
+        }
+    }
+
+    /// All names with their values, in the order of the table.
+    pub fn all(&self, vehicle: &Vehicle) -> impl Iterator<Item = (&str, Value)> {
+        self.table.values(self.values(vehicle))
+    }
+
+    /// Value at a position of the table.
+    pub fn value(&self, index: usize, vehicle: &Vehicle) -> Option<Value> {
+        self.table.value(index, &self.values(vehicle))
+    }
+
+    /// Hash over all names and values.
+    pub fn hash(&self, vehicle: &Vehicle) -> u32 {
+        parameter_hash(self.all(vehicle))
+    }
+
+    /// Changes a parameter.
+    ///
+    /// # Errors
+    /// [`SetError`]; nothing has changed then.
+    pub fn set(&mut self, id: &str, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
+        let mut values = self.values(vehicle);
+        if self.table.set(id, value, &mut values)? != Change::Nothing {
+            let adopted = vehicle.adopt(&values.configuration, &values.conduct);
+            adopted.map_err(|source| SetError::refused(id, source))?;
+            self.speed = values.speed;
+        }
+        self.changed = true;
+        Ok(())
+    }
+
+    /// Sets all parameters to what they were at the start.
+    ///
+    /// # Errors
+    /// [`Refusal`] while armed, or when the closed loop refuses its settings.
+    pub fn reset(&mut self, vehicle: &mut Vehicle) -> Result<(), Refusal> {
+        if vehicle.is_armed() {
+            return Err(Refusal::later("Parameters are not reset while armed"));
+        }
+        let mut configuration = self.settings.configuration;
+        let now = vehicle.simulation().configuration();
+        (configuration.initial, configuration.environment) = (now.initial, now.environment);
+        configuration.reference = now.reference;
+        let denied = |error: ConfigurationError| Refusal::denied(error.to_string());
+        vehicle.adopt(&configuration, &self.settings.conduct).map_err(denied)?;
+        self.changed = true;
+        Ok(())
+    }
+
+    /// The parameters as the text of a file, if one has changed since the last call.
+    pub fn take_changed(&mut self, vehicle: &Vehicle) -> Option<String> {
+        if !std::mem::take(&mut self.changed) {
+            return None;
+        }
+        Some(vehicle::parameters::render(&self.table, &self.values(vehicle)))
+    }
+}

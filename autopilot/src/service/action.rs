@@ -1,0 +1,216 @@
+//! Commands that make the vehicle do something at once.
+
+use mavlink::dialects::common::{MavCmd, MavProtocolCapability};
+use vehicle::fault::Fault;
+use vehicle::identity::Identity;
+use vehicle::plan::{self, MissionItem};
+use vehicle::{Mode, Refusal, Reposition, Severity};
+
+use super::command::{global_frame, told_frame, told_place};
+use super::{CommandEntry, Origin, Outcome, Progress, Service, parameter};
+use crate::codec::Command;
+use crate::context::Context;
+
+/// How a command is carried out.
+type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
+
+/// Commands, and how they are carried out.
+const ACTIONS: [(MavCmd, CarryOut); 17] = [
+    (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
+    (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
+    (MavCmd::MAV_CMD_NAV_TAKEOFF, take_off),
+    (MavCmd::MAV_CMD_CONDITION_YAW, turn),
+    (MavCmd::MAV_CMD_DO_CHANGE_SPEED, change_speed),
+    (MavCmd::MAV_CMD_DO_SET_HOME, set_home),
+    (MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, terminate),
+    (MavCmd::MAV_CMD_DO_REPOSITION, reposition),
+    (MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI_NONE, look),
+    (MavCmd::MAV_CMD_DO_SET_ROI, look),
+    (MavCmd::MAV_CMD_DO_FENCE_ENABLE, enable_fence),
+    (MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, pause),
+    (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm),
+    (MavCmd::MAV_CMD_RUN_PREARM_CHECKS, check),
+    (MavCmd::MAV_CMD_INJECT_FAILURE, inject_failure),
+];
+
+const COMMANDS: [CommandEntry; ACTIONS.len()] = {
+    let mut commands = [CommandEntry::action(0); ACTIONS.len()];
+    let mut index = 0;
+    while index < ACTIONS.len() {
+        commands[index] = CommandEntry::action(ACTIONS[index].0 as u16);
+        index += 1;
+    }
+    commands
+};
+
+/// The number that arms or disarms whatever speaks against it.
+const FORCE: f64 = 21196.0;
+
+/// Hands commands on to the vehicle.
+#[derive(Clone, Copy, Debug)]
+pub struct Actions;
+
+impl Service for Actions {
+    fn commands(&self) -> &'static [CommandEntry] {
+        &COMMANDS
+    }
+
+    fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
+        MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
+    }
+
+    fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
+        let action = ACTIONS.into_iter().find(|(number, _)| *number as u16 == command.number);
+        let unknown = || Refusal::Unsupported(format!("Command {} is not supported", command.number));
+        let (_, carry_out) = action.ok_or_else(unknown)?;
+        carry_out(context, command)?;
+        Ok(Progress::Done)
+    }
+}
+
+fn change_speed(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    context.vehicle.change_speed(command.parameter(1), command.parameter(2))
+}
+
+fn terminate(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    if command.parameter(1) > 0.5 {
+        context.vehicle.terminate();
+    }
+    Ok(())
+}
+
+fn pause(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    if command.parameter(1) == 0.0 { vehicle.pause() } else { vehicle.continue_mission() }
+}
+
+/// The same as an item of a mission.
+fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    context.vehicle.look(&MissionItem {
+        frame: told_frame(command),
+        command: command.number,
+        parameters: command.parameters,
+        position: [command.x, command.y, command.z],
+        autocontinue: true,
+    })
+}
+
+fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    let force = command.parameter(2) == FORCE;
+    match command.parameter(1) {
+        1.0 => vehicle.arm(force),
+        0.0 => vehicle.disarm(force),
+        other => Err(Refusal::denied(format!("{other} neither arms (1) nor disarms (0)"))),
+    }
+}
+
+fn enable_fence(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    match command.parameter(1) {
+        0.0 => vehicle.enable_fence(false),
+        1.0 => vehicle.enable_fence(true),
+        other => {
+            return Err(Refusal::denied(format!("{other} neither enables (1) nor disables (0) the fence")));
+        }
+    }
+    parameter::tell(context, "FENCE_ENABLE");
+    Ok(())
+}
+
+/// Tells what speaks against arming.
+fn check(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
+    let obstacles = context.vehicle.arming_obstacles();
+    if obstacles.is_empty() {
+        context.say(Severity::Info, "Ready to arm");
+    }
+    for obstacle in obstacles {
+        context.say(Severity::Warning, &format!("Preflight: {obstacle}"));
+    }
+    Ok(())
+}
+
+/// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
+fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    if command.z.is_nan() {
+        return vehicle.take_off(None);
+    }
+    if vehicle.identity().is_ardupilot() {
+        return vehicle.take_off(Some(command.z));
+    }
+    let down_m = vehicle.site().down_m(global_frame(command)?, command.z);
+    let height_m = vehicle.home().position_m.z - down_m;
+    // PX4 takes an altitude below the ground for one above home of its parameter.
+    const LEAST_M: f64 = 0.5;
+    if height_m < LEAST_M {
+        let text = format!("Takeoff altitude {:.1} m is not above home: using the parameter", command.z);
+        context.say(Severity::Warning, &text);
+        return context.vehicle.take_off(None);
+    }
+    vehicle.take_off(Some(height_m))
+}
+
+/// To an angle, degrees, from north or (parameter 4) from the present heading, in a direction if there is one.
+fn turn(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    let angle_rad = command.parameter(1).to_radians();
+    if !angle_rad.is_finite() {
+        return Err(Refusal::denied("CONDITION_YAW needs an angle"));
+    }
+    let direction = if command.parameter(3) < 0.0 { -1.0 } else { 1.0 };
+    let relative = command.parameter(4) == 1.0;
+    let goal = if relative { vehicle.outputs().attitude_rad.z + direction * angle_rad } else { angle_rad };
+    vehicle.turn_to(goal)
+}
+
+fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    if command.parameter(1) == 1.0 {
+        return vehicle.set_home(vehicle.outputs().position_m, None);
+    }
+    let frame = global_frame(command)?;
+    let mut position_m = told_place(command, vehicle)?;
+    if !command.z.is_finite() {
+        return Err(Refusal::denied("Home needs an altitude"));
+    }
+    position_m.z = vehicle.site().down_m(frame, command.z);
+    let yaw_rad = Some(command.parameter(4).to_radians()).filter(|yaw| yaw.is_finite());
+    vehicle.set_home(position_m, yaw_rad)
+}
+
+/// NaN keeps what it stands for; nothing but NaN is a pause.
+fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    // Without a place it has no frame.
+    let nowhere = command.x.is_nan() && command.y.is_nan() && !command.z.is_finite();
+    let frame = if nowhere { plan::frame::GLOBAL } else { global_frame(command)? };
+    let horizontal_m = if command.x.is_nan() && command.y.is_nan() {
+        None
+    } else {
+        let position_m = told_place(command, vehicle)?;
+        Some([position_m.x, position_m.y])
+    };
+    let down_m = Some(command.z)
+        .filter(|altitude| altitude.is_finite())
+        .map(|altitude| vehicle.site().down_m(frame, altitude));
+    let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
+    vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
+    let speed_m_s = command.parameter(1);
+    if speed_m_s > 0.0 { vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
+}
+
+/// FAILURE_UNIT, FAILURE_TYPE, instance.
+fn inject_failure(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    // Nothing may be named instead of every instance.
+    let instance = if command.parameter(3).is_nan() { Some(0) } else { command.whole(3) };
+    let (Some(unit), Some(kind), Some(instance)) = (command.whole(1), command.whole(2), instance) else {
+        return Err(Refusal::denied("INJECT_FAILURE needs a unit, a failure type and an instance"));
+    };
+    let fault = Fault::of_numbers(unit, kind, instance)
+        .map_err(|error| Refusal::Unsupported(format!("Failure injection: {error}")))?;
+    vehicle.inject(&fault)
+}

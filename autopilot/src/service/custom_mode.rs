@@ -1,0 +1,81 @@
+//! Modes by their numbers in HEARTBEAT: SET_MODE, and the commands that replaced it.
+
+use mavlink::dialects::common::MavCmd;
+use vehicle::{Mode, Refusal, Vehicle};
+
+use super::command::{acknowledge_outcome, explain};
+use super::{CommandEntry, Origin, Outcome, Progress, Service};
+use crate::codec::{Command, Frame, id};
+use crate::context::Context;
+
+const NAV_GUIDED_ENABLE: u16 = MavCmd::MAV_CMD_NAV_GUIDED_ENABLE as u16;
+const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+
+/// Changes modes.
+#[derive(Clone, Copy, Debug)]
+pub struct CustomModes;
+
+impl Service for CustomModes {
+    fn messages(&self) -> &'static [u32] {
+        &[id::SET_MODE]
+    }
+
+    fn commands(&self) -> &'static [CommandEntry] {
+        const COMMANDS: &[CommandEntry] =
+            &[CommandEntry::action(NAV_GUIDED_ENABLE), CommandEntry::action(DO_SET_MODE)];
+        COMMANDS
+    }
+
+    /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
+    fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        const SET_MODE_MESSAGE: u16 = id::SET_MODE as u16;
+        let result = set_custom_mode(&mut context.vehicle, frame.payload().u32(0));
+        let outcome = result.map(|()| Progress::Done);
+        acknowledge_outcome(&mut context.outbox, origin, SET_MODE_MESSAGE, Some(&outcome));
+        explain(context, &outcome);
+    }
+
+    fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
+        let vehicle = &mut context.vehicle;
+        match command.number {
+            NAV_GUIDED_ENABLE if command.parameter(1) > 0.5 => vehicle.set_mode(Mode::Offboard)?,
+            NAV_GUIDED_ENABLE => vehicle.set_mode(Mode::Hold)?,
+            _ => set_mode(vehicle, command)?,
+        }
+        Ok(Progress::Done)
+    }
+}
+
+fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    const CUSTOM_MODE_ENABLED: u32 = 1;
+    let (base, main, sub) = (command.whole(1), command.whole(2), command.whole(3).unwrap_or(0));
+    let (Some(base), Some(main)) = (base, main) else {
+        return Err(Refusal::denied("DO_SET_MODE needs a mode"));
+    };
+    if base & CUSTOM_MODE_ENABLED == 0 {
+        return Err(Refusal::Unsupported("Only custom modes are supported".to_owned()));
+    }
+    let custom_mode = if vehicle.identity().is_ardupilot() {
+        main
+    } else if main <= 0xff && sub <= 0xff {
+        main << 16 | sub << 24
+    } else {
+        return Err(Refusal::denied(format!("No mode {main}, {sub}")));
+    };
+    set_custom_mode(vehicle, custom_mode)
+}
+
+/// Changes to a mode by its number in HEARTBEAT.
+fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
+    let identity = vehicle.identity();
+    let Some(mode) = identity.mode(custom_mode) else {
+        let names: Vec<_> =
+            identity.selectable_modes().iter().map(|known| identity.mode_name(*known)).collect();
+        // PX4's main and sub-modes are bytes of the number.
+        let number =
+            if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
+        let there_are = names.join(", ");
+        return Err(Refusal::Unsupported(format!("Mode {number} is not available, only {there_are}")));
+    };
+    vehicle.set_mode(mode)
+}

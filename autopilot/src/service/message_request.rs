@@ -1,0 +1,52 @@
+//! Messages that are sent once, because somebody asks for them.
+
+use mavlink::MessageData;
+use mavlink::dialects::common::{AUTOPILOT_VERSION_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA};
+use vehicle::Refusal;
+
+use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
+use crate::codec::Command;
+use crate::context::Context;
+
+const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
+const REQUEST_MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
+const REQUEST_PROTOCOL_VERSION: u16 = MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION as u16;
+const REQUEST_AUTOPILOT_CAPABILITIES: u16 = MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16;
+
+const COMMANDS: &[CommandEntry] = &[
+    CommandEntry::question(GET_HOME_POSITION),
+    CommandEntry::question(REQUEST_MESSAGE),
+    CommandEntry::question(REQUEST_PROTOCOL_VERSION),
+    CommandEntry::question(REQUEST_AUTOPILOT_CAPABILITIES),
+];
+
+/// Sends any message of the table: MAV_CMD_REQUEST_MESSAGE, and the older commands for one message each.
+#[derive(Clone, Copy, Debug)]
+pub struct MessageRequests;
+
+impl Service for MessageRequests {
+    fn commands(&self) -> &'static [CommandEntry] {
+        COMMANDS
+    }
+
+    fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
+        let (id, number) = match command.number {
+            GET_HOME_POSITION => (HOME_POSITION_DATA::ID, 0),
+            REQUEST_PROTOCOL_VERSION => (PROTOCOL_VERSION_DATA::ID, 0),
+            REQUEST_AUTOPILOT_CAPABILITIES => (AUTOPILOT_VERSION_DATA::ID, 0),
+            _ => {
+                let id = command.whole(1).ok_or_else(|| Refusal::denied("a message has a number"))?;
+                (id, command.whole(2).unwrap_or(0))
+            }
+        };
+        let stream = context.streams.get(id);
+        let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
+        if messages.is_empty() {
+            return Err(Refusal::Unsupported(format!("there is no message {id}")));
+        }
+        for message in messages {
+            context.outbox.send(Destination::Peer(origin.peer), message);
+        }
+        Ok(Progress::Done)
+    }
+}

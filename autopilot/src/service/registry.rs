@@ -1,0 +1,203 @@
+//! The list of all services, and which of them takes what.
+
+use std::collections::BTreeMap;
+
+use mavlink::dialects::common::MavProtocolCapability;
+use vehicle::identity::Identity;
+
+use super::command::CommandProtocol;
+use super::{Origin, PeerId, Repetition, Service};
+use crate::codec::{Command, Frame};
+use crate::context::Context;
+use crate::stream::StreamTable;
+
+/// All services, called in this order: it is the order of what several of them tell at once.
+fn all() -> Vec<Box<dyn Service>> {
+    vec![
+        Box::new(super::mission::Missions::default()),
+        Box::new(super::calibration::Calibrations::default()),
+        Box::new(super::notice::Notices),
+        Box::new(super::heartbeat::Heartbeat::default()),
+        Box::new(super::greeting::Greeting::default()),
+        Box::new(super::identification::Identification),
+        Box::new(super::component_metadata::ComponentMetadata),
+        Box::new(super::time_synchronization::TimeSynchronization),
+        Box::new(super::parameter::ParameterProtocol),
+        Box::new(super::custom_mode::CustomModes),
+        Box::new(super::standard_mode::StandardModes),
+        Box::new(super::action::Actions),
+        Box::new(super::set_point::SetPoints),
+        Box::new(super::high_latency::HighLatency::default()),
+        Box::new(super::manual_control::ManualControl),
+        Box::new(super::global_origin::GlobalOrigin),
+        Box::new(super::file_transfer::FileServer::default()),
+        Box::new(super::log::LogServer::default()),
+        Box::new(super::telemetry::Telemetry),
+        Box::new(super::message_request::MessageRequests),
+        Box::new(super::message_interval::MessageIntervals::default()),
+    ]
+}
+
+/// All services, found by what they take.
+#[derive(Debug)]
+pub struct Registry {
+    services: Vec<Box<dyn Service>>,
+    /// Positions of services by identifiers of messages.
+    messages: BTreeMap<u32, usize>,
+    /// Positions of services by numbers of commands.
+    commands: BTreeMap<u16, (usize, Repetition)>,
+    protocol: CommandProtocol,
+}
+
+impl Registry {
+    /// All services as they start.
+    pub fn new() -> Self {
+        let services = all();
+        let (mut messages, mut commands) = (BTreeMap::new(), BTreeMap::new());
+        for (index, service) in services.iter().enumerate() {
+            messages.extend(service.messages().iter().map(|id| (*id, index)));
+            let entries = service.commands().iter();
+            commands.extend(entries.map(|entry| (entry.number, (index, entry.repetition))));
+        }
+        Self { services, messages, commands, protocol: CommandProtocol::default() }
+    }
+
+    /// The table of all messages that the services make.
+    pub fn streams(&self) -> StreamTable {
+        StreamTable::new(self.services.iter().flat_map(|service| service.streams()))
+    }
+
+    /// What the services can do together.
+    pub fn capabilities(&self, identity: Identity) -> MavProtocolCapability {
+        let capabilities = self.services.iter().map(|service| service.capabilities(identity));
+        capabilities.fold(self.protocol.capabilities(), |all, one| all | one)
+    }
+
+    fn each(&mut self, mut call: impl FnMut(&mut dyn Service)) {
+        for service in &mut self.services {
+            call(service.as_mut());
+        }
+    }
+
+    /// The vehicle has just started.
+    pub fn start(&mut self, context: &mut Context) {
+        self.each(|service| service.start(context));
+    }
+
+    /// Somebody was heard, whoever the message is for.
+    pub fn hear(&mut self, context: &mut Context, origin: &Origin) {
+        self.each(|service| service.hear(context, origin));
+    }
+
+    /// Hands a message or a command to the service that takes it.
+    pub fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        if let Some(command) = Command::read(frame) {
+            let entry = self.commands.get(&command.number).copied();
+            let taker = entry.and_then(|(index, repetition)| {
+                let service = self.services.get_mut(index)?;
+                Some((repetition, service.as_mut() as &mut dyn Service))
+            });
+            self.protocol.handle(context, origin, frame, &command, taker);
+            return;
+        }
+        let index = self.messages.get(&frame.message_id()).copied();
+        if let Some(service) = index.and_then(|index| self.services.get_mut(index)) {
+            service.receive(context, origin, frame);
+        }
+    }
+
+    /// A tick of simulation time is over.
+    pub fn tick(&mut self, context: &mut Context) {
+        self.each(|service| service.tick(context));
+    }
+
+    /// Tells what has changed.
+    pub fn announce(&mut self, context: &mut Context) {
+        self.each(|service| service.announce(context));
+    }
+
+    /// Sends what is due regularly.
+    pub fn stream(&mut self, context: &mut Context) {
+        self.each(|service| service.stream(context));
+    }
+
+    /// Sends up to this many messages of what is long.
+    pub fn transfer(
+        &mut self,
+        context: &mut Context,
+        messages: usize,
+        has_room: &dyn Fn(PeerId) -> Option<bool>,
+    ) {
+        self.each(|service| service.transfer(context, messages, has_room));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fmt::Debug;
+
+    use mavlink::Message as _;
+    use vehicle::estimation::SensorSettings;
+    use vehicle::identity::Identity;
+    use vehicle::parameters::Speed;
+    use vehicle::plan::Plans;
+    use vehicle::world::{Geodetic, WindSettings};
+    use vehicle::{Conduct, Vehicle, VehicleSettings};
+
+    use super::{Registry, all};
+    use crate::codec::id;
+    use crate::parameters::Parameters;
+    use crate::stream::Component;
+
+    fn assert_unique<T: Ord + Debug>(claims: impl Iterator<Item = T>) {
+        let mut seen = BTreeSet::new();
+        for claim in claims {
+            let text = format!("{claim:?}");
+            assert!(seen.insert(claim), "{text} is claimed twice");
+        }
+    }
+
+    /// Otherwise one of two services would never be asked.
+    #[test]
+    fn nothing_is_claimed_twice() {
+        let services = all();
+        assert_unique(services.iter().flat_map(|service| service.messages()));
+        assert_unique(services.iter().flat_map(|service| service.commands()).map(|entry| entry.number));
+        assert_unique(services.iter().flat_map(|service| service.streams()).map(|stream| stream.id));
+    }
+
+    /// The identifier of a row and its maker agree.
+    #[test]
+    fn every_row_makes_its_message() {
+        let settings = VehicleSettings {
+            identity: Identity::Px4,
+            configuration: quadrotor::Configuration::default(),
+            conduct: Conduct::new(false),
+            origin: Geodetic { latitude_deg: 47.4, longitude_deg: 8.5, altitude_m: 488.0 },
+            heading_rad: 0.0,
+            wind: WindSettings::default(),
+            faults: Vec::new(),
+            sensors: SensorSettings::default(),
+            plans: Plans::default(),
+        };
+        let vehicle = Vehicle::new(&settings).expect("valid settings");
+        let parameters = Parameters::new(&settings, &vehicle, 1, Speed::Factor(1.0));
+        let registry = Registry::new();
+        let capabilities = registry.capabilities(settings.identity);
+        let component = Component { vehicle: &vehicle, parameters: &parameters, capabilities };
+        for stream in registry.streams().iter() {
+            let messages = stream.messages(&component, 0);
+            assert!(!messages.is_empty(), "{}", stream.id);
+            assert!(messages.iter().all(|message| message.message_id() == stream.id), "{}", stream.id);
+        }
+    }
+
+    /// Commands have their own protocol: a service would never see these.
+    #[test]
+    fn no_service_takes_the_messages_of_commands() {
+        let services = all();
+        let mut messages = services.iter().flat_map(|service| service.messages());
+        assert!(!messages.any(|message| [id::COMMAND_INT, id::COMMAND_LONG].contains(message)));
+    }
+}

@@ -1,0 +1,51 @@
+//! The table of telemetry: messages, their rates, groups and makers.
+
+use mavlink::MessageData;
+use mavlink::dialects::common::*;
+
+use super::{attitude, estimate, navigation, position, sensors, status, targets, truth};
+use crate::service::Service;
+use crate::stream::{Group, Stream};
+
+/// Messages of the vehicle's state. They need no state of their own.
+#[derive(Clone, Copy, Debug)]
+pub struct Telemetry;
+
+impl Service for Telemetry {
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
+    }
+}
+
+/// Rates in Hz on a ground station's link and on an onboard one; 0 is never, unless it is asked for.
+const STREAMS: &[Stream] = &[
+    Stream::new(SYS_STATUS_DATA::ID, [1.0, 5.0], status::sys_status).of(Group::ExtendedStatus),
+    Stream::new(SYSTEM_TIME_DATA::ID, [1.0, 1.0], status::system_time),
+    Stream::new(GPS_RAW_INT_DATA::ID, [1.0, 5.0], sensors::gps_raw_int).of(Group::RawSensors),
+    Stream::new(SCALED_IMU_DATA::ID, [0.0, 0.0], sensors::scaled_imu).of(Group::RawSensors),
+    Stream::new(RAW_IMU_DATA::ID, [0.0, 0.0], sensors::raw_imu).of(Group::RawSensors),
+    Stream::new(SCALED_PRESSURE_DATA::ID, [0.0, 0.0], sensors::scaled_pressure).of(Group::RawSensors),
+    Stream::new(ATTITUDE_DATA::ID, [15.0, 100.0], attitude::attitude).of(Group::Extra1),
+    Stream::new(ATTITUDE_QUATERNION_DATA::ID, [15.0, 50.0], attitude::attitude_quaternion).of(Group::Extra1),
+    Stream::new(LOCAL_POSITION_NED_DATA::ID, [10.0, 30.0], position::local_position_ned).of(Group::Position),
+    Stream::new(GLOBAL_POSITION_INT_DATA::ID, [5.0, 50.0], position::global_position_int).of(Group::Position),
+    Stream::new(SERVO_OUTPUT_RAW_DATA::ID, [1.0, 10.0], status::servo_output_raw).of(Group::RcChannels),
+    Stream::new(NAV_CONTROLLER_OUTPUT_DATA::ID, [2.0, 10.0], navigation::nav_controller_output)
+        .of(Group::ExtendedStatus),
+    Stream::new(VFR_HUD_DATA::ID, [4.0, 10.0], position::vfr_hud).of(Group::Extra2),
+    Stream::new(ATTITUDE_TARGET_DATA::ID, [2.0, 10.0], targets::attitude_target),
+    Stream::new(POSITION_TARGET_LOCAL_NED_DATA::ID, [2.0, 10.0], targets::position_target_local_ned)
+        .of(Group::Position),
+    Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int),
+    Stream::new(HIGHRES_IMU_DATA::ID, [0.0, 50.0], sensors::highres_imu),
+    Stream::new(SIM_STATE_DATA::ID, [0.0, 0.0], truth::sim_state),
+    Stream::new(ALTITUDE_DATA::ID, [1.0, 10.0], position::altitude).of(Group::Extra3),
+    Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::ExtendedStatus),
+    Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status),
+    Stream::new(ESTIMATOR_STATUS_DATA::ID, [0.5, 1.0], estimate::estimator_status),
+    Stream::new(VIBRATION_DATA::ID, [0.1, 0.5], sensors::vibration).of(Group::Extra3),
+    Stream::new(HOME_POSITION_DATA::ID, [0.5, 0.5], position::home_position).of(Group::ExtendedStatus),
+    Stream::new(EXTENDED_SYS_STATE_DATA::ID, [1.0, 5.0], status::extended_sys_state)
+        .of(Group::ExtendedStatus),
+    Stream::new(ODOMETRY_DATA::ID, [0.0, 30.0], position::odometry),
+];

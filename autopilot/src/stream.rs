@@ -1,0 +1,147 @@
+//! The table of messages that are sent regularly or asked for.
+
+use mavlink::dialects::common::{MavMessage, MavProtocolCapability};
+use vehicle::Vehicle;
+
+use crate::parameters::Parameters;
+use crate::service::LinkProfile;
+
+/// Groups of REQUEST_DATA_STREAM (MAV_DATA_STREAM).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// Instruments.
+    RawSensors = 1,
+    /// State of the vehicle.
+    ExtendedStatus = 2,
+    /// Inputs and outputs.
+    RcChannels = 3,
+    /// Position.
+    Position = 6,
+    /// Attitude.
+    Extra1 = 10,
+    /// What a pilot looks at.
+    Extra2 = 11,
+    /// The rest.
+    Extra3 = 12,
+}
+
+impl Group {
+    /// All groups, by their numbers.
+    pub const ALL: [Self; 7] = [
+        Self::RawSensors,
+        Self::ExtendedStatus,
+        Self::RcChannels,
+        Self::Position,
+        Self::Extra1,
+        Self::Extra2,
+        Self::Extra3,
+    ];
+}
+
+/// What messages are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Component<'a> {
+    /// The vehicle.
+    pub vehicle: &'a Vehicle,
+    /// Its parameters.
+    pub parameters: &'a Parameters,
+    /// What its services can do.
+    pub capabilities: MavProtocolCapability,
+}
+
+/// How a message is made of the state of now.
+#[derive(Clone, Copy, Debug)]
+pub enum Build {
+    /// Of the vehicle.
+    Vehicle(fn(&Vehicle) -> MavMessage),
+    /// Of what this is and how it is set.
+    Component(fn(&Component<'_>) -> MavMessage),
+    /// One or several, by parameter 2 of MAV_CMD_REQUEST_MESSAGE; on request only.
+    Numbered(fn(&Vehicle, u32) -> Vec<MavMessage>),
+}
+
+/// A message that a link can get.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    /// Identifier of the message.
+    pub id: u32,
+    /// Rates at the start, Hz, on a ground station's link and on an onboard one; zero is never.
+    pub rates_hz: [f64; 2],
+    /// The group of REQUEST_DATA_STREAM that it is of.
+    pub group: Option<Group>,
+    /// How it is made.
+    pub build: Build,
+}
+
+impl Stream {
+    /// A message of the vehicle with its rates on a ground station's link and on an onboard one, Hz.
+    pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
+        Self { id, rates_hz, group: None, build: Build::Vehicle(build) }
+    }
+
+    /// A message that is not sent unless it is asked for.
+    pub const fn on_request(id: u32, build: Build) -> Self {
+        Self { id, rates_hz: [0.0; 2], group: None, build }
+    }
+
+    /// The same in a group of REQUEST_DATA_STREAM.
+    pub const fn of(self, group: Group) -> Self {
+        Self { group: Some(group), ..self }
+    }
+
+    /// Interval at the start on a link of a profile, µs, if it is sent there at all.
+    pub fn default_interval_us(&self, profile: LinkProfile) -> Option<u64> {
+        let [ground, onboard] = self.rates_hz;
+        let rate = match profile {
+            LinkProfile::Ground => ground,
+            LinkProfile::Onboard => onboard,
+        };
+        (rate > 0.0).then(|| (1e6 / rate).round() as u64)
+    }
+
+    /// The one message of now; `None` if it is sent on request only.
+    pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
+        match self.build {
+            Build::Vehicle(build) => Some(build(component.vehicle)),
+            Build::Component(build) => Some(build(component)),
+            Build::Numbered(_) => None,
+        }
+    }
+
+    /// What answers a request: one message, or those of a number.
+    pub fn messages(&self, component: &Component<'_>, number: u32) -> Vec<MavMessage> {
+        match self.build {
+            Build::Numbered(build) => build(component.vehicle, number),
+            _ => self.message(component).into_iter().collect(),
+        }
+    }
+
+    /// Whether it can be sent regularly.
+    pub fn is_regular(&self) -> bool {
+        !matches!(self.build, Build::Numbered(_))
+    }
+}
+
+/// All of them, by their identifiers.
+#[derive(Clone, Debug, Default)]
+pub struct StreamTable(Vec<&'static Stream>);
+
+impl StreamTable {
+    /// A table of these. Of two with the same identifier, one is found.
+    pub fn new(streams: impl IntoIterator<Item = &'static Stream>) -> Self {
+        let mut streams: Vec<_> = streams.into_iter().collect();
+        streams.sort_by_key(|stream| stream.id);
+        Self(streams)
+    }
+
+    /// The message of an identifier.
+    pub fn get(&self, id: u32) -> Option<&'static Stream> {
+        let place = self.0.binary_search_by_key(&id, |stream| stream.id).ok()?;
+        self.0.get(place).copied()
+    }
+
+    /// All, by their identifiers.
+    pub fn iter(&self) -> impl Iterator<Item = &'static Stream> + '_ {
+        self.0.iter().copied()
+    }
+}
