@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::notice::Severity;
+use super::super::speeds::SpeedChange;
 use super::super::state::Vehicle;
 use super::heading::Turn;
 use super::task::Task;
@@ -22,41 +23,41 @@ pub enum Condition {
 impl Vehicle {
     /// Does what is to be done on the way, up to the first condition that is not fulfilled.
     pub(super) fn act(&mut self) {
-        while let Some(index) = self.mission.actions.front().copied() {
-            match self.mission.condition {
+        while let Some(index) = self.machines.mission.actions.front().copied() {
+            match self.machines.mission.condition {
                 Some(condition) if !self.is_fulfilled(condition) => return,
-                Some(_) => self.mission.condition = None,
+                Some(_) => self.machines.mission.condition = None,
                 None => {
                     let Some(item) = self.mission_items().get(index).copied() else { return };
-                    self.mission.condition = self.begin_condition(&item);
-                    if self.mission.condition.is_some() {
+                    self.machines.mission.condition = self.begin_condition(&item);
+                    if self.machines.mission.condition.is_some() {
                         continue;
                     }
                     self.carry_out(&item);
                 }
             }
-            self.mission.actions.pop_front();
+            self.machines.mission.actions.pop_front();
             self.reached_item(index);
         }
     }
 
     /// Drops what still waits, at the end of a leg; without a leg to come everything else is done.
     pub(super) fn drop_conditions(&mut self) {
-        self.mission.condition = None;
-        self.mission.turn = None;
-        self.mission.actions.clear();
+        self.machines.mission.condition = None;
+        self.machines.mission.turn = None;
+        self.machines.mission.actions.clear();
     }
 
     fn is_fulfilled(&self, condition: Condition) -> bool {
         match condition {
             Condition::Until(time_us) => self.time_us() >= time_us,
             Condition::Within(distance_m) => {
-                let Some(Task::Leg(leg, _)) = &self.mission.task else { return false };
-                (self.outputs.position_m - leg.to_m).norm() <= distance_m
+                let Some(Task::Leg(leg, _)) = &self.machines.mission.task else { return false };
+                (self.perception.outputs().position_m - leg.to_m).norm() <= distance_m
             }
             Condition::Turned => {
-                let yaw_rad = self.outputs.attitude_rad.z;
-                self.mission.turn.is_none_or(|turn| turn.is_done(yaw_rad))
+                let yaw_rad = self.perception.outputs().attitude_rad.z;
+                self.machines.mission.turn.is_none_or(|turn| turn.is_done(yaw_rad))
             }
         }
     }
@@ -66,8 +67,9 @@ impl Vehicle {
             command::CONDITION_DELAY => Some(Condition::Until(self.after_s(item.parameter_or(1, 0.0)))),
             command::CONDITION_DISTANCE => Some(Condition::Within(item.parameter_or(1, 0.0))),
             command::CONDITION_YAW => {
-                let fastest_rad_s = self.simulation.configuration().limits.yaw_rate_rad_s;
-                self.mission.turn = Some(Turn::new(item, self.outputs.setpoint.yaw_rad, fastest_rad_s));
+                let fastest_rad_s = self.closed_loop.simulation().configuration().limits.yaw_rate_rad_s;
+                self.machines.mission.turn =
+                    Some(Turn::new(item, self.perception.outputs().setpoint.yaw_rad, fastest_rad_s));
                 Some(Condition::Turned)
             }
             _ => None,
@@ -77,7 +79,10 @@ impl Vehicle {
     fn carry_out(&mut self, item: &MissionItem) {
         match item.command {
             command::DO_CHANGE_SPEED => {
-                self.change_mission_speed(item.parameter_or(1, 0.0), item.parameter_or(2, -1.0));
+                let (kind, speed_m_s) = (item.parameter_or(1, 0.0), item.parameter_or(2, -1.0));
+                self.consult(|_, _, proposal| {
+                    proposal.change_speeds(SpeedChange::Mission { kind, speed_m_s });
+                });
             }
             command::DO_SET_HOME => self.set_mission_home(item),
             command::DO_SET_ROI_LOCATION
@@ -90,14 +95,14 @@ impl Vehicle {
     }
 
     fn set_mission_home(&mut self, item: &MissionItem) {
-        let here = self.outputs.position_m;
+        let here = self.perception.outputs().position_m;
         let place = self.site().place(item).filter(|_| item.parameter_or(1, 0.0) < 0.5);
         let position_m = match place.and_then(|place| Some((place.horizontal_m?, place.down_m))) {
-            Some(([x, y], z)) => Vector3::new(x, y, z.unwrap_or(self.home.position_m.z)),
+            Some(([x, y], z)) => Vector3::new(x, y, z.unwrap_or(self.decided.home().position_m.z)),
             None => here,
         };
         if let Err(refusal) = self.set_home(position_m, None) {
-            self.say(Severity::Warning, format!("Mission: {refusal}"));
+            self.decided.say(Severity::Warning, format!("Mission: {refusal}"));
         }
     }
 }

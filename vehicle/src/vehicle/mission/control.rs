@@ -1,7 +1,9 @@
 //! Starting, pausing and continuing a mission, and its tick.
 
 use super::super::notice::{Refusal, Severity};
+use super::super::plans::check_mission_places;
 use super::super::set_point::PositionSetPoint;
+use super::super::speeds::SpeedChange;
 use super::super::state::Vehicle;
 use super::super::steering::SteeringKind;
 use super::sequence::{navigates, next_from};
@@ -20,21 +22,22 @@ impl Vehicle {
     /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
     pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
         self.may_enter(Mode::Mission)?;
-        self.refuse_without_rotor()?;
+        self.situation().refuse_without_rotor()?;
         if !self.has_mission() {
             return Err(Refusal::later("Mission rejected: there is none"));
         }
-        self.check_mission_places().map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
+        check_mission_places(&self.situation())
+            .map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
         if let Some(first) = first {
             self.set_mission_item(first, true)?;
         }
-        self.mission.paused = false;
-        self.failsafe.release();
-        if self.mode != Mode::Mission {
+        self.machines.mission.paused = false;
+        self.machines.failsafe.release();
+        if self.decided.mode() != Mode::Mission {
             self.enter(Mode::Mission);
-        } else if self.mission.progress == Progress::Complete {
+        } else if self.machines.mission.progress == Progress::Complete {
             self.begin_mission();
-        } else if self.mission.task.is_none() {
+        } else if self.machines.mission.task.is_none() {
             self.take_over();
         }
         Ok(())
@@ -50,13 +53,13 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] when it cannot hold now.
     pub fn pause(&mut self) -> Result<(), Refusal> {
-        if self.mode != Mode::Mission || !self.identity.is_ardupilot() {
+        if self.decided.mode() != Mode::Mission || !self.setup.identity().is_ardupilot() {
             return self.set_mode(Mode::Hold);
         }
-        self.mission.paused = true;
+        self.machines.mission.paused = true;
         self.suspend();
-        self.hold();
-        self.say(Severity::Info, "Mission paused");
+        self.consult(|_, situation, proposal| proposal.hold(situation));
+        self.decided.say(Severity::Info, "Mission paused");
         Ok(())
     }
 
@@ -65,7 +68,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] when nothing was paused.
     pub fn continue_mission(&mut self) -> Result<(), Refusal> {
-        if self.mission.progress != Progress::Started || !self.has_mission() {
+        if self.machines.mission.progress != Progress::Started || !self.has_mission() {
             return Err(Refusal::denied("Nothing to continue"));
         }
         self.start_mission(None)
@@ -81,15 +84,15 @@ impl Vehicle {
             return Err(Refusal::denied(format!("Mission has no item {index} among {count}")));
         }
         if reset {
-            self.mission.jumps.clear();
+            self.machines.mission.jumps.clear();
         }
-        if self.mission.progress == Progress::Complete {
-            self.mission.progress = Progress::NotStarted;
+        if self.machines.mission.progress == Progress::Complete {
+            self.machines.mission.progress = Progress::NotStarted;
         }
         self.suspend();
         self.drop_conditions();
-        self.mission.current = index.max(self.first_mission_item());
-        if self.mode == Mode::Mission && !self.mission.paused {
+        self.machines.mission.current = index.max(self.first_mission_item());
+        if self.decided.mode() == Mode::Mission && !self.machines.mission.paused {
             self.take_over();
         }
         Ok(())
@@ -98,27 +101,28 @@ impl Vehicle {
     /// A new mission begins at its first item, a changed one goes on where it was.
     pub(in super::super) fn mission_has_changed(&mut self, amended: bool) {
         if !amended {
-            let reached = std::mem::take(&mut self.mission.reached);
-            self.forget_mission_speeds();
-            self.region = None;
-            self.mission = Mission { reached, current: self.first_mission_item(), ..Mission::default() };
+            let reached = std::mem::take(&mut self.machines.mission.reached);
+            self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::ForgetMission));
+            self.decided.look_at(None);
+            self.machines.mission =
+                Mission { reached, current: self.first_mission_item(), ..Mission::default() };
         }
         self.suspend();
         self.drop_conditions();
-        if self.mode != Mode::Mission {
+        if self.decided.mode() != Mode::Mission {
             return;
         }
         if self.has_mission() {
             self.take_over();
         } else {
-            self.say(Severity::Warning, "Mission cleared: holding");
+            self.decided.say(Severity::Warning, "Mission cleared: holding");
             self.enter(Mode::Hold);
         }
     }
 
     /// The mode is entered.
     pub(in super::super) fn enter_mission(&mut self) {
-        match self.mission.progress {
+        match self.machines.mission.progress {
             Progress::NotStarted | Progress::Started => self.take_over(),
             Progress::Complete => self.begin_mission(),
         }
@@ -126,91 +130,94 @@ impl Vehicle {
 
     /// The mode is left.
     pub(in super::super) fn leave_mission(&mut self) {
-        self.mission.paused = false;
+        self.machines.mission.paused = false;
         self.suspend();
-        self.apply_mission_speeds(false);
+        self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::InMission(false)));
     }
 
     /// Gives up what is being done for the current item, to be begun again.
     fn suspend(&mut self) {
-        self.mission.task = None;
-        self.mission.carry = None;
+        self.machines.mission.task = None;
+        self.machines.mission.carry = None;
     }
 
     fn begin_mission(&mut self) {
         self.suspend();
         self.drop_conditions();
-        self.mission.jumps.clear();
-        self.region = None;
-        self.forget_mission_speeds();
-        self.mission.progress = Progress::NotStarted;
-        self.mission.current = self.first_mission_item();
+        self.machines.mission.jumps.clear();
+        self.decided.look_at(None);
+        self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::ForgetMission));
+        self.machines.mission.progress = Progress::NotStarted;
+        self.machines.mission.current = self.first_mission_item();
         self.take_over();
     }
 
     /// Goes on from where the vehicle is.
     fn take_over(&mut self) {
-        self.mission.carry = None;
-        self.mission.anchor_m = self.steering.present(&self.outputs).position_m;
-        self.mission.heading_rad = self.outputs.attitude_rad.z;
-        self.apply_mission_speeds(true);
-        self.hold();
+        self.machines.mission.carry = None;
+        self.machines.mission.anchor_m =
+            self.decided.steering().present(self.perception.outputs()).position_m;
+        self.machines.mission.heading_rad = self.perception.outputs().attitude_rad.z;
+        self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::InMission(true)));
+        self.consult(|_, situation, proposal| proposal.hold(situation));
     }
 
     /// One tick of the mission.
     pub(in super::super) fn fly_mission(&mut self) {
-        if self.mission.paused || self.mission.progress == Progress::Complete {
-            self.turn_to_region();
+        if self.machines.mission.paused || self.machines.mission.progress == Progress::Complete {
+            self.consult(|_, situation, proposal| proposal.turn_to_region(situation));
             return;
         }
         // An attitude that was left behind, or a stick: the mission flies by position.
-        if self.steering.kind() == SteeringKind::Attitude {
-            self.follow(&PositionSetPoint::HOLD);
+        if self.decided.steering().kind() == SteeringKind::Attitude {
+            self.consult(|_, situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
         }
-        self.mission.progress = Progress::Started;
+        self.machines.mission.progress = Progress::Started;
         for _ in 0..ITEMS_PER_TICK {
-            let Some(item) = self.mission_items().get(self.mission.current).copied() else {
+            let Some(item) = self.mission_items().get(self.machines.mission.current).copied() else {
                 self.complete_mission();
                 return;
             };
             if !navigates(&item) {
-                self.go_on_from(self.mission.current);
+                self.go_on_from(self.machines.mission.current);
                 continue;
             }
-            let progress = match self.mission.task {
+            let progress = match self.machines.mission.task {
                 None => self.begin_item(&item),
                 Some(task) => self.carry_on(task, &item),
             };
             match progress {
                 TaskProgress::Going => break,
-                TaskProgress::Again => self.mission.task = None,
+                TaskProgress::Again => self.machines.mission.task = None,
                 TaskProgress::Done(carry) => {
                     self.item_is_done(carry);
-                    if self.mode != Mode::Mission || self.mission.progress == Progress::Complete {
+                    if self.decided.mode() != Mode::Mission
+                        || self.machines.mission.progress == Progress::Complete
+                    {
                         return;
                     }
-                    if self.mission.paused {
+                    if self.machines.mission.paused {
                         return;
                     }
                 }
             }
         }
         self.act();
-        if self.mode == Mode::Mission {
+        if self.decided.mode() == Mode::Mission {
             self.turn_on_the_way();
         }
     }
 
     fn item_is_done(&mut self, carry: Option<Carry>) {
-        let index = self.mission.current;
+        let index = self.machines.mission.current;
         let Some(item) = self.mission_items().get(index).copied() else { return };
         self.suspend();
         self.drop_conditions();
-        self.mission.carry = carry;
+        self.machines.mission.carry = carry;
         self.reached_item(index);
         if item.command == command::NAV_RETURN_TO_LAUNCH {
             self.complete_mission();
-            if self.steering.kind() != SteeringKind::Idle {
+            if self.decided.steering().kind() != SteeringKind::Idle {
                 self.enter(Mode::Return);
             }
             return;
@@ -218,23 +225,23 @@ impl Vehicle {
         if self.continues_after(&item) {
             self.go_on_from(index + 1);
         } else {
-            self.mission.current = index + 1;
-            self.say(Severity::Info, format!("Mission waits after item {index}"));
+            self.machines.mission.current = index + 1;
+            self.decided.say(Severity::Info, format!("Mission waits after item {index}"));
             self.enter(Mode::Hold);
         }
     }
 
     /// Looks for the next item that navigates; what lies before it is done on the way.
     fn go_on_from(&mut self, index: usize) {
-        let mut made = std::mem::take(&mut self.mission.jumps);
+        let mut made = std::mem::take(&mut self.machines.mission.jumps);
         let next = next_from(self.mission_items(), index, &mut made);
-        self.mission.jumps = made;
+        self.machines.mission.jumps = made;
         for jump in next.jumps {
             self.reached_item(jump);
         }
-        self.mission.actions = next.actions.into();
+        self.machines.mission.actions = next.actions.into();
         match next.navigation {
-            Some(index) => self.mission.current = index,
+            Some(index) => self.machines.mission.current = index,
             None => {
                 self.act();
                 self.complete_mission();
@@ -245,21 +252,16 @@ impl Vehicle {
     fn complete_mission(&mut self) {
         self.suspend();
         self.drop_conditions();
-        self.mission.progress = Progress::Complete;
-        self.mission.current = self.mission_items().len().saturating_sub(1);
-        self.say(Severity::Info, "Mission complete");
+        self.machines.mission.progress = Progress::Complete;
+        self.machines.mission.current = self.mission_items().len().saturating_sub(1);
+        self.decided.say(Severity::Info, "Mission complete");
         // On the ground the vehicle disarms in its mode, as after any landing.
-        if !self.identity.is_ardupilot() && self.steering.kind() != SteeringKind::Idle {
+        if !self.setup.identity().is_ardupilot() && self.decided.steering().kind() != SteeringKind::Idle {
             self.enter(Mode::Hold);
         }
     }
 
     pub(super) fn reached_item(&mut self, index: usize) {
-        self.mission.reached.push(u16::try_from(index).unwrap_or(u16::MAX));
-    }
-
-    /// Whether the mission goes on by itself on the ground.
-    pub(in super::super) fn mission_goes_on(&self) -> bool {
-        self.mode == Mode::Mission && self.mission.progress == Progress::Started && self.flown && self.armed
+        self.machines.mission.reached.push(u16::try_from(index).unwrap_or(u16::MAX));
     }
 }

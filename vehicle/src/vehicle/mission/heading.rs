@@ -57,19 +57,19 @@ impl Turn {
 impl Vehicle {
     /// Turns the shaper's goal to where the vehicle is to look.
     pub(super) fn turn_on_the_way(&mut self) {
-        if let Some(turn) = &mut self.mission.turn {
+        if let Some(turn) = &mut self.machines.mission.turn {
             turn.step(TICK_US as f64 / 1e6);
         }
         let (heading_rad, rate_rad_s) = self.mission_heading();
-        match &mut self.steering {
-            Steering::Goal(goal) => (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s),
-            _ => self.turn_to_region(),
-        }
+        self.consult(|_, situation, proposal| match proposal.steering() {
+            Steering::Goal(_) => proposal.turn_on(Some((heading_rad, rate_rad_s))),
+            _ => proposal.turn_to_region(situation),
+        });
     }
 
     /// Heading, rad, and its rate, rad/s.
     fn mission_heading(&self) -> (f64, f64) {
-        let mission = &self.mission;
+        let mission = &self.machines.mission;
         if let Some(turn) = &mission.turn {
             let rate_rad_s = if turn.left_rad == 0.0 { 0.0 } else { turn.rate_rad_s };
             return (turn.at_rad, libm::copysign(rate_rad_s, turn.left_rad));
@@ -78,10 +78,12 @@ impl Vehicle {
             Some(Task::Leg(leg, _)) => Some(leg.to_m),
             _ => None,
         };
-        match (self.heading_to_region(next_m), &self.steering) {
+        let region = self.decided.region();
+        let looked = region.and_then(|region| region.heading(&self.perception.outputs().setpoint, next_m));
+        match (looked, self.decided.steering()) {
             (Some(looked), _) => looked,
             // What is too near to be looked at does not turn the vehicle.
-            (None, Steering::Goal(goal)) if self.region.is_some() => (goal.yaw_rad, 0.0),
+            (None, Steering::Goal(goal)) if region.is_some() => (goal.yaw_rad, 0.0),
             _ => (mission.heading_rad, 0.0),
         }
     }

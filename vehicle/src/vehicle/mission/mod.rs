@@ -46,7 +46,7 @@ enum Progress {
 
 /// What changes while a mission is flown.
 #[derive(Debug, Default)]
-pub(super) struct Mission {
+pub struct Mission {
     progress: Progress,
     /// The item that is flown, or will be.
     current: usize,
@@ -69,4 +69,11 @@ pub(super) struct Mission {
     paused: bool,
     /// Items that were reached since the last look.
     reached: Vec<u16>,
+}
+
+impl Mission {
+    /// Whether it has begun, and is not complete.
+    pub fn is_started(&self) -> bool {
+        self.progress == Progress::Started
+    }
 }

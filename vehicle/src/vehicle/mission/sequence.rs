@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::super::plans::first_mission_item;
 use super::super::state::Vehicle;
 use crate::plan::{MissionItem, PlanKind, command};
 
@@ -52,12 +53,12 @@ pub fn next_from(items: &[MissionItem], from: usize, made: &mut BTreeMap<usize, 
 impl Vehicle {
     /// The mission's items.
     pub(in super::super) fn mission_items(&self) -> &[MissionItem] {
-        self.plans.get(PlanKind::Mission).items()
+        self.plans.plans().get(PlanKind::Mission).items()
     }
 
     /// Number of the first item that is flown: in ArduPilot's convention the one before it is home.
     pub fn first_mission_item(&self) -> usize {
-        usize::from(self.identity.is_ardupilot())
+        first_mission_item(&self.situation())
     }
 }
 

@@ -38,8 +38,8 @@ pub struct MissionStatus {
 impl Vehicle {
     /// Where the mission is.
     pub fn mission_status(&self) -> MissionStatus {
-        let mission = &self.mission;
-        let in_mode = self.mode == Mode::Mission;
+        let mission = &self.machines.mission;
+        let in_mode = self.decided.mode() == Mode::Mission;
         let state = match mission.progress {
             _ if self.mission_items().is_empty() => MissionState::None,
             Progress::Complete => MissionState::Complete,
@@ -53,13 +53,15 @@ impl Vehicle {
 
     /// Items that were reached since the last call.
     pub fn take_reached_items(&mut self) -> Vec<u16> {
-        std::mem::take(&mut self.mission.reached)
+        std::mem::take(&mut self.machines.mission.reached)
     }
 
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
     pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
-        match &self.mission.task {
-            Some(Task::Leg(leg, _)) => Some((leg.to_m, leg.cross_track_m(&self.outputs.position_m))),
+        match &self.machines.mission.task {
+            Some(Task::Leg(leg, _)) => {
+                Some((leg.to_m, leg.cross_track_m(&self.perception.outputs().position_m)))
+            }
             _ => None,
         }
     }
