@@ -120,3 +120,63 @@ pub fn check_set_point(situation: &Situation, set_point: &PositionSetPoint) -> R
     });
     if placed { check_goal(situation, "Set-point", &goal) } else { Ok(()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::{AxisTarget, Breach, FenceWatch, PositionSetPoint, check_goal, check_set_point};
+    use crate::vehicle::scene::Scene;
+    use crate::vehicle::set_point::YawTarget;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.conduct.failsafe.fence_radius_m = 50.0;
+        scene
+    }
+
+    #[test]
+    fn a_breach_is_seen_before_it_happens_and_counted_when_told() {
+        let mut scene = scene();
+        let mut watch = FenceWatch::default();
+        let mut at = |x: f64, speed_m_s: f64, ahead: bool| {
+            scene.come_to([x, 0.0, -10.0], [speed_m_s, 0.0, 0.0]);
+            scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+            scene.conduct.failsafe.fence_ahead = ahead;
+            watch.watch(&scene.situation());
+            watch.record().now
+        };
+        assert_eq!(at(40.0, 0.0, true), None);
+        assert_eq!(at(40.0, 1.0, true), None, "it can stop");
+        assert_eq!(at(48.0, 5.0, true), Some(Breach::Distance(50.0)));
+        assert_eq!(at(48.0, 5.0, false), None, "not beyond it yet");
+        assert_eq!(at(50.5, 0.0, false), Some(Breach::Distance(50.0)));
+        assert_eq!(watch.record().count, 0);
+        watch.count(7);
+        assert_eq!((watch.record().count, watch.record().latest), (1, Some((Breach::Distance(50.0), 7))));
+    }
+
+    #[test]
+    fn a_fence_that_is_switched_off_is_not_looked_at() {
+        let mut scene = scene();
+        scene.come_to([60.0, 0.0, -10.0], [0.0; 3]);
+        scene.conduct.failsafe.fence_enabled = false;
+        let mut watch = FenceWatch::default();
+        watch.watch(&scene.situation());
+        assert_eq!(watch.record().now, None);
+        assert_eq!(check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)), Ok(()));
+    }
+
+    #[test]
+    fn goals_beyond_are_refused_and_speeds_are_not() {
+        let scene = scene();
+        let refusal = check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)).unwrap_err();
+        assert_eq!(refusal.to_string(), "Takeoff denied: farther than 50 m from home");
+        let set_point = |north| PositionSetPoint {
+            axes: [north, AxisTarget::HOLD, AxisTarget::HOLD],
+            yaw: YawTarget::Hold,
+        };
+        assert!(check_set_point(&scene.situation(), &set_point(AxisTarget::Position(80.0))).is_err());
+        assert!(check_set_point(&scene.situation(), &set_point(AxisTarget::Velocity(80.0))).is_ok());
+    }
+}

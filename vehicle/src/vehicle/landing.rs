@@ -97,3 +97,83 @@ impl Landing {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Landing, Mode, SteeringKind};
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::set_point::PositionSetPoint;
+
+    fn watch(landing: &mut Landing, scene: &mut Scene) -> Vec<Request> {
+        scene.wait_us(1_000);
+        scene.landed = landing.is_landed();
+        scene.show(|situation, proposal| landing.watch(situation, proposal))
+    }
+
+    fn wait(landing: &mut Landing, scene: &mut Scene) -> Vec<Request> {
+        scene.landed = landing.is_landed();
+        scene.show(|situation, proposal| landing.wait(situation, proposal))
+    }
+
+    /// A landing that has come down to the ground, pressed on by its reference.
+    fn touch_down(scene: &mut Scene) {
+        scene.come_to([0.0; 3], [0.0; 3]);
+        scene.outputs.setpoint.position_m.z = 0.5;
+        scene.outputs.thrust_n = 0.0;
+    }
+
+    #[test]
+    fn a_flight_ends_on_the_ground_and_the_rotors_stop_after_a_while() {
+        let mut scene = Scene::on_the_ground();
+        let mut landing = Landing::new(0.0);
+        landing.arm(scene.outputs.time_us);
+        scene.come_to([0.0, 0.0, -5.0], [0.0; 3]);
+        scene.outputs.thrust_n = scene.configuration.airframe.weight_n();
+        assert!(watch(&mut landing, &mut scene).is_empty());
+        assert!(landing.has_flown() && !landing.is_landed());
+        scene.mode = Mode::Land;
+        scene.show(|situation, proposal| {
+            proposal.steer(crate::vehicle::steering::Steering::Goal(situation.outputs.setpoint))
+        });
+        touch_down(&mut scene);
+        let requests: Vec<_> = (0..400).flat_map(|_| watch(&mut landing, &mut scene)).collect();
+        assert_eq!(said(&requests), ["Landing detected"]);
+        assert_eq!(scene.steering.kind(), SteeringKind::Idle);
+        assert!(wait(&mut landing, &mut scene).is_empty());
+        scene.wait_us(2_000_000);
+        let stop = Request::StopRotors("Disarmed after landing".to_owned());
+        assert_eq!(wait(&mut landing, &mut scene), [stop]);
+        landing.disarm();
+        assert!(!landing.has_flown());
+    }
+
+    #[test]
+    fn who_does_not_take_off_is_disarmed_unless_the_mission_goes_on() {
+        let mut scene = Scene::on_the_ground();
+        let mut landing = Landing::new(0.0);
+        landing.arm(scene.outputs.time_us);
+        scene.wait_us(9_999_999);
+        assert!(wait(&mut landing, &mut scene).is_empty());
+        scene.wait_us(1);
+        let mut going_on = landing;
+        let stop = Request::StopRotors("Disarmed: no takeoff".to_owned());
+        assert_eq!(wait(&mut landing, &mut scene), [stop]);
+        scene.conduct.disarm_before_takeoff_s = -1.0;
+        assert!(wait(&mut going_on, &mut scene).is_empty(), "never");
+    }
+
+    #[test]
+    fn what_stands_idles_except_in_a_mission_or_a_takeoff() {
+        for (mode, idles) in [(Mode::Hold, true), (Mode::Mission, false), (Mode::Takeoff, false)] {
+            let mut scene = Scene::on_the_ground();
+            let mut landing = Landing::new(0.0);
+            scene.mode = mode;
+            scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+            for _ in 0..400 {
+                watch(&mut landing, &mut scene);
+            }
+            assert_eq!(scene.steering.kind() == SteeringKind::Idle, idles, "{mode:?}");
+        }
+    }
+}

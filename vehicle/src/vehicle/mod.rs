@@ -45,6 +45,8 @@ mod region;
 mod requests;
 mod return_home;
 mod rotor_watch;
+#[cfg(test)]
+mod scene;
 mod set_point;
 mod setup;
 mod situation;

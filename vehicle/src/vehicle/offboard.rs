@@ -100,3 +100,102 @@ impl Offboard {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use quadrotor::PositionReference;
+
+    use super::{Cause, Mode, Offboard, PositionSetPoint, SetPoint};
+    use crate::identity::Identity;
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::set_point::{AxisTarget, YawTarget};
+    use crate::vehicle::steering::{Steering, SteeringKind};
+
+    fn place([x, y, z]: [f64; 3]) -> SetPoint {
+        let axes = [x, y, z].map(AxisTarget::Position);
+        SetPoint::Position(PositionSetPoint { axes, yaw: YawTarget::Hold })
+    }
+
+    /// As the vehicle: the part is asked how recent its set-points are.
+    fn step(offboard: &mut Offboard, scene: &mut Scene) -> Vec<Request> {
+        let timeout_s = scene.conduct.set_point_timeout_s;
+        scene.set_points_are_recent = offboard.is_recent(scene.outputs.time_us, timeout_s);
+        let mut requests = scene.show(|situation, proposal| offboard.step(situation, proposal));
+        requests.extend(scene.show(|situation, proposal| offboard.hold_without_news(situation, proposal)));
+        requests
+    }
+
+    #[test]
+    fn a_set_point_is_steered_to_once() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
+        assert!(step(&mut offboard, &mut scene).is_empty());
+        assert!(offboard.is_applied() && scene.goal_m() == Some([5.0, 0.0, -10.0]));
+        // What another part does with the steering meanwhile stays.
+        scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), None);
+        // Until the mode begins anew.
+        offboard.begin();
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), Some([5.0, 0.0, -10.0]));
+    }
+
+    #[test]
+    fn on_the_ground_it_waits_until_it_is_led_upwards() {
+        let mut scene = Scene::on_the_ground();
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, 0.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        assert!(!offboard.is_applied() && scene.steering.kind() == SteeringKind::Idle);
+        offboard.take(place([5.0, 0.0, -2.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), Some([5.0, 0.0, -2.0]));
+    }
+
+    #[test]
+    fn the_failsafe_is_told_when_set_points_stop_and_the_place_is_held_once() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        scene.wait_us(1_000_001);
+        assert_eq!(step(&mut offboard, &mut scene), [Request::See(Cause::SetPointsLost, true)]);
+        assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
+        let elsewhere = Steering::Goal(PositionReference::goal([9.0, 0.0, -10.0], 0.0));
+        scene.steering = elsewhere;
+        assert_eq!(step(&mut offboard, &mut scene), [Request::See(Cause::SetPointsLost, true)]);
+        assert_eq!(scene.steering, elsewhere, "held again");
+    }
+
+    #[test]
+    fn ardupilot_keeps_a_place_and_ends_a_velocity() {
+        for (set_point, ends) in [
+            (place([5.0, 0.0, -10.0]), false),
+            (
+                SetPoint::Position(PositionSetPoint {
+                    axes: [AxisTarget::Velocity(1.0); 3],
+                    yaw: YawTarget::Hold,
+                }),
+                true,
+            ),
+        ] {
+            let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+            (scene.identity, scene.mode) = (Identity::ArduPilot, Mode::Offboard);
+            let mut offboard = Offboard::default();
+            offboard.take(set_point, scene.outputs.time_us);
+            step(&mut offboard, &mut scene);
+            let steered = scene.steering;
+            scene.wait_us(5_000_000);
+            let requests = step(&mut offboard, &mut scene);
+            assert_eq!(said(&requests).len(), usize::from(ends), "{requests:?}");
+            assert_eq!(scene.steering == steered, !ends);
+            assert!(step(&mut offboard, &mut scene).is_empty(), "said once");
+        }
+    }
+}

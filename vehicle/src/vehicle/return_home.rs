@@ -132,3 +132,82 @@ fn way_m(situation: &Situation, proposal: &mut Proposal, goal: [f64; 2]) -> VecD
     }
     way.unwrap_or_else(|| vec![goal]).into()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Return;
+    use crate::fence::{Shape, Zone};
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::steering::{Steering, SteeringKind};
+
+    /// One tick.
+    fn step(way_home: &mut Return, scene: &mut Scene) -> Vec<String> {
+        let requests = scene.show(|situation, proposal| way_home.step(situation, proposal));
+        said(&requests).into_iter().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn it_climbs_travels_and_descends() {
+        let mut scene = Scene::hovering_at([40.0, 30.0, -10.0]);
+        let mut way_home = Return::default();
+        let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert!(requests.is_empty() && scene.goal_m() == Some([40.0, 30.0, -30.0]), "{requests:?}");
+        // As long as it climbs nothing changes.
+        scene.come_to([40.0, 30.0, -20.0], [0.0, 0.0, -2.0]);
+        assert!(step(&mut way_home, &mut scene).is_empty() && scene.goal_m() == Some([40.0, 30.0, -30.0]));
+        scene.come_to([40.0, 30.0, -30.0], [0.0; 3]);
+        step(&mut way_home, &mut scene);
+        assert_eq!(scene.goal_m(), Some([0.0, 0.0, -30.0]));
+        assert!(!way_home.descends());
+        scene.come_to([0.0, 0.0, -30.0], [0.0; 3]);
+        assert_eq!(step(&mut way_home, &mut scene), ["Above the place to return to, landing"]);
+        assert!(way_home.descends());
+        step(&mut way_home, &mut scene);
+        assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
+    }
+
+    #[test]
+    fn near_home_it_lands_at_once() {
+        let mut scene = Scene::hovering_at([3.0, 0.0, -10.0]);
+        let mut way_home = Return::default();
+        let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert_eq!(said(&requests), ["Returning: the place is near, landing"]);
+        assert!(way_home.descends());
+    }
+
+    #[test]
+    fn the_fence_bounds_its_height_and_bends_its_way() {
+        let mut scene = Scene::hovering_at([40.0, 0.0, -10.0]);
+        scene.conduct.failsafe.fence_height_m = 12.0;
+        let shape = Shape::Circle { centre_m: [20.0, 0.0], radius_m: 5.0 };
+        scene.zones.zones.push(Zone { shape, inclusion: false });
+        let mut way_home = Return::default();
+        scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert_eq!(scene.goal_m(), Some([40.0, 0.0, -12.0]));
+        let mut corners = 0;
+        while !way_home.descends() {
+            scene.come_to(scene.goal_m().unwrap(), [0.0; 3]);
+            step(&mut way_home, &mut scene);
+            corners += 1;
+            assert!(corners < 20);
+        }
+        assert!(corners > 3, "straight through: {corners}");
+        assert_eq!(scene.goal_m(), Some([0.0, 0.0, -12.0]));
+    }
+
+    /// Without a place it goes down level, and idles where it stands.
+    #[test]
+    fn a_blind_descent_is_level_and_ends_on_the_ground() {
+        let mut scene = Scene::hovering_at([1.0, 0.0, -10.0]);
+        let mut way_home = Return::default();
+        scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        scene.validity.horizontal_position = false;
+        step(&mut way_home, &mut scene);
+        let Steering::Attitude { set_point, .. } = scene.steering else { panic!("{:?}", scene.steering) };
+        let hover = scene.configuration.airframe.weight_n() / scene.configuration.airframe.thrust_range_n().1;
+        assert!(set_point.thrust < hover && set_point.thrust > 0.5 * hover, "{} {hover}", set_point.thrust);
+        scene.landed = true;
+        step(&mut way_home, &mut scene);
+        assert_eq!(scene.steering.kind(), SteeringKind::Idle);
+    }
+}

@@ -124,3 +124,93 @@ impl RotorWatch {
         proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{RotorWatch, TOUCHED_US};
+    use crate::vehicle::failsafe::Action;
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::steering::Steering;
+
+    const TICK_S: f64 = 0.001;
+
+    /// Rotor 2 stops while the mixer goes on asking for its speed; returns what is asked for until the loss is known.
+    fn lose_a_rotor(watch: &mut RotorWatch, scene: &mut Scene) -> Vec<Request> {
+        scene.outputs.rotor_speed_rad_s[1] = 0.0;
+        for _ in 0..2_000 {
+            scene.wait_us(1_000);
+            let requests = scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S));
+            if !requests.is_empty() {
+                scene.lost_rotor = watch.lost_rotor();
+                return requests;
+            }
+        }
+        panic!("not noticed")
+    }
+
+    fn descend(watch: &mut RotorWatch, scene: &mut Scene) -> Vec<Request> {
+        scene.show(|situation, proposal| watch.descend(situation, proposal))
+    }
+
+    #[test]
+    fn rotors_that_answer_are_not_lost() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        let mut watch = RotorWatch::new(scene.outputs.rotor_speed_rad_s);
+        for _ in 0..2_000 {
+            let requests = scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S));
+            assert!(requests.is_empty() && watch.lost_rotor().is_none());
+        }
+    }
+
+    #[test]
+    fn a_lost_rotor_is_told_and_flown_down() {
+        let mut scene = Scene::hovering_at([3.0, 4.0, -10.0]);
+        let mut watch = RotorWatch::new(scene.outputs.rotor_speed_rad_s);
+        let requests = lose_a_rotor(&mut watch, &mut scene);
+        assert_eq!(said(&requests), ["Rotor 2 lost: descending without yaw control"]);
+        assert_eq!(watch.lost_rotor(), Some(1));
+        // First it settles at its height, then it sinks.
+        assert!(descend(&mut watch, &mut scene).is_empty());
+        let sink_m_s = |scene: &Scene| match &scene.steering {
+            Steering::Descent { lost_rotor: 1, reference } => reference.velocity_m_s.z,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(sink_m_s(&scene), 0.0);
+        scene.wait_us(3_000_000);
+        descend(&mut watch, &mut scene);
+        assert!(sink_m_s(&scene) > 1.0);
+        // On its feet for a moment, the rotors stop.
+        scene.come_to([3.0, 4.0, -0.05], [0.0; 3]);
+        assert!(descend(&mut watch, &mut scene).is_empty());
+        scene.wait_us(TOUCHED_US);
+        let landed = Request::StopRotors("Disarmed: landed without rotor 2".to_owned());
+        assert_eq!(descend(&mut watch, &mut scene), [landed]);
+    }
+
+    #[test]
+    fn on_the_ground_the_rotors_stop_and_nothing_is_lost() {
+        let mut scene = Scene::on_the_ground();
+        let mut watch = RotorWatch::new(scene.outputs.rotor_speed_rad_s);
+        let requests = lose_a_rotor(&mut watch, &mut scene);
+        assert_eq!(requests, [Request::StopRotors("Disarmed: rotor 2 failed".to_owned())]);
+        assert_eq!(watch.lost_rotor(), None);
+    }
+
+    #[test]
+    fn a_second_one_is_told_once_and_disarming_forgets_both() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.conduct.failsafe.rotor_failure = Action::Warn;
+        let mut watch = RotorWatch::new(scene.outputs.rotor_speed_rad_s);
+        assert_eq!(said(&lose_a_rotor(&mut watch, &mut scene)), ["Rotor 2 lost"]);
+        scene.outputs.rotor_speed_rad_s[3] = 0.0;
+        let mut lines = Vec::new();
+        for _ in 0..2_000 {
+            lines.extend(scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S)));
+        }
+        assert_eq!(said(&lines), ["More than one rotor lost: it falls"]);
+        scene.armed = false;
+        scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S));
+        assert_eq!(watch.lost_rotor(), None);
+    }
+}

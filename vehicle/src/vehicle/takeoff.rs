@@ -61,3 +61,32 @@ impl Takeoff {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Mode, Takeoff};
+    use crate::identity::Identity;
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+
+    #[test]
+    fn it_climbs_to_its_height_and_goes_on_in_the_mode_of_the_identity() {
+        for (identity, then) in [(Identity::Px4, Mode::Hold), (Identity::ArduPilot, Mode::Offboard)] {
+            let mut scene = Scene::on_the_ground();
+            (scene.identity, scene.mode) = (identity, Mode::Takeoff);
+            let mut takeoff = Takeoff::default();
+            let requests = scene.show(|situation, proposal| takeoff.step(situation, proposal));
+            assert_eq!(said(&requests), ["Taking off to 2.5 m above home"]);
+            assert_eq!(scene.goal_m(), Some([0.0, 0.0, -2.5]));
+            scene.come_to([0.0, 0.0, -2.4], [0.0, 0.0, -0.5]);
+            assert!(
+                scene.show(|situation, proposal| takeoff.step(situation, proposal)).is_empty(),
+                "too fast"
+            );
+            scene.come_to([0.0, 0.0, -2.4], [0.0; 3]);
+            let requests = scene.show(|situation, proposal| takeoff.step(situation, proposal));
+            assert_eq!(requests.first(), Some(&Request::GoOnIn(then)));
+            assert_eq!(takeoff.goal_z_m(), None);
+        }
+    }
+}

@@ -119,3 +119,43 @@ impl Failsafe {
 fn lower(cause: Cause) -> String {
     cause.name().to_lowercase()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Action, Cause, Failsafe, Mode};
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+
+    fn take_in(failsafe: &mut Failsafe, scene: &mut Scene, cause: Cause, present: bool) -> Vec<Request> {
+        scene.show(|situation, proposal| {
+            failsafe.take_in(situation, proposal, cause, present);
+        })
+    }
+
+    #[test]
+    fn a_cause_that_begins_is_announced_then_its_mode_is_asked_for() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.conduct.failsafe.ground_station_lost = Action::Return;
+        let mut failsafe = Failsafe::default();
+        failsafe.hear_ground_station(false);
+        assert!(failsafe.finds(&scene.situation(), Cause::GroundStationLost));
+        let requests = take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true);
+        let [said_first, Request::Enter(Mode::Return)] = requests.as_slice() else { panic!("{requests:?}") };
+        assert_eq!(said(std::slice::from_ref(said_first)), ["Failsafe: Ground station lost: return"]);
+        assert_eq!(failsafe.engaged(), Some((Cause::GroundStationLost, Action::Return)));
+        // It is there: nothing more to be said.
+        assert!(take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true).is_empty());
+    }
+
+    #[test]
+    fn a_landing_is_not_called_off_and_nothing_happens_on_the_ground() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        (scene.mode, scene.conduct.failsafe.high_wind) = (Mode::Land, Action::Return);
+        let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
+        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s): goes on in Land mode"]);
+        let mut scene = Scene::on_the_ground();
+        scene.conduct.failsafe.high_wind = Action::Terminate;
+        let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
+        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s)"]);
+    }
+}
