@@ -10,7 +10,7 @@ use super::set_point::{AxisTarget, PositionSetPoint};
 use super::state::Vehicle;
 use super::steering::{Steering, SteeringKind};
 use crate::fence::{Breach, Fence, route_m};
-use crate::plan::{MissionItem, PlanFault, PlanKind, zones};
+use crate::plan::{MissionItem, PlanFault, zones};
 
 /// An attitude that leads outside is left this late, s.
 const REACTION_S: f64 = 0.5;
@@ -175,9 +175,7 @@ impl Vehicle {
     /// it allows none. North and east, m.
     pub(super) fn nearest_safe_point_m(&self) -> [f64; 2] {
         let home = self.home.position_m;
-        let site = self.site();
-        let rally = self.plans.get(PlanKind::Rally).items().iter();
-        let rally = rally.filter_map(|item| site.place(item)?.horizontal_m);
+        let rally = self.rally_points.iter().filter_map(|place| place.horizontal_m);
         let here = self.outputs.position_m.xy();
         let distance = |[x, y]: &[f64; 2]| libm::hypot(x - here.x, y - here.y);
         core::iter::once([home.x, home.y])

@@ -4,7 +4,11 @@ use nalgebra::Vector3;
 
 use super::notice::Severity;
 use super::state::Vehicle;
-use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check};
+use crate::fence::Breach;
+use crate::plan::step::Navigate;
+use crate::plan::{
+    FaultCode, MissionItem, Place, Plan, PlanFault, PlanKind, Plans, Program, Site, check, compile,
+};
 
 impl Vehicle {
     /// Its plans.
@@ -49,15 +53,25 @@ impl Vehicle {
     }
 
     fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
-        check::plan(kind, &items, &self.site())?;
+        let site = self.site();
+        check::plan(kind, &items, &site)?;
         match kind {
             PlanKind::Fence => self.take_fence(&items)?,
-            PlanKind::Mission | PlanKind::Rally => self.check_places(kind, &items)?,
+            PlanKind::Mission => {
+                let program = compile::mission(&items, &site);
+                self.check_way(&program)?;
+                self.plans.set(kind, Plan::new(items));
+                self.mission_has_changed(program, amended);
+                return Ok(());
+            }
+            PlanKind::Rally => {
+                let points = compile::rally_points(&items, &site);
+                self.check_rally_points(&points)?;
+                self.rally_points = points;
+            }
         }
         self.plans.set(kind, Plan::new(items));
-        if kind == PlanKind::Mission {
-            self.mission_has_changed(amended);
-        } else if let Err(fault) = self.check_mission_places() {
+        if let Err(fault) = self.check_mission_places() {
             self.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
         }
         Ok(())
@@ -65,33 +79,44 @@ impl Vehicle {
 
     /// Refuses a mission that the fence of now forbids: it may have come after the mission.
     pub(super) fn check_mission_places(&self) -> Result<(), PlanFault> {
-        self.check_places(PlanKind::Mission, self.plans.get(PlanKind::Mission).items())
+        self.check_way(self.mission.program())
     }
 
-    /// Refuses items whose places the fence forbids, or the straight ways between them.
-    fn check_places(&self, kind: PlanKind, items: &[MissionItem]) -> Result<(), PlanFault> {
-        let site = self.site();
-        let now = self.home.position_m;
-        let mut before_m = now;
-        // In ArduPilot's convention the first item is home, which is the vehicle's own.
-        let first = if kind == PlanKind::Mission { self.first_mission_item() } else { 0 };
-        for (index, item) in items.iter().enumerate().skip(first) {
-            if kind == PlanKind::Mission && !check::is_flown_to(item) {
-                continue;
-            }
-            let Some(place) = site.place(item) else { continue };
-            let Some([x, y]) = place.horizontal_m else { continue };
-            let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));
-            // Where there are ways, each leads from the last place to the next.
-            let way = self
-                .fence()
-                .filter(|_| kind == PlanKind::Mission)
-                .and_then(|fence| fence.breach_between(&before_m, &place_m));
+    /// Refuses steps whose places the fence forbids, or the straight ways between them.
+    fn check_way(&self, program: &Program) -> Result<(), PlanFault> {
+        let mut before_m = self.home.position_m;
+        for index in program.first()..program.len() {
+            let step = program.navigate(index);
+            let place = step.as_ref().and_then(Navigate::place);
+            let Some(place_m) = place.and_then(|place| self.place_to_check_m(place)) else { continue };
+            let way = || self.fence().and_then(|fence| fence.breach_between(&before_m, &place_m));
+            let breach = self.breach_at(&place_m).or_else(way);
             before_m = place_m;
-            if let Some(breach) = self.breach_at(&place_m).or(way) {
-                return Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string()));
-            }
+            refuse(index, breach)?;
         }
         Ok(())
+    }
+
+    /// Refuses rally points that the fence forbids.
+    fn check_rally_points(&self, points: &[Place]) -> Result<(), PlanFault> {
+        for (index, place) in points.iter().enumerate() {
+            let Some(place_m) = self.place_to_check_m(place) else { continue };
+            refuse(index, self.breach_at(&place_m))?;
+        }
+        Ok(())
+    }
+
+    /// A place, NED, m, at the height of home if it names none; `None` if it is wherever the vehicle is then.
+    fn place_to_check_m(&self, place: &Place) -> Option<Vector3<f64>> {
+        let home_z_m = self.home.position_m.z;
+        let [x, y] = place.horizontal_m?;
+        Some(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(home_z_m)))
+    }
+}
+
+fn refuse(index: usize, breach: Option<Breach>) -> Result<(), PlanFault> {
+    match breach {
+        Some(breach) => Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string())),
+        None => Ok(()),
     }
 }

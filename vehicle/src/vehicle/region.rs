@@ -2,12 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::notice::Refusal;
 use super::set_point::YawTarget;
 use super::state::Vehicle;
 use super::steering::Steering;
 use crate::mode::Mode;
-use crate::plan::{FaultCode, MissionItem, PlanKind, check, command};
+use crate::plan::Look;
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,61 +17,29 @@ pub(super) enum RegionOfInterest {
     NextWaypoint(f64),
 }
 
-/// MAV_ROI that is an item of the mission.
-const ITEM: f64 = 2.0;
 /// Nearer than this, m, there is no direction to a place.
 const TOO_NEAR_M: f64 = 0.5;
 
 impl Vehicle {
-    /// DO_SET_ROI and its successors, as a command: until another one, or until the rotors stop.
-    ///
-    /// # Errors
-    /// [`Refusal`] of what is no region, with the reason.
-    pub fn look(&mut self, item: &MissionItem) -> Result<(), Refusal> {
-        let number = self.first_mission_item();
-        check::item(PlanKind::Mission, number, item, &self.site()).map_err(|fault| match fault.code {
-            FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
-            FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
-            _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
-        })?;
-        let count = self.mission_items().len();
-        let named = item.parameter(2);
-        if item.command == command::DO_SET_ROI
-            && item.parameter(1) == ITEM
-            && !(0.0..count as f64).contains(&named)
-        {
-            return Err(Refusal::denied(format!("Region of interest: no item {named} among {count}")));
-        }
-        self.look_at(item);
+    /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
+    pub fn look(&mut self, look: Option<&Look>) {
+        self.look_at(look);
         if self.region.is_none() && self.chooses_its_heading() {
             self.turn_on(None);
         }
-        Ok(())
     }
 
-    /// The same as an item.
-    pub(super) fn look_at(&mut self, item: &MissionItem) {
-        let place = |vehicle: &Self, item: &MissionItem| {
-            let here_m = vehicle.outputs.position_m;
-            vehicle.site().place(item).map(|place| {
+    /// The same as a step of a mission.
+    pub(super) fn look_at(&mut self, look: Option<&Look>) {
+        self.region = look.map(|look| match look {
+            Look::At(place) => {
+                let here_m = self.outputs.position_m;
                 let [x, y] = place.horizontal_m.unwrap_or([here_m.x, here_m.y]);
-                RegionOfInterest::Place(Vector3::new(x, y, place.down_m.unwrap_or(0.0)))
-            })
-        };
-        self.region = match (item.command, item.parameter_or(1, 0.0) as i64) {
-            (command::DO_SET_ROI_LOCATION, _) | (command::DO_SET_ROI, 3) => place(self, item),
-            (command::DO_SET_ROI_WPNEXT_OFFSET, _) => {
-                Some(RegionOfInterest::NextWaypoint(item.parameter_or(7, 0.0).to_radians()))
+                let z = place.down_m(self.home.position_m.z).unwrap_or(0.0);
+                RegionOfInterest::Place(Vector3::new(x, y, z))
             }
-            (command::DO_SET_ROI, 1) => Some(RegionOfInterest::NextWaypoint(0.0)),
-            (command::DO_SET_ROI, 2) => {
-                let index = item.parameter(2) as usize;
-                self.mission_items().get(index).copied().and_then(|item| place(self, &item))
-            }
-            // ArduPilot's clients send the place without saying that it is one.
-            (command::DO_SET_ROI, 0) if item.position.iter().any(|value| *value != 0.0) => place(self, item),
-            _ => None,
-        };
+            Look::NextWaypoint { offset_rad } => RegionOfInterest::NextWaypoint(*offset_rad),
+        });
     }
 
     /// Heading to it, rad, and its rate, rad/s, on a leg that leads to `next_m`; `None` where there is nothing to be looked at.

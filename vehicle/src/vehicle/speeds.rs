@@ -5,6 +5,7 @@ use quadrotor::{Configuration, ConfigurationError, Limits};
 
 use super::notice::{Refusal, Severity};
 use super::state::Vehicle;
+use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 
 /// Limits of speed, m/s: horizontally, up, down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,10 +17,6 @@ pub(super) struct Speeds {
     /// Whether the mission is flown.
     in_mission: bool,
 }
-
-/// Speeds that DO_CHANGE_SPEED has for "as it is" and "as the parameter has it".
-const KEEP: f64 = -1.0;
-const DEFAULT: f64 = -2.0;
 
 impl Speeds {
     /// The parameters' alone.
@@ -56,9 +53,22 @@ fn with(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Configuration
     configuration
 }
 
-/// Place of a SPEED_TYPE: 0 (through the air) and 1 (over the ground) are horizontal, 2 is up, 3 is down.
-fn axis(kind: f64) -> Option<usize> {
-    [0.0, 1.0, 2.0, 3.0].iter().position(|number| *number == kind).map(|number| number.saturating_sub(1))
+/// Index of a kind of speed.
+fn axis(kind: SpeedKind) -> usize {
+    match kind {
+        SpeedKind::Horizontal => 0,
+        SpeedKind::Up => 1,
+        SpeedKind::Down => 2,
+    }
+}
+
+/// What a change asks for; `None` if it changes nothing.
+fn asked(change: &ChangeSpeed) -> Option<(usize, Option<f64>)> {
+    match change.target {
+        SpeedTarget::Keep => None,
+        SpeedTarget::Default => Some((axis(change.kind), None)),
+        SpeedTarget::Limit(limit_m_s) => Some((axis(change.kind), Some(limit_m_s))),
+    }
 }
 
 impl Vehicle {
@@ -80,27 +90,23 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Changes a limit of speed until the rotors stop: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it). In
-    /// a mission it goes before the mission's own, until that changes it again.
+    /// Changes a limit of speed until the rotors stop. In a mission it goes before the mission's own, until that changes it again.
     ///
     /// # Errors
-    /// [`Refusal`] of a type or a speed that there is not.
-    pub fn change_speed(&mut self, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
-        let axis = axis(kind).ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
-        if speed_m_s == KEEP {
-            return Ok(());
-        }
+    /// [`Refusal`] of a speed that there is not.
+    pub fn change_speed(&mut self, change: &ChangeSpeed) -> Result<(), Refusal> {
+        let Some((axis, limit_m_s)) = asked(change) else { return Ok(()) };
         let mut speeds = self.speeds;
-        speeds.by_command_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
+        speeds.by_command_m_s[axis] = limit_m_s;
         speeds.by_mission_m_s[axis] = speeds.by_mission_m_s[axis].filter(|_| !speeds.in_mission);
         self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
     }
 
-    /// DO_CHANGE_SPEED of a mission.
-    pub(super) fn change_mission_speed(&mut self, kind: f64, speed_m_s: f64) {
-        let Some(axis) = axis(kind).filter(|_| speed_m_s != KEEP) else { return };
+    /// Changes a limit of speed while the mission is flown.
+    pub(super) fn change_mission_speed(&mut self, change: &ChangeSpeed) {
+        let Some((axis, limit_m_s)) = asked(change) else { return };
         let mut speeds = self.speeds;
-        speeds.by_mission_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
+        speeds.by_mission_m_s[axis] = limit_m_s;
         self.use_mission_speeds(speeds);
     }
 

@@ -29,7 +29,7 @@ use crate::fault::{Faults, ScheduledFault};
 use crate::fence::Zones;
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{PlanKind, Plans, Site, zones};
+use crate::plan::{Place, PlanKind, Plans, Site, compile, zones};
 use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
@@ -114,6 +114,7 @@ pub struct Vehicle {
     pub(super) notices: Vec<Notice>,
     pub(super) plans: Plans,
     pub(super) fence_zones: Zones,
+    pub(super) rally_points: Vec<Place>,
     pub(super) fence_record: FenceRecord,
     pub(super) failsafe: Failsafe,
     /// The way of a return: north and east, m, the place to land at last.
@@ -146,7 +147,10 @@ impl Vehicle {
         let home_m = Vector3::from(configuration.initial.position_m);
         let site = Site { identity: settings.identity, frame, home_m };
         // What was taken once is taken again: the plan has been checked where it came from.
-        let fence_zones = zones(settings.plans.get(PlanKind::Fence).items(), &site).unwrap_or_default();
+        let items = |kind| settings.plans.get(kind).items();
+        let fence_zones = zones(items(PlanKind::Fence), &site).unwrap_or_default();
+        let rally_points = compile::rally_points(items(PlanKind::Rally), &site);
+        let program = compile::mission(items(PlanKind::Mission), &site);
         let mut vehicle = Self {
             identity: settings.identity,
             conduct: settings.conduct,
@@ -173,6 +177,7 @@ impl Vehicle {
             notices: Vec::new(),
             plans: settings.plans.clone(),
             fence_zones,
+            rally_points,
             fence_record: FenceRecord::default(),
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
@@ -186,7 +191,7 @@ impl Vehicle {
             ideal_sensors: IdealSensors::default(),
         };
         vehicle.outputs = vehicle.known();
-        vehicle.mission_has_changed(false);
+        vehicle.mission_has_changed(program, false);
         Ok(vehicle)
     }
 

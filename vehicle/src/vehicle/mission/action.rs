@@ -4,13 +4,14 @@ use nalgebra::Vector3;
 
 use super::super::notice::Severity;
 use super::super::state::Vehicle;
-use super::heading::Turn;
+use super::heading::Turning;
 use super::task::Task;
-use crate::plan::{MissionItem, command};
+use crate::plan::Place;
+use crate::plan::step::{Condition, Do, Step};
 
 /// What the next action waits for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Condition {
+pub enum Waiting {
     /// A time, µs.
     Until(u64),
     /// Nearer than this to the end of the leg, m.
@@ -23,17 +24,19 @@ impl Vehicle {
     /// Does what is to be done on the way, up to the first condition that is not fulfilled.
     pub(super) fn act(&mut self) {
         while let Some(index) = self.mission.actions.front().copied() {
-            match self.mission.condition {
-                Some(condition) if !self.is_fulfilled(condition) => return,
-                Some(_) => self.mission.condition = None,
-                None => {
-                    let Some(item) = self.mission_items().get(index).copied() else { return };
-                    self.mission.condition = self.begin_condition(&item);
-                    if self.mission.condition.is_some() {
+            match self.mission.waiting {
+                Some(waiting) if !self.is_over(waiting) => return,
+                Some(_) => self.mission.waiting = None,
+                None => match self.mission.program.step(index) {
+                    Some(Step::Condition(condition)) => {
+                        self.mission.waiting = Some(self.begin_condition(&condition));
                         continue;
                     }
-                    self.carry_out(&item);
-                }
+                    Some(Step::Do(action)) => self.carry_out(&action),
+                    // Jumps are made when the next step is looked for.
+                    Some(Step::Navigate(_) | Step::Jump(_) | Step::Pass) => {}
+                    None => return,
+                },
             }
             self.mission.actions.pop_front();
             self.reached_item(index);
@@ -42,60 +45,52 @@ impl Vehicle {
 
     /// Drops what still waits, at the end of a leg; without a leg to come everything else is done.
     pub(super) fn drop_conditions(&mut self) {
-        self.mission.condition = None;
+        self.mission.waiting = None;
         self.mission.turn = None;
         self.mission.actions.clear();
     }
 
-    fn is_fulfilled(&self, condition: Condition) -> bool {
-        match condition {
-            Condition::Until(time_us) => self.time_us() >= time_us,
-            Condition::Within(distance_m) => {
+    fn is_over(&self, waiting: Waiting) -> bool {
+        match waiting {
+            Waiting::Until(time_us) => self.time_us() >= time_us,
+            Waiting::Within(distance_m) => {
                 let Some(Task::Leg(leg, _)) = &self.mission.task else { return false };
                 (self.outputs.position_m - leg.to_m).norm() <= distance_m
             }
-            Condition::Turned => {
+            Waiting::Turned => {
                 let yaw_rad = self.outputs.attitude_rad.z;
                 self.mission.turn.is_none_or(|turn| turn.is_done(yaw_rad))
             }
         }
     }
 
-    fn begin_condition(&mut self, item: &MissionItem) -> Option<Condition> {
-        match item.command {
-            command::CONDITION_DELAY => Some(Condition::Until(self.after_s(item.parameter_or(1, 0.0)))),
-            command::CONDITION_DISTANCE => Some(Condition::Within(item.parameter_or(1, 0.0))),
-            command::CONDITION_YAW => {
+    fn begin_condition(&mut self, condition: &Condition) -> Waiting {
+        match condition {
+            Condition::Delay(time_s) => Waiting::Until(self.after_s(*time_s)),
+            Condition::Distance(distance_m) => Waiting::Within(*distance_m),
+            Condition::Yaw(turn) => {
                 let fastest_rad_s = self.simulation.configuration().limits.yaw_rate_rad_s;
-                self.mission.turn = Some(Turn::new(item, self.outputs.setpoint.yaw_rad, fastest_rad_s));
-                Some(Condition::Turned)
+                self.mission.turn = Some(Turning::new(turn, self.outputs.setpoint.yaw_rad, fastest_rad_s));
+                Waiting::Turned
             }
-            _ => None,
         }
     }
 
-    fn carry_out(&mut self, item: &MissionItem) {
-        match item.command {
-            command::DO_CHANGE_SPEED => {
-                self.change_mission_speed(item.parameter_or(1, 0.0), item.parameter_or(2, -1.0));
-            }
-            command::DO_SET_HOME => self.set_mission_home(item),
-            command::DO_SET_ROI_LOCATION
-            | command::DO_SET_ROI_WPNEXT_OFFSET
-            | command::DO_SET_ROI_NONE
-            | command::DO_SET_ROI => self.look_at(item),
-            // Jumps are made when the next item is looked for.
-            _ => {}
+    fn carry_out(&mut self, action: &Do) {
+        match action {
+            Do::ChangeSpeed(change) => self.change_mission_speed(change),
+            Do::SetHome(place) => self.set_mission_home(place.as_ref()),
+            Do::Look(look) => self.look_at(look.as_ref()),
         }
     }
 
-    fn set_mission_home(&mut self, item: &MissionItem) {
-        let here = self.outputs.position_m;
-        let place = self.site().place(item).filter(|_| item.parameter_or(1, 0.0) < 0.5);
-        let position_m = match place.and_then(|place| Some((place.horizontal_m?, place.down_m))) {
-            Some(([x, y], z)) => Vector3::new(x, y, z.unwrap_or(self.home.position_m.z)),
-            None => here,
+    fn set_mission_home(&mut self, place: Option<&Place>) {
+        let home_z_m = self.home.position_m.z;
+        let at = |place: &Place| {
+            let [x, y] = place.horizontal_m?;
+            Some(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(home_z_m)))
         };
+        let position_m = place.and_then(at).unwrap_or(self.outputs.position_m);
         if let Err(refusal) = self.set_home(position_m, None) {
             self.say(Severity::Warning, format!("Mission: {refusal}"));
         }

@@ -4,11 +4,12 @@ use super::super::notice::{Refusal, Severity};
 use super::super::set_point::PositionSetPoint;
 use super::super::state::Vehicle;
 use super::super::steering::SteeringKind;
-use super::sequence::{navigates, next_from};
+use super::sequence::next_from;
 use super::task::TaskProgress;
 use super::{Carry, Mission, Progress};
 use crate::mode::Mode;
-use crate::plan::command;
+use crate::plan::Program;
+use crate::plan::step::{Navigate, Step};
 
 /// Items that are begun within one tick; more wait for the next.
 const ITEMS_PER_TICK: usize = 16;
@@ -42,7 +43,7 @@ impl Vehicle {
 
     /// Whether there is something to be flown.
     pub fn has_mission(&self) -> bool {
-        self.mission_items().iter().skip(self.first_mission_item()).any(navigates)
+        self.mission.program.is_flown()
     }
 
     /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's.
@@ -76,7 +77,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] for an item that there is not.
     pub fn set_mission_item(&mut self, index: usize, reset: bool) -> Result<(), Refusal> {
-        let count = self.mission_items().len();
+        let count = self.mission.program.len();
         if index >= count {
             return Err(Refusal::denied(format!("Mission has no item {index} among {count}")));
         }
@@ -88,7 +89,7 @@ impl Vehicle {
         }
         self.suspend();
         self.drop_conditions();
-        self.mission.current = index.max(self.first_mission_item());
+        self.mission.current = index.max(self.mission.program.first());
         if self.mode == Mode::Mission && !self.mission.paused {
             self.take_over();
         }
@@ -96,12 +97,14 @@ impl Vehicle {
     }
 
     /// A new mission begins at its first item, a changed one goes on where it was.
-    pub(in super::super) fn mission_has_changed(&mut self, amended: bool) {
-        if !amended {
+    pub(in super::super) fn mission_has_changed(&mut self, program: Program, amended: bool) {
+        if amended {
+            self.mission.program = program;
+        } else {
             let reached = std::mem::take(&mut self.mission.reached);
             self.forget_mission_speeds();
             self.region = None;
-            self.mission = Mission { reached, current: self.first_mission_item(), ..Mission::default() };
+            self.mission = Mission { reached, current: program.first(), program, ..Mission::default() };
         }
         self.suspend();
         self.drop_conditions();
@@ -144,7 +147,7 @@ impl Vehicle {
         self.region = None;
         self.forget_mission_speeds();
         self.mission.progress = Progress::NotStarted;
-        self.mission.current = self.first_mission_item();
+        self.mission.current = self.mission.program.first();
         self.take_over();
     }
 
@@ -169,17 +172,17 @@ impl Vehicle {
         }
         self.mission.progress = Progress::Started;
         for _ in 0..ITEMS_PER_TICK {
-            let Some(item) = self.mission_items().get(self.mission.current).copied() else {
+            let Some(step) = self.mission.program.step(self.mission.current) else {
                 self.complete_mission();
                 return;
             };
-            if !navigates(&item) {
+            let Step::Navigate(step) = step else {
                 self.go_on_from(self.mission.current);
                 continue;
-            }
+            };
             let progress = match self.mission.task {
-                None => self.begin_item(&item),
-                Some(task) => self.carry_on(task, &item),
+                None => self.begin_step(&step),
+                Some(task) => self.carry_on(task, &step),
             };
             match progress {
                 TaskProgress::Going => break,
@@ -203,19 +206,19 @@ impl Vehicle {
 
     fn item_is_done(&mut self, carry: Option<Carry>) {
         let index = self.mission.current;
-        let Some(item) = self.mission_items().get(index).copied() else { return };
+        let Some(step) = self.mission.program.step(index) else { return };
         self.suspend();
         self.drop_conditions();
         self.mission.carry = carry;
         self.reached_item(index);
-        if item.command == command::NAV_RETURN_TO_LAUNCH {
+        if step == Step::Navigate(Navigate::ReturnToLaunch) {
             self.complete_mission();
             if self.steering.kind() != SteeringKind::Idle {
                 self.enter(Mode::Return);
             }
             return;
         }
-        if self.continues_after(&item) {
+        if self.mission.program.continues_after(index) {
             self.go_on_from(index + 1);
         } else {
             self.mission.current = index + 1;
@@ -227,7 +230,7 @@ impl Vehicle {
     /// Looks for the next item that navigates; what lies before it is done on the way.
     fn go_on_from(&mut self, index: usize) {
         let mut made = std::mem::take(&mut self.mission.jumps);
-        let next = next_from(self.mission_items(), index, &mut made);
+        let next = next_from(&self.mission.program, index, &mut made);
         self.mission.jumps = made;
         for jump in next.jumps {
             self.reached_item(jump);
@@ -246,7 +249,7 @@ impl Vehicle {
         self.suspend();
         self.drop_conditions();
         self.mission.progress = Progress::Complete;
-        self.mission.current = self.mission_items().len().saturating_sub(1);
+        self.mission.current = self.mission.program.len().saturating_sub(1);
         self.say(Severity::Info, "Mission complete");
         // On the ground the vehicle disarms in its mode, as after any landing.
         if !self.identity.is_ardupilot() && self.steering.kind() != SteeringKind::Idle {

@@ -6,11 +6,11 @@ use super::super::motion::wrapped;
 use super::super::state::{TICK_US, Vehicle};
 use super::super::steering::Steering;
 use super::task::Task;
-use crate::plan::MissionItem;
+use crate::plan::step::{Turn, TurnDirection, TurnTo};
 
-/// A turn at a rate in a direction.
+/// A turn that is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
+pub struct Turning {
     /// Heading now, rad.
     at_rad: f64,
     /// Left of it, rad, positive clockwise.
@@ -21,24 +21,22 @@ pub struct Turn {
 /// So near to its angle, rad, a turn is done.
 const TURNED_RAD: f64 = 0.05;
 
-impl Turn {
-    /// CONDITION_YAW from a heading, rad: angle, rate (0: as fast as `fastest_rad_s`), direction (0: the short way; a relative
-    /// angle turns clockwise then), relative or not.
-    pub fn new(item: &MissionItem, from_rad: f64, fastest_rad_s: f64) -> Self {
-        let angle_rad = item.parameter(1).to_radians();
-        let direction = item.parameter_or(3, 0.0);
-        let relative = item.parameter_or(4, 0.0) > 0.5;
-        let short_rad = wrapped(angle_rad - from_rad);
-        let left_rad = match (relative, direction) {
-            (true, direction) if direction < 0.0 => -angle_rad,
-            (true, _) => angle_rad,
-            (false, 0.0) => short_rad,
-            // The long way round if that is the direction.
-            (false, direction) if short_rad * direction < 0.0 => short_rad + TAU * direction.signum(),
-            (false, _) => short_rad,
+impl Turning {
+    /// A turn from a heading, rad, at most at a rate, rad/s.
+    pub fn new(turn: &Turn, from_rad: f64, fastest_rad_s: f64) -> Self {
+        let left_rad = match turn.to {
+            TurnTo::By(angle_rad) => angle_rad,
+            TurnTo::Heading(heading_rad, direction) => {
+                let short_rad = wrapped(heading_rad - from_rad);
+                match direction {
+                    // The long way round if that is the direction.
+                    TurnDirection::Clockwise if short_rad < 0.0 => short_rad + TAU,
+                    TurnDirection::CounterClockwise if short_rad > 0.0 => short_rad - TAU,
+                    _ => short_rad,
+                }
+            }
         };
-        let asked_rad_s = item.parameter_or(2, 0.0).to_radians();
-        let rate_rad_s = if asked_rad_s > 0.0 { asked_rad_s.min(fastest_rad_s) } else { fastest_rad_s };
+        let rate_rad_s = turn.rate_rad_s.map_or(fastest_rad_s, |asked_rad_s| asked_rad_s.min(fastest_rad_s));
         Self { at_rad: from_rad, left_rad, rate_rad_s }
     }
 

@@ -20,15 +20,16 @@ mod path;
 mod sequence;
 mod status;
 mod task;
-mod time_of_day;
 
 use std::collections::{BTreeMap, VecDeque};
 
-use action::Condition;
-use heading::Turn;
+use action::Waiting;
+use heading::Turning;
 use leg::Carry;
 use nalgebra::Vector3;
 use task::Task;
+
+use crate::plan::Program;
 
 pub use status::{MissionState, MissionStatus};
 
@@ -47,6 +48,8 @@ enum Progress {
 /// What changes while a mission is flown.
 #[derive(Debug, Default)]
 pub(super) struct Mission {
+    /// Its steps.
+    program: Program,
     progress: Progress,
     /// The item that is flown, or will be.
     current: usize,
@@ -59,10 +62,10 @@ pub(super) struct Mission {
     /// Items on the way that are still to be done.
     actions: VecDeque<usize>,
     /// What the first of them waits for.
-    condition: Option<Condition>,
+    waiting: Option<Waiting>,
     /// How often each jump has been made.
     jumps: BTreeMap<usize, u32>,
-    turn: Option<Turn>,
+    turn: Option<Turning>,
     /// Heading of the present item, rad.
     heading_rad: f64,
     /// Whether it waits in its own mode.

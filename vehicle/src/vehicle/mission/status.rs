@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 
 use super::super::state::Vehicle;
-use super::Progress;
 use super::task::Task;
+use super::{Mission, Progress};
 use crate::mode::Mode;
+use crate::plan::Program;
 
 /// MISSION_STATE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,19 +36,26 @@ pub struct MissionStatus {
     pub in_mode: bool,
 }
 
+impl Mission {
+    /// What is flown.
+    pub(in super::super) fn program(&self) -> &Program {
+        &self.program
+    }
+}
+
 impl Vehicle {
     /// Where the mission is.
     pub fn mission_status(&self) -> MissionStatus {
         let mission = &self.mission;
         let in_mode = self.mode == Mode::Mission;
         let state = match mission.progress {
-            _ if self.mission_items().is_empty() => MissionState::None,
+            _ if mission.program.is_empty() => MissionState::None,
             Progress::Complete => MissionState::Complete,
             Progress::NotStarted => MissionState::NotStarted,
             Progress::Started if in_mode && !mission.paused => MissionState::Active,
             Progress::Started => MissionState::Paused,
         };
-        let total = self.mission_items().len().saturating_sub(self.first_mission_item());
+        let total = mission.program.len().saturating_sub(mission.program.first());
         MissionStatus { current: mission.current, total, state, in_mode }
     }
 

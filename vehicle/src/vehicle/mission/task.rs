@@ -1,4 +1,4 @@
-//! What is done for an item that navigates.
+//! What is done for a step that is flown.
 
 use nalgebra::Vector3;
 
@@ -11,8 +11,8 @@ use super::circle::Circle;
 use super::leg::{Carry, Leg, LegProgress};
 use super::path::{Stop, first_corner};
 use super::sequence::next_from;
-use super::time_of_day::TimeOfDay;
-use crate::plan::{MissionItem, command};
+use crate::plan::Place;
+use crate::plan::step::{Delay, Navigate, Turns, Waypoint};
 
 /// A task.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub enum Task {
     Climb {
         /// Goal, m.
         z_m: f64,
-        /// Whether that is a takeoff item, or the way up to another one.
-        item: bool,
+        /// Whether that is a takeoff, or the way up to another step.
+        takeoff: bool,
     },
     /// To a place.
     Leg(Leg, Then),
@@ -62,61 +62,67 @@ pub enum TaskProgress {
 const AHEAD: usize = 6;
 
 impl Vehicle {
-    /// Acceptance radius of an item, m.
-    fn acceptance_radius_m(&self, item: &MissionItem) -> f64 {
-        let own_m = if item.command == command::NAV_WAYPOINT { item.parameter_or(2, 0.0) } else { 0.0 };
-        if own_m > 0.0 { own_m } else { self.conduct.acceptance_radius_m }
+    /// Acceptance radius of a step, m.
+    fn acceptance_radius_m(&self, step: &Navigate) -> f64 {
+        let own_m = match step {
+            Navigate::Waypoint(waypoint) => waypoint.acceptance_radius_m,
+            _ => None,
+        };
+        own_m.unwrap_or(self.conduct.acceptance_radius_m)
     }
 
-    /// Where the leg of an item ends that begins at `from_m`; `None` if it has none.
-    fn leg_end_m(&self, item: &MissionItem, from_m: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let place = self.site().place(item);
-        let horizontal_m = place.and_then(|place| place.horizontal_m);
-        let [x, y] = horizontal_m.unwrap_or([from_m.x, from_m.y]);
-        let z = place.and_then(|place| place.down_m).unwrap_or(from_m.z);
-        match item.command {
-            command::NAV_WAYPOINT | command::NAV_LOITER_UNLIM | command::NAV_LOITER_TIME => {
-                Some(Vector3::new(x, y, z))
-            }
-            command::NAV_LOITER_TURNS => {
-                Some(self.circle_of(item, Vector3::new(x, y, z), from_m).position_m())
+    /// Where the leg of a step ends that begins at `from_m`; `None` if it has none.
+    fn leg_end_m(&self, step: &Navigate, from_m: &Vector3<f64>) -> Option<Vector3<f64>> {
+        match step {
+            Navigate::Waypoint(Waypoint { place, .. })
+            | Navigate::Loiter { place, .. }
+            | Navigate::LoiterTime { place, .. } => Some(self.place_m(place, from_m)),
+            Navigate::LoiterTurns(turns) => {
+                Some(self.circle_of(turns, from_m, self.place_m(&turns.place, from_m).z).position_m())
             }
             // Down it goes only there.
-            command::NAV_LAND => horizontal_m.map(|[x, y]| Vector3::new(x, y, from_m.z)),
-            _ => None,
+            Navigate::Land { place, .. } => place.horizontal_m.map(|[x, y]| Vector3::new(x, y, from_m.z)),
+            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => None,
         }
     }
 
-    fn circle_of(&self, item: &MissionItem, centre_m: Vector3<f64>, from_m: &Vector3<f64>) -> Circle {
-        Circle::new(centre_m, from_m, item.parameter_or(1, 0.0), item.parameter_or(3, 0.0))
+    /// Turns at z, m, for a vehicle that comes from a place.
+    fn circle_of(&self, turns: &Turns, from_m: &Vector3<f64>, z_m: f64) -> Circle {
+        let [x, y] = turns.place.horizontal_m.unwrap_or([from_m.x, from_m.y]);
+        Circle::new(Vector3::new(x, y, z_m), from_m, turns)
     }
 
-    /// Whether the vehicle comes to rest at an item.
-    fn rests_at(&self, item: &MissionItem) -> bool {
-        item.command != command::NAV_WAYPOINT
-            || item.parameter_or(1, 0.0) > 0.0
-            || !self.continues_after(item)
+    /// A place, NED, m; what it leaves open is that of another one.
+    fn place_m(&self, place: &Place, open_m: &Vector3<f64>) -> Vector3<f64> {
+        let [x, y] = place.horizontal_m.unwrap_or([open_m.x, open_m.y]);
+        Vector3::new(x, y, place.down_m(self.home.position_m.z).unwrap_or(open_m.z))
     }
 
-    /// Whether the next item follows by itself; ArduPilot has no other items.
-    pub(super) fn continues_after(&self, item: &MissionItem) -> bool {
-        item.autocontinue || self.identity.is_ardupilot()
+    /// Whether the vehicle comes to rest at a step.
+    fn rests_at(&self, index: usize, step: &Navigate) -> bool {
+        match step {
+            Navigate::Waypoint(waypoint) => {
+                waypoint.hold_s > 0.0 || !self.mission.program.continues_after(index)
+            }
+            _ => true,
+        }
     }
 
-    /// The places from item `index` on, as far as the vehicle goes from one to the next.
+    /// The places from step `index` on, as far as the vehicle goes from one to the next.
     fn places_ahead(&self, index: usize, from_m: &Vector3<f64>) -> Vec<Stop> {
-        let items = self.mission_items();
+        let program = &self.mission.program;
         let mut made = self.mission.jumps.clone();
         let (mut next, mut from_m) = (Some(index), *from_m);
         let mut stops = Vec::new();
-        while let Some(item) = next.and_then(|index| items.get(index)).filter(|_| stops.len() < AHEAD) {
-            let Some(position_m) = self.leg_end_m(item, &from_m) else { break };
-            let rests = self.rests_at(item);
-            stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(item), rests });
+        while let Some(index) = next.filter(|_| stops.len() < AHEAD) {
+            let Some(step) = program.navigate(index) else { break };
+            let Some(position_m) = self.leg_end_m(&step, &from_m) else { break };
+            let rests = self.rests_at(index, &step);
+            stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
             if rests {
                 break;
             }
-            next = next.and_then(|index| next_from(items, index + 1, &mut made).navigation);
+            next = next_from(program, index + 1, &mut made).navigation;
             from_m = position_m;
         }
         stops
@@ -142,20 +148,20 @@ impl Vehicle {
         self.mission.task = Some(Task::Leg(leg.with_corner(again.corner()), then));
     }
 
-    /// Begins an item that navigates.
-    pub(super) fn begin_item(&mut self, item: &MissionItem) -> TaskProgress {
+    /// Begins a step.
+    pub(super) fn begin_step(&mut self, step: &Navigate) -> TaskProgress {
         let grounded = self.steering.kind() == SteeringKind::Idle;
-        let task = match item.command {
-            command::NAV_TAKEOFF => return self.begin_takeoff(item),
-            command::NAV_RETURN_TO_LAUNCH => return TaskProgress::Done(None),
-            command::NAV_LAND if grounded => return TaskProgress::Done(None),
-            command::NAV_DELAY => {
+        let task = match step {
+            Navigate::Takeoff { place, .. } => return self.begin_takeoff(step, place),
+            Navigate::ReturnToLaunch => return TaskProgress::Done(None),
+            Navigate::Land { .. } if grounded => return TaskProgress::Done(None),
+            Navigate::Delay(delay) => {
                 self.hold();
-                Task::Wait(Some(self.delay_end_us(item)))
+                Task::Wait(Some(self.delay_end_us(delay)))
             }
-            _ if grounded => self.climb_first(item),
-            _ => match self.leg_end_m(item, &self.mission.anchor_m) {
-                Some(end_m) => self.begin_leg(item, end_m),
+            _ if grounded => self.climb_first(step),
+            _ => match self.leg_end_m(step, &self.mission.anchor_m) {
+                Some(end_m) => self.begin_leg(step, end_m),
                 None => {
                     self.hold();
                     Task::Descend(None)
@@ -166,10 +172,12 @@ impl Vehicle {
         TaskProgress::Going
     }
 
-    fn delay_end_us(&self, item: &MissionItem) -> u64 {
-        match TimeOfDay::of(item) {
-            Some(time) => self.time_us().saturating_add(time.wait_us(self.unix_start_us + self.time_us())),
-            None => self.after_s(item.parameter_or(1, 0.0)),
+    fn delay_end_us(&self, delay: &Delay) -> u64 {
+        match delay {
+            Delay::Until(time) => {
+                self.time_us().saturating_add(time.wait_us(self.unix_start_us + self.time_us()))
+            }
+            Delay::For(time_s) => self.after_s(*time_s),
         }
     }
 
@@ -178,14 +186,14 @@ impl Vehicle {
         self.time_us().saturating_add((seconds * 1e6) as u64)
     }
 
-    /// On the ground an item above it begins with a climb: to its height, and at least to that of a takeoff.
-    fn climb_first(&mut self, item: &MissionItem) -> Task {
+    /// On the ground a step above it begins with a climb: to its height, and at least to that of a takeoff.
+    fn climb_first(&mut self, step: &Navigate) -> Task {
         let least_z_m = self.home.position_m.z - self.conduct.takeoff_height_m;
-        let z_m = self.leg_end_m(item, &self.outputs.position_m).map_or(least_z_m, |end_m| end_m.z);
+        let z_m = self.leg_end_m(step, &self.outputs.position_m).map_or(least_z_m, |end_m| end_m.z);
         self.begin_climb(z_m.min(least_z_m), false)
     }
 
-    fn begin_climb(&mut self, z_m: f64, item: bool) -> Task {
+    fn begin_climb(&mut self, z_m: f64, takeoff: bool) -> Task {
         let here = self.steering.present(&self.outputs).position_m;
         let axes = [AxisTarget::Position(here.x), AxisTarget::Position(here.y), AxisTarget::Position(z_m)];
         self.mission.heading_rad = match self.steering {
@@ -194,20 +202,19 @@ impl Vehicle {
         };
         self.follow(&PositionSetPoint { axes, yaw: YawTarget::Angle(self.mission.heading_rad) });
         self.mission.anchor_m = Vector3::new(here.x, here.y, z_m);
-        Task::Climb { z_m, item }
+        Task::Climb { z_m, takeoff }
     }
 
     /// Up where it is. Who is above already does not come down for a takeoff.
-    fn begin_takeoff(&mut self, item: &MissionItem) -> TaskProgress {
+    fn begin_takeoff(&mut self, step: &Navigate, place: &Place) -> TaskProgress {
         const LEAST_M: f64 = 0.5;
         let home_z_m = self.home.position_m.z;
-        let asked_m = self.site().place(item).and_then(|place| place.down_m);
-        let z_m = match asked_m {
+        let z_m = match place.down_m(home_z_m) {
             Some(z_m) if home_z_m - z_m >= LEAST_M => z_m,
             _ => home_z_m - self.conduct.takeoff_height_m,
         };
         if self.steering.kind() != SteeringKind::Idle && self.outputs.setpoint.position_m.z <= z_m {
-            return self.leave_takeoff(item);
+            return self.leave_takeoff(step);
         }
         if self.steering.kind() == SteeringKind::Idle {
             self.say(Severity::Info, format!("Taking off to {:.1} m above home", home_z_m - z_m));
@@ -216,45 +223,34 @@ impl Vehicle {
         TaskProgress::Going
     }
 
-    /// The climb is over. PX4 goes on to the place that a takeoff names; ArduPilot's has none.
-    fn leave_takeoff(&mut self, item: &MissionItem) -> TaskProgress {
-        let place_m = self.site().place(item).and_then(|place| place.horizontal_m);
+    /// The climb is over.
+    fn leave_takeoff(&mut self, step: &Navigate) -> TaskProgress {
         let here_m = self.mission.anchor_m;
-        match place_m {
-            Some([x, y]) if !self.identity.is_ardupilot() => {
-                let end_m = Vector3::new(x, y, here_m.z);
-                if (end_m - here_m).norm() <= self.conduct.acceptance_radius_m {
-                    return TaskProgress::Done(None);
-                }
-                self.mission.task = Some(self.begin_leg(item, end_m));
-                TaskProgress::Going
-            }
-            _ => TaskProgress::Done(None),
+        let Navigate::Takeoff { place: Place { horizontal_m: Some([x, y]), .. }, travels: true } = step
+        else {
+            return TaskProgress::Done(None);
+        };
+        let end_m = Vector3::new(*x, *y, here_m.z);
+        if (end_m - here_m).norm() <= self.conduct.acceptance_radius_m {
+            return TaskProgress::Done(None);
         }
+        self.mission.task = Some(self.begin_leg(step, end_m));
+        TaskProgress::Going
     }
 
-    fn begin_leg(&mut self, item: &MissionItem, end_m: Vector3<f64>) -> Task {
+    fn begin_leg(&mut self, step: &Navigate, end_m: Vector3<f64>) -> Task {
         let from_m = self.mission.anchor_m;
         let carry = self.mission.carry.take();
         let leg = self.plan_leg(from_m, end_m, carry);
-        let then = match item.command {
-            command::NAV_LOITER_UNLIM => Then::Stay,
-            command::NAV_LOITER_TIME | command::NAV_WAYPOINT => Then::Wait(item.parameter_or(1, 0.0)),
-            command::NAV_LOITER_TURNS => {
-                let place = self.site().place(item);
-                let [x, y] = place.and_then(|place| place.horizontal_m).unwrap_or([from_m.x, from_m.y]);
-                Then::Circle(self.circle_of(item, Vector3::new(x, y, end_m.z), &from_m))
+        let (then, asked_rad) = match step {
+            Navigate::Waypoint(waypoint) => (Then::Wait(waypoint.hold_s), waypoint.heading_rad),
+            Navigate::Loiter { heading_rad, .. } => (Then::Stay, *heading_rad),
+            Navigate::LoiterTime { time_s, .. } => (Then::Wait(*time_s), None),
+            Navigate::LoiterTurns(turns) => (Then::Circle(self.circle_of(turns, &from_m, end_m.z)), None),
+            Navigate::Land { heading_rad, .. } => (Then::Land([end_m.x, end_m.y]), *heading_rad),
+            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => {
+                (Then::Wait(0.0), None)
             }
-            command::NAV_LAND => Then::Land([end_m.x, end_m.y]),
-            _ => Then::Wait(0.0),
-        };
-        let asked_rad = match item.command {
-            // ArduPilot's waypoints have no heading, and clients leave zeros there.
-            _ if self.identity.is_ardupilot() => None,
-            command::NAV_WAYPOINT | command::NAV_LOITER_UNLIM | command::NAV_LAND => {
-                Some(item.parameter(4).to_radians()).filter(|yaw| yaw.is_finite())
-            }
-            _ => None,
         };
         let facing_rad = match then {
             Then::Circle(circle) => Some(circle.heading_rad()),
@@ -267,10 +263,12 @@ impl Vehicle {
     }
 
     /// One tick of the present task.
-    pub(super) fn carry_on(&mut self, task: Task, item: &MissionItem) -> TaskProgress {
+    pub(super) fn carry_on(&mut self, task: Task, step: &Navigate) -> TaskProgress {
         match task {
-            Task::Climb { z_m, item: false } if is_slow_near(&self.outputs, z_m) => TaskProgress::Again,
-            Task::Climb { z_m, item: true } if is_slow_near(&self.outputs, z_m) => self.leave_takeoff(item),
+            Task::Climb { z_m, takeoff: false } if is_slow_near(&self.outputs, z_m) => TaskProgress::Again,
+            Task::Climb { z_m, takeoff: true } if is_slow_near(&self.outputs, z_m) => {
+                self.leave_takeoff(step)
+            }
             Task::Leg(leg, then) => self.fly_leg(leg, then),
             Task::Wait(Some(until_us)) if self.time_us() >= until_us => TaskProgress::Done(None),
             Task::Circle(mut circle) => {
