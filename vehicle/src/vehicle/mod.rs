@@ -20,9 +20,12 @@
 mod arming;
 mod battery;
 mod conduct;
+#[allow(dead_code)] // Until the parts have moved.
+mod descent;
 mod failsafe;
 mod fence;
 mod flight;
+mod home;
 mod injection;
 mod landed;
 mod mission;
@@ -31,11 +34,15 @@ mod notice;
 mod offboard;
 mod perception;
 mod plans;
+#[allow(dead_code)] // Until the parts have moved.
+mod proposal;
 mod region;
 mod requests;
 mod return_home;
 mod rotor_loss;
 mod set_point;
+#[allow(dead_code)] // Until the parts have moved.
+mod situation;
 mod speeds;
 mod state;
 mod steering;
@@ -45,12 +52,13 @@ pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
 pub use fence::FenceRecord;
+pub use home::Home;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
 pub use motion::wrapped;
 pub use notice::{Notice, Refusal, Severity};
 pub use requests::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
-pub use state::{Home, TICK_US, Vehicle, VehicleSettings};
+pub use state::{TICK_US, Vehicle, VehicleSettings};
 pub use steering::SteeringKind;
 pub use sticks::Sticks;

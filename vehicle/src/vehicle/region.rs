@@ -1,6 +1,7 @@
 //! The region of interest: what the vehicle turns its nose to while it flies a mission, takes off, or holds its place.
 
 use nalgebra::Vector3;
+use quadrotor::PositionReference;
 
 use super::set_point::YawTarget;
 use super::state::Vehicle;
@@ -10,7 +11,7 @@ use crate::plan::Look;
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum RegionOfInterest {
+pub enum RegionOfInterest {
     /// A place, NED, m.
     Place(Vector3<f64>),
     /// Where the leg of a mission leads, plus an angle, rad.
@@ -19,6 +20,21 @@ pub(super) enum RegionOfInterest {
 
 /// Nearer than this, m, there is no direction to a place.
 const TOO_NEAR_M: f64 = 0.5;
+
+impl RegionOfInterest {
+    /// Heading to it, rad, and its rate, rad/s, seen from a reference on a leg that leads to `next_m`; `None` where there is
+    /// nothing to be looked at.
+    pub fn heading(&self, reference: &PositionReference, next_m: Option<Vector3<f64>>) -> Option<(f64, f64)> {
+        let (place_m, offset_rad) = match *self {
+            Self::Place(place_m) => (place_m, 0.0),
+            Self::NextWaypoint(offset_rad) => (next_m?, offset_rad),
+        };
+        // ψ = atan2(w_y, w_x),  ψ̇ = (w_y v_x − w_x v_y) / (w_x² + w_y²)
+        let (way, v) = ((place_m - reference.position_m).xy(), reference.velocity_m_s);
+        let rate_rad_s = (way.y * v.x - way.x * v.y) / way.norm_squared();
+        (way.norm() > TOO_NEAR_M).then(|| (libm::atan2(way.y, way.x) + offset_rad, rate_rad_s))
+    }
+}
 
 impl Vehicle {
     /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
@@ -44,15 +60,7 @@ impl Vehicle {
 
     /// Heading to it, rad, and its rate, rad/s, on a leg that leads to `next_m`; `None` where there is nothing to be looked at.
     pub(super) fn heading_to_region(&self, next_m: Option<Vector3<f64>>) -> Option<(f64, f64)> {
-        let (place_m, offset_rad) = match self.region? {
-            RegionOfInterest::Place(place_m) => (place_m, 0.0),
-            RegionOfInterest::NextWaypoint(offset_rad) => (next_m?, offset_rad),
-        };
-        // ψ = atan2(w_y, w_x),  ψ̇ = (w_y v_x − w_x v_y) / (w_x² + w_y²)
-        let reference = &self.outputs.setpoint;
-        let (way, v) = ((place_m - reference.position_m).xy(), reference.velocity_m_s);
-        let rate_rad_s = (way.y * v.x - way.x * v.y) / way.norm_squared();
-        (way.norm() > TOO_NEAR_M).then(|| (libm::atan2(way.y, way.x) + offset_rad, rate_rad_s))
+        self.region?.heading(&self.outputs.setpoint, next_m)
     }
 
     /// Turns the vehicle to it where nothing else asks for a heading.

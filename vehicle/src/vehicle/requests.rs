@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::notice::{Refusal, Severity};
+use super::proposal::check_distance;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::state::Vehicle;
 use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::mode::Mode;
-use crate::world::FARTHEST_M;
 
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
@@ -157,7 +157,7 @@ impl Vehicle {
     pub fn set_home(&mut self, position_m: Vector3<f64>, yaw_rad: Option<f64>) -> Result<(), Refusal> {
         check_distance(&position_m)?;
         let yaw_rad = yaw_rad.unwrap_or(self.outputs.attitude_rad.z);
-        self.home = super::state::Home { position_m, yaw_rad, set_by_user: true };
+        self.home = super::home::Home { position_m, yaw_rad, set_by_user: true };
         self.say(Severity::Info, "Home set");
         Ok(())
     }
@@ -165,16 +165,5 @@ impl Vehicle {
     /// Takes the pilot's sticks.
     pub fn move_sticks(&mut self, sticks: Sticks) {
         self.sticks = Some((sticks, self.time_us()));
-    }
-}
-
-/// Refuses what is too far away, or no number.
-fn check_distance(target_m: &Vector3<f64>) -> Result<(), Refusal> {
-    let distance_m = target_m.norm();
-    // NaN is not below.
-    if distance_m <= FARTHEST_M {
-        Ok(())
-    } else {
-        Err(Refusal::denied(format!("Target denied: {distance_m:.0} m away, at most {FARTHEST_M:.0} m")))
     }
 }

@@ -7,6 +7,25 @@ use super::notice::{Refusal, Severity};
 use super::state::Vehicle;
 use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 
+/// How limits of speed change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(dead_code)] // Until the parts have moved.
+pub enum SpeedChange {
+    /// DO_CHANGE_SPEED of a mission: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it).
+    Mission {
+        /// SPEED_TYPE.
+        kind: f64,
+        /// m/s.
+        speed_m_s: f64,
+    },
+    /// The mission's speeds hold while it is flown.
+    InMission(bool),
+    /// Another mission, or the same from its beginning, has asked for no speed yet.
+    ForgetMission,
+    /// With the flight ends what commands have asked for.
+    ForgetCommands,
+}
+
 /// Limits of speed, m/s: horizontally, up, down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Speeds {

@@ -13,6 +13,7 @@ use super::battery::Battery;
 use super::conduct::Conduct;
 use super::failsafe::Failsafe;
 use super::fence::FenceRecord;
+use super::home::Home;
 use super::landed::{LandedDetector, LandedState};
 use super::mission::Mission;
 use super::notice::{Notice, Severity};
@@ -59,17 +60,6 @@ pub struct VehicleSettings {
     /// What it is to fly, and where it may.
     #[serde(default)]
     pub plans: Plans,
-}
-
-/// Where a return goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Home {
-    /// NED, m.
-    pub position_m: Vector3<f64>,
-    /// Heading there, rad.
-    pub yaw_rad: f64,
-    /// Whether a user has set it: then arming does not move it.
-    pub set_by_user: bool,
 }
 
 /// The vehicle.
