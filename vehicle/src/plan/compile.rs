@@ -345,13 +345,13 @@ mod tests {
             items.insert(0, home);
             prop_assert!(items.len() == 1 || check::plan(PlanKind::Mission, &items, &site).is_ok());
             let program = mission(&items, &site);
-            for index in 1..items.len() {
+            for (index, item) in items.iter().enumerate().skip(1) {
                 let step = program.step(index).expect("one for each item");
                 let told = format!("{step:?}");
-                prop_assert!(!told.contains("NaN") && !told.contains("inf"), "{:?} became {told}", items[index]);
-                prop_assert!(step != Step::Pass, "{:?}", items[index]);
+                prop_assert!(!told.contains("NaN") && !told.contains("inf"), "{item:?} became {told}");
+                prop_assert!(step != Step::Pass, "{item:?}");
                 for angle_rad in angles_rad(&step) {
-                    prop_assert!(angle_rad.abs() <= TAU + 1e-9, "{:?} became {told}", items[index]);
+                    prop_assert!(angle_rad.abs() <= TAU + 1e-9, "{item:?} became {told}");
                 }
             }
         }

@@ -11,13 +11,8 @@ use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(dead_code)] // Until the parts have moved.
 pub enum SpeedChange {
-    /// DO_CHANGE_SPEED of a mission: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it).
-    Mission {
-        /// SPEED_TYPE.
-        kind: f64,
-        /// m/s.
-        speed_m_s: f64,
-    },
+    /// The mission asks for another one.
+    Mission(ChangeSpeed),
     /// The mission's speeds hold while it is flown.
     InMission(bool),
     /// Another mission, or the same from its beginning, has asked for no speed yet.
