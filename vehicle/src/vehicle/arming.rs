@@ -110,7 +110,7 @@ impl Vehicle {
         self.idle();
         // A mode that ends on the ground is not one to be armed in.
         if self.mode == Mode::Mission {
-            self.leave_mission();
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
         if matches!(self.mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
             self.mode = self.identity.first_mode();

@@ -26,7 +26,9 @@ impl Vehicle {
             Mode::Hold => {}
             Mode::Position => self.follow_sticks(),
             Mode::Offboard => self.offboard(),
-            Mode::Mission => self.fly_mission(),
+            Mode::Mission => {
+                self.consult(|parts, situation, proposal| parts.mission.step(situation, proposal))
+            }
             Mode::Land => self.descend(None),
             Mode::Return => self.return_home(),
         }
@@ -42,7 +44,7 @@ impl Vehicle {
             self.say(Severity::Info, format!("{} mode", self.identity.mode_name(mode)));
         }
         if self.mode == Mode::Mission && mode != Mode::Mission {
-            self.leave_mission();
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
         self.mode = mode;
         self.takeoff_z_m = None;
@@ -51,7 +53,9 @@ impl Vehicle {
             Mode::Hold | Mode::Position => self.hold(),
             Mode::Offboard if !self.set_points_are_recent() => self.hold(),
             Mode::Return if self.steering.kind() != SteeringKind::Idle => self.begin_return(),
-            Mode::Mission => self.enter_mission(),
+            Mode::Mission => {
+                self.consult(|parts, situation, proposal| parts.mission.enter(situation, proposal))
+            }
             _ => {}
         }
     }

@@ -20,6 +20,7 @@
 mod arming;
 mod battery;
 mod conduct;
+mod decision;
 #[allow(dead_code)] // Until the parts have moved.
 mod descent;
 mod failsafe;

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::notice::Severity;
+use super::situation::Situation;
 use super::state::Vehicle;
 use crate::fence::Breach;
 use crate::plan::step::Navigate;
@@ -59,14 +60,16 @@ impl Vehicle {
             PlanKind::Fence => self.take_fence(&items)?,
             PlanKind::Mission => {
                 let program = compile::mission(&items, &site);
-                self.check_way(&program)?;
+                check_way(&self.situation(), &program)?;
                 self.plans.set(kind, Plan::new(items));
-                self.mission_has_changed(program, amended);
+                self.consult(|parts, situation, proposal| {
+                    parts.mission.replace(situation, proposal, program, amended);
+                });
                 return Ok(());
             }
             PlanKind::Rally => {
                 let points = compile::rally_points(&items, &site);
-                self.check_rally_points(&points)?;
+                check_rally_points(&self.situation(), &points)?;
                 self.rally_points = points;
             }
         }
@@ -79,39 +82,46 @@ impl Vehicle {
 
     /// Refuses a mission that the fence of now forbids: it may have come after the mission.
     pub(super) fn check_mission_places(&self) -> Result<(), PlanFault> {
-        self.check_way(self.mission.program())
+        check_way(&self.situation(), self.mission.program())
     }
+}
 
-    /// Refuses steps whose places the fence forbids, or the straight ways between them.
-    fn check_way(&self, program: &Program) -> Result<(), PlanFault> {
-        let mut before_m = self.home.position_m;
-        for index in program.first()..program.len() {
-            let step = program.navigate(index);
-            let place = step.as_ref().and_then(Navigate::place);
-            let Some(place_m) = place.and_then(|place| self.place_to_check_m(place)) else { continue };
-            let way = || self.fence().and_then(|fence| fence.breach_between(&before_m, &place_m));
-            let breach = self.breach_at(&place_m).or_else(way);
-            before_m = place_m;
-            refuse(index, breach)?;
-        }
-        Ok(())
+/// Refuses steps whose places the fence forbids, or the straight ways between them.
+///
+/// # Errors
+/// [`PlanFault`] that names the step.
+pub fn check_way(situation: &Situation, program: &Program) -> Result<(), PlanFault> {
+    let mut before_m = situation.home.position_m;
+    // In ArduPilot's convention the first item is home, which is the vehicle's own.
+    for index in program.first()..program.len() {
+        let step = program.navigate(index);
+        let place = step.as_ref().and_then(Navigate::place);
+        let Some(place_m) = place.and_then(|place| place_to_check_m(situation, place)) else { continue };
+        let way = || situation.fence().and_then(|fence| fence.breach_between(&before_m, &place_m));
+        let breach = situation.breach_at(&place_m).or_else(way);
+        before_m = place_m;
+        refuse(index, breach)?;
     }
+    Ok(())
+}
 
-    /// Refuses rally points that the fence forbids.
-    fn check_rally_points(&self, points: &[Place]) -> Result<(), PlanFault> {
-        for (index, place) in points.iter().enumerate() {
-            let Some(place_m) = self.place_to_check_m(place) else { continue };
-            refuse(index, self.breach_at(&place_m))?;
-        }
-        Ok(())
+/// Refuses rally points that the fence forbids.
+///
+/// # Errors
+/// [`PlanFault`] that names the point.
+pub fn check_rally_points(situation: &Situation, points: &[Place]) -> Result<(), PlanFault> {
+    for (index, place) in points.iter().enumerate() {
+        let Some(place_m) = place_to_check_m(situation, place) else { continue };
+        refuse(index, situation.breach_at(&place_m))?;
     }
+    Ok(())
+}
 
-    /// A place, NED, m, at the height of home if it names none; `None` if it is wherever the vehicle is then.
-    fn place_to_check_m(&self, place: &Place) -> Option<Vector3<f64>> {
-        let home_z_m = self.home.position_m.z;
-        let [x, y] = place.horizontal_m?;
-        Some(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(home_z_m)))
-    }
+/// A place, NED, m, at the height of home if it names none; `None` if it is wherever the vehicle is then.
+fn place_to_check_m(situation: &Situation, place: &Place) -> Option<Vector3<f64>> {
+    let home_z_m = situation.home.position_m.z;
+    let [x, y] = place.horizontal_m?;
+    Some(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(home_z_m)))
 }
 
 fn refuse(index: usize, breach: Option<Breach>) -> Result<(), PlanFault> {

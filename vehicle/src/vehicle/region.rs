@@ -22,6 +22,17 @@ pub enum RegionOfInterest {
 const TOO_NEAR_M: f64 = 0.5;
 
 impl RegionOfInterest {
+    /// What is looked at by a vehicle at `here_m`, NED, while home is at `home_z_m`.
+    pub fn of(look: &Look, here_m: &Vector3<f64>, home_z_m: f64) -> Self {
+        match look {
+            Look::At(place) => {
+                let [x, y] = place.horizontal_m.unwrap_or([here_m.x, here_m.y]);
+                Self::Place(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(0.0)))
+            }
+            Look::NextWaypoint { offset_rad } => Self::NextWaypoint(*offset_rad),
+        }
+    }
+
     /// Heading to it, rad, and its rate, rad/s, seen from a reference on a leg that leads to `next_m`; `None` where there is
     /// nothing to be looked at.
     pub fn heading(&self, reference: &PositionReference, next_m: Option<Vector3<f64>>) -> Option<(f64, f64)> {
@@ -39,23 +50,11 @@ impl RegionOfInterest {
 impl Vehicle {
     /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
     pub fn look(&mut self, look: Option<&Look>) {
-        self.look_at(look);
+        let (here_m, home_z_m) = (self.outputs.position_m, self.home.position_m.z);
+        self.region = look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m));
         if self.region.is_none() && self.chooses_its_heading() {
             self.turn_on(None);
         }
-    }
-
-    /// The same as a step of a mission.
-    pub(super) fn look_at(&mut self, look: Option<&Look>) {
-        self.region = look.map(|look| match look {
-            Look::At(place) => {
-                let here_m = self.outputs.position_m;
-                let [x, y] = place.horizontal_m.unwrap_or([here_m.x, here_m.y]);
-                let z = place.down_m(self.home.position_m.z).unwrap_or(0.0);
-                RegionOfInterest::Place(Vector3::new(x, y, z))
-            }
-            Look::NextWaypoint { offset_rad } => RegionOfInterest::NextWaypoint(*offset_rad),
-        });
     }
 
     /// Heading to it, rad, and its rate, rad/s, on a leg that leads to `next_m`; `None` where there is nothing to be looked at.

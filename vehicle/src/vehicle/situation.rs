@@ -84,6 +84,11 @@ impl<'a> Situation<'a> {
         &self.configuration.limits
     }
 
+    /// So many seconds from now, µs.
+    pub fn after_us(&self, seconds: f64) -> u64 {
+        self.time_us.saturating_add((seconds * 1e6) as u64)
+    }
+
     /// Whether there is a flight that could be ended, or flown otherwise.
     pub fn flies(&self) -> bool {
         self.armed && self.steering.kind() != SteeringKind::Idle

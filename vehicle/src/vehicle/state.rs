@@ -171,7 +171,7 @@ impl Vehicle {
             fence_record: FenceRecord::default(),
             failsafe: Failsafe::default(),
             return_way_m: VecDeque::new(),
-            mission: Mission::default(),
+            mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
             region: None,
             simulation,
@@ -181,7 +181,6 @@ impl Vehicle {
             ideal_sensors: IdealSensors::default(),
         };
         vehicle.outputs = vehicle.known();
-        vehicle.mission_has_changed(program, false);
         Ok(vehicle)
     }
 
@@ -382,7 +381,7 @@ impl Vehicle {
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
     pub fn landed_state(&self) -> LandedState {
-        let (climbs, descends) = self.mission_task_is_vertical();
+        let (climbs, descends) = self.mission.is_vertical();
         match self.mode {
             _ if self.landed.is_landed() => LandedState::OnGround,
             Mode::Mission if climbs => LandedState::TakingOff,
