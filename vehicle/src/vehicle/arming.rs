@@ -1,9 +1,11 @@
 //! Arming and disarming.
 
-use super::failsafe::Cause;
+use quadrotor::RotorFault;
+
 use super::notice::{Refusal, Severity};
+use super::plans::check_way;
+use super::set_point::PositionSetPoint;
 use super::state::Vehicle;
-use super::steering::Steering;
 use crate::mode::Mode;
 
 /// Leaning more than this, rad, it is not armed.
@@ -12,34 +14,38 @@ const LARGEST_LEAN_RAD: f64 = 0.52;
 impl Vehicle {
     /// Everything that speaks against arming now; empty if nothing does.
     pub fn arming_obstacles(&self) -> Vec<String> {
+        let situation = self.situation();
         let mut obstacles = Vec::new();
-        if !self.landed.is_landed() {
+        if !situation.landed {
             obstacles.push("not on the ground".to_owned());
         }
-        let [lean, pitch] = [self.outputs.attitude_rad.x.abs(), self.outputs.attitude_rad.y.abs()];
+        let attitude_rad = situation.outputs.attitude_rad;
+        let [lean, pitch] = [attitude_rad.x.abs(), attitude_rad.y.abs()];
         if lean.max(pitch) > LARGEST_LEAN_RAD {
             obstacles.push(format!("leaning by {:.0} deg", lean.max(pitch).to_degrees()));
         }
-        let (remaining, needed) = (self.battery_remaining(), self.conduct.battery_to_arm);
+        let (remaining, needed) = (situation.battery_remaining, situation.conduct.battery_to_arm);
         if remaining < needed {
             obstacles.push(format!("battery at {:.0} %, needs {:.0} %", 100.0 * remaining, 100.0 * needed));
         }
-        obstacles.extend(self.navigation_obstacles());
-        obstacles.extend(self.rotor_obstacles());
-        match self.mode {
+        obstacles.extend(self.perception.obstacles());
+        obstacles.extend(rotor_obstacles(self.faults().rotors()));
+        let identity = situation.identity;
+        match situation.mode {
             Mode::Land | Mode::Return => {
-                obstacles.push(format!("not in {} mode", self.identity.mode_name(self.mode)));
+                obstacles.push(format!("not in {} mode", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
-                obstacles.extend(self.check_mission_places().err().map(|fault| format!("mission: {fault}")))
+                let fault = check_way(&situation, self.machines.mission.program()).err();
+                obstacles.extend(fault.map(|fault| format!("mission: {fault}")));
             }
-            Mode::Offboard if !self.identity.is_ardupilot() && !self.set_points_are_recent() => {
+            Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 obstacles.push("no set-points".to_owned());
             }
             _ => {}
         }
-        obstacles.extend(self.failsafe_obstacles());
+        obstacles.extend(self.machines.failsafe.obstacles(&situation));
         obstacles
     }
 
@@ -48,26 +54,25 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal::TemporarilyRejected`] with what speaks against it, unless forced.
     pub fn arm(&mut self, force: bool) -> Result<(), Refusal> {
-        if self.armed {
+        if self.is_armed() {
             return Ok(());
         }
         let obstacles = self.arming_obstacles();
         if !force && !obstacles.is_empty() {
             return Err(Refusal::later(format!("Arming denied: {}", obstacles.join("; "))));
         }
-        self.armed = true;
-        self.terminated = false;
-        self.flown = !self.landed.is_landed();
-        self.grounded_since_us = self.time_us();
-        if !self.home.set_by_user && self.landed.is_landed() {
-            self.home.position_m = self.outputs.position_m;
-            self.home.yaw_rad = self.outputs.attitude_rad.z;
-        }
-        self.steering = Steering::Idle { yaw_rad: self.outputs.attitude_rad.z };
-        if !self.landed.is_landed() {
-            self.follow(&super::set_point::PositionSetPoint::HOLD);
-        }
-        self.say(Severity::Info, "Armed");
+        self.decided.arm();
+        self.consult(|parts, situation, proposal| {
+            parts.landing.arm(situation.time_us);
+            if !situation.home.set_by_user && situation.landed {
+                proposal.move_home_here(situation);
+            }
+            proposal.idle(situation);
+            if !situation.landed {
+                proposal.follow(situation, &PositionSetPoint::HOLD);
+            }
+            proposal.say(Severity::Info, "Armed");
+        });
         Ok(())
     }
 
@@ -76,45 +81,20 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal::TemporarilyRejected`] in the air, unless forced.
     pub fn disarm(&mut self, force: bool) -> Result<(), Refusal> {
-        if !self.armed {
+        if !self.is_armed() {
             return Ok(());
         }
-        if !force && !self.landed.is_landed() {
+        if !force && !self.situation().landed {
             return Err(Refusal::later("Disarming denied: not landed"));
         }
         self.stop_rotors(if force { "Disarmed by force" } else { "Disarmed" });
         Ok(())
     }
+}
 
-    /// Ends the flight at once: the rotors stop wherever it is.
-    pub fn terminate(&mut self) {
-        if self.armed {
-            self.terminated = true;
-            self.stop_rotors("Flight terminated");
-        }
-    }
-
-    /// Whether its last flight has been terminated.
-    pub fn is_terminated(&self) -> bool {
-        self.terminated
-    }
-
-    pub(super) fn stop_rotors(&mut self, why: &str) {
-        self.armed = false;
-        self.flown = false;
-        self.failsafe.release();
-        self.failsafe.forget(Cause::SetPointsLost);
-        self.takeoff_z_m = None;
-        self.forget_command_speeds();
-        self.region = None;
-        self.idle();
-        // A mode that ends on the ground is not one to be armed in.
-        if self.mode == Mode::Mission {
-            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
-        }
-        if matches!(self.mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
-            self.mode = self.identity.first_mode();
-        }
-        self.say(Severity::Info, why);
-    }
+/// Rotors that do not answer on the ground.
+fn rotor_obstacles(faults: [Option<RotorFault>; 4]) -> impl Iterator<Item = String> {
+    let silent = |fault: Option<RotorFault>| matches!(fault, Some(RotorFault::Off | RotorFault::Stuck));
+    let numbered = (1..).zip(faults);
+    numbered.filter(move |(_, fault)| silent(*fault)).map(|(number, _)| format!("rotor {number} failed"))
 }

@@ -1,20 +1,16 @@
 //! The one place that decides: it carries out what the parts ask for, in the order in which they ask.
 
-use super::failsafe::Failsafe;
-use super::mission::Mission;
+use quadrotor::{Configuration, ConfigurationError};
+
+use super::failsafe::{Cause, Change};
+use super::machines::Machines;
+use super::notice::Severity;
 use super::proposal::{Proposal, Request};
 use super::situation::Situation;
-use super::speeds::SpeedChange;
+use super::speeds::{SpeedChange, Speeds, with_speeds};
 use super::state::Vehicle;
+use super::steering::SteeringKind;
 use crate::mode::Mode;
-
-/// The parts that have moved.
-pub struct Machines<'a> {
-    /// The mission.
-    pub mission: &'a mut Mission,
-    /// Failsafes.
-    pub failsafe: &'a mut Failsafe,
-}
 
 impl Vehicle {
     /// Shows the situation to a part, and carries out what it asks for.
@@ -22,77 +18,134 @@ impl Vehicle {
         &mut self,
         ask: impl FnOnce(&mut Machines, &Situation, &mut Proposal) -> T,
     ) -> T {
-        let goes_on = self.mission_goes_on();
-        let mut mission = std::mem::take(&mut self.mission);
-        let mut failsafe = std::mem::take(&mut self.failsafe);
-        let situation = Situation { mission_goes_on: goes_on, ..self.situation() };
+        let (situation, parts) = self.situation_and_machines();
         let mut proposal = Proposal::new(&situation);
-        let mut parts = Machines { mission: &mut mission, failsafe: &mut failsafe };
-        let answer = ask(&mut parts, &situation, &mut proposal);
-        (self.mission, self.failsafe) = (mission, failsafe);
+        let answer = ask(parts, &situation, &mut proposal);
         self.decide(proposal);
         answer
     }
 
-    pub(super) fn situation(&self) -> Situation<'_> {
-        Situation {
-            time_us: self.outputs.time_us,
-            unix_start_us: self.unix_start_us,
-            identity: self.identity,
-            conduct: &self.conduct,
-            configuration: self.simulation.configuration(),
-            frame: &self.frame,
-            plans: &self.plans,
-            zones: &self.fence_zones,
-            outputs: &self.outputs,
-            truth: &self.truth,
-            validity: self.validity(),
-            health: self.instrument_health(),
-            estimates: self.navigation.is_some(),
-            fix_velocity_down_m_s: self
-                .navigation
-                .as_ref()
-                .and_then(crate::estimation::Navigation::latest_fix)
-                .map(|fix| fix.velocity_m_s.z),
-            rotor_command_rad_s: [0.0; 4],
-            wind_m_s: self.wind_m_s,
-            battery_remaining: self.battery_remaining(),
-            armed: self.armed,
-            mode: self.mode,
-            steering: &self.steering,
-            home: &self.home,
-            region: self.region,
-            landed: self.landed.is_landed(),
-            settled: self.landed.is_settled(),
-            flown: self.flown,
-            lost_rotor: self.lost_rotor(),
-            breach: self.fence_record.now,
-            set_points_are_recent: self.set_points_are_recent(),
-            mission_goes_on: self.mission_goes_on(),
-        }
-    }
-
     fn decide(&mut self, proposal: Proposal) {
         let (steering, home, region, requests) = proposal.into_parts();
-        self.steering = steering;
-        self.home = home;
-        self.region = region;
+        self.decided.steer(steering);
+        self.decided.move_home(home);
+        self.decided.look_at(region);
         for request in requests {
             match request {
-                Request::Say(notice) => self.notices.push(notice),
+                Request::Say(notice) => self.decided.pass_on(notice),
                 Request::Enter(mode) => self.enter(mode),
-                Request::ChangeSpeeds(SpeedChange::Mission(change)) => self.change_mission_speed(&change),
-                Request::ChangeSpeeds(SpeedChange::InMission(flown)) => self.apply_mission_speeds(flown),
-                Request::ChangeSpeeds(SpeedChange::ForgetMission) => self.forget_mission_speeds(),
-                Request::ChangeSpeeds(SpeedChange::ForgetCommands) => self.forget_command_speeds(),
-                Request::See(..) | Request::StopRotors(_) | Request::Terminate => {}
+                Request::GoOnIn(mode) => {
+                    self.decided.switch_to(mode);
+                    self.machines.offboard.forget();
+                }
+                Request::ChangeSpeeds(change) => self.use_speeds_or_say(self.machines.speeds.after(change)),
+                Request::See(cause, present) => self.see(cause, present),
+                Request::StopRotors(why) => self.stop_rotors(&why),
+                Request::Terminate => self.terminate(),
             }
         }
     }
 
-    /// Whether the mission goes on by itself on the ground.
-    pub(super) fn mission_goes_on(&self) -> bool {
-        let started = self.mission.progress() == super::mission::Progress::Started;
-        self.mode == Mode::Mission && started && self.flown && self.armed
+    /// Lets the failsafe take in whether a cause is there.
+    pub(super) fn see(&mut self, cause: Cause, present: bool) {
+        self.consult(|parts, situation, proposal| {
+            let change = parts.failsafe.take_in(situation, proposal, cause, present);
+            if (cause, change) == (Cause::Fence, Some(Change::Begun)) {
+                parts.fence.count(situation.time_us);
+            }
+        });
+    }
+
+    /// Changes to a mode, whatever speaks against it.
+    pub(super) fn enter(&mut self, mode: Mode) {
+        let before = self.decided.mode();
+        if mode != before {
+            let name = self.setup.identity().mode_name(mode);
+            self.decided.say(Severity::Info, format!("{name} mode"));
+        }
+        if before == Mode::Mission && mode != Mode::Mission {
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
+        }
+        self.decided.switch_to(mode);
+        self.machines.takeoff.forget();
+        self.machines.offboard.begin();
+        self.consult(|parts, situation, proposal| match mode {
+            Mode::Hold | Mode::Position => proposal.hold(situation),
+            Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
+            Mode::Mission => parts.mission.enter(situation, proposal),
+            Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
+                parts.return_home.begin(situation, proposal);
+            }
+            _ => {}
+        });
+    }
+
+    /// Ends the flight at once: the rotors stop wherever it is.
+    pub fn terminate(&mut self) {
+        if self.decided.is_armed() {
+            self.decided.terminate();
+            self.stop_rotors("Flight terminated");
+        }
+    }
+
+    /// Stops the rotors, and ends what ends with a flight.
+    pub(super) fn stop_rotors(&mut self, why: &str) {
+        self.decided.disarm();
+        self.machines.landing.disarm();
+        self.machines.failsafe.release();
+        self.machines.failsafe.forget(Cause::SetPointsLost);
+        self.machines.takeoff.forget();
+        self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::ForgetCommands));
+        self.consult(|_, situation, proposal| {
+            proposal.look_at(None);
+            proposal.idle(situation);
+        });
+        // A mode that ends on the ground is not one to be armed in.
+        let mode = self.decided.mode();
+        if mode == Mode::Mission {
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
+        }
+        if matches!(mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
+            self.decided.switch_to(self.setup.identity().first_mode());
+        }
+        self.decided.say(Severity::Info, why);
+    }
+
+    fn use_speeds_or_say(&mut self, speeds: Speeds) {
+        if let Err(error) = self.use_speeds(speeds) {
+            self.decided.say(Severity::Warning, format!("Speed not changed: {error}"));
+        }
+    }
+
+    /// Lets other limits of speed hold.
+    pub(super) fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ConfigurationError> {
+        let present = *self.closed_loop.simulation().configuration();
+        let configuration = with_speeds(present, speeds.in_force());
+        if configuration.limits != present.limits {
+            self.configure(&configuration)?;
+            self.consult(|parts, situation, proposal| parts.mission.replan(situation, proposal));
+        }
+        self.machines.speeds = speeds;
+        Ok(())
+    }
+
+    /// Changes the closed loop's parameters. Tunable ones change in flight, without a bump; the others only while it is
+    /// disarmed on the ground.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`]; nothing has changed then.
+    pub fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
+        let speeds = self.machines.speeds.keeping(&kept.limits);
+        self.configure(&with_speeds(*kept, speeds.in_force()))?;
+        self.machines.speeds = speeds;
+        Ok(())
+    }
+
+    /// Changes the closed loop, what is fixed in flight only while it is disarmed on the ground.
+    fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        if self.closed_loop.configure(configuration, self.stands())? {
+            self.perception.look_again(self.closed_loop.simulation());
+        }
+        Ok(())
     }
 }

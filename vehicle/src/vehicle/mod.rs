@@ -19,40 +19,45 @@
 
 mod arming;
 mod battery;
+mod closed_loop;
 mod conduct;
+mod decided;
 mod decision;
-#[allow(dead_code)] // Until the parts have moved.
 mod descent;
 mod failsafe;
-mod fence;
-mod flight;
+mod fence_watch;
 mod home;
 mod injection;
 mod landed;
+mod landing;
+mod machines;
+mod manual_control;
 mod mission;
 mod motion;
 mod notice;
 mod offboard;
 mod perception;
+mod plan_requests;
 mod plans;
-#[allow(dead_code)] // Until the parts have moved.
 mod proposal;
+mod queries;
 mod region;
 mod requests;
 mod return_home;
-mod rotor_loss;
+mod rotor_watch;
 mod set_point;
-#[allow(dead_code)] // Until the parts have moved.
+mod setup;
 mod situation;
 mod speeds;
 mod state;
 mod steering;
 mod sticks;
+mod takeoff;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
-pub use fence::FenceRecord;
+pub use fence_watch::FenceRecord;
 pub use home::Home;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};

@@ -1,104 +1,102 @@
 //! Set-points from outside.
 
 use super::failsafe::Cause;
-use super::notice::{Refusal, Severity};
+use super::notice::Severity;
+use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
-use super::state::Vehicle;
+use super::situation::Situation;
 use super::steering::SteeringKind;
 use crate::mode::Mode;
 
 /// What has come of set-points.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct SetPoints {
+pub struct Offboard {
     /// The latest, and when it came, µs.
-    pub latest: Option<(SetPoint, u64)>,
+    latest: Option<(SetPoint, u64)>,
     /// Whether it has been steered to.
-    pub applied: bool,
+    applied: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
-    pub expired: bool,
+    expired: bool,
 }
 
-impl Vehicle {
-    /// Takes a set-point. It proves that its sender is alive in every mode, and is flown in the offboard mode.
-    ///
-    /// # Errors
-    /// [`Refusal`] in ArduPilot's identity on the ground, where only a takeoff lifts off, and outside its mode.
-    pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
-        if self.identity.is_ardupilot() {
-            if self.mode != Mode::Offboard {
-                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
-            }
-            let position = matches!(set_point, SetPoint::Position(_));
-            if position && self.steering.kind() == SteeringKind::Idle {
-                return Err(Refusal::later("Set-point ignored: take off first"));
-            }
-        }
-        if let SetPoint::Position(position) = &set_point {
-            self.check_set_point(position)?;
-        }
-        self.see(Cause::SetPointsLost, false);
-        self.set_points =
-            SetPoints { latest: Some((set_point, self.time_us())), applied: false, expired: false };
-        Ok(())
+impl Offboard {
+    /// Takes a set-point that came at a time, µs.
+    pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
+        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false };
     }
 
-    /// Whether the latest set-point is young enough to fly on.
-    pub fn set_points_are_recent(&self) -> bool {
-        let timeout_us = (self.conduct.set_point_timeout_s * 1e6) as u64;
-        self.set_points.latest.is_some_and(|(_, time_us)| self.time_us() - time_us <= timeout_us)
+    /// Forgets all set-points: something else has been asked for.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Another mode begins: a set-point that is still young is steered to anew.
+    pub fn begin(&mut self) {
+        self.applied = false;
+    }
+
+    /// Whether the latest set-point has been steered to.
+    pub fn is_applied(&self) -> bool {
+        self.applied
+    }
+
+    /// Whether the latest set-point is not older than a timeout, s, at a time, µs.
+    pub fn is_recent(&self, time_us: u64, timeout_s: f64) -> bool {
+        let timeout_us = (timeout_s * 1e6) as u64;
+        self.latest.is_some_and(|(_, taken_us)| time_us - taken_us <= timeout_us)
     }
 
     /// One tick of the offboard mode.
-    pub(super) fn offboard(&mut self) {
-        if !self.set_points_are_recent() {
-            self.set_points_have_stopped();
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if !situation.set_points_are_recent {
+            match situation.identity.is_ardupilot() {
+                true => self.guided_without_news(situation, proposal),
+                false => proposal.see(Cause::SetPointsLost, true),
+            }
             return;
         }
-        if self.set_points.applied {
+        if self.applied {
             return;
         }
-        let Some((set_point, _)) = self.set_points.latest else { return };
+        let Some((set_point, _)) = self.latest else { return };
         match set_point {
-            SetPoint::Attitude(attitude) => self.steering.follow_attitude(&attitude, &self.outputs),
+            SetPoint::Attitude(attitude) => proposal.follow_attitude(situation, &attitude),
             // On the ground it idles until it is led upwards, and looks again with the next tick.
             SetPoint::Position(position)
-                if self.steering.kind() == SteeringKind::Idle
-                    && !position.leads_up(self.outputs.position_m.z) =>
+                if proposal.steering().kind() == SteeringKind::Idle
+                    && !position.leads_up(situation.outputs.position_m.z) =>
             {
                 return;
             }
             SetPoint::Position(position) => {
-                let limits = self.simulation.configuration().limits;
-                self.follow(&position.within(&limits));
+                proposal.follow(situation, &position.within(situation.limits()));
             }
         }
-        self.set_points.applied = true;
+        self.applied = true;
     }
 
-    fn set_points_have_stopped(&mut self) {
-        if self.identity.is_ardupilot() {
-            self.guided_without_news();
-            return;
-        }
-        self.see(Cause::SetPointsLost, true);
-        // With an action that leaves the mode as it is, it holds its place there.
-        if self.mode == Mode::Offboard && !self.set_points.expired {
-            self.set_points.expired = true;
-            self.hold();
+    /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds
+    /// its place there.
+    pub fn hold_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let follows = situation.mode == Mode::Offboard && situation.lost_rotor.is_none();
+        let stopped = !situation.set_points_are_recent && !situation.identity.is_ardupilot();
+        if follows && stopped && !self.expired {
+            self.expired = true;
+            proposal.hold(situation);
         }
     }
 
     /// ArduPilot stays in its mode: a velocity, an acceleration or an attitude ends, a position stays.
-    fn guided_without_news(&mut self) {
-        let ends = match self.set_points.latest {
+    fn guided_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let ends = match self.latest {
             Some((SetPoint::Position(position), _)) => position.runs_on(),
             Some((SetPoint::Attitude(_), _)) => true,
             None => false,
         };
-        if ends && !self.set_points.expired && self.steering.kind() != SteeringKind::Idle {
-            self.set_points.expired = true;
-            self.say(Severity::Warning, "Set-points stopped: holding");
-            self.follow(&PositionSetPoint::HOLD);
+        if ends && !self.expired && proposal.steering().kind() != SteeringKind::Idle {
+            self.expired = true;
+            proposal.say(Severity::Warning, "Set-points stopped: holding");
+            proposal.follow(situation, &PositionSetPoint::HOLD);
         }
     }
 }

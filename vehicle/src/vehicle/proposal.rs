@@ -22,6 +22,8 @@ pub enum Request {
     Say(Notice),
     /// Another mode, whatever speaks against it.
     Enter(Mode),
+    /// Another mode that goes on with what is done already; set-points from before it do not count in it.
+    GoOnIn(Mode),
     /// Limits of speed.
     ChangeSpeeds(SpeedChange),
     /// The failsafe is to take in whether a cause is there.
@@ -183,6 +185,11 @@ impl Proposal {
         self.requests.push(Request::Enter(mode));
     }
 
+    /// Asks for a mode that goes on with what is done already.
+    pub fn go_on_in(&mut self, mode: Mode) {
+        self.requests.push(Request::GoOnIn(mode));
+    }
+
     /// Asks for other limits of speed.
     pub fn change_speeds(&mut self, change: SpeedChange) {
         self.requests.push(Request::ChangeSpeeds(change));
@@ -193,7 +200,7 @@ impl Proposal {
         self.requests.push(Request::See(cause, present));
     }
 
-    /// Asks that the rotors stop, and says why.
+    /// Asks that the rotors stop and says why.
     pub fn stop_rotors(&mut self, why: impl Into<String>) {
         self.requests.push(Request::StopRotors(why.into()));
     }

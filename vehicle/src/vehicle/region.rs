@@ -3,10 +3,6 @@
 use nalgebra::Vector3;
 use quadrotor::PositionReference;
 
-use super::set_point::YawTarget;
-use super::state::Vehicle;
-use super::steering::Steering;
-use crate::mode::Mode;
 use crate::plan::Look;
 
 /// What is looked at.
@@ -22,7 +18,7 @@ pub enum RegionOfInterest {
 const TOO_NEAR_M: f64 = 0.5;
 
 impl RegionOfInterest {
-    /// What is looked at by a vehicle at `here_m`, NED, while home is at `home_z_m`.
+    /// What a vehicle at `here_m`, NED, looks at while home is at `home_z_m`.
     pub fn of(look: &Look, here_m: &Vector3<f64>, home_z_m: f64) -> Self {
         match look {
             Look::At(place) => {
@@ -44,53 +40,5 @@ impl RegionOfInterest {
         let (way, v) = ((place_m - reference.position_m).xy(), reference.velocity_m_s);
         let rate_rad_s = (way.y * v.x - way.x * v.y) / way.norm_squared();
         (way.norm() > TOO_NEAR_M).then(|| (libm::atan2(way.y, way.x) + offset_rad, rate_rad_s))
-    }
-}
-
-impl Vehicle {
-    /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
-    pub fn look(&mut self, look: Option<&Look>) {
-        let (here_m, home_z_m) = (self.outputs.position_m, self.home.position_m.z);
-        self.region = look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m));
-        if self.region.is_none() && self.chooses_its_heading() {
-            self.turn_on(None);
-        }
-    }
-
-    /// Heading to it, rad, and its rate, rad/s, on a leg that leads to `next_m`; `None` where there is nothing to be looked at.
-    pub(super) fn heading_to_region(&self, next_m: Option<Vector3<f64>>) -> Option<(f64, f64)> {
-        self.region?.heading(&self.outputs.setpoint, next_m)
-    }
-
-    /// Turns the vehicle to it where nothing else asks for a heading.
-    pub(super) fn turn_to_region(&mut self) {
-        if self.region.is_some() {
-            self.turn_on(self.heading_to_region(None));
-        }
-    }
-
-    /// Turns on to a heading, rad, that changes at a rate, rad/s; without one it stays.
-    fn turn_on(&mut self, heading: Option<(f64, f64)>) {
-        match (&mut self.steering, heading) {
-            (Steering::Goal(goal), Some((heading_rad, rate_rad_s))) => {
-                (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);
-            }
-            (Steering::Goal(goal), None) => goal.yaw_rate_rad_s = 0.0,
-            (Steering::Motion(motion), Some((heading_rad, rate_rad_s))) => {
-                motion.turn_to(YawTarget::Follow(heading_rad, rate_rad_s));
-            }
-            (Steering::Motion(motion), None) => motion.turn_to(YawTarget::Hold),
-            (Steering::Idle { .. } | Steering::Attitude { .. } | Steering::Descent { .. }, _) => {}
-        }
-    }
-
-    /// Whether the mode leaves the heading to the vehicle.
-    pub(super) fn chooses_its_heading(&self) -> bool {
-        match self.mode {
-            Mode::Hold | Mode::Takeoff => true,
-            // ArduPilot's guided mode, before set-points steer it.
-            Mode::Offboard => self.identity.is_ardupilot() && !self.set_points.applied,
-            _ => false,
-        }
     }
 }

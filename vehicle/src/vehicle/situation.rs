@@ -5,13 +5,15 @@ use quadrotor::{Configuration, Limits, Outputs};
 
 use super::conduct::Conduct;
 use super::home::Home;
+use super::notice::Refusal;
 use super::region::RegionOfInterest;
 use super::steering::{Steering, SteeringKind};
 use crate::estimation::{InstrumentHealth, Validity};
+use crate::fault::Sensor;
 use crate::fence::{Breach, Fence, Zones};
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{Plans, Site};
+use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
 /// The vehicle as it is now. It consists of references and small copies, so it can be made anew for every look, and made by
@@ -30,10 +32,10 @@ pub struct Situation<'a> {
     pub configuration: &'a Configuration,
     /// The local frame.
     pub frame: &'a LocalFrame,
-    /// The plans.
-    pub plans: &'a Plans,
     /// The zones of the fence plan.
     pub zones: &'a Zones,
+    /// The rally points.
+    pub rally_points: &'a [Place],
     /// What the closed loop shows, as far as the vehicle knows its motion.
     pub outputs: &'a Outputs,
     /// What the closed loop shows in truth.
@@ -74,6 +76,8 @@ pub struct Situation<'a> {
     pub breach: Option<Breach>,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
+    /// Whether it has been steered to.
+    pub set_point_is_applied: bool,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
 }
@@ -92,6 +96,45 @@ impl<'a> Situation<'a> {
     /// Whether there is a flight that could be ended, or flown otherwise.
     pub fn flies(&self) -> bool {
         self.armed && self.steering.kind() != SteeringKind::Idle
+    }
+
+    /// Whether the mode leaves the heading to the vehicle.
+    pub fn chooses_its_heading(&self) -> bool {
+        match self.mode {
+            Mode::Hold | Mode::Takeoff => true,
+            // ArduPilot's guided mode, before set-points steer it.
+            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_is_applied,
+            _ => false,
+        }
+    }
+
+    /// The mode in which it stays at a place that a command named.
+    pub fn holding_mode(&self) -> Mode {
+        if self.identity.is_ardupilot() { Mode::Offboard } else { Mode::Hold }
+    }
+
+    /// The instruments that do not work, by their names.
+    pub fn failed_instruments(&self) -> Vec<&'static str> {
+        let works = self.health;
+        let instruments = [
+            (works.gyroscope, Sensor::Gyroscope),
+            (works.accelerometer, Sensor::Accelerometer),
+            (works.magnetometer, Sensor::Magnetometer),
+            (works.barometer, Sensor::Barometer),
+            (works.gps, Sensor::Gps),
+        ];
+        instruments.into_iter().filter(|(works, _)| !works).map(|(_, sensor)| sensor.name()).collect()
+    }
+
+    /// Refuses what cannot be flown without a rotor.
+    ///
+    /// # Errors
+    /// [`Refusal::TemporarilyRejected`] that names the rotor.
+    pub fn refuse_without_rotor(&self) -> Result<(), Refusal> {
+        match self.lost_rotor {
+            Some(rotor) => Err(Refusal::later(format!("Rotor {} is lost: it can only land", rotor + 1))),
+            None => Ok(()),
+        }
     }
 
     /// What the places of plans refer to.

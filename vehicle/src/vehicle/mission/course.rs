@@ -3,7 +3,6 @@
 use nalgebra::Vector3;
 
 use super::super::descent::descend;
-use super::super::flight::is_slow_near;
 use super::super::motion::at_rest;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
@@ -11,6 +10,7 @@ use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::situation::Situation;
 use super::super::state::TICK_US;
 use super::super::steering::{Steering, SteeringKind};
+use super::super::takeoff::is_slow_near;
 use super::leg::{Carry, Leg, LegProgress};
 use super::route::Route;
 use super::task::{Task, TaskProgress, Then};

@@ -20,7 +20,7 @@ mod circle;
 mod course;
 mod jumps;
 mod leg;
-mod mission;
+mod machine;
 mod path;
 mod requests;
 mod route;
@@ -28,5 +28,5 @@ mod status;
 mod task;
 mod turning;
 
-pub use mission::{Mission, Progress};
+pub use machine::Mission;
 pub use status::{MissionState, MissionStatus};

@@ -14,7 +14,7 @@ impl Vehicle {
     /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
     pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
         self.may_enter(Mode::Mission)?;
-        self.refuse_without_rotor()?;
+        self.situation().refuse_without_rotor()?;
         self.consult(|parts, situation, proposal| {
             parts.mission.start(situation, proposal, first)?;
             parts.failsafe.release();
@@ -24,7 +24,7 @@ impl Vehicle {
 
     /// Whether there is something to be flown.
     pub fn has_mission(&self) -> bool {
-        self.mission.program().is_flown()
+        self.machines.mission.program().is_flown()
     }
 
     /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's.
@@ -44,7 +44,7 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] when nothing was paused.
     pub fn continue_mission(&mut self) -> Result<(), Refusal> {
-        self.mission.may_continue()?;
+        self.machines.mission.may_continue()?;
         self.start_mission(None)
     }
 
@@ -60,22 +60,17 @@ impl Vehicle {
 
     /// Where the mission is.
     pub fn mission_status(&self) -> MissionStatus {
-        self.mission.status(self.mode())
+        self.machines.mission.status(self.mode())
     }
 
     /// Items that were reached since the last call.
     pub fn take_reached_items(&mut self) -> Vec<u16> {
-        self.mission.take_reached()
+        self.machines.mission.take_reached()
     }
 
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
     pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
-        let leg = self.mission.leg()?;
+        let leg = self.machines.mission.leg()?;
         Some((leg.to_m, leg.cross_track_m(&self.outputs().position_m)))
-    }
-
-    /// The limits of speed have changed: corners are passed otherwise.
-    pub(in super::super) fn replan_leg(&mut self) {
-        self.consult(|parts, situation, proposal| parts.mission.replan(situation, proposal));
     }
 }

@@ -1,6 +1,6 @@
 //! How far a mission has come, for whoever watches it.
 
-use super::mission::{Mission, Progress};
+use super::machine::{Mission, Progress};
 use crate::mode::Mode;
 
 /// MISSION_STATE.

@@ -66,6 +66,11 @@ impl Mission {
         self.progress
     }
 
+    /// Whether it has begun, and is not complete.
+    pub fn is_started(&self) -> bool {
+        self.progress == Progress::Started
+    }
+
     /// Number of the step that is flown, or will be.
     pub fn current(&self) -> usize {
         self.current

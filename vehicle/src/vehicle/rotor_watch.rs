@@ -1,12 +1,13 @@
 //! The loss of a rotor: found by the rotors' measured speeds, told, and flown down without yaw control.
 
 use nalgebra::Vector3;
-use quadrotor::{PositionReference, RotorFault, RotorMonitor};
+use quadrotor::{PositionReference, RotorMonitor};
 
 use super::failsafe::Action;
 use super::motion::at_rest;
-use super::notice::{Refusal, Severity};
-use super::state::Vehicle;
+use super::notice::Severity;
+use super::proposal::Proposal;
+use super::situation::Situation;
 use super::steering::Steering;
 
 /// It keeps its height at first: until it spins it can neither brake nor stay upright.
@@ -47,74 +48,70 @@ impl RotorWatch {
     pub fn new(measured_rad_s: [f64; 4]) -> Self {
         Self { monitor: RotorMonitor::new(measured_rad_s), loss: None }
     }
-}
 
-impl Vehicle {
-    /// The rotor that is known to be lost: front (0), right, back or left (3). Until it is disarmed it only descends then.
+    /// The rotor that is known to be lost: front (0), right, back or left (3).
     pub fn lost_rotor(&self) -> Option<usize> {
-        self.rotors.loss.map(|loss| loss.rotor)
+        self.loss.map(|loss| loss.rotor)
     }
 
     /// Looks at the rotors' speeds after a tick of `dt_s`.
-    pub(super) fn watch_rotors(&mut self, dt_s: f64) {
-        let measured = self.truth.rotor_speed_rad_s;
-        if !self.armed {
-            self.rotors = RotorWatch::new(measured);
+    pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal, dt_s: f64) {
+        let measured = situation.truth.rotor_speed_rad_s;
+        if !situation.armed {
+            *self = Self::new(measured);
             return;
         }
-        let command = self.simulation.rotor_command_rad_s();
-        let airframe = &self.simulation.configuration().airframe;
-        let lost = self.rotors.monitor.update(airframe, &command, &measured, dt_s);
-        if let (Some(rotor), None) = (lost, self.rotors.loss) {
-            self.lose(rotor);
+        let airframe = &situation.configuration.airframe;
+        let lost = self.monitor.update(airframe, &situation.rotor_command_rad_s, &measured, dt_s);
+        if let (Some(rotor), None) = (lost, self.loss) {
+            self.lose(rotor, situation, proposal);
         }
-        let Some(loss) = self.rotors.loss else { return };
-        if !loss.falls && self.is_another_lost(loss.rotor) {
-            self.rotors.loss = Some(Loss { falls: true, ..loss });
-            self.say(Severity::Critical, "More than one rotor lost: it falls");
+        let Some(rotor) = self.lost_rotor() else { return };
+        let another = self.is_another_lost(rotor);
+        if let Some(loss) = self.loss.as_mut().filter(|loss| another && !loss.falls) {
+            loss.falls = true;
+            proposal.say(Severity::Critical, "More than one rotor lost: it falls");
         }
     }
 
     fn is_another_lost(&self, rotor: usize) -> bool {
-        (0..4).any(|other| other != rotor && self.rotors.monitor.is_lost(other))
+        (0..4).any(|other| other != rotor && self.monitor.is_lost(other))
     }
 
-    fn lose(&mut self, rotor: usize) {
+    fn lose(&mut self, rotor: usize, situation: &Situation, proposal: &mut Proposal) {
         let number = rotor + 1;
-        if self.landed.is_landed() {
-            self.stop_rotors(&format!("Disarmed: rotor {number} failed"));
+        if situation.landed {
+            proposal.stop_rotors(format!("Disarmed: rotor {number} failed"));
             return;
         }
         let alone = !self.is_another_lost(rotor);
-        let descends = alone && self.conduct.failsafe.rotor_failure == Action::Land;
+        let descends = alone && situation.conduct.failsafe.rotor_failure == Action::Land;
         let what = if descends { ": descending without yaw control" } else { "" };
-        self.say(Severity::Critical, format!("Rotor {number} lost{what}"));
-        let since_us = self.time_us();
+        proposal.say(Severity::Critical, format!("Rotor {number} lost{what}"));
+        let since_us = situation.time_us;
         // The failsafe sees it, and lands or terminates.
-        self.rotors.loss =
-            Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
+        self.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
     }
 
     /// One tick of the descent on the rotors that are left.
-    pub(super) fn descend_without_rotor(&mut self) {
-        let Some(mut loss) = self.rotors.loss else { return };
-        let (time_us, now) = (self.time_us(), self.outputs);
+    pub fn descend(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some(loss) = &mut self.loss else { return };
+        let (time_us, now) = (situation.time_us, situation.outputs);
         let lasting_us = time_us - loss.since_us;
         let slow = now.velocity_m_s.xy().norm() < SLOW_M_S && lasting_us >= SETTLING_US;
         if loss.place_m.is_none() && (slow || lasting_us >= LONGEST_BRAKING_US) {
             loss.place_m = Some(now.position_m.xy().into());
         }
-        let feet = self.felt();
+        let feet = situation.felt();
         let touching = -feet.position_m.z < TOUCHING_M && feet.velocity_m_s.z < TOUCHING_M_S;
         loss.touching_since_us = if touching { loss.touching_since_us.or(Some(time_us)) } else { None };
-        self.rotors.loss = Some(loss);
         if loss.touching_since_us.is_some_and(|since_us| time_us - since_us >= TOUCHED_US) {
-            self.stop_rotors(&format!("Disarmed: landed without rotor {}", loss.rotor + 1));
+            proposal.stop_rotors(format!("Disarmed: landed without rotor {}", loss.rotor + 1));
             return;
         }
         let reference = match loss.place_m {
             Some([x, y]) => {
-                let landing = self.conduct.land_speed_m_s;
+                let landing = situation.conduct.land_speed_m_s;
                 let sink = landing + SLOWING_PER_S * (-now.position_m.z - 2.0);
                 let sink = sink.clamp(landing.min(FASTEST_SINK_M_S), FASTEST_SINK_M_S);
                 PositionReference {
@@ -124,21 +121,6 @@ impl Vehicle {
             }
             None => at_rest(now.position_m, now.attitude_rad.z),
         };
-        self.steering = Steering::Descent { lost_rotor: loss.rotor, reference };
-    }
-
-    /// Refuses what cannot be flown without a rotor.
-    pub(super) fn refuse_without_rotor(&self) -> Result<(), Refusal> {
-        match self.lost_rotor() {
-            Some(rotor) => Err(Refusal::later(format!("Rotor {} is lost: it can only land", rotor + 1))),
-            None => Ok(()),
-        }
-    }
-
-    /// Rotors that do not answer on the ground.
-    pub(super) fn rotor_obstacles(&self) -> impl Iterator<Item = String> {
-        let silent = |fault: Option<RotorFault>| matches!(fault, Some(RotorFault::Off | RotorFault::Stuck));
-        let faults = (1..).zip(self.faults.rotors());
-        faults.filter(move |(_, fault)| silent(*fault)).map(|(number, _)| format!("rotor {number} failed"))
+        proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
     }
 }
