@@ -3,7 +3,7 @@
 use quadrotor::RotorFault;
 
 use super::notice::{Refusal, Severity};
-use super::plans::check_mission_places;
+use super::plans::check_way;
 use super::set_point::PositionSetPoint;
 use super::state::Vehicle;
 use crate::mode::Mode;
@@ -37,7 +37,7 @@ impl Vehicle {
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
-                let fault = check_mission_places(&situation).err();
+                let fault = check_way(&situation, self.machines.mission.program()).err();
                 obstacles.extend(fault.map(|fault| format!("mission: {fault}")));
             }
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {

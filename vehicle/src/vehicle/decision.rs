@@ -64,18 +64,15 @@ impl Vehicle {
             self.decided.say(Severity::Info, format!("{name} mode"));
         }
         if before == Mode::Mission && mode != Mode::Mission {
-            self.leave_mission();
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
         self.machines.offboard.begin();
-        if mode == Mode::Mission {
-            self.enter_mission();
-            return;
-        }
         self.consult(|parts, situation, proposal| match mode {
             Mode::Hold | Mode::Position => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
+            Mode::Mission => parts.mission.enter(situation, proposal),
             Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
                 parts.return_home.begin(situation, proposal);
             }
@@ -106,7 +103,7 @@ impl Vehicle {
         // A mode that ends on the ground is not one to be armed in.
         let mode = self.decided.mode();
         if mode == Mode::Mission {
-            self.leave_mission();
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
         if matches!(mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
             self.decided.switch_to(self.setup.identity().first_mode());
@@ -126,7 +123,7 @@ impl Vehicle {
         let configuration = with_speeds(present, speeds.in_force());
         if configuration.limits != present.limits {
             self.configure(&configuration)?;
-            self.replan_leg();
+            self.consult(|parts, situation, proposal| parts.mission.replan(situation, proposal));
         }
         self.machines.speeds = speeds;
         Ok(())

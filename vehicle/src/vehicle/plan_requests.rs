@@ -1,9 +1,9 @@
 //! Replacing the plans of the vehicle.
 
 use super::notice::Severity;
-use super::plans::{check_mission_places, check_places};
+use super::plans::{check_rally_points, check_way};
 use super::state::Vehicle;
-use crate::plan::{MissionItem, PlanFault, PlanKind, check};
+use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
 
 impl Vehicle {
     /// Replaces a plan.
@@ -25,15 +25,28 @@ impl Vehicle {
     fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
         let site = self.site();
         check::plan(kind, &items, &site)?;
-        if kind != PlanKind::Fence {
-            check_places(&self.situation(), kind, &items)?;
+        match kind {
+            PlanKind::Mission => return self.take_mission(items, &site, amended),
+            PlanKind::Fence => self.plans.take_fence(items, &site)?,
+            PlanKind::Rally => {
+                let points = compile::rally_points(&items, &site);
+                check_rally_points(&self.situation(), &points)?;
+                self.plans.take_rally_points(items, points);
+            }
         }
-        self.plans.take(kind, items, &site)?;
-        if kind == PlanKind::Mission {
-            self.mission_has_changed(amended);
-        } else if let Err(fault) = check_mission_places(&self.situation()) {
+        if let Err(fault) = check_way(&self.situation(), self.machines.mission.program()) {
             self.decided.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
         }
+        Ok(())
+    }
+
+    fn take_mission(&mut self, items: Vec<MissionItem>, site: &Site, amended: bool) -> Result<(), PlanFault> {
+        let program = compile::mission(&items, site);
+        check_way(&self.situation(), &program)?;
+        self.plans.take_mission(items);
+        self.consult(|parts, situation, proposal| {
+            parts.mission.replace(situation, proposal, program, amended);
+        });
         Ok(())
     }
 }

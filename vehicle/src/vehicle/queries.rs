@@ -163,7 +163,7 @@ impl Vehicle {
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
     pub fn landed_state(&self) -> LandedState {
-        let (climbs, descends) = self.mission_task_is_vertical();
+        let (climbs, descends) = self.machines.mission.is_vertical();
         match self.mode() {
             _ if self.machines.landing.is_landed() => LandedState::OnGround,
             Mode::Mission if climbs => LandedState::TakingOff,

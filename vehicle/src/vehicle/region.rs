@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::PositionReference;
 
-use crate::plan::{MissionItem, Site, command};
+use crate::plan::Look;
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,25 +18,14 @@ pub enum RegionOfInterest {
 const TOO_NEAR_M: f64 = 0.5;
 
 impl RegionOfInterest {
-    /// What an item names: DO_SET_ROI and its successors. `here_m` stands in for a place that an item leaves open, `items` are
-    /// those of the mission.
-    pub fn of(item: &MissionItem, site: &Site, here_m: &Vector3<f64>, items: &[MissionItem]) -> Option<Self> {
-        let place = |item: &MissionItem| {
-            site.place(item).map(|place| {
+    /// What a vehicle at `here_m`, NED, looks at while home is at `home_z_m`.
+    pub fn of(look: &Look, here_m: &Vector3<f64>, home_z_m: f64) -> Self {
+        match look {
+            Look::At(place) => {
                 let [x, y] = place.horizontal_m.unwrap_or([here_m.x, here_m.y]);
-                Self::Place(Vector3::new(x, y, place.down_m.unwrap_or(0.0)))
-            })
-        };
-        match (item.command, item.parameter_or(1, 0.0) as i64) {
-            (command::DO_SET_ROI_LOCATION, _) | (command::DO_SET_ROI, 3) => place(item),
-            (command::DO_SET_ROI_WPNEXT_OFFSET, _) => {
-                Some(Self::NextWaypoint(item.parameter_or(7, 0.0).to_radians()))
+                Self::Place(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(0.0)))
             }
-            (command::DO_SET_ROI, 1) => Some(Self::NextWaypoint(0.0)),
-            (command::DO_SET_ROI, 2) => items.get(item.parameter(2) as usize).and_then(place),
-            // ArduPilot's clients send the place without saying that it is one.
-            (command::DO_SET_ROI, 0) if item.position.iter().any(|value| *value != 0.0) => place(item),
-            _ => None,
+            Look::NextWaypoint { offset_rad } => Self::NextWaypoint(*offset_rad),
         }
     }
 

@@ -14,12 +14,10 @@ use super::steering::{Steering, SteeringKind};
 use super::sticks::Sticks;
 use crate::fault::Fault;
 use crate::mode::Mode;
-use crate::plan::{FaultCode, MissionItem, PlanKind, check, command};
+use crate::plan::{ChangeSpeed, Look};
 
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
-/// MAV_ROI that is an item of the mission.
-const ROI_OF_ITEM: f64 = 2.0;
 
 /// Where to go and stay; what is `None` stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -245,13 +243,12 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Changes a limit of speed until the rotors stop: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it). In
-    /// a mission it goes before the mission's own, until that changes it again.
+    /// Changes a limit of speed until the rotors stop. In a mission it goes before the mission's own, until that changes it again.
     ///
     /// # Errors
-    /// [`Refusal`] of a type or a speed that there is not.
-    pub fn change_speed(&mut self, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
-        let speeds = self.machines.speeds.commanded(kind, speed_m_s)?;
+    /// [`Refusal`] of a speed that there is not.
+    pub fn change_speed(&mut self, change: &ChangeSpeed) -> Result<(), Refusal> {
+        let speeds = self.machines.speeds.commanded(change);
         self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
     }
 
@@ -263,40 +260,14 @@ impl Vehicle {
         self.consult(|_, situation, proposal| proposal.set_home(situation, position_m, yaw_rad))
     }
 
-    /// DO_SET_ROI and its successors, as a command: until another one, or until the rotors stop.
-    ///
-    /// # Errors
-    /// [`Refusal`] of what is no region, with the reason.
-    pub fn look(&mut self, item: &MissionItem) -> Result<(), Refusal> {
-        let number = self.first_mission_item();
-        check::item(PlanKind::Mission, number, item, &self.site()).map_err(|fault| match fault.code {
-            FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
-            FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
-            _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
-        })?;
-        let count = self.mission_items().len();
-        let named = item.parameter(2);
-        if item.command == command::DO_SET_ROI
-            && item.parameter(1) == ROI_OF_ITEM
-            && !(0.0..count as f64).contains(&named)
-        {
-            return Err(Refusal::denied(format!("Region of interest: no item {named} among {count}")));
-        }
-        self.look_at(item);
+    /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
+    pub fn look(&mut self, look: Option<&Look>) {
         self.consult(|_, situation, proposal| {
-            if proposal.region().is_none() && situation.chooses_its_heading() {
+            let (here_m, home_z_m) = (situation.outputs.position_m, situation.home.position_m.z);
+            proposal.look_at(look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m)));
+            if look.is_none() && situation.chooses_its_heading() {
                 proposal.turn_on(None);
             }
-        });
-        Ok(())
-    }
-
-    /// The same as an item of the mission.
-    pub(super) fn look_at(&mut self, item: &MissionItem) {
-        self.consult(|_, situation, proposal| {
-            let items = situation.plans.get(PlanKind::Mission).items();
-            let here_m = &situation.outputs.position_m;
-            proposal.look_at(RegionOfInterest::of(item, &proposal.site(situation), here_m, items));
         });
     }
 }

@@ -11,7 +11,6 @@ use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::steering::Steering;
 use crate::fence::route_m;
-use crate::plan::PlanKind;
 
 /// Part of the way home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -107,9 +106,7 @@ fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
 /// it allows none. North and east, m.
 fn nearest_safe_point_m(situation: &Situation) -> [f64; 2] {
     let home = situation.home.position_m;
-    let site = situation.site();
-    let rally = situation.plans.get(PlanKind::Rally).items().iter();
-    let rally = rally.filter_map(|item| site.place(item)?.horizontal_m);
+    let rally = situation.rally_points.iter().filter_map(|place| place.horizontal_m);
     let here = situation.outputs.position_m.xy();
     let distance = |[x, y]: &[f64; 2]| libm::hypot(x - here.x, y - here.y);
     core::iter::once([home.x, home.y])

@@ -13,7 +13,7 @@ use crate::fault::Sensor;
 use crate::fence::{Breach, Fence, Zones};
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{Plans, Site};
+use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
 /// The vehicle as it is now. It consists of references and small copies, so it can be made anew for every look, and made by
@@ -32,10 +32,10 @@ pub struct Situation<'a> {
     pub configuration: &'a Configuration,
     /// The local frame.
     pub frame: &'a LocalFrame,
-    /// The plans.
-    pub plans: &'a Plans,
     /// The zones of the fence plan.
     pub zones: &'a Zones,
+    /// The rally points.
+    pub rally_points: &'a [Place],
     /// What the closed loop shows, as far as the vehicle knows its motion.
     pub outputs: &'a Outputs,
     /// What the closed loop shows in truth.
@@ -86,6 +86,11 @@ impl<'a> Situation<'a> {
     /// Limits that are in force.
     pub fn limits(&self) -> &'a Limits {
         &self.configuration.limits
+    }
+
+    /// So many seconds from now, µs.
+    pub fn after_us(&self, seconds: f64) -> u64 {
+        self.time_us.saturating_add((seconds * 1e6) as u64)
     }
 
     /// Whether there is a flight that could be ended, or flown otherwise.

@@ -3,18 +3,13 @@
 
 use quadrotor::{Configuration, Limits};
 
-use super::notice::Refusal;
+use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 
 /// How limits of speed change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpeedChange {
-    /// DO_CHANGE_SPEED of a mission: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it).
-    Mission {
-        /// SPEED_TYPE.
-        kind: f64,
-        /// m/s.
-        speed_m_s: f64,
-    },
+    /// The mission asks for another one.
+    Mission(ChangeSpeed),
     /// The mission's speeds hold while it is flown.
     InMission(bool),
     /// Another mission, or the same from its beginning, has asked for no speed yet.
@@ -33,10 +28,6 @@ pub struct Speeds {
     /// Whether the mission is flown.
     in_mission: bool,
 }
-
-/// Speeds that DO_CHANGE_SPEED has for "as it is" and "as the parameter has it".
-const KEEP: f64 = -1.0;
-const DEFAULT: f64 = -2.0;
 
 impl Speeds {
     /// The parameters' alone.
@@ -71,9 +62,9 @@ impl Speeds {
     /// The same after a change.
     pub fn after(mut self, change: SpeedChange) -> Self {
         match change {
-            SpeedChange::Mission { kind, speed_m_s } => {
-                if let Some(axis) = axis(kind).filter(|_| speed_m_s != KEEP) {
-                    self.by_mission_m_s[axis] = asked(speed_m_s);
+            SpeedChange::Mission(change) => {
+                if let Some((axis, limit_m_s)) = asked(&change) {
+                    self.by_mission_m_s[axis] = limit_m_s;
                 }
             }
             SpeedChange::InMission(in_mission) => self.in_mission = in_mission,
@@ -83,24 +74,28 @@ impl Speeds {
         self
     }
 
-    /// The same after a command: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it). In a mission it goes before
-    /// the mission's own, until that changes it again.
-    ///
-    /// # Errors
-    /// [`Refusal::Denied`] of a type that there is not.
-    pub fn commanded(mut self, kind: f64, speed_m_s: f64) -> Result<Self, Refusal> {
-        let axis = axis(kind).ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
-        if speed_m_s != KEEP {
-            self.by_command_m_s[axis] = asked(speed_m_s);
+    /// The same after a command. In a mission it goes before the mission's own, until that changes it again.
+    pub fn commanded(mut self, change: &ChangeSpeed) -> Self {
+        if let Some((axis, limit_m_s)) = asked(change) {
+            self.by_command_m_s[axis] = limit_m_s;
             self.by_mission_m_s[axis] = self.by_mission_m_s[axis].filter(|_| !self.in_mission);
         }
-        Ok(self)
+        self
     }
 }
 
-/// What is asked for; `None` for the parameter's.
-fn asked(speed_m_s: f64) -> Option<f64> {
-    Some(speed_m_s).filter(|speed| *speed != DEFAULT)
+/// Place of the limit that changes, and what is asked for: m/s, or `None` for the parameter's. Nothing if it stays as it is.
+fn asked(change: &ChangeSpeed) -> Option<(usize, Option<f64>)> {
+    let axis = match change.kind {
+        SpeedKind::Horizontal => 0,
+        SpeedKind::Up => 1,
+        SpeedKind::Down => 2,
+    };
+    match change.target {
+        SpeedTarget::Keep => None,
+        SpeedTarget::Default => Some((axis, None)),
+        SpeedTarget::Limit(limit_m_s) => Some((axis, Some(limit_m_s))),
+    }
 }
 
 fn of(limits: &Limits) -> [f64; 3] {
@@ -112,9 +107,4 @@ pub fn with_speeds(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Co
     let limits = &mut configuration.limits;
     [limits.speed_horizontal_m_s, limits.speed_up_m_s, limits.speed_down_m_s] = speeds_m_s;
     configuration
-}
-
-/// Place of a SPEED_TYPE: 0 (through the air) and 1 (over the ground) are horizontal, 2 is up, 3 is down.
-fn axis(kind: f64) -> Option<usize> {
-    [0.0, 1.0, 2.0, 3.0].iter().position(|number| *number == kind).map(|number| number.saturating_sub(1))
 }

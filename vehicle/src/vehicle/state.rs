@@ -30,7 +30,7 @@ use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::ScheduledFault;
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{Plans, Site};
+use crate::plan::{PlanKind, Plans, Site, compile};
 use crate::world::{Geodetic, LocalFrame, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
@@ -94,6 +94,7 @@ impl Vehicle {
         let home_m = Vector3::from(configuration.initial.position_m);
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
+        let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
         let machines = Machines {
             injection: Injection::new(settings.faults.clone()),
             battery: Battery::default(),
@@ -105,19 +106,17 @@ impl Vehicle {
             manual_control: ManualControl::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
-            mission: Mission::default(),
+            mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
         };
-        let mut vehicle = Self {
+        Ok(Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
             closed_loop,
             perception,
             plans: KnownPlans::new(settings.plans.clone(), &site),
             decided: Decided::new(settings.identity.first_mode(), home),
             machines,
-        };
-        vehicle.mission_has_changed(false);
-        Ok(vehicle)
+        })
     }
 
     /// What the parts see of the vehicle now.
@@ -166,20 +165,16 @@ impl Vehicle {
 
     /// One tick of the armed vehicle, by mode.
     fn fly(&mut self) {
-        let mode = self.decided.mode();
-        if mode == Mode::Mission && self.lost_rotor().is_none() {
-            self.fly_mission();
-        } else {
-            self.consult(|parts, situation, proposal| match mode {
-                _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
-                Mode::Takeoff => parts.takeoff.step(situation, proposal),
-                Mode::Hold | Mode::Mission => {}
-                Mode::Position => parts.manual_control.step(situation, proposal),
-                Mode::Offboard => parts.offboard.step(situation, proposal),
-                Mode::Land => descend(situation, proposal, None),
-                Mode::Return => parts.return_home.step(situation, proposal),
-            });
-        }
+        self.consult(|parts, situation, proposal| match situation.mode {
+            _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
+            Mode::Takeoff => parts.takeoff.step(situation, proposal),
+            Mode::Hold => {}
+            Mode::Position => parts.manual_control.step(situation, proposal),
+            Mode::Offboard => parts.offboard.step(situation, proposal),
+            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Land => descend(situation, proposal, None),
+            Mode::Return => parts.return_home.step(situation, proposal),
+        });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
             if situation.chooses_its_heading() {
@@ -246,8 +241,8 @@ fn situation<'a>(
         conduct,
         configuration: simulation.configuration(),
         frame: setup.frame(),
-        plans: plans.plans(),
         zones: plans.zones(),
+        rally_points: plans.rally_points(),
         outputs,
         truth: perception.truth(),
         validity: perception.validity(),

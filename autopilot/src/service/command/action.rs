@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use vehicle::fault::Fault;
-use vehicle::plan::{self, MissionItem};
+use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile};
 use vehicle::world::Geodetic;
 use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
@@ -53,7 +53,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::NAV_GUIDED_ENABLE => vehicle.set_mode(Mode::Hold),
         number::CONDITION_YAW => turn(vehicle, command),
         number::DO_SET_MODE => set_mode(autopilot, command),
-        number::DO_CHANGE_SPEED => vehicle.change_speed(command.parameter(1), command.parameter(2)),
+        number::DO_CHANGE_SPEED => change_speed(vehicle, command.parameter(1), command.parameter(2)),
         number::DO_SET_HOME => set_home(vehicle, command),
         number::DO_FLIGHTTERMINATION if command.parameter(1) > 0.5 => {
             vehicle.terminate();
@@ -64,7 +64,7 @@ pub fn handle(autopilot: &mut Autopilot, origin: &Origin, command: &Command) -> 
         number::DO_SET_ROI_LOCATION
         | number::DO_SET_ROI_WPNEXT_OFFSET
         | number::DO_SET_ROI_NONE
-        | number::DO_SET_ROI => vehicle.look(&as_item(command)),
+        | number::DO_SET_ROI => look(vehicle, command),
         number::DO_FENCE_ENABLE => enable_fence(autopilot, command),
         number::DO_PAUSE_CONTINUE if command.parameter(1) == 0.0 => vehicle.pause(),
         number::DO_PAUSE_CONTINUE => vehicle.continue_mission(),
@@ -227,7 +227,27 @@ fn reposition(autopilot: &mut Autopilot, command: &Command) -> Result<(), Refusa
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
     autopilot.vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
-    if speed_m_s > 0.0 { autopilot.vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
+    if speed_m_s > 0.0 { change_speed(&mut autopilot.vehicle, 1.0, speed_m_s) } else { Ok(()) }
+}
+
+/// SPEED_TYPE, and a speed.
+fn change_speed(vehicle: &mut Vehicle, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
+    let change = ChangeSpeed::of(kind, speed_m_s)
+        .ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
+    vehicle.change_speed(&change)
+}
+
+/// DO_SET_ROI and its successors.
+fn look(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
+    let items = vehicle.plans().get(PlanKind::Mission).items();
+    let look =
+        compile::look(&as_item(command), items, &vehicle.site()).map_err(|fault| match fault.code {
+            FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
+            FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
+            _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
+        })?;
+    vehicle.look(look.as_ref());
+    Ok(())
 }
 
 /// The same as an item of a mission.
