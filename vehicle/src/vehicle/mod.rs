@@ -25,6 +25,7 @@ mod decided;
 mod decision;
 mod descent;
 mod failsafe;
+mod failsafe_watch;
 mod fence_watch;
 mod home;
 mod injection;

@@ -1,8 +1,9 @@
-//! Replacing the plans of the vehicle.
+//! What may be asked about plans: to replace one, and to fly the mission.
 
-use super::notice::Severity;
+use super::notice::{Refusal, Severity};
 use super::plans::{check_rally_points, check_way};
 use super::state::Vehicle;
+use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
 
 impl Vehicle {
@@ -48,5 +49,50 @@ impl Vehicle {
             parts.mission.replace(situation, proposal, program, amended);
         });
         Ok(())
+    }
+
+    /// Starts the mission, or goes on with it; `first` names the item to begin with.
+    ///
+    /// # Errors
+    /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
+    pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        self.may_enter(Mode::Mission)?;
+        self.situation().refuse_without_rotor()?;
+        self.consult(|parts, situation, proposal| {
+            parts.mission.start(situation, proposal, first)?;
+            parts.failsafe.release();
+            Ok(())
+        })
+    }
+
+    /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's.
+    ///
+    /// # Errors
+    /// [`Refusal`] when it cannot hold now.
+    pub fn pause(&mut self) -> Result<(), Refusal> {
+        if self.mode() != Mode::Mission || !self.identity().is_ardupilot() {
+            return self.set_mode(Mode::Hold);
+        }
+        self.consult(|parts, situation, proposal| parts.mission.pause(situation, proposal));
+        Ok(())
+    }
+
+    /// Goes on with the item at which the mission was left.
+    ///
+    /// # Errors
+    /// [`Refusal`] when nothing was paused.
+    pub fn continue_mission(&mut self) -> Result<(), Refusal> {
+        self.machines.mission.may_continue()?;
+        self.start_mission(None)
+    }
+
+    /// Makes an item the current one; with `reset` the jumps count anew.
+    ///
+    /// # Errors
+    /// [`Refusal`] for an item that there is not.
+    pub fn set_mission_item(&mut self, index: usize, reset: bool) -> Result<(), Refusal> {
+        self.consult(|parts, situation, proposal| {
+            parts.mission.set_current(situation, proposal, index, reset)
+        })
     }
 }

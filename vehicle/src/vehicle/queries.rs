@@ -9,6 +9,7 @@ use super::failsafe::Failsafe;
 use super::fence_watch::FenceRecord;
 use super::home::Home;
 use super::landed::LandedState;
+use super::mission::MissionStatus;
 use super::speeds::with_speeds;
 use super::state::Vehicle;
 use super::steering::{Steering, SteeringKind};
@@ -218,5 +219,26 @@ impl Vehicle {
     pub fn home_item(&self) -> MissionItem {
         let place = self.frame().to_geodetic(&self.home().position_m);
         MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
+    }
+
+    /// Whether there is something to be flown.
+    pub fn has_mission(&self) -> bool {
+        self.machines.mission.program().is_flown()
+    }
+
+    /// Where the mission is.
+    pub fn mission_status(&self) -> MissionStatus {
+        self.machines.mission.status(self.mode())
+    }
+
+    /// Items that were reached since the last call.
+    pub fn take_reached_items(&mut self) -> Vec<u16> {
+        self.machines.mission.take_reached()
+    }
+
+    /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
+    pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
+        let leg = self.machines.mission.leg()?;
+        Some((leg.to_m, leg.cross_track_m(&self.outputs().position_m)))
     }
 }

@@ -13,7 +13,7 @@ use crate::estimation::{InstrumentHealth, Validity};
 use crate::fence::Zones;
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::Plans;
+use crate::plan::Place;
 use crate::world::{Geodetic, LocalFrame};
 
 /// Everything that a situation refers to.
@@ -21,8 +21,8 @@ pub struct Scene {
     pub identity: Identity,
     pub conduct: Conduct,
     pub configuration: Configuration,
-    pub plans: Plans,
     pub zones: Zones,
+    pub rally_points: Vec<Place>,
     /// Known and true.
     pub outputs: Outputs,
     pub armed: bool,
@@ -48,8 +48,8 @@ impl Scene {
             identity: Identity::Px4,
             conduct: Conduct::new(false),
             configuration,
-            plans: Plans::default(),
             zones: Zones::default(),
+            rally_points: Vec::new(),
             outputs: Outputs {
                 time_us: 100_000_000,
                 position_m: position_m.into(),
@@ -120,8 +120,8 @@ impl Scene {
             conduct: &self.conduct,
             configuration: &self.configuration,
             frame: &self.frame,
-            plans: &self.plans,
             zones: &self.zones,
+            rally_points: &self.rally_points,
             outputs: &self.outputs,
             truth: &self.outputs,
             validity: self.validity,

@@ -13,7 +13,6 @@
 //!
 //! [`Mission`] is the machine: it owns the program and how far it has come. `course` owns what is done for the present step,
 //! `actions` what is done on the way, `jumps` how often each jump was made. They look at a situation and ask in a proposal.
-//! `requests` connects the machine with the vehicle.
 
 mod actions;
 mod circle;
@@ -22,7 +21,6 @@ mod jumps;
 mod leg;
 mod machine;
 mod path;
-mod requests;
 mod route;
 mod status;
 mod task;

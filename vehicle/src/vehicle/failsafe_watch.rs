@@ -1,10 +1,10 @@
 //! What the failsafe looks at, and what it asks for.
 
-use super::{Action, Cause, Change, Failsafe};
+use super::failsafe::{Action, Cause, Change, Failsafe};
+use super::notice::{Refusal, Severity};
+use super::proposal::Proposal;
+use super::situation::Situation;
 use crate::mode::Mode;
-use crate::vehicle::notice::{Refusal, Severity};
-use crate::vehicle::proposal::Proposal;
-use crate::vehicle::situation::Situation;
 
 impl Failsafe {
     /// Whether a cause is there now. The end of set-points is told where it is noticed, and not looked for.
