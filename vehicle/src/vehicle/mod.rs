@@ -17,12 +17,10 @@
 //!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
 //! ```
 
-mod arming;
 mod battery;
 mod closed_loop;
 mod conduct;
 mod decided;
-mod decision;
 mod descent;
 mod failsafe;
 mod failsafe_watch;
@@ -38,12 +36,10 @@ mod motion;
 mod notice;
 mod offboard;
 mod perception;
-mod plan_requests;
 mod plans;
 mod proposal;
-mod queries;
 mod region;
-mod requests;
+mod reposition;
 mod return_home;
 mod rotor_watch;
 #[cfg(test)]
@@ -66,7 +62,7 @@ pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
 pub use motion::wrapped;
 pub use notice::{Notice, Refusal, Severity};
-pub use requests::Reposition;
+pub use reposition::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 pub use state::{TICK_US, Vehicle, VehicleSettings};
 pub use steering::SteeringKind;

@@ -1,5 +1,11 @@
 //! The vehicle's state and one tick of it.
 
+mod arming;
+mod decision;
+mod plan_requests;
+mod queries;
+mod requests;
+
 use nalgebra::Vector3;
 use quadrotor::{Configuration, ConfigurationError, SimulationError};
 use serde::{Deserialize, Serialize};
@@ -66,12 +72,12 @@ pub struct VehicleSettings {
 /// The vehicle.
 #[derive(Debug)]
 pub struct Vehicle {
-    pub(super) setup: Setup,
-    pub(super) closed_loop: ClosedLoop,
-    pub(super) perception: Perception,
-    pub(super) plans: KnownPlans,
-    pub(super) decided: Decided,
-    pub(super) machines: Machines,
+    setup: Setup,
+    closed_loop: ClosedLoop,
+    perception: Perception,
+    plans: KnownPlans,
+    decided: Decided,
+    machines: Machines,
 }
 
 impl Vehicle {
@@ -120,13 +126,13 @@ impl Vehicle {
     }
 
     /// What the parts see of the vehicle now.
-    pub(super) fn situation(&self) -> Situation<'_> {
+    fn situation(&self) -> Situation<'_> {
         let Self { setup, closed_loop, perception, plans, decided, machines } = self;
         situation(setup, closed_loop, perception, plans, decided, machines)
     }
 
     /// What the parts see of the vehicle now, and the parts.
-    pub(super) fn situation_and_machines(&mut self) -> (Situation<'_>, &mut Machines) {
+    fn situation_and_machines(&mut self) -> (Situation<'_>, &mut Machines) {
         let Self { setup, closed_loop, perception, plans, decided, machines } = self;
         (situation(setup, closed_loop, perception, plans, decided, machines), machines)
     }
@@ -216,7 +222,7 @@ impl Vehicle {
     }
 
     /// Whether it stands on the ground, disarmed.
-    pub(super) fn stands(&self) -> bool {
+    fn stands(&self) -> bool {
         self.machines.landing.is_landed() && !self.decided.is_armed()
     }
 }

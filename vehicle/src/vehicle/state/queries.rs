@@ -3,16 +3,16 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{Configuration, Outputs, Simulation};
 
-use super::battery::Battery;
-use super::conduct::Conduct;
-use super::failsafe::Failsafe;
-use super::fence_watch::FenceRecord;
-use super::home::Home;
-use super::landed::LandedState;
-use super::mission::MissionStatus;
-use super::speeds::with_speeds;
-use super::state::Vehicle;
-use super::steering::{Steering, SteeringKind};
+use super::super::battery::Battery;
+use super::super::conduct::Conduct;
+use super::super::failsafe::Failsafe;
+use super::super::fence_watch::FenceRecord;
+use super::super::home::Home;
+use super::super::landed::LandedState;
+use super::super::mission::MissionStatus;
+use super::super::speeds::with_speeds;
+use super::super::steering::{Steering, SteeringKind};
+use super::Vehicle;
 use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, Validity};
 use crate::fault::Faults;
 use crate::fence::{Breach, Fence};

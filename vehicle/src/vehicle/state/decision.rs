@@ -2,14 +2,14 @@
 
 use quadrotor::{Configuration, ConfigurationError};
 
-use super::failsafe::{Cause, Change};
-use super::machines::Machines;
-use super::notice::Severity;
-use super::proposal::{Proposal, Request};
-use super::situation::Situation;
-use super::speeds::{SpeedChange, Speeds, with_speeds};
-use super::state::Vehicle;
-use super::steering::SteeringKind;
+use super::super::failsafe::{Cause, Change};
+use super::super::machines::Machines;
+use super::super::notice::Severity;
+use super::super::proposal::{Proposal, Request};
+use super::super::situation::Situation;
+use super::super::speeds::{SpeedChange, Speeds, with_speeds};
+use super::super::steering::SteeringKind;
+use super::Vehicle;
 use crate::mode::Mode;
 
 impl Vehicle {

@@ -2,10 +2,10 @@
 
 use quadrotor::RotorFault;
 
-use super::notice::{Refusal, Severity};
-use super::plans::check_way;
-use super::set_point::PositionSetPoint;
-use super::state::Vehicle;
+use super::super::notice::{Refusal, Severity};
+use super::super::plans::check_way;
+use super::super::set_point::PositionSetPoint;
+use super::Vehicle;
 use crate::mode::Mode;
 
 /// Leaning more than this, rad, it is not armed.

@@ -2,33 +2,23 @@
 
 use nalgebra::Vector3;
 
-use super::conduct::Conduct;
-use super::failsafe::Cause;
-use super::fence_watch::{check_goal, check_set_point};
-use super::notice::{Notice, Refusal, Severity};
-use super::proposal::check_distance;
-use super::region::RegionOfInterest;
-use super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
-use super::state::Vehicle;
-use super::steering::{Steering, SteeringKind};
-use super::sticks::Sticks;
+use super::super::conduct::Conduct;
+use super::super::failsafe::Cause;
+use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::notice::{Notice, Refusal, Severity};
+use super::super::proposal::check_distance;
+use super::super::region::RegionOfInterest;
+use super::super::reposition::Reposition;
+use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
+use super::super::steering::{Steering, SteeringKind};
+use super::super::sticks::Sticks;
+use super::Vehicle;
 use crate::fault::Fault;
 use crate::mode::Mode;
 use crate::plan::{ChangeSpeed, Look};
 
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
-
-/// Where to go and stay; what is `None` stays as it is.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Reposition {
-    /// North and east, m.
-    pub horizontal_m: Option<[f64; 2]>,
-    /// Down, m.
-    pub down_m: Option<f64>,
-    /// Heading, rad.
-    pub yaw_rad: Option<f64>,
-}
 
 impl Vehicle {
     /// Notices since the last call.

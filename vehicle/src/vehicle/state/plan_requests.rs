@@ -1,8 +1,8 @@
 //! What may be asked about plans: to replace one, and to fly the mission.
 
-use super::notice::{Refusal, Severity};
-use super::plans::{check_rally_points, check_way};
-use super::state::Vehicle;
+use super::super::notice::{Refusal, Severity};
+use super::super::plans::{check_rally_points, check_way};
+use super::Vehicle;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
 
