@@ -13,7 +13,7 @@ use crate::estimation::{InstrumentHealth, Validity};
 use crate::fence::Zones;
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::Plans;
+use crate::plan::Place;
 use crate::world::{Geodetic, LocalFrame};
 
 /// Everything that a situation refers to.
@@ -21,7 +21,7 @@ pub struct Scene {
     pub identity: Identity,
     pub conduct: Conduct,
     pub configuration: Configuration,
-    pub plans: Plans,
+    pub rally_points: Vec<Place>,
     pub zones: Zones,
     /// Known and true.
     pub outputs: Outputs,
@@ -48,7 +48,7 @@ impl Scene {
             identity: Identity::Px4,
             conduct: Conduct::new(false),
             configuration,
-            plans: Plans::default(),
+            rally_points: Vec::new(),
             zones: Zones::default(),
             outputs: Outputs {
                 time_us: 100_000_000,
@@ -120,7 +120,7 @@ impl Scene {
             conduct: &self.conduct,
             configuration: &self.configuration,
             frame: &self.frame,
-            plans: &self.plans,
+            rally_points: &self.rally_points,
             zones: &self.zones,
             outputs: &self.outputs,
             truth: &self.outputs,
