@@ -26,6 +26,8 @@ mod requests;
 mod route;
 mod status;
 mod task;
+#[cfg(test)]
+mod tests;
 mod turning;
 
 pub use machine::Mission;
