@@ -271,3 +271,167 @@ fn region_of_interest(source: &Source<'_>) -> Step {
         _ => None,
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, PI};
+
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::identity::Identity;
+    use crate::plan::{Altitude, PlanKind, SpeedKind, SpeedTarget, check};
+    use crate::world::{Geodetic, LocalFrame};
+
+    const NAN: f64 = f64::NAN;
+
+    fn item(command: u16, parameters: [f64; 4], position: [f64; 3]) -> MissionItem {
+        MissionItem { frame: frame::LOCAL_NED, command, parameters, position, autocontinue: true }
+    }
+
+    fn place([x, y, z]: [f64; 3]) -> Place {
+        Place { horizontal_m: Some([x, y]), altitude: Some(Altitude::Down(z)) }
+    }
+
+    /// The step of an item that is checked, behind one that it may name.
+    fn step(item: &MissionItem, site: &Site) -> Step {
+        let items = [self::item(NAV_WAYPOINT, [0.0; 4], [7.0, 8.0, -9.0]), *item];
+        check::plan(PlanKind::Mission, &items, site).unwrap();
+        (mission_command(item.command).unwrap().step)(&Source { item, items: &items, site })
+    }
+
+    #[test]
+    fn every_command_becomes_its_step() {
+        const AT: [f64; 3] = [30.0, -40.0, -10.0];
+        let waypoint = |hold_s, acceptance_radius_m, heading_rad| {
+            Navigate::Waypoint(Waypoint { place: place(AT), hold_s, acceptance_radius_m, heading_rad })
+        };
+        let delay = |time| Step::Navigate(Navigate::Delay(time));
+        let turn = |to, rate_rad_s| Step::Condition(Condition::Yaw(Turn { to, rate_rad_s }));
+        let speed = |kind, target| Step::Do(Do::ChangeSpeed(ChangeSpeed { kind, target }));
+        let ahead = |offset_rad| Step::Do(Do::Look(Some(Look::NextWaypoint { offset_rad })));
+        let nothing = Step::Do(Do::Look(None));
+        let at = Step::Do(Do::Look(Some(Look::At(place(AT)))));
+        let cases: Vec<(u16, [f64; 4], [f64; 3], Step)> = vec![
+            (
+                NAV_WAYPOINT,
+                [5.0, 2.5, 0.0, 90.0],
+                AT,
+                Step::Navigate(waypoint(5.0, Some(2.5), Some(FRAC_PI_2))),
+            ),
+            (NAV_WAYPOINT, [NAN; 4], AT, Step::Navigate(waypoint(0.0, None, None))),
+            (NAV_WAYPOINT, [0.0; 4], AT, Step::Navigate(waypoint(0.0, None, Some(0.0)))),
+            (
+                NAV_LOITER_UNLIM,
+                [0.0, 0.0, 5.0, -180.0],
+                AT,
+                Step::Navigate(Navigate::Loiter { place: place(AT), heading_rad: Some(-PI) }),
+            ),
+            (
+                NAV_LOITER_TURNS,
+                [1.5, 0.0, -20.0, NAN],
+                AT,
+                Step::Navigate(Navigate::LoiterTurns(Turns {
+                    place: place(AT),
+                    turns: 1.5,
+                    radius_m: Some(-20.0),
+                })),
+            ),
+            (
+                NAV_LOITER_TURNS,
+                [2.0, 0.0, 0.0, NAN],
+                AT,
+                Step::Navigate(Navigate::LoiterTurns(Turns { place: place(AT), turns: 2.0, radius_m: None })),
+            ),
+            (
+                NAV_LOITER_TIME,
+                [12.0, 0.0, 5.0, 0.0],
+                AT,
+                Step::Navigate(Navigate::LoiterTime { place: place(AT), time_s: 12.0 }),
+            ),
+            (NAV_RETURN_TO_LAUNCH, [0.0; 4], [0.0; 3], Step::Navigate(Navigate::ReturnToLaunch)),
+            (
+                NAV_LAND,
+                [0.0, 0.0, 0.0, NAN],
+                [NAN; 3],
+                Step::Navigate(Navigate::Land { place: Place::default(), heading_rad: None }),
+            ),
+            (
+                NAV_TAKEOFF,
+                [15.0, 0.0, 0.0, 10.0],
+                AT,
+                Step::Navigate(Navigate::Takeoff { place: place(AT), travels: true }),
+            ),
+            (NAV_DELAY, [3.5, -1.0, -1.0, -1.0], [0.0; 3], delay(Delay::For(3.5))),
+            (
+                NAV_DELAY,
+                [-1.0, 13.0, NAN, 30.0],
+                [0.0; 3],
+                delay(Delay::Until(TimeOfDay([Some(13), None, Some(30)]))),
+            ),
+            (CONDITION_DELAY, [4.0, NAN, NAN, NAN], [NAN; 3], Step::Condition(Condition::Delay(4.0))),
+            (CONDITION_DISTANCE, [15.0, NAN, NAN, NAN], [NAN; 3], Step::Condition(Condition::Distance(15.0))),
+            (
+                CONDITION_YAW,
+                [180.0, 90.0, -1.0, 0.0],
+                [0.0; 3],
+                turn(TurnTo::Heading(PI, TurnDirection::CounterClockwise), Some(FRAC_PI_2)),
+            ),
+            (
+                CONDITION_YAW,
+                [90.0, NAN, NAN, NAN],
+                [0.0; 3],
+                turn(TurnTo::Heading(FRAC_PI_2, TurnDirection::Shortest), None),
+            ),
+            (CONDITION_YAW, [90.0, 0.0, -1.0, 1.0], [0.0; 3], turn(TurnTo::By(-FRAC_PI_2), None)),
+            (CONDITION_YAW, [90.0, 0.0, 0.0, 1.0], [0.0; 3], turn(TurnTo::By(FRAC_PI_2), None)),
+            (DO_JUMP, [0.0, 3.0, NAN, NAN], [0.0; 3], Step::Jump(Jump { to: 0, repeats: Some(3) })),
+            (DO_JUMP, [1.0, -1.0, NAN, NAN], [0.0; 3], Step::Jump(Jump { to: 1, repeats: None })),
+            (
+                DO_CHANGE_SPEED,
+                [1.0, 3.5, -1.0, 0.0],
+                [0.0; 3],
+                speed(SpeedKind::Horizontal, SpeedTarget::Limit(3.5)),
+            ),
+            (
+                DO_CHANGE_SPEED,
+                [0.0, -1.0, 0.0, 0.0],
+                [0.0; 3],
+                speed(SpeedKind::Horizontal, SpeedTarget::Keep),
+            ),
+            (DO_CHANGE_SPEED, [2.0, -2.0, 0.0, 0.0], [0.0; 3], speed(SpeedKind::Up, SpeedTarget::Default)),
+            (
+                DO_CHANGE_SPEED,
+                [3.0, 1.0, 0.0, 0.0],
+                [0.0; 3],
+                speed(SpeedKind::Down, SpeedTarget::Limit(1.0)),
+            ),
+            (DO_SET_HOME, [0.0, 0.0, 0.0, NAN], AT, Step::Do(Do::SetHome(Some(place(AT))))),
+            (DO_SET_HOME, [1.0, 0.0, 0.0, NAN], AT, Step::Do(Do::SetHome(None))),
+            (DO_SET_ROI_LOCATION, [0.0; 4], AT, at),
+            (DO_SET_ROI_WPNEXT_OFFSET, [0.0; 4], [0.0, 0.0, 90.0], ahead(FRAC_PI_2)),
+            (DO_SET_ROI_NONE, [0.0; 4], AT, nothing),
+            (DO_SET_ROI, [0.0; 4], AT, at),
+            (DO_SET_ROI, [0.0; 4], [0.0; 3], nothing),
+            (DO_SET_ROI, [1.0, 0.0, 0.0, 0.0], AT, ahead(0.0)),
+            (
+                DO_SET_ROI,
+                [2.0, 0.0, 0.0, 0.0],
+                AT,
+                Step::Do(Do::Look(Some(Look::At(place([7.0, 8.0, -9.0]))))),
+            ),
+            (DO_SET_ROI, [3.0, 0.0, 0.0, 0.0], AT, at),
+        ];
+        let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
+        let frame = LocalFrame::new(origin);
+        let site = Site { identity: Identity::Px4, frame, home_m: Vector3::new(1.0, 2.0, -3.0) };
+        for (command, parameters, position, expected) in &cases {
+            let item = item(*command, *parameters, *position);
+            assert_eq!(step(&item, &site), *expected, "{item:?}");
+        }
+        let tested = |number| cases.iter().any(|(command, ..)| *command == number);
+        let known = (0..=u16::MAX).filter(|number| mission_command(*number).is_some());
+        let untested: Vec<u16> = known.filter(|number| !tested(*number)).collect();
+        assert!(untested.is_empty(), "commands without a case: {untested:?}");
+    }
+}

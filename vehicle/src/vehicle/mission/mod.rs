@@ -24,6 +24,8 @@ mod path;
 mod route;
 mod status;
 mod task;
+#[cfg(test)]
+mod tests;
 mod turning;
 
 pub use machine::Mission;
