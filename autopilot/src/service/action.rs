@@ -3,8 +3,8 @@
 use mavlink::dialects::common::{MavCmd, MavProtocolCapability};
 use vehicle::fault::Fault;
 use vehicle::identity::Identity;
-use vehicle::plan::{self, MissionItem};
-use vehicle::{Mode, Refusal, Reposition, Severity};
+use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile};
+use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
 use super::command::{global_frame, told_frame, told_place};
 use super::{CommandEntry, Origin, Outcome, Progress, Service, parameter};
@@ -71,7 +71,14 @@ impl Service for Actions {
 }
 
 fn change_speed(context: &mut Context, command: &Command) -> Result<(), Refusal> {
-    context.vehicle.change_speed(command.parameter(1), command.parameter(2))
+    use_speed(&mut context.vehicle, command.parameter(1), command.parameter(2))
+}
+
+/// SPEED_TYPE, and a speed.
+fn use_speed(vehicle: &mut Vehicle, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
+    let change = ChangeSpeed::of(kind, speed_m_s)
+        .ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
+    vehicle.change_speed(&change)
 }
 
 fn terminate(context: &mut Context, command: &Command) -> Result<(), Refusal> {
@@ -88,13 +95,22 @@ fn pause(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 
 /// The same as an item of a mission.
 fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
-    context.vehicle.look(&MissionItem {
+    let vehicle = &mut context.vehicle;
+    let item = MissionItem {
         frame: told_frame(command),
         command: command.number,
         parameters: command.parameters,
         position: [command.x, command.y, command.z],
         autocontinue: true,
-    })
+    };
+    let items = vehicle.plans().get(PlanKind::Mission).items();
+    let look = compile::look(&item, items, &vehicle.site()).map_err(|fault| match fault.code {
+        FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
+        FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
+        _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
+    })?;
+    vehicle.look(look.as_ref());
+    Ok(())
 }
 
 fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
@@ -199,7 +215,7 @@ fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
     vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
-    if speed_m_s > 0.0 { vehicle.change_speed(1.0, speed_m_s) } else { Ok(()) }
+    if speed_m_s > 0.0 { use_speed(vehicle, 1.0, speed_m_s) } else { Ok(()) }
 }
 
 /// FAILURE_UNIT, FAILURE_TYPE, instance.

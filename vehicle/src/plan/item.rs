@@ -2,35 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// MAV_CMD of the items that are understood.
-#[allow(missing_docs)] // Their names are their documentation.
-pub mod command {
-    pub const NAV_WAYPOINT: u16 = 16;
-    pub const NAV_LOITER_UNLIM: u16 = 17;
-    pub const NAV_LOITER_TURNS: u16 = 18;
-    pub const NAV_LOITER_TIME: u16 = 19;
-    pub const NAV_RETURN_TO_LAUNCH: u16 = 20;
-    pub const NAV_LAND: u16 = 21;
-    pub const NAV_TAKEOFF: u16 = 22;
-    pub const NAV_DELAY: u16 = 93;
-    pub const CONDITION_DELAY: u16 = 112;
-    pub const CONDITION_DISTANCE: u16 = 114;
-    pub const CONDITION_YAW: u16 = 115;
-    pub const DO_JUMP: u16 = 177;
-    pub const DO_CHANGE_SPEED: u16 = 178;
-    pub const DO_SET_HOME: u16 = 179;
-    pub const DO_SET_ROI_LOCATION: u16 = 195;
-    pub const DO_SET_ROI_WPNEXT_OFFSET: u16 = 196;
-    pub const DO_SET_ROI_NONE: u16 = 197;
-    pub const DO_SET_ROI: u16 = 201;
-    pub const NAV_FENCE_RETURN_POINT: u16 = 5000;
-    pub const NAV_FENCE_POLYGON_VERTEX_INCLUSION: u16 = 5001;
-    pub const NAV_FENCE_POLYGON_VERTEX_EXCLUSION: u16 = 5002;
-    pub const NAV_FENCE_CIRCLE_INCLUSION: u16 = 5003;
-    pub const NAV_FENCE_CIRCLE_EXCLUSION: u16 = 5004;
-    pub const NAV_RALLY_POINT: u16 = 5100;
-}
-
 /// An item: a command with its parameters. What was not given is NaN.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MissionItem {
@@ -56,23 +27,6 @@ impl PartialEq for MissionItem {
 }
 
 impl MissionItem {
-    /// The number of the item that a jump leads to, if it is one.
-    pub fn jump_target_mut(&mut self) -> Option<&mut f64> {
-        let [target, ..] = &mut self.parameters;
-        (self.command == command::DO_JUMP).then_some(target)
-    }
-
-    /// Home as an item: latitude and longitude, degrees, and altitude above sea level, m.
-    pub fn home(position: [f64; 3]) -> Self {
-        Self {
-            frame: super::frame::GLOBAL,
-            command: command::NAV_WAYPOINT,
-            parameters: [0.0; 4],
-            position,
-            autocontinue: true,
-        }
-    }
-
     /// Parameter `n` of 1 to 7.
     pub fn parameter(&self, n: usize) -> f64 {
         let all = self.parameters.iter().chain(&self.position);
@@ -122,7 +76,8 @@ mod not_given {
 
 #[cfg(test)]
 mod tests {
-    use super::{MissionItem, command};
+    use super::MissionItem;
+    use crate::plan::command;
 
     #[test]
     fn what_was_not_given_survives_a_file() {

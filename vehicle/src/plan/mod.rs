@@ -1,24 +1,44 @@
 //! Plans: what clients upload item by item and the vehicle keeps.
 //!
 //! ```text
-//!  item ──► check of its kind ──► plan of its kind ──► vehicle
+//!  item ──► check of its kind ──► plan of its kind: the items, for downloads, ids and files
+//!                                   │ compile
+//!                                   ▼
+//!                                 steps of a program, zones, rally points ──► vehicle
 //! ```
 //!
 //! [`check`] decides what is taken, item by item as they come and then the plan as a whole; a plan that is refused leaves the
-//! old one in force.
+//! old one in force. [`compile`] knows what items mean (MAV_CMD, degrees, parameters that were not given); behind it everything
+//! is typed and in SI units.
 
+mod altitude;
+mod change_speed;
 pub mod check;
+#[allow(missing_docs)] // The names of the numbers are their documentation.
+pub mod command;
+pub mod compile;
 mod fault;
 pub mod file;
 mod item;
 mod kind;
+mod look;
+mod place;
+mod program;
 mod site;
+pub mod step;
 mod store;
+mod time_of_day;
 mod zones;
 
+pub use altitude::Altitude;
+pub use change_speed::{ChangeSpeed, SpeedKind, SpeedTarget};
 pub use fault::{FaultCode, PlanFault};
-pub use item::{MissionItem, command};
+pub use item::MissionItem;
 pub use kind::PlanKind;
-pub use site::{Place, Site, frame, is_global};
+pub use look::Look;
+pub use place::Place;
+pub use program::{Program, ProgramStep};
+pub use site::{Site, frame, is_global};
 pub use store::{Plan, Plans};
+pub use time_of_day::TimeOfDay;
 pub use zones::zones;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::MissionItem;
+use super::{Altitude, MissionItem, Place};
 use crate::identity::Identity;
 use crate::world::{Geodetic, LocalFrame};
 
@@ -33,15 +33,6 @@ pub struct Site {
     pub home_m: Vector3<f64>,
 }
 
-/// A place of an item in the local frame; what the item left open is `None`.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct Place {
-    /// North and east, m.
-    pub horizontal_m: Option<[f64; 2]>,
-    /// Down, m.
-    pub down_m: Option<f64>,
-}
-
 impl Site {
     /// Whether x, y, z of a frame are a place here.
     pub fn knows(frame: u8) -> bool {
@@ -57,7 +48,7 @@ impl Site {
         let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         if item.frame == frame::LOCAL_NED {
             let horizontal_m = finite(x).zip(finite(y)).map(|(x, y)| [x, y]);
-            return Some(Place { horizontal_m, down_m: finite(z) });
+            return Some(Place { horizontal_m, altitude: finite(z).map(Altitude::Down) });
         }
         if !is_global(item.frame) {
             return None;
@@ -74,15 +65,21 @@ impl Site {
             let local = self.frame.to_local_m(&place);
             Some([local.x, local.y])
         };
-        Some(Place { horizontal_m, down_m: finite(z).map(|altitude_m| self.down_m(item.frame, altitude_m)) })
+        let altitude = finite(z).map(|altitude_m| self.altitude(item.frame, altitude_m));
+        Some(Place { horizontal_m, altitude })
     }
 
-    /// z, m, of an altitude, m, in a global frame. Terrain is the flat ground of the simulation.
+    /// z, m, of an altitude, m, in a global frame, with home where it is now.
     pub fn down_m(&self, frame: u8, altitude_m: f64) -> f64 {
+        self.altitude(frame, altitude_m).down_m(self.home_m.z)
+    }
+
+    /// An altitude, m, in a global frame. Terrain is the flat ground of the simulation.
+    fn altitude(&self, frame: u8, altitude_m: f64) -> Altitude {
         match frame {
-            frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => self.home_m.z - altitude_m,
-            frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => -altitude_m,
-            _ => self.frame.origin().altitude_m - altitude_m,
+            frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => Altitude::AboveHome(altitude_m),
+            frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => Altitude::Down(-altitude_m),
+            _ => Altitude::Down(self.frame.origin().altitude_m - altitude_m),
         }
     }
 }

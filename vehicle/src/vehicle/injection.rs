@@ -1,44 +1,44 @@
-//! Breaking units and mending them, at once or at given times.
+//! Units that break, and are mended: at once or at given times.
 
-use super::notice::{Refusal, Severity};
-use super::state::Vehicle;
-use crate::fault::{Fault, Faults};
+use std::collections::VecDeque;
 
-impl Vehicle {
+use super::notice::Severity;
+use super::proposal::Proposal;
+use super::situation::Situation;
+use crate::fault::{Fault, Faults, ScheduledFault};
+
+/// What is broken, and what is to break.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Injection {
+    faults: Faults,
+    /// Those to come, the next one first.
+    scheduled: VecDeque<ScheduledFault>,
+}
+
+impl Injection {
+    /// Everything works, until the schedule says otherwise.
+    pub fn new(mut scheduled: Vec<ScheduledFault>) -> Self {
+        scheduled.sort_by_key(|fault| fault.time_us);
+        Self { faults: Faults::default(), scheduled: scheduled.into() }
+    }
+
     /// Everything that is broken now.
     pub fn faults(&self) -> &Faults {
         &self.faults
     }
 
-    /// Breaks a unit, or mends it, as a client asks.
-    ///
-    /// # Errors
-    /// [`Refusal::Denied`] while the parameter SYS_FAILURE_EN forbids it, [`Refusal::Unsupported`] when it would change nothing.
-    pub fn inject(&mut self, fault: &Fault) -> Result<(), Refusal> {
-        if !self.conduct.failure_injection {
-            return Err(Refusal::denied("Failure injection denied: SYS_FAILURE_EN is 0"));
-        }
-        if self.navigation.is_none() && fault.needs_readings() {
-            let reason = "ideal sensors only fall silent: start with --sensors realistic";
-            return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
-        }
-        self.suffer(fault);
-        Ok(())
-    }
-
     /// Breaks and mends what is due by the schedule.
-    pub(super) fn suffer_scheduled(&mut self) {
-        let time_us = self.outputs.time_us;
-        while let Some(scheduled) =
-            self.scheduled_faults.front().copied().filter(|next| next.time_us <= time_us)
-        {
-            self.scheduled_faults.pop_front();
-            self.suffer(&scheduled.fault);
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let is_due = |next: &&ScheduledFault| next.time_us <= situation.time_us;
+        while let Some(scheduled) = self.scheduled.front().filter(is_due).copied() {
+            self.scheduled.pop_front();
+            self.inject(&scheduled.fault, proposal);
         }
     }
 
-    fn suffer(&mut self, fault: &Fault) {
+    /// Breaks a unit, or mends it.
+    pub fn inject(&mut self, fault: &Fault, proposal: &mut Proposal) {
         self.faults.set(fault);
-        self.say(Severity::Warning, format!("Failure injected: {fault}"));
+        proposal.say(Severity::Warning, format!("Failure injected: {fault}"));
     }
 }

@@ -16,41 +16,64 @@
 //!           Land ──touched down──► disarms
 //!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
 //! ```
+//!
+//! It consists of machines. Each owns its state, sees a read-only situation, and asks for what it wants in a proposal; none sees
+//! another one. One place decides.
+//!
+//! ```text
+//!  state: situation ──► machine ──► proposal ──► decision: shared state, events of other machines
+//!     ▲                 injection, fence watch, failsafe, rotor watch, landing, takeoff, manual control,
+//!     │                 offboard, return, mission, speeds
+//!     └── perception ◄── closed loop ◄── steering
+//! ```
 
-mod arming;
 mod battery;
+mod closed_loop;
 mod conduct;
+mod decided;
+mod descent;
 mod failsafe;
-mod fence;
-mod flight;
+mod failsafe_watch;
+mod fence_watch;
+mod home;
 mod injection;
 mod landed;
+mod landing;
+mod machines;
+mod manual_control;
 mod mission;
 mod motion;
 mod notice;
 mod offboard;
 mod perception;
 mod plans;
+mod proposal;
 mod region;
-mod requests;
+mod reposition;
 mod return_home;
-mod rotor_loss;
+mod rotor_watch;
+#[cfg(test)]
+mod scene;
 mod set_point;
+mod setup;
+mod situation;
 mod speeds;
 mod state;
 mod steering;
 mod sticks;
+mod takeoff;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
-pub use fence::FenceRecord;
+pub use fence_watch::FenceRecord;
+pub use home::Home;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
 pub use motion::{heading_deg, wrapped};
 pub use notice::{Notice, Refusal, Severity};
-pub use requests::Reposition;
+pub use reposition::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
-pub use state::{Home, TICK_US, Vehicle, VehicleSettings};
+pub use state::{TICK_US, Vehicle, VehicleSettings};
 pub use steering::{SteeringKind, TrackedAttitude};
 pub use sticks::Sticks;

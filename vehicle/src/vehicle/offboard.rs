@@ -1,104 +1,201 @@
 //! Set-points from outside.
 
 use super::failsafe::Cause;
-use super::notice::{Refusal, Severity};
+use super::notice::Severity;
+use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
-use super::state::Vehicle;
+use super::situation::Situation;
 use super::steering::SteeringKind;
 use crate::mode::Mode;
 
 /// What has come of set-points.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct SetPoints {
+pub struct Offboard {
     /// The latest, and when it came, µs.
-    pub latest: Option<(SetPoint, u64)>,
+    latest: Option<(SetPoint, u64)>,
     /// Whether it has been steered to.
-    pub applied: bool,
+    applied: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
-    pub expired: bool,
+    expired: bool,
 }
 
-impl Vehicle {
-    /// Takes a set-point. It proves that its sender is alive in every mode, and is flown in the offboard mode.
-    ///
-    /// # Errors
-    /// [`Refusal`] in ArduPilot's identity on the ground, where only a takeoff lifts off, and outside its mode.
-    pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
-        if self.identity.is_ardupilot() {
-            if self.mode != Mode::Offboard {
-                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
-            }
-            let position = matches!(set_point, SetPoint::Position(_));
-            if position && self.steering.kind() == SteeringKind::Idle {
-                return Err(Refusal::later("Set-point ignored: take off first"));
-            }
-        }
-        if let SetPoint::Position(position) = &set_point {
-            self.check_set_point(position)?;
-        }
-        self.see(Cause::SetPointsLost, false);
-        self.set_points =
-            SetPoints { latest: Some((set_point, self.time_us())), applied: false, expired: false };
-        Ok(())
+impl Offboard {
+    /// Takes a set-point that came at a time, µs.
+    pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
+        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false };
     }
 
-    /// Whether the latest set-point is young enough to fly on.
-    pub fn set_points_are_recent(&self) -> bool {
-        let timeout_us = (self.conduct.set_point_timeout_s * 1e6) as u64;
-        self.set_points.latest.is_some_and(|(_, time_us)| self.time_us() - time_us <= timeout_us)
+    /// Forgets all set-points: something else has been asked for.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Another mode begins: a set-point that is still young is steered to anew.
+    pub fn begin(&mut self) {
+        self.applied = false;
+    }
+
+    /// Whether the latest set-point has been steered to.
+    pub fn is_applied(&self) -> bool {
+        self.applied
+    }
+
+    /// Whether the latest set-point is not older than a timeout, s, at a time, µs.
+    pub fn is_recent(&self, time_us: u64, timeout_s: f64) -> bool {
+        let timeout_us = (timeout_s * 1e6) as u64;
+        self.latest.is_some_and(|(_, taken_us)| time_us - taken_us <= timeout_us)
     }
 
     /// One tick of the offboard mode.
-    pub(super) fn offboard(&mut self) {
-        if !self.set_points_are_recent() {
-            self.set_points_have_stopped();
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if !situation.set_points_are_recent {
+            match situation.identity.is_ardupilot() {
+                true => self.guided_without_news(situation, proposal),
+                false => proposal.see(Cause::SetPointsLost, true),
+            }
             return;
         }
-        if self.set_points.applied {
+        if self.applied {
             return;
         }
-        let Some((set_point, _)) = self.set_points.latest else { return };
+        let Some((set_point, _)) = self.latest else { return };
         match set_point {
-            SetPoint::Attitude(attitude) => self.steering.follow_attitude(&attitude, &self.outputs),
+            SetPoint::Attitude(attitude) => proposal.follow_attitude(situation, &attitude),
             // On the ground it idles until it is led upwards, and looks again with the next tick.
             SetPoint::Position(position)
-                if self.steering.kind() == SteeringKind::Idle
-                    && !position.leads_up(self.outputs.position_m.z) =>
+                if proposal.steering().kind() == SteeringKind::Idle
+                    && !position.leads_up(situation.outputs.position_m.z) =>
             {
                 return;
             }
             SetPoint::Position(position) => {
-                let limits = self.simulation.configuration().limits;
-                self.follow(&position.within(&limits));
+                proposal.follow(situation, &position.within(situation.limits()));
             }
         }
-        self.set_points.applied = true;
+        self.applied = true;
     }
 
-    fn set_points_have_stopped(&mut self) {
-        if self.identity.is_ardupilot() {
-            self.guided_without_news();
-            return;
-        }
-        self.see(Cause::SetPointsLost, true);
-        // With an action that leaves the mode as it is, it holds its place there.
-        if self.mode == Mode::Offboard && !self.set_points.expired {
-            self.set_points.expired = true;
-            self.hold();
+    /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds
+    /// its place there.
+    pub fn hold_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let follows = situation.mode == Mode::Offboard && situation.lost_rotor.is_none();
+        let stopped = !situation.set_points_are_recent && !situation.identity.is_ardupilot();
+        if follows && stopped && !self.expired {
+            self.expired = true;
+            proposal.hold(situation);
         }
     }
 
     /// ArduPilot stays in its mode: a velocity, an acceleration or an attitude ends, a position stays.
-    fn guided_without_news(&mut self) {
-        let ends = match self.set_points.latest {
+    fn guided_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let ends = match self.latest {
             Some((SetPoint::Position(position), _)) => position.runs_on(),
             Some((SetPoint::Attitude(_), _)) => true,
             None => false,
         };
-        if ends && !self.set_points.expired && self.steering.kind() != SteeringKind::Idle {
-            self.set_points.expired = true;
-            self.say(Severity::Warning, "Set-points stopped: holding");
-            self.follow(&PositionSetPoint::HOLD);
+        if ends && !self.expired && proposal.steering().kind() != SteeringKind::Idle {
+            self.expired = true;
+            proposal.say(Severity::Warning, "Set-points stopped: holding");
+            proposal.follow(situation, &PositionSetPoint::HOLD);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use quadrotor::PositionReference;
+
+    use super::{Cause, Mode, Offboard, PositionSetPoint, SetPoint};
+    use crate::identity::Identity;
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::set_point::{AxisTarget, YawTarget};
+    use crate::vehicle::steering::{Steering, SteeringKind};
+
+    fn place([x, y, z]: [f64; 3]) -> SetPoint {
+        let axes = [x, y, z].map(AxisTarget::Position);
+        SetPoint::Position(PositionSetPoint { axes, yaw: YawTarget::Hold })
+    }
+
+    /// As the vehicle: the part is asked how recent its set-points are.
+    fn step(offboard: &mut Offboard, scene: &mut Scene) -> Vec<Request> {
+        let timeout_s = scene.conduct.set_point_timeout_s;
+        scene.set_points_are_recent = offboard.is_recent(scene.outputs.time_us, timeout_s);
+        let mut requests = scene.show(|situation, proposal| offboard.step(situation, proposal));
+        requests.extend(scene.show(|situation, proposal| offboard.hold_without_news(situation, proposal)));
+        requests
+    }
+
+    #[test]
+    fn a_set_point_is_steered_to_once() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
+        assert!(step(&mut offboard, &mut scene).is_empty());
+        assert!(offboard.is_applied() && scene.goal_m() == Some([5.0, 0.0, -10.0]));
+        // What another part does with the steering meanwhile stays.
+        scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), None);
+        // Until the mode begins anew.
+        offboard.begin();
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), Some([5.0, 0.0, -10.0]));
+    }
+
+    #[test]
+    fn on_the_ground_it_waits_until_it_is_led_upwards() {
+        let mut scene = Scene::on_the_ground();
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, 0.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        assert!(!offboard.is_applied() && scene.steering.kind() == SteeringKind::Idle);
+        offboard.take(place([5.0, 0.0, -2.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        assert_eq!(scene.goal_m(), Some([5.0, 0.0, -2.0]));
+    }
+
+    #[test]
+    fn the_failsafe_is_told_when_set_points_stop_and_the_place_is_held_once() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.mode = Mode::Offboard;
+        let mut offboard = Offboard::default();
+        offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
+        step(&mut offboard, &mut scene);
+        scene.wait_us(1_000_001);
+        assert_eq!(step(&mut offboard, &mut scene), [Request::See(Cause::SetPointsLost, true)]);
+        assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
+        let elsewhere = Steering::Goal(PositionReference::goal([9.0, 0.0, -10.0], 0.0));
+        scene.steering = elsewhere;
+        assert_eq!(step(&mut offboard, &mut scene), [Request::See(Cause::SetPointsLost, true)]);
+        assert_eq!(scene.steering, elsewhere, "held again");
+    }
+
+    #[test]
+    fn ardupilot_keeps_a_place_and_ends_a_velocity() {
+        for (set_point, ends) in [
+            (place([5.0, 0.0, -10.0]), false),
+            (
+                SetPoint::Position(PositionSetPoint {
+                    axes: [AxisTarget::Velocity(1.0); 3],
+                    yaw: YawTarget::Hold,
+                }),
+                true,
+            ),
+        ] {
+            let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+            (scene.identity, scene.mode) = (Identity::ArduPilot, Mode::Offboard);
+            let mut offboard = Offboard::default();
+            offboard.take(set_point, scene.outputs.time_us);
+            step(&mut offboard, &mut scene);
+            let steered = scene.steering;
+            scene.wait_us(5_000_000);
+            let requests = step(&mut offboard, &mut scene);
+            assert_eq!(said(&requests).len(), usize::from(ends), "{requests:?}");
+            assert_eq!(scene.steering == steered, !ends);
+            assert!(step(&mut offboard, &mut scene).is_empty(), "said once");
         }
     }
 }

@@ -2,42 +2,72 @@
 //! controllers measure with noise.
 
 use nalgebra::Vector3;
-use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
+use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody, Simulation};
 
-use super::state::Vehicle;
-use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, TrueMotion, Validity};
-use crate::fault::Sensor;
+use super::motion::wrapped;
+use crate::estimation::{
+    Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, TrueMotion, Validity,
+};
+use crate::fault::Faults;
+use crate::world::LocalFrame;
 
-impl Vehicle {
-    /// Looks at the motion that the last tick has led to.
-    pub(super) fn perceive(&mut self) {
-        self.truth = self.simulation.outputs();
-        let stands = self.landed.is_landed() && !self.armed;
+/// What is perceived of the motion, and by what.
+#[derive(Debug)]
+pub struct Perception {
+    /// What the closed loop shows in truth.
+    truth: Outputs,
+    /// What it shows, as far as the vehicle knows it.
+    outputs: Outputs,
+    /// Instruments and estimator, unless the truth is known.
+    navigation: Option<Navigation>,
+    ideal_sensors: IdealSensors,
+}
+
+impl Perception {
+    /// Begins with the motion of the closed loop, with instruments and an estimator or without.
+    pub fn new(simulation: &Simulation, navigation: Option<Navigation>) -> Self {
+        let truth = simulation.outputs();
+        let mut perception =
+            Self { truth, outputs: truth, navigation, ideal_sensors: IdealSensors::default() };
+        perception.outputs = perception.known(simulation);
+        perception
+    }
+
+    /// Looks at the motion that the last tick has led to. `stands` tells that it is disarmed on the ground.
+    pub fn step(&mut self, simulation: &Simulation, frame: &LocalFrame, faults: &Faults, stands: bool) {
+        self.truth = simulation.outputs();
         match &mut self.navigation {
-            Some(navigation) => {
-                navigation.step(&TrueMotion::of(&self.truth), &self.frame, &self.faults, stands);
-            }
-            None => self.ideal_sensors.step(self.truth.time_us, &self.faults),
+            Some(navigation) => navigation.step(&TrueMotion::of(&self.truth), frame, faults, stands),
+            None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
-        self.outputs = self.known();
+        self.outputs = self.known(simulation);
+    }
+
+    /// Looks at the same motion again: the closed loop has another configuration.
+    pub fn look_again(&mut self, simulation: &Simulation) {
+        self.truth = simulation.outputs();
+        self.outputs = self.known(simulation);
     }
 
     /// The true outputs, with what the vehicle believes in place of the motion.
-    pub(super) fn known(&self) -> Outputs {
+    fn known(&self, simulation: &Simulation) -> Outputs {
         match &self.navigation {
             Some(navigation) => estimated(&self.truth, navigation),
-            None => match self.simulation.believed_motion() {
+            None => match simulation.believed_motion() {
                 Some(body) => believed(&self.truth, &body, self.truth.acceleration_m_s2),
                 None => self.truth,
             },
         }
     }
 
-    /// What the feet feel: the true motion, and the reference as far from it as the controllers believe.
-    pub(super) fn felt(&self) -> Outputs {
-        let mut felt = self.truth;
-        felt.setpoint.position_m += self.truth.position_m - self.outputs.position_m;
-        felt
+    /// What the closed loop shows, as far as the vehicle knows its motion.
+    pub fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    /// What the closed loop shows in truth.
+    pub fn truth(&self) -> &Outputs {
+        &self.truth
     }
 
     /// What of its motion it knows well enough to fly by.
@@ -48,39 +78,8 @@ impl Vehicle {
         }
     }
 
-    /// Whether it knows enough of its motion to hold a place and a height: not without its inertial unit, nor when neither the receiver
-    /// nor the barometer is left to correct the height.
-    pub(super) fn knows_its_place(&self) -> bool {
-        let (known, works) = (self.validity(), self.instrument_health());
-        let estimated = known.tilt && known.horizontal_position && known.vertical_position;
-        // Ideal sensors know the rest by themselves.
-        let ideal = self.navigation.is_none();
-        estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
-    }
-
-    /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
-    pub(super) fn sink_rate_m_s(&self) -> f64 {
-        let works = self.instrument_health();
-        let supported = works.accelerometer && (works.gps || works.barometer);
-        let fix = self.navigation.as_ref().and_then(Navigation::latest_fix).filter(|_| !supported);
-        fix.map_or(self.outputs.velocity_m_s.z, |fix| fix.velocity_m_s.z)
-    }
-
-    /// The instruments that do not work, by their names.
-    pub(super) fn failed_instruments(&self) -> Vec<&'static str> {
-        let works = self.instrument_health();
-        let instruments = [
-            (works.gyroscope, Sensor::Gyroscope),
-            (works.accelerometer, Sensor::Accelerometer),
-            (works.magnetometer, Sensor::Magnetometer),
-            (works.barometer, Sensor::Barometer),
-            (works.gps, Sensor::Gps),
-        ];
-        instruments.into_iter().filter(|(works, _)| !works).map(|(_, sensor)| sensor.name()).collect()
-    }
-
     /// Which instruments work.
-    pub fn instrument_health(&self) -> InstrumentHealth {
+    pub fn health(&self) -> InstrumentHealth {
         match &self.navigation {
             Some(navigation) => navigation.health(),
             None => self.ideal_sensors.health(),
@@ -98,16 +97,16 @@ impl Vehicle {
     }
 
     /// What the instruments show; ideal ones show the truth.
-    pub fn readings(&self) -> Readings {
+    pub fn readings(&self, frame: &LocalFrame) -> Readings {
         match &self.navigation {
             Some(navigation) => *navigation.readings(),
-            None => self.ideal_sensors.readings(&TrueMotion::of(&self.truth), &self.frame),
+            None => self.ideal_sensors.readings(&TrueMotion::of(&self.truth), frame),
         }
     }
 
     /// What of the estimate speaks against arming.
-    pub(super) fn navigation_obstacles(&self) -> Vec<String> {
-        let (health, validity) = (self.instrument_health(), self.validity());
+    pub fn obstacles(&self) -> impl Iterator<Item = String> {
+        let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
             (health.gyroscope, "gyroscope failed"),
@@ -120,7 +119,7 @@ impl Vehicle {
             (!aligned || validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
             (!aligned || validity.horizontal_position && validity.vertical_position, "no position estimate"),
         ];
-        checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned()).collect()
+        checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned())
     }
 }
 
@@ -143,7 +142,7 @@ fn believed(truth: &Outputs, body: &RigidBody, acceleration_m_s2: Vector3<f64>) 
         quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
         body_rate_rad_s: body.body_rate_rad_s,
         tracking_error_m: body.position_m - truth.setpoint.position_m,
-        yaw_error_rad: super::motion::wrapped(psi - truth.setpoint.yaw_rad),
+        yaw_error_rad: wrapped(psi - truth.setpoint.yaw_rad),
         ..*truth
     }
 }

@@ -1,97 +1,111 @@
-//! The plans of the vehicle.
+//! The plans of the vehicle, and what the fence forbids of them.
 
 use nalgebra::Vector3;
 
-use super::notice::Severity;
-use super::state::Vehicle;
-use crate::plan::{FaultCode, MissionItem, Plan, PlanFault, PlanKind, Plans, Site, check};
+use super::situation::Situation;
+use crate::fence::{Breach, Zones};
+use crate::plan::step::Navigate;
+use crate::plan::{
+    FaultCode, MissionItem, Place, Plan, PlanFault, PlanKind, Plans, Program, Site, compile, zones,
+};
 
-impl Vehicle {
-    /// Its plans.
+/// The plans as they were uploaded, and what the flight needs of fence and rally points. The steps of the mission are the
+/// mission's own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownPlans {
+    plans: Plans,
+    /// Of the fence plan, as they were when it was taken.
+    zones: Zones,
+    rally_points: Vec<Place>,
+}
+
+impl KnownPlans {
+    /// Takes plans that have been checked where they came from.
+    pub fn new(plans: Plans, site: &Site) -> Self {
+        let zones = zones(plans.get(PlanKind::Fence).items(), site).unwrap_or_default();
+        let rally_points = compile::rally_points(plans.get(PlanKind::Rally).items(), site);
+        Self { plans, zones, rally_points }
+    }
+
+    /// As they were uploaded.
     pub fn plans(&self) -> &Plans {
         &self.plans
     }
 
-    /// What the places of plans refer to.
-    pub fn site(&self) -> Site {
-        Site { identity: self.identity, frame: self.frame, home_m: self.home.position_m }
+    /// The zones of the fence.
+    pub fn zones(&self) -> &Zones {
+        &self.zones
     }
 
-    /// An item as a download shows it: in ArduPilot's convention the first one of a mission is home.
-    pub fn plan_item(&self, kind: PlanKind, index: usize) -> Option<MissionItem> {
-        let item = *self.plans.get(kind).items().get(index)?;
-        if kind != PlanKind::Mission || index > 0 || !self.identity.is_ardupilot() {
-            return Some(item);
-        }
-        Some(self.home_item())
+    /// The rally points.
+    pub fn rally_points(&self) -> &[Place] {
+        &self.rally_points
     }
 
-    /// Home as an item of a plan.
-    pub fn home_item(&self) -> MissionItem {
-        let place = self.frame.to_geodetic(&self.home.position_m);
-        MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
-    }
-
-    /// Replaces a plan.
+    /// Replaces the fence.
     ///
     /// # Errors
-    /// [`PlanFault`]; the old plan stays then.
-    pub fn set_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
-        self.take_plan(kind, items, false)
-    }
-
-    /// Replaces a plan by one that goes on where the old one is.
-    ///
-    /// # Errors
-    /// [`PlanFault`]; the old plan stays then.
-    pub fn amend_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
-        self.take_plan(kind, items, true)
-    }
-
-    fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
-        check::plan(kind, &items, &self.site())?;
-        match kind {
-            PlanKind::Fence => self.take_fence(&items)?,
-            PlanKind::Mission | PlanKind::Rally => self.check_places(kind, &items)?,
-        }
-        self.plans.set(kind, Plan::new(items));
-        if kind == PlanKind::Mission {
-            self.mission_has_changed(amended);
-        } else if let Err(fault) = self.check_mission_places() {
-            self.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
-        }
+    /// [`PlanFault`]; the old one stays then.
+    pub fn take_fence(&mut self, items: Vec<MissionItem>, site: &Site) -> Result<(), PlanFault> {
+        self.zones = zones(&items, site)?;
+        self.plans.set(PlanKind::Fence, Plan::new(items));
         Ok(())
     }
 
-    /// Refuses a mission that the fence of now forbids: it may have come after the mission.
-    pub(super) fn check_mission_places(&self) -> Result<(), PlanFault> {
-        self.check_places(PlanKind::Mission, self.plans.get(PlanKind::Mission).items())
+    /// Replaces the rally points.
+    pub fn take_rally_points(&mut self, items: Vec<MissionItem>, points: Vec<Place>) {
+        self.rally_points = points;
+        self.plans.set(PlanKind::Rally, Plan::new(items));
     }
 
-    /// Refuses items whose places the fence forbids, or the straight ways between them.
-    fn check_places(&self, kind: PlanKind, items: &[MissionItem]) -> Result<(), PlanFault> {
-        let site = self.site();
-        let now = self.home.position_m;
-        let mut before_m = now;
-        // In ArduPilot's convention the first item is home, which is the vehicle's own.
-        let first = if kind == PlanKind::Mission { self.first_mission_item() } else { 0 };
-        for (index, item) in items.iter().enumerate().skip(first) {
-            if kind == PlanKind::Mission && !check::is_flown_to(item) {
-                continue;
-            }
-            let Some(place) = site.place(item) else { continue };
-            let Some([x, y]) = place.horizontal_m else { continue };
-            let place_m = Vector3::new(x, y, place.down_m.unwrap_or(now.z));
-            // Where there are ways, each leads from the last place to the next.
-            let way = self
-                .fence()
-                .filter(|_| kind == PlanKind::Mission)
-                .and_then(|fence| fence.breach_between(&before_m, &place_m));
-            before_m = place_m;
-            if let Some(breach) = self.breach_at(&place_m).or(way) {
-                return Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string()));
-            }
-        }
-        Ok(())
+    /// Replaces the items of the mission.
+    pub fn take_mission(&mut self, items: Vec<MissionItem>) {
+        self.plans.set(PlanKind::Mission, Plan::new(items));
+    }
+}
+
+/// Refuses a mission whose places the fence of now forbids, or the straight ways between them: the fence may have come after the
+/// mission.
+///
+/// # Errors
+/// [`PlanFault`] that names the item.
+pub fn check_way(situation: &Situation, program: &Program) -> Result<(), PlanFault> {
+    let mut before_m = situation.home.position_m;
+    for index in program.first()..program.len() {
+        let step = program.navigate(index);
+        let place = step.as_ref().and_then(Navigate::place);
+        let Some(place_m) = place.and_then(|place| place_m(situation, place)) else { continue };
+        // Each way leads from the last place to the next.
+        let way = || situation.fence().and_then(|fence| fence.breach_between(&before_m, &place_m));
+        let breach = situation.breach_at(&place_m).or_else(way);
+        before_m = place_m;
+        refuse(index, breach)?;
+    }
+    Ok(())
+}
+
+/// Refuses rally points that the fence forbids.
+///
+/// # Errors
+/// [`PlanFault`] that names the item.
+pub fn check_rally_points(situation: &Situation, points: &[Place]) -> Result<(), PlanFault> {
+    for (index, place) in points.iter().enumerate() {
+        let Some(place_m) = place_m(situation, place) else { continue };
+        refuse(index, situation.breach_at(&place_m))?;
+    }
+    Ok(())
+}
+
+/// A place, NED, m, at the height of home if it names none; `None` if it is wherever the vehicle is then.
+fn place_m(situation: &Situation, place: &Place) -> Option<Vector3<f64>> {
+    let home_z_m = situation.home.position_m.z;
+    let [x, y] = place.horizontal_m?;
+    Some(Vector3::new(x, y, place.down_m(home_z_m).unwrap_or(home_z_m)))
+}
+
+fn refuse(index: usize, breach: Option<Breach>) -> Result<(), PlanFault> {
+    match breach {
+        Some(breach) => Err(PlanFault::of_item(index, FaultCode::Denied, breach.to_string())),
+        None => Ok(()),
     }
 }

@@ -1,16 +1,22 @@
 //! The way home: climb, travel, descend.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use std::collections::VecDeque;
 
+use nalgebra::Vector3;
+
+use super::descent::descend;
 use super::notice::Severity;
-use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
-use super::state::Vehicle;
-use super::steering::SteeringKind;
+use super::proposal::Proposal;
+use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::situation::Situation;
+use super::steering::Steering;
+use crate::fence::route_m;
 
 /// Part of the way home.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReturnPhase {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+enum Phase {
     /// To the height of the way.
+    #[default]
     Climb,
     /// Above the place to land at.
     Travel,
@@ -21,105 +27,184 @@ pub enum ReturnPhase {
 /// So near to a goal, m, and so slow, m/s, the next phase begins.
 const REACHED_M: f64 = 0.5;
 const SLOW_M_S: f64 = 0.5;
-/// Share of the weight per error of the sink rate, s/m.
-const SINK_GAIN: f64 = 0.5;
 
-impl Vehicle {
+/// A return.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Return {
+    phase: Phase,
+    /// What is left of the way: north and east, m, the place to land at last.
+    way_m: VecDeque<[f64; 2]>,
+}
+
+impl Return {
     /// Begins the way home.
-    pub(super) fn begin_return(&mut self) {
-        let [x, y] = self.nearest_safe_point_m();
-        self.return_way_m = self.way_m([x, y]);
-        let place = self.outputs.position_m;
-        let near = libm::hypot(place.x - x, place.y - y) < self.conduct.return_near_m;
-        self.return_phase = if near { ReturnPhase::Descend } else { ReturnPhase::Climb };
-        match self.return_phase {
-            ReturnPhase::Climb => self.go_at_return_height(self.outputs.setpoint.position_m.xy().into()),
-            _ => self.say(Severity::Info, "Returning: the place is near, landing"),
+    pub fn begin(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let [x, y] = nearest_safe_point_m(situation);
+        self.way_m = way_m(situation, proposal, [x, y]);
+        let place = situation.outputs.position_m;
+        let near = libm::hypot(place.x - x, place.y - y) < situation.conduct.return_near_m;
+        if near {
+            self.phase = Phase::Descend;
+            proposal.say(Severity::Info, "Returning: the place is near, landing");
+        } else {
+            self.phase = Phase::Climb;
+            go_at_return_height(situation, proposal, situation.outputs.setpoint.position_m.xy().into());
         }
     }
 
     /// One tick of the way home.
-    pub(super) fn return_home(&mut self) {
-        match self.return_phase {
-            ReturnPhase::Climb if self.goal_is_reached() => {
-                self.return_phase = ReturnPhase::Travel;
-                self.travel();
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let reached = || goal_is_reached(situation, proposal.steering());
+        match self.phase {
+            Phase::Climb if reached() => {
+                self.phase = Phase::Travel;
+                self.travel(situation, proposal);
             }
-            ReturnPhase::Travel if self.goal_is_reached() && self.return_way_m.len() > 1 => {
-                self.return_way_m.pop_front();
-                self.travel();
+            Phase::Travel if reached() && self.way_m.len() > 1 => {
+                self.way_m.pop_front();
+                self.travel(situation, proposal);
             }
-            ReturnPhase::Travel if self.goal_is_reached() => {
-                self.return_phase = ReturnPhase::Descend;
-                self.say(Severity::Info, "Above the place to return to, landing");
+            Phase::Travel if reached() => {
+                self.phase = Phase::Descend;
+                proposal.say(Severity::Info, "Above the place to return to, landing");
             }
-            ReturnPhase::Descend => self.descend(self.return_way_m.back().copied()),
+            Phase::Descend => descend(situation, proposal, self.way_m.back().copied()),
             _ => {}
         }
     }
 
-    fn travel(&mut self) {
-        if let Some(next) = self.return_way_m.front() {
-            self.go_at_return_height(*next);
-        }
+    /// Whether it is above the place, and descends.
+    pub fn descends(&self) -> bool {
+        self.phase == Phase::Descend
     }
 
-    fn go_at_return_height(&mut self, [x, y]: [f64; 2]) {
-        let home_z = self.home.position_m.z;
-        let mut z = self.outputs.position_m.z.min(home_z - self.conduct.return_height_m);
-        if let Some(ceiling_z) = self.fence_ceiling_z_m() {
-            z = z.max(ceiling_z);
+    fn travel(&self, situation: &Situation, proposal: &mut Proposal) {
+        if let Some(next) = self.way_m.front() {
+            go_at_return_height(situation, proposal, *next);
         }
-        let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)];
-        self.follow(&PositionSetPoint { axes, yaw: YawTarget::Hold });
+    }
+}
+
+fn go_at_return_height(situation: &Situation, proposal: &mut Proposal, [x, y]: [f64; 2]) {
+    let home_z = situation.home.position_m.z;
+    let mut z = situation.outputs.position_m.z.min(home_z - situation.conduct.return_height_m);
+    if let Some(ceiling_z) = situation.fence_ceiling_z_m() {
+        z = z.max(ceiling_z);
+    }
+    let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)];
+    proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+}
+
+/// Whether the vehicle has come to rest at the goal of the shaper.
+fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
+    let Steering::Goal(goal) = steering else { return false };
+    let outputs = situation.outputs;
+    (outputs.position_m - goal.position_m).norm() < REACHED_M && outputs.velocity_m_s.norm() < SLOW_M_S
+}
+
+/// Where a return goes: to the nearest of home, the rally points and the fence's return point that the fence allows; home if
+/// it allows none. North and east, m.
+fn nearest_safe_point_m(situation: &Situation) -> [f64; 2] {
+    let home = situation.home.position_m;
+    let rally = situation.rally_points.iter().filter_map(|place| place.horizontal_m);
+    let here = situation.outputs.position_m.xy();
+    let distance = |[x, y]: &[f64; 2]| libm::hypot(x - here.x, y - here.y);
+    core::iter::once([home.x, home.y])
+        .chain(rally)
+        .chain(situation.zones.return_m)
+        .filter(|[x, y]| situation.breach_at(&Vector3::new(*x, *y, home.z)).is_none())
+        .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+        .unwrap_or([home.x, home.y])
+}
+
+/// The way to a place, north and east, m, around what the fence forbids; straight if there is none.
+fn way_m(situation: &Situation, proposal: &mut Proposal, goal: [f64; 2]) -> VecDeque<[f64; 2]> {
+    let here = situation.outputs.setpoint.position_m;
+    let way = match situation.fence().and_then(|fence| fence.zones) {
+        Some(zones) => route_m(zones, [here.x, here.y], goal),
+        None => Some(vec![goal]),
+    };
+    if way.is_none() {
+        proposal.say(Severity::Warning, "No way around the fence: returning straight");
+    }
+    way.unwrap_or_else(|| vec![goal]).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Return;
+    use crate::fence::{Shape, Zone};
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::steering::{Steering, SteeringKind};
+
+    /// One tick.
+    fn step(way_home: &mut Return, scene: &mut Scene) -> Vec<String> {
+        let requests = scene.show(|situation, proposal| way_home.step(situation, proposal));
+        said(&requests).into_iter().map(str::to_owned).collect()
     }
 
-    /// Whether the vehicle has come to rest at the goal of the shaper.
-    pub(super) fn goal_is_reached(&self) -> bool {
-        let super::steering::Steering::Goal(goal) = &self.steering else { return false };
-        (self.outputs.position_m - goal.position_m).norm() < REACHED_M
-            && self.outputs.velocity_m_s.norm() < SLOW_M_S
+    #[test]
+    fn it_climbs_travels_and_descends() {
+        let mut scene = Scene::hovering_at([40.0, 30.0, -10.0]);
+        let mut way_home = Return::default();
+        let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert!(requests.is_empty() && scene.goal_m() == Some([40.0, 30.0, -30.0]), "{requests:?}");
+        // As long as it climbs nothing changes.
+        scene.come_to([40.0, 30.0, -20.0], [0.0, 0.0, -2.0]);
+        assert!(step(&mut way_home, &mut scene).is_empty() && scene.goal_m() == Some([40.0, 30.0, -30.0]));
+        scene.come_to([40.0, 30.0, -30.0], [0.0; 3]);
+        step(&mut way_home, &mut scene);
+        assert_eq!(scene.goal_m(), Some([0.0, 0.0, -30.0]));
+        assert!(!way_home.descends());
+        scene.come_to([0.0, 0.0, -30.0], [0.0; 3]);
+        assert_eq!(step(&mut way_home, &mut scene), ["Above the place to return to, landing"]);
+        assert!(way_home.descends());
+        step(&mut way_home, &mut scene);
+        assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
     }
 
-    /// One tick of a descent, above a place or wherever it comes to rest.
-    pub(super) fn descend(&mut self, above: Option<[f64; 2]>) {
-        if self.landed.is_landed() {
-            match self.steering.kind() {
-                // The blind one ends here, too.
-                SteeringKind::Attitude => return self.idle(),
-                SteeringKind::Idle => return,
-                // It had only just begun to lift off.
-                SteeringKind::Position | SteeringKind::Descent => {}
-            }
-        }
-        if !self.knows_its_place() {
-            self.descend_blind();
-            return;
-        }
-        let height_m = -self.outputs.setpoint.position_m.z;
-        let slow = self.conduct.land_speed_m_s;
-        // Slower towards the ground, within what the shaper is allowed.
-        let fastest = self.simulation.configuration().limits.speed_down_m_s.max(slow);
-        let speed = (slow + 0.4 * (height_m - 2.0)).clamp(slow, fastest);
-        let [x, y] = match above {
-            Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
-            None => [AxisTarget::HOLD; 2],
-        };
-        self.follow(&PositionSetPoint { axes: [x, y, AxisTarget::Velocity(speed)], yaw: YawTarget::Hold });
+    #[test]
+    fn near_home_it_lands_at_once() {
+        let mut scene = Scene::hovering_at([3.0, 0.0, -10.0]);
+        let mut way_home = Return::default();
+        let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert_eq!(said(&requests), ["Returning: the place is near, landing"]);
+        assert!(way_home.descends());
     }
 
-    /// A descent without an estimate of the place: level, the thrust by the sink rate. It drifts with the wind.
-    fn descend_blind(&mut self) {
-        let airframe = self.simulation.configuration().airframe;
-        let (_, strongest_n) = airframe.thrust_range_n();
-        let missing_m_s = self.sink_rate_m_s() - self.conduct.land_speed_m_s;
-        let thrust_n = airframe.weight_n() * (1.0 + SINK_GAIN * missing_m_s).clamp(0.6, 1.4);
-        let level = UnitQuaternion::from_euler_angles(0.0, 0.0, self.outputs.attitude_rad.z);
-        let set_point = AttitudeSetPoint {
-            attitude: Some(level),
-            body_rate_rad_s: Vector3::zeros(),
-            thrust: (thrust_n / strongest_n).clamp(0.0, 1.0),
-        };
-        self.steering.follow_attitude(&set_point, &self.outputs);
+    #[test]
+    fn the_fence_bounds_its_height_and_bends_its_way() {
+        let mut scene = Scene::hovering_at([40.0, 0.0, -10.0]);
+        scene.conduct.failsafe.fence_height_m = 12.0;
+        let shape = Shape::Circle { centre_m: [20.0, 0.0], radius_m: 5.0 };
+        scene.zones.zones.push(Zone { shape, inclusion: false });
+        let mut way_home = Return::default();
+        scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        assert_eq!(scene.goal_m(), Some([40.0, 0.0, -12.0]));
+        let mut corners = 0;
+        while !way_home.descends() {
+            scene.come_to(scene.goal_m().unwrap(), [0.0; 3]);
+            step(&mut way_home, &mut scene);
+            corners += 1;
+            assert!(corners < 20);
+        }
+        assert!(corners > 3, "straight through: {corners}");
+        assert_eq!(scene.goal_m(), Some([0.0, 0.0, -12.0]));
+    }
+
+    /// Without a place it goes down level, and idles where it stands.
+    #[test]
+    fn a_blind_descent_is_level_and_ends_on_the_ground() {
+        let mut scene = Scene::hovering_at([1.0, 0.0, -10.0]);
+        let mut way_home = Return::default();
+        scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        scene.validity.horizontal_position = false;
+        step(&mut way_home, &mut scene);
+        let Steering::Attitude { set_point, .. } = scene.steering else { panic!("{:?}", scene.steering) };
+        let hover = scene.configuration.airframe.weight_n() / scene.configuration.airframe.thrust_range_n().1;
+        assert!(set_point.thrust < hover && set_point.thrust > 0.5 * hover, "{} {hover}", set_point.thrust);
+        scene.landed = true;
+        step(&mut way_home, &mut scene);
+        assert_eq!(scene.steering.kind(), SteeringKind::Idle);
     }
 }

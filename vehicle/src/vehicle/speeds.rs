@@ -1,15 +1,26 @@
 //! Speeds that hold for a while instead of the limits that the parameters set: those of a mission while it is flown, those of a
 //! command until the rotors stop. The parameters stay as they are.
 
-use quadrotor::{Configuration, ConfigurationError, Limits};
+use quadrotor::{Configuration, Limits};
 
-use super::conduct::Conduct;
-use super::notice::{Refusal, Severity};
-use super::state::Vehicle;
+use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
+
+/// How limits of speed change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpeedChange {
+    /// The mission asks for another one.
+    Mission(ChangeSpeed),
+    /// The mission's speeds hold while it is flown.
+    InMission(bool),
+    /// Another mission, or the same from its beginning, has asked for no speed yet.
+    ForgetMission,
+    /// With the flight ends what commands have asked for.
+    ForgetCommands,
+}
 
 /// Limits of speed, m/s: horizontally, up, down.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Speeds {
+pub struct Speeds {
     /// Of the parameters.
     kept_m_s: [f64; 3],
     by_command_m_s: [Option<f64>; 3],
@@ -18,31 +29,72 @@ pub(super) struct Speeds {
     in_mission: bool,
 }
 
-/// Speeds that DO_CHANGE_SPEED has for "as it is" and "as the parameter has it".
-const KEEP: f64 = -1.0;
-const DEFAULT: f64 = -2.0;
-
 impl Speeds {
     /// The parameters' alone.
     pub fn new(limits: &Limits) -> Self {
         Self { kept_m_s: of(limits), by_command_m_s: [None; 3], by_mission_m_s: [None; 3], in_mission: false }
     }
 
-    /// Parameters have been set: those that have changed hold at once.
-    fn keep(&mut self, limits: &Limits) {
+    /// Limits of the parameters, m/s.
+    pub fn kept_m_s(&self) -> [f64; 3] {
+        self.kept_m_s
+    }
+
+    /// Limits that hold, m/s.
+    pub fn in_force(&self) -> [f64; 3] {
+        core::array::from_fn(|axis| {
+            let by_mission = self.by_mission_m_s[axis].filter(|_| self.in_mission);
+            by_mission.or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
+        })
+    }
+
+    /// The same when parameters have been set: those that have changed hold at once.
+    pub fn keeping(mut self, limits: &Limits) -> Self {
         for (axis, limit) in of(limits).into_iter().enumerate() {
             if self.kept_m_s[axis] != limit {
                 self.kept_m_s[axis] = limit;
                 (self.by_command_m_s[axis], self.by_mission_m_s[axis]) = (None, None);
             }
         }
+        self
     }
 
-    fn in_force(&self) -> [f64; 3] {
-        core::array::from_fn(|axis| {
-            let by_mission = self.by_mission_m_s[axis].filter(|_| self.in_mission);
-            by_mission.or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
-        })
+    /// The same after a change.
+    pub fn after(mut self, change: SpeedChange) -> Self {
+        match change {
+            SpeedChange::Mission(change) => {
+                if let Some((axis, limit_m_s)) = asked(&change) {
+                    self.by_mission_m_s[axis] = limit_m_s;
+                }
+            }
+            SpeedChange::InMission(in_mission) => self.in_mission = in_mission,
+            SpeedChange::ForgetMission => self.by_mission_m_s = [None; 3],
+            SpeedChange::ForgetCommands => self.by_command_m_s = [None; 3],
+        }
+        self
+    }
+
+    /// The same after a command. In a mission it goes before the mission's own, until that changes it again.
+    pub fn commanded(mut self, change: &ChangeSpeed) -> Self {
+        if let Some((axis, limit_m_s)) = asked(change) {
+            self.by_command_m_s[axis] = limit_m_s;
+            self.by_mission_m_s[axis] = self.by_mission_m_s[axis].filter(|_| !self.in_mission);
+        }
+        self
+    }
+}
+
+/// Place of the limit that changes, and what is asked for: m/s, or `None` for the parameter's. Nothing if it stays as it is.
+fn asked(change: &ChangeSpeed) -> Option<(usize, Option<f64>)> {
+    let axis = match change.kind {
+        SpeedKind::Horizontal => 0,
+        SpeedKind::Up => 1,
+        SpeedKind::Down => 2,
+    };
+    match change.target {
+        SpeedTarget::Keep => None,
+        SpeedTarget::Default => Some((axis, None)),
+        SpeedTarget::Limit(limit_m_s) => Some((axis, Some(limit_m_s))),
     }
 }
 
@@ -51,98 +103,8 @@ fn of(limits: &Limits) -> [f64; 3] {
 }
 
 /// A configuration with other limits of speed.
-fn with(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Configuration {
+pub fn with_speeds(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Configuration {
     let limits = &mut configuration.limits;
     [limits.speed_horizontal_m_s, limits.speed_up_m_s, limits.speed_down_m_s] = speeds_m_s;
     configuration
-}
-
-/// Place of a SPEED_TYPE: 0 (through the air) and 1 (over the ground) are horizontal, 2 is up, 3 is down.
-fn axis(kind: f64) -> Option<usize> {
-    [0.0, 1.0, 2.0, 3.0].iter().position(|number| *number == kind).map(|number| number.saturating_sub(1))
-}
-
-impl Vehicle {
-    /// The parameters of the closed loop, whatever speeds hold for now.
-    pub fn kept_configuration(&self) -> Configuration {
-        with(*self.simulation.configuration(), self.speeds.kept_m_s)
-    }
-
-    /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,
-    /// and its own. Tunable parameters of the closed loop change in flight, without a bump; the others only while the vehicle
-    /// is disarmed on the ground.
-    ///
-    /// # Errors
-    /// [`ConfigurationError`]; nothing has changed then.
-    pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ConfigurationError> {
-        if *kept != self.kept_configuration() {
-            self.reconfigure(kept)?;
-        }
-        self.conduct = *conduct;
-        Ok(())
-    }
-
-    fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
-        let mut speeds = self.speeds;
-        speeds.keep(&kept.limits);
-        self.configure(&with(*kept, speeds.in_force()))?;
-        self.speeds = speeds;
-        Ok(())
-    }
-
-    /// Changes a limit of speed until the rotors stop: SPEED_TYPE, and m/s, −1 (as it is) or −2 (as the parameter has it). In
-    /// a mission it goes before the mission's own, until that changes it again.
-    ///
-    /// # Errors
-    /// [`Refusal`] of a type or a speed that there is not.
-    pub fn change_speed(&mut self, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
-        let axis = axis(kind).ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
-        if speed_m_s == KEEP {
-            return Ok(());
-        }
-        let mut speeds = self.speeds;
-        speeds.by_command_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
-        speeds.by_mission_m_s[axis] = speeds.by_mission_m_s[axis].filter(|_| !speeds.in_mission);
-        self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
-    }
-
-    /// DO_CHANGE_SPEED of a mission.
-    pub(super) fn change_mission_speed(&mut self, kind: f64, speed_m_s: f64) {
-        let Some(axis) = axis(kind).filter(|_| speed_m_s != KEEP) else { return };
-        let mut speeds = self.speeds;
-        speeds.by_mission_m_s[axis] = Some(speed_m_s).filter(|speed| *speed != DEFAULT);
-        self.use_mission_speeds(speeds);
-    }
-
-    /// The mission's speeds hold while it is flown.
-    pub(super) fn apply_mission_speeds(&mut self, in_mission: bool) {
-        self.use_mission_speeds(Speeds { in_mission, ..self.speeds });
-    }
-
-    /// Another mission, or the same from its beginning, has asked for no speed yet.
-    pub(super) fn forget_mission_speeds(&mut self) {
-        self.use_mission_speeds(Speeds { by_mission_m_s: [None; 3], ..self.speeds });
-    }
-
-    /// With the flight ends what commands have asked for.
-    pub(super) fn forget_command_speeds(&mut self) {
-        self.use_mission_speeds(Speeds { by_command_m_s: [None; 3], ..self.speeds });
-    }
-
-    fn use_mission_speeds(&mut self, speeds: Speeds) {
-        if let Err(error) = self.use_speeds(speeds) {
-            self.say(Severity::Warning, format!("Speed not changed: {error}"));
-        }
-    }
-
-    fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ConfigurationError> {
-        let present = *self.simulation.configuration();
-        let configuration = with(present, speeds.in_force());
-        if configuration.limits != present.limits {
-            self.configure(&configuration)?;
-            self.replan_leg();
-        }
-        self.speeds = speeds;
-        Ok(())
-    }
 }

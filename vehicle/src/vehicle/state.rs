@@ -1,39 +1,47 @@
 //! The vehicle's state and one tick of it.
 
-use std::collections::VecDeque;
+mod arming;
+mod decision;
+mod plan_requests;
+mod queries;
+mod requests;
 
 use nalgebra::Vector3;
-use quadrotor::{
-    Configuration, ConfigurationError, Disturbance, Inputs, Outputs, PositionReference, Simulation,
-    SimulationError,
-};
+use quadrotor::{Configuration, ConfigurationError, SimulationError};
 use serde::{Deserialize, Serialize};
 
 use super::battery::Battery;
+use super::closed_loop::{ClosedLoop, Conditions};
 use super::conduct::Conduct;
-use super::failsafe::Failsafe;
-use super::fence::FenceRecord;
-use super::landed::{LandedDetector, LandedState};
+use super::decided::Decided;
+use super::descent::descend;
+use super::failsafe::{Cause, Failsafe};
+use super::fence_watch::FenceWatch;
+use super::home::Home;
+use super::injection::Injection;
+use super::landing::Landing;
+use super::machines::Machines;
+use super::manual_control::ManualControl;
 use super::mission::Mission;
-use super::notice::{Notice, Severity};
-use super::offboard::SetPoints;
-use super::region::RegionOfInterest;
-use super::return_home::ReturnPhase;
-use super::rotor_loss::RotorWatch;
-use super::set_point::PositionSetPoint;
+use super::offboard::Offboard;
+use super::perception::Perception;
+use super::plans::KnownPlans;
+use super::return_home::Return;
+use super::rotor_watch::RotorWatch;
+use super::setup::Setup;
+use super::situation::Situation;
 use super::speeds::Speeds;
-use super::steering::{Steering, SteeringKind, TrackedAttitude};
-use super::sticks::Sticks;
-use crate::estimation::{Estimate, IdealSensors, Navigation, SensorModel, SensorSettings};
-use crate::fault::{Faults, ScheduledFault};
-use crate::fence::Zones;
+use super::takeoff::Takeoff;
+use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
+use crate::fault::ScheduledFault;
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{PlanKind, Plans, Site, zones};
-use crate::world::{Geodetic, LocalFrame, Wind, WindSettings};
+use crate::plan::{PlanKind, Plans, Site, compile};
+use crate::world::{Geodetic, LocalFrame, WindSettings};
 
 /// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
 pub const TICK_US: u64 = 1_000;
+const TICK_S: f64 = TICK_US as f64 / 1e6;
 
 /// Everything that a vehicle is made from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,130 +80,69 @@ impl VehicleSettings {
     }
 }
 
-/// Where a return goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Home {
-    /// NED, m.
-    pub position_m: Vector3<f64>,
-    /// Heading there, rad.
-    pub yaw_rad: f64,
-    /// Whether a user has set it: then arming does not move it.
-    pub set_by_user: bool,
-}
-
 /// The vehicle.
 #[derive(Debug)]
 pub struct Vehicle {
-    pub(super) identity: Identity,
-    pub(super) conduct: Conduct,
-    pub(super) simulation: Simulation,
-    /// What the closed loop shows, as far as the vehicle knows it.
-    pub(super) outputs: Outputs,
-    /// What it shows in truth.
-    pub(super) truth: Outputs,
-    /// Instruments and estimator, unless the truth is known.
-    pub(super) navigation: Option<Navigation>,
-    pub(super) ideal_sensors: IdealSensors,
-    pub(super) frame: LocalFrame,
-    /// Time of the start since 1970, µs.
-    pub(super) unix_start_us: u64,
-    pub(super) wind: Wind,
-    pub(super) wind_m_s: Vector3<f64>,
-    pub(super) battery: Battery,
-    pub(super) faults: Faults,
-    /// Those to come, the next one first.
-    pub(super) scheduled_faults: VecDeque<ScheduledFault>,
-    pub(super) rotors: RotorWatch,
-    pub(super) landed: LandedDetector,
-    pub(super) home: Home,
-    pub(super) armed: bool,
-    /// Whether the last flight was ended in the air; until it is armed again.
-    pub(super) terminated: bool,
-    pub(super) mode: Mode,
-    pub(super) steering: Steering,
-    pub(super) set_points: SetPoints,
-    pub(super) sticks: Option<(Sticks, u64)>,
-    /// z of the goal of a takeoff, m.
-    pub(super) takeoff_z_m: Option<f64>,
-    pub(super) return_phase: ReturnPhase,
-    /// Whether it has flown since it was armed.
-    pub(super) flown: bool,
-    /// Since when it has been armed and on the ground, µs.
-    pub(super) grounded_since_us: u64,
-    pub(super) notices: Vec<Notice>,
-    pub(super) plans: Plans,
-    pub(super) fence_zones: Zones,
-    pub(super) fence_record: FenceRecord,
-    pub(super) failsafe: Failsafe,
-    /// The way of a return: north and east, m, the place to land at last.
-    pub(super) return_way_m: VecDeque<[f64; 2]>,
-    pub(super) mission: Mission,
-    pub(super) speeds: Speeds,
-    pub(super) region: Option<RegionOfInterest>,
+    setup: Setup,
+    closed_loop: ClosedLoop,
+    perception: Perception,
+    plans: KnownPlans,
+    decided: Decided,
+    machines: Machines,
 }
 
 impl Vehicle {
     /// A vehicle at rest on the ground, disarmed.
     ///
     /// # Errors
-    /// As [`Simulation::new`].
+    /// As [`Simulation::new`](quadrotor::Simulation::new).
     pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
         let configuration = settings.flown_configuration();
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
             let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
         });
-        let inputs = Inputs { armed: false, ..Inputs::default() };
-        let simulation = Simulation::new(&configuration, &inputs)?;
-        let outputs = simulation.outputs();
-        let mut scheduled_faults = settings.faults.clone();
-        scheduled_faults.sort_by_key(|fault| fault.time_us);
+        let closed_loop = ClosedLoop::new(&configuration, settings.wind)?;
+        let perception = Perception::new(closed_loop.simulation(), navigation);
         let frame = LocalFrame::new(settings.origin);
         let home_m = Vector3::from(configuration.initial.position_m);
+        let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
-        // What was taken once is taken again: the plan has been checked where it came from.
-        let fence_zones = zones(settings.plans.get(PlanKind::Fence).items(), &site).unwrap_or_default();
-        let mut vehicle = Self {
-            identity: settings.identity,
-            conduct: settings.conduct,
-            frame,
-            unix_start_us: 0,
-            wind: Wind::new(settings.wind),
-            wind_m_s: Vector3::zeros(),
+        let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
+        let machines = Machines {
+            injection: Injection::new(settings.faults.clone()),
             battery: Battery::default(),
-            faults: Faults::default(),
-            scheduled_faults: scheduled_faults.into(),
-            rotors: RotorWatch::new(outputs.rotor_speed_rad_s),
-            landed: LandedDetector::new(-outputs.position_m.z),
-            home: Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false },
-            armed: false,
-            terminated: false,
-            mode: settings.identity.first_mode(),
-            steering: Steering::Idle { yaw_rad: settings.heading_rad },
-            set_points: SetPoints::default(),
-            sticks: None,
-            takeoff_z_m: None,
-            return_phase: ReturnPhase::Climb,
-            flown: false,
-            grounded_since_us: 0,
-            notices: Vec::new(),
-            plans: settings.plans.clone(),
-            fence_zones,
-            fence_record: FenceRecord::default(),
+            fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
-            return_way_m: VecDeque::new(),
-            mission: Mission::default(),
+            rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
+            landing: Landing::new(-perception.truth().position_m.z),
+            takeoff: Takeoff::default(),
+            manual_control: ManualControl::default(),
+            offboard: Offboard::default(),
+            return_home: Return::default(),
+            mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
-            region: None,
-            simulation,
-            outputs,
-            truth: outputs,
-            navigation,
-            ideal_sensors: IdealSensors::default(),
         };
-        vehicle.outputs = vehicle.known();
-        vehicle.mission_has_changed(false);
-        Ok(vehicle)
+        Ok(Self {
+            setup: Setup::new(settings.identity, settings.conduct, frame),
+            closed_loop,
+            perception,
+            plans: KnownPlans::new(settings.plans.clone(), &site),
+            decided: Decided::new(settings.identity.first_mode(), home),
+            machines,
+        })
+    }
+
+    /// What the parts see of the vehicle now.
+    fn situation(&self) -> Situation<'_> {
+        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        situation(setup, closed_loop, perception, plans, decided, machines)
+    }
+
+    /// What the parts see of the vehicle now, and the parts.
+    fn situation_and_machines(&mut self) -> (Situation<'_>, &mut Machines) {
+        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        (situation(setup, closed_loop, perception, plans, decided, machines), machines)
     }
 
     /// Flies one tick on.
@@ -203,212 +150,132 @@ impl Vehicle {
     /// # Errors
     /// [`SimulationError`]: the flight has left the range of numbers.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
-        self.suffer_scheduled();
-        self.watch_fence();
+        self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
         self.watch();
-        if self.armed {
+        if self.decided.is_armed() {
             self.fly();
         }
-        let dt_s = TICK_US as f64 / 1e6;
-        let time_us = self.outputs.time_us;
-        let asked = self.steering.apply(&self.simulation, &self.outputs, dt_s);
-        let height_m = -self.truth.position_m.z;
-        self.wind_m_s = self.wind.velocity_m_s(time_us, height_m);
-        let disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
-        let inputs = Inputs {
-            disturbance,
-            armed: self.armed,
-            estimate: self.estimate().map(|estimate| estimate.body),
-            rotor_faults: self.faults.rotors(),
-            ..asked
-        };
-        self.simulation.advance_to(time_us + TICK_US, &inputs)?;
+        self.advance()?;
         self.perceive();
-        self.watch_rotors(dt_s);
-
-        let airframe = self.simulation.configuration().airframe;
-        let capacity_ah = self.conduct.battery_capacity_ah;
-        self.battery.fail(self.faults.battery(), capacity_ah);
-        self.battery.step(&airframe, &self.outputs.rotor_speed_rad_s, capacity_ah, dt_s);
-        let controlled = self.steering.kind() == SteeringKind::Position;
-        let stood = self.landed.is_landed();
-        self.landed.update(&self.felt(), airframe.weight_n(), self.armed, controlled);
-        if self.landed.is_landed() != stood {
-            self.touched(!stood);
-        }
-        self.rest();
+        self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
+        self.discharge();
+        self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
     }
 
-    /// A vehicle that stands, and is not led up, lets its rotors idle. A mission and a takeoff know what they do.
-    fn rest(&mut self) {
-        let waits = !matches!(self.mode, Mode::Mission | Mode::Takeoff);
-        if waits && self.landed.is_settled() && self.steering.stays_below(self.outputs.position_m.z) {
-            self.idle();
-        }
-    }
-
-    /// The vehicle has touched down (`true`) or lifted off.
-    fn touched(&mut self, down: bool) {
-        if !down {
-            self.flown |= self.armed;
-            return;
-        }
-        self.grounded_since_us = self.time_us();
-        if self.armed && self.flown {
-            self.say(Severity::Info, "Landing detected");
-        }
-        // An attitude is the pilot's own business.
-        if self.steering.kind() == SteeringKind::Position {
-            self.idle();
-        }
-    }
-
-    pub(super) fn idle(&mut self) {
-        self.steering = Steering::Idle { yaw_rad: self.outputs.attitude_rad.z };
-    }
-
-    /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it; one that has not set out yet does
-    /// not.
-    pub(super) fn hold(&mut self) {
-        const NEAR_M: f64 = 0.01;
-        const SLOW_M_S: f64 = 0.01;
-        let now = &self.outputs.setpoint;
-        let rests_at = |goal: &PositionReference| {
-            (goal.position_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
-        };
-        match &self.steering {
-            Steering::Idle { .. } => {}
-            Steering::Goal(goal) if rests_at(goal) => {}
-            _ => self.follow(&PositionSetPoint::HOLD),
-        }
-    }
-
-    pub(super) fn follow(&mut self, set_point: &PositionSetPoint) {
-        if self.lost_rotor().is_none() {
-            self.steering.follow(set_point, &self.outputs);
-        }
-    }
-
-    pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        self.notices.push(Notice { severity, text: text.into() });
-    }
-
-    /// Notices since the last call.
-    pub fn take_notices(&mut self) -> Vec<Notice> {
-        std::mem::take(&mut self.notices)
-    }
-
-    /// Whose conventions it follows.
-    pub fn identity(&self) -> Identity {
-        self.identity
-    }
-
-    /// Simulation time, µs after the start.
-    pub fn time_us(&self) -> u64 {
-        self.outputs.time_us
-    }
-
-    /// Tells what time it was at the start, µs since 1970.
-    pub fn set_unix_start_us(&mut self, unix_start_us: u64) {
-        self.unix_start_us = unix_start_us;
-    }
-
-    /// Time of the start, µs since 1970.
-    pub fn unix_start_us(&self) -> u64 {
-        self.unix_start_us
-    }
-
-    /// What the closed loop shows, as far as the vehicle knows its motion.
-    pub fn outputs(&self) -> &Outputs {
-        &self.outputs
-    }
-
-    /// What the closed loop shows in truth.
-    pub fn truth(&self) -> &Outputs {
-        &self.truth
-    }
-
-    /// The closed loop.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
-    }
-
-    /// The local frame.
-    pub fn frame(&self) -> &LocalFrame {
-        &self.frame
-    }
-
-    /// Velocity of the air, NED, m/s.
-    pub fn wind_m_s(&self) -> Vector3<f64> {
-        self.wind_m_s
-    }
-
-    /// The battery.
-    pub fn battery(&self) -> &Battery {
-        &self.battery
-    }
-
-    /// Remaining share of the battery.
-    pub fn battery_remaining(&self) -> f64 {
-        self.battery.remaining(self.conduct.battery_capacity_ah)
-    }
-
-    /// Its own parameters.
-    pub fn conduct(&self) -> &Conduct {
-        &self.conduct
-    }
-
-    /// Home.
-    pub fn home(&self) -> &Home {
-        &self.home
-    }
-
-    /// Whether the rotors may turn.
-    pub fn is_armed(&self) -> bool {
-        self.armed
-    }
-
-    /// The mode.
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// How it is steered.
-    pub fn steering_kind(&self) -> SteeringKind {
-        self.steering.kind()
-    }
-
-    /// What the attitude controller tracks now.
-    pub fn tracked_attitude(&self) -> TrackedAttitude {
-        let (_, strongest_n) = self.simulation.configuration().airframe.thrust_range_n();
-        self.steering.tracked_attitude(&self.outputs, strongest_n)
-    }
-
-    /// Whether it stands, climbs from the ground, flies or descends to the ground.
-    pub fn landed_state(&self) -> LandedState {
-        let (climbs, descends) = self.mission_task_is_vertical();
-        match self.mode {
-            _ if self.landed.is_landed() => LandedState::OnGround,
-            Mode::Mission if climbs => LandedState::TakingOff,
-            Mode::Mission if descends => LandedState::Landing,
-            Mode::Takeoff => LandedState::TakingOff,
-            Mode::Land => LandedState::Landing,
-            Mode::Return if self.return_phase == ReturnPhase::Descend => LandedState::Landing,
-            _ => LandedState::InAir,
-        }
-    }
-
-    /// Changes the closed loop, what is fixed in flight only while it is disarmed on the ground.
-    pub(super) fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        match self.simulation.reconfigure(configuration) {
-            Err(ConfigurationError::Fixed { .. }) if !self.armed && self.landed.is_landed() => {
-                self.simulation = Simulation::from_state(configuration, self.simulation.state())?;
-                self.truth = self.simulation.outputs();
-                self.outputs = self.known();
-                Ok(())
+    /// Looks at the fence, then at all causes of failsafes, which act one after the other.
+    fn watch(&mut self) {
+        let (situation, parts) = self.situation_and_machines();
+        parts.fence.watch(&situation);
+        parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
+        for cause in Cause::ALL {
+            // It is told where it is noticed.
+            if cause != Cause::SetPointsLost {
+                let present = self.machines.failsafe.finds(&self.situation(), cause);
+                self.see(cause, present);
             }
-            result => result,
         }
+    }
+
+    /// One tick of the armed vehicle, by mode.
+    fn fly(&mut self) {
+        self.consult(|parts, situation, proposal| match situation.mode {
+            _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
+            Mode::Takeoff => parts.takeoff.step(situation, proposal),
+            Mode::Hold => {}
+            Mode::Position => parts.manual_control.step(situation, proposal),
+            Mode::Offboard => parts.offboard.step(situation, proposal),
+            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Land => descend(situation, proposal, None),
+            Mode::Return => parts.return_home.step(situation, proposal),
+        });
+        self.consult(|parts, situation, proposal| {
+            parts.offboard.hold_without_news(situation, proposal);
+            if situation.chooses_its_heading() {
+                proposal.turn_to_region(situation);
+            }
+        });
+        self.consult(|parts, situation, proposal| parts.landing.wait(situation, proposal));
+    }
+
+    /// Flies the closed loop as the steering asks.
+    fn advance(&mut self) -> Result<(), SimulationError> {
+        let mut steering = *self.decided.steering();
+        let conditions = Conditions {
+            outputs: self.perception.outputs(),
+            height_m: -self.perception.truth().position_m.z,
+            armed: self.decided.is_armed(),
+            rotor_faults: self.machines.injection.faults().rotors(),
+            estimate: self.perception.estimate().map(|estimate| estimate.body),
+        };
+        self.closed_loop.step(&mut steering, &conditions, TICK_US)?;
+        self.decided.steer(steering);
+        Ok(())
+    }
+
+    /// Perceives the motion after the tick.
+    fn perceive(&mut self) {
+        let (simulation, faults) = (self.closed_loop.simulation(), self.machines.injection.faults());
+        let stands = self.stands();
+        self.perception.step(simulation, self.setup.frame(), faults, stands);
+    }
+
+    /// Draws the power of the tick from the battery.
+    fn discharge(&mut self) {
+        let airframe = &self.closed_loop.simulation().configuration().airframe;
+        let capacity_ah = self.setup.conduct().battery_capacity_ah;
+        let Machines { battery, injection, .. } = &mut self.machines;
+        battery.fail(injection.faults().battery(), capacity_ah);
+        battery.step(airframe, &self.perception.outputs().rotor_speed_rad_s, capacity_ah, TICK_S);
+    }
+
+    /// Whether it stands on the ground, disarmed.
+    fn stands(&self) -> bool {
+        self.machines.landing.is_landed() && !self.decided.is_armed()
+    }
+}
+
+/// The situation that the parts of a vehicle are in.
+fn situation<'a>(
+    setup: &'a Setup,
+    closed_loop: &'a ClosedLoop,
+    perception: &'a Perception,
+    plans: &'a KnownPlans,
+    decided: &'a Decided,
+    machines: &Machines,
+) -> Situation<'a> {
+    let (simulation, outputs) = (closed_loop.simulation(), perception.outputs());
+    let (conduct, landing) = (setup.conduct(), &machines.landing);
+    let navigation = perception.navigation();
+    let flies_mission = decided.mode() == Mode::Mission && decided.is_armed() && landing.has_flown();
+    Situation {
+        time_us: outputs.time_us,
+        unix_start_us: setup.unix_start_us(),
+        identity: setup.identity(),
+        conduct,
+        configuration: simulation.configuration(),
+        frame: setup.frame(),
+        zones: plans.zones(),
+        rally_points: plans.rally_points(),
+        outputs,
+        truth: perception.truth(),
+        validity: perception.validity(),
+        health: perception.health(),
+        estimates: navigation.is_some(),
+        fix_velocity_down_m_s: navigation.and_then(Navigation::latest_fix).map(|fix| fix.velocity_m_s.z),
+        rotor_command_rad_s: simulation.rotor_command_rad_s(),
+        wind_m_s: closed_loop.wind_m_s(),
+        battery_remaining: machines.battery.remaining(conduct.battery_capacity_ah),
+        armed: decided.is_armed(),
+        mode: decided.mode(),
+        steering: decided.steering(),
+        home: decided.home(),
+        region: decided.region(),
+        landed: landing.is_landed(),
+        lost_rotor: machines.rotors.lost_rotor(),
+        breach: machines.fence.record().now,
+        set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
+        set_point_is_applied: machines.offboard.is_applied(),
+        mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }

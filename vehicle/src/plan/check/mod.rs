@@ -7,8 +7,6 @@ mod rally;
 use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site};
 use crate::world::FARTHEST_M;
 
-pub use mission::is_flown_to;
-
 /// Checks an item by itself.
 ///
 /// # Errors

@@ -14,7 +14,6 @@ mod action;
 mod cause;
 mod settings;
 mod state;
-mod watch;
 
 pub use action::Action;
 pub use cause::Cause;

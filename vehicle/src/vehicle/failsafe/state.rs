@@ -4,6 +4,8 @@ use super::{Action, Cause};
 
 /// A cause must have been away for so long, µs, before it counts as over: one that flickers acts once.
 pub const HOLD_US: u64 = 1_000_000;
+/// Gusts shorter than this, s, are no high wind.
+const WIND_TIME_CONSTANT_S: f64 = 2.0;
 
 /// A cause that is there, or has been a moment ago.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +21,9 @@ pub struct Failsafe {
     seen: Vec<Seen>,
     engaged: Option<(Cause, Action)>,
     /// Whether a ground station is heard; `None` before the first one.
-    pub(crate) ground_station: Option<bool>,
+    ground_station: Option<bool>,
     /// The wind, smoothed, m/s.
-    pub(crate) wind_m_s: f64,
+    wind_m_s: f64,
 }
 
 /// How a cause has changed.
@@ -34,6 +36,27 @@ pub enum Change {
 }
 
 impl Failsafe {
+    /// Tells whether a ground station is heard.
+    pub fn hear_ground_station(&mut self, heard: bool) {
+        self.ground_station = Some(heard);
+    }
+
+    /// Whether a ground station has been heard, and is no more.
+    pub fn misses_ground_station(&self) -> bool {
+        self.ground_station == Some(false)
+    }
+
+    /// Feels a wind, m/s, for `dt_s`.
+    pub fn feel_wind(&mut self, wind_m_s: f64, dt_s: f64) {
+        let share = dt_s / (WIND_TIME_CONSTANT_S + dt_s);
+        self.wind_m_s += share * (wind_m_s - self.wind_m_s);
+    }
+
+    /// The wind without short gusts, m/s.
+    pub fn wind_m_s(&self) -> f64 {
+        self.wind_m_s
+    }
+
     /// Takes in whether a cause is there at a time, µs; returns what that changes.
     pub fn see(&mut self, cause: Cause, present: bool, time_us: u64) -> Option<Change> {
         let Some(seen) = self.seen.iter_mut().find(|seen| seen.cause == cause) else {

@@ -7,6 +7,7 @@ use quadrotor::Limits;
 
 use super::super::motion::wrapped;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use crate::plan::step::Turns;
 
 /// Radius of turns that name none, m: that of ArduPilot's circle mode.
 const DEFAULT_RADIUS_M: f64 = 10.0;
@@ -31,17 +32,17 @@ pub struct Circle {
 }
 
 impl Circle {
-    /// Turns around a centre from the point of the circle that is next to a place. A negative radius turns counter-clockwise.
-    pub fn new(centre_m: Vector3<f64>, near_m: &Vector3<f64>, turns: f64, radius_m: f64) -> Self {
-        let radius = if radius_m == 0.0 || radius_m.is_nan() { DEFAULT_RADIUS_M } else { radius_m };
+    /// Turns around a centre from the point of the circle that is next to a place.
+    pub fn new(centre_m: Vector3<f64>, near_m: &Vector3<f64>, turns: &Turns) -> Self {
+        let radius_m = turns.radius_m.unwrap_or(DEFAULT_RADIUS_M);
         let off = near_m - centre_m;
         Self {
             centre_m,
-            radius_m: radius.abs(),
-            direction: radius.signum(),
+            radius_m: radius_m.abs(),
+            direction: radius_m.signum(),
             start_rad: if off.xy().norm() > 1e-6 { libm::atan2(off.y, off.x) } else { 0.0 },
             flown_rad: 0.0,
-            turns_rad: turns * TAU,
+            turns_rad: turns.turns * TAU,
             speed_m_s: 0.0,
         }
     }

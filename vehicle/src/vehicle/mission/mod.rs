@@ -1,72 +1,32 @@
 //! The flight of a mission.
 //!
 //! ```text
-//!                  ┌────────── next item ◄─────────────┐
+//!                  ┌────────── next step ◄─────────────┐
 //!                  ▼                                   │ done: reached
-//!  sequence ──► begin ──► task: climb, leg, wait, ─────┘
-//!  (jumps)        │             circle, descend
+//!  jumps ─────► begin ──► task: climb, leg, wait, ─────┘
+//!                 │             circle, descend
 //!                 └─► actions on the way: conditions, speed, home, region of interest
 //! ```
 //!
-//! Items that navigate (NAV_…) are flown one after the other. Those between two of them (DO_…, CONDITION_…) begin with the
-//! second one's leg; a condition that is not fulfilled when the leg ends is dropped with what follows it, as ArduPilot has it.
+//! Steps that are flown (NAV_…) follow one another. Those between two of them (DO_…, CONDITION_…) begin with the second one's
+//! leg; a condition that is not fulfilled when the leg ends is dropped with what follows it, as ArduPilot has it.
+//!
+//! [`Mission`] is the machine: it owns the program and how far it has come. `course` owns what is done for the present step,
+//! `actions` what is done on the way, `jumps` how often each jump was made. They look at a situation and ask in a proposal.
 
-mod action;
+mod actions;
 mod circle;
-mod control;
-mod heading;
+mod course;
+mod jumps;
 mod leg;
+mod machine;
 mod path;
-mod sequence;
+mod route;
 mod status;
 mod task;
-mod time_of_day;
+#[cfg(test)]
+mod tests;
+mod turning;
 
-use std::collections::{BTreeMap, VecDeque};
-
-use action::Condition;
-use heading::Turn;
-use leg::Carry;
-use nalgebra::Vector3;
-use task::Task;
-
+pub use machine::Mission;
 pub use status::{MissionState, MissionStatus};
-
-/// How far the mission has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-enum Progress {
-    /// It waits for its start.
-    #[default]
-    NotStarted,
-    /// It has begun.
-    Started,
-    /// Its last item is done.
-    Complete,
-}
-
-/// What changes while a mission is flown.
-#[derive(Debug, Default)]
-pub(super) struct Mission {
-    progress: Progress,
-    /// The item that is flown, or will be.
-    current: usize,
-    /// What is being done for it.
-    task: Option<Task>,
-    /// Motion that the next leg takes over.
-    carry: Option<Carry>,
-    /// Where the next leg begins, NED, m.
-    anchor_m: Vector3<f64>,
-    /// Items on the way that are still to be done.
-    actions: VecDeque<usize>,
-    /// What the first of them waits for.
-    condition: Option<Condition>,
-    /// How often each jump has been made.
-    jumps: BTreeMap<usize, u32>,
-    turn: Option<Turn>,
-    /// Heading of the present item, rad.
-    heading_rad: f64,
-    /// Whether it waits in its own mode.
-    paused: bool,
-    /// Items that were reached since the last look.
-    reached: Vec<u16>,
-}

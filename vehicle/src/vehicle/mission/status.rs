@@ -1,10 +1,6 @@
 //! How far a mission has come, for whoever watches it.
 
-use nalgebra::Vector3;
-
-use super::super::state::Vehicle;
-use super::Progress;
-use super::task::Task;
+use super::machine::{Mission, Progress};
 use crate::mode::Mode;
 
 /// MISSION_STATE.
@@ -35,32 +31,19 @@ pub struct MissionStatus {
     pub in_mode: bool,
 }
 
-impl Vehicle {
-    /// Where the mission is.
-    pub fn mission_status(&self) -> MissionStatus {
-        let mission = &self.mission;
-        let in_mode = self.mode == Mode::Mission;
-        let state = match mission.progress {
-            _ if self.mission_items().is_empty() => MissionState::None,
+impl Mission {
+    /// Where it is, seen from a mode.
+    pub fn status(&self, mode: Mode) -> MissionStatus {
+        let program = self.program();
+        let in_mode = mode == Mode::Mission;
+        let state = match self.progress() {
+            _ if program.is_empty() => MissionState::None,
             Progress::Complete => MissionState::Complete,
             Progress::NotStarted => MissionState::NotStarted,
-            Progress::Started if in_mode && !mission.paused => MissionState::Active,
+            Progress::Started if in_mode && !self.is_paused() => MissionState::Active,
             Progress::Started => MissionState::Paused,
         };
-        let total = self.mission_items().len().saturating_sub(self.first_mission_item());
-        MissionStatus { current: mission.current, total, state, in_mode }
-    }
-
-    /// Items that were reached since the last call.
-    pub fn take_reached_items(&mut self) -> Vec<u16> {
-        std::mem::take(&mut self.mission.reached)
-    }
-
-    /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
-    pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
-        match &self.mission.task {
-            Some(Task::Leg(leg, _)) => Some((leg.to_m, leg.cross_track_m(&self.outputs.position_m))),
-            _ => None,
-        }
+        let total = program.len().saturating_sub(program.first());
+        MissionStatus { current: self.current(), total, state, in_mode }
     }
 }

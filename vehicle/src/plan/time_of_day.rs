@@ -1,22 +1,13 @@
-//! NAV_DELAY until a time of day.
-
-use crate::plan::MissionItem;
+//! Times of the day.
 
 /// Hour, minute and second, UTC; what is `None` may be any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TimeOfDay([Option<u64>; 3]);
+pub struct TimeOfDay(pub [Option<u64>; 3]);
 
 const SECOND_US: u64 = 1_000_000;
 const DAY_S: u64 = 86_400;
 
 impl TimeOfDay {
-    /// What an item waits for; `None` if it waits for as long as it says.
-    pub fn of(item: &MissionItem) -> Option<Self> {
-        let part = |number: usize| Some(item.parameter_or(number, -1.0)).filter(|value| *value >= 0.0);
-        (item.parameter_or(1, 0.0) < 0.0)
-            .then(|| Self([2, 3, 4].map(|number| part(number).map(|value| value as u64))))
-    }
-
     /// How long it is to the next such time from a time since 1970, µs; nothing if it is now.
     pub fn wait_us(&self, unix_us: u64) -> u64 {
         let now_s = unix_us / SECOND_US;

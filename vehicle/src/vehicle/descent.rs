@@ -1,0 +1,54 @@
+//! The way down, for every part that lands.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::proposal::Proposal;
+use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
+use super::situation::Situation;
+use super::steering::SteeringKind;
+
+/// Share of the weight per error of the sink rate, s/m.
+const SINK_GAIN: f64 = 0.5;
+
+/// One tick of a descent, above a place (north and east, m) or wherever the vehicle comes to rest.
+pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f64; 2]>) {
+    if situation.landed {
+        match proposal.steering().kind() {
+            // The blind one ends here, too.
+            SteeringKind::Attitude => return proposal.idle(situation),
+            SteeringKind::Idle => return,
+            // It had only just begun to lift off.
+            SteeringKind::Position | SteeringKind::Descent => {}
+        }
+    }
+    if !situation.knows_its_place() {
+        descend_blind(situation, proposal);
+        return;
+    }
+    let height_m = -situation.outputs.setpoint.position_m.z;
+    let slow = situation.conduct.land_speed_m_s;
+    // Slower towards the ground, within what the shaper is allowed.
+    let fastest = situation.limits().speed_down_m_s.max(slow);
+    let speed = (slow + 0.4 * (height_m - 2.0)).clamp(slow, fastest);
+    let [x, y] = match above {
+        Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
+        None => [AxisTarget::HOLD; 2],
+    };
+    let axes = [x, y, AxisTarget::Velocity(speed)];
+    proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+}
+
+/// A descent without an estimate of the place: level, the thrust by the sink rate. It drifts with the wind.
+fn descend_blind(situation: &Situation, proposal: &mut Proposal) {
+    let airframe = situation.configuration.airframe;
+    let (_, strongest_n) = airframe.thrust_range_n();
+    let missing_m_s = situation.sink_rate_m_s() - situation.conduct.land_speed_m_s;
+    let thrust_n = airframe.weight_n() * (1.0 + SINK_GAIN * missing_m_s).clamp(0.6, 1.4);
+    let level = UnitQuaternion::from_euler_angles(0.0, 0.0, situation.outputs.attitude_rad.z);
+    let set_point = AttitudeSetPoint {
+        attitude: Some(level),
+        body_rate_rad_s: Vector3::zeros(),
+        thrust: (thrust_n / strongest_n).clamp(0.0, 1.0),
+    };
+    proposal.follow_attitude(situation, &set_point);
+}

@@ -1,0 +1,161 @@
+//! What the failsafe looks at, and what it asks for.
+
+use super::failsafe::{Action, Cause, Change, Failsafe};
+use super::notice::{Refusal, Severity};
+use super::proposal::Proposal;
+use super::situation::Situation;
+use crate::mode::Mode;
+
+impl Failsafe {
+    /// Whether a cause is there now. The end of set-points is told where it is noticed, and not looked for.
+    pub fn finds(&self, situation: &Situation, cause: Cause) -> bool {
+        let settings = &situation.conduct.failsafe;
+        let remaining = situation.battery_remaining;
+        match cause {
+            Cause::RotorFailure => situation.lost_rotor.is_some(),
+            Cause::PositionLost => situation.armed && !situation.knows_its_place(),
+            Cause::BatteryEmergency => remaining < settings.battery_emergency,
+            Cause::BatteryCritical => remaining < settings.battery_critical,
+            Cause::BatteryLow => remaining < settings.battery_low,
+            Cause::Fence => situation.breach.is_some(),
+            Cause::HighWind => settings.wind_m_s > 0.0 && self.wind_m_s() > settings.wind_m_s,
+            Cause::GroundStationLost => self.misses_ground_station(),
+            Cause::SetPointsLost => false,
+        }
+    }
+
+    /// Takes in whether a cause is there; announces what that changes, and asks for the action of a cause that begins.
+    pub fn take_in(
+        &mut self,
+        situation: &Situation,
+        proposal: &mut Proposal,
+        cause: Cause,
+        present: bool,
+    ) -> Option<Change> {
+        let change = self.see(cause, present, situation.time_us);
+        let action = situation.conduct.failsafe.action(cause);
+        match change {
+            Some(_) if action == Action::None => {}
+            Some(Change::Begun) => self.act(situation, proposal, cause, action),
+            Some(Change::Ended) => {
+                proposal.say(Severity::Info, format!("Failsafe: {} is over", lower(cause)));
+            }
+            None => {}
+        }
+        change
+    }
+
+    fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, action: Action) {
+        let flying = situation.flies();
+        let acts = flying && self.goes_before(action, Action::of_mode(situation.mode));
+        let why = cause.name();
+        let severity = if action > Action::Warn { Severity::Critical } else { Severity::Warning };
+        tracing::debug!(cause = why, action = action.name(), flying, acts, "failsafe");
+        let details = self.details(situation, cause);
+        if !acts {
+            let meanwhile = match (flying, action > Action::Warn) {
+                (true, true) => {
+                    format!(": goes on in {} mode", situation.identity.mode_name(situation.mode))
+                }
+                _ => String::new(),
+            };
+            proposal.say(severity, format!("Failsafe: {why}{details}{meanwhile}"));
+            return;
+        }
+        proposal.say(severity, format!("Failsafe: {why}{details}: {}", action.name()));
+        self.engage(cause, action);
+        match action.mode() {
+            Some(mode) => proposal.enter(mode),
+            None => proposal.terminate(),
+        }
+    }
+
+    fn details(&self, situation: &Situation, cause: Cause) -> String {
+        match cause {
+            Cause::BatteryLow | Cause::BatteryCritical | Cause::BatteryEmergency => {
+                format!(" ({:.0} %)", 100.0 * situation.battery_remaining)
+            }
+            Cause::HighWind => format!(" ({:.1} m/s)", self.wind_m_s()),
+            Cause::Fence => situation.breach.map(|breach| format!(" ({breach})")).unwrap_or_default(),
+            Cause::PositionLost => match situation.failed_instruments().join(", ") {
+                failed if failed.is_empty() => failed,
+                failed if situation.health.gyroscope => format!(" ({failed} failed)"),
+                failed => format!(" ({failed} failed: no attitude can be held)"),
+            },
+            _ => String::new(),
+        }
+    }
+
+    /// What of the causes speaks against arming.
+    pub fn obstacles(&self, situation: &Situation) -> impl Iterator<Item = String> {
+        let speaks = |cause: &Cause| {
+            // These have obstacles of their own, or are for the flight only.
+            let others = matches!(
+                cause,
+                Cause::RotorFailure | Cause::PositionLost | Cause::SetPointsLost | Cause::BatteryLow
+            );
+            !others && situation.conduct.failsafe.action(*cause) > Action::Warn
+        };
+        self.present().filter(speaks).map(|cause| format!("failsafe: {}", lower(cause)))
+    }
+
+    /// Whether a user may choose a mode now.
+    ///
+    /// # Errors
+    /// [`Refusal::TemporarilyRejected`] while the place is not known.
+    pub fn may_enter(&self, situation: &Situation, mode: Mode) -> Result<(), Refusal> {
+        if !situation.flies() || mode == Mode::Land {
+            return Ok(());
+        }
+        let lost = self.is_present(Cause::PositionLost);
+        if lost && situation.conduct.failsafe.position_lost >= Action::Land {
+            let name = situation.identity.mode_name(mode);
+            return Err(Refusal::later(format!("{name} rejected: position lost, only landing is left")));
+        }
+        Ok(())
+    }
+}
+
+fn lower(cause: Cause) -> String {
+    cause.name().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Action, Cause, Failsafe, Mode};
+    use crate::vehicle::proposal::Request;
+    use crate::vehicle::scene::{Scene, said};
+
+    fn take_in(failsafe: &mut Failsafe, scene: &mut Scene, cause: Cause, present: bool) -> Vec<Request> {
+        scene.show(|situation, proposal| {
+            failsafe.take_in(situation, proposal, cause, present);
+        })
+    }
+
+    #[test]
+    fn a_cause_that_begins_is_announced_then_its_mode_is_asked_for() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.conduct.failsafe.ground_station_lost = Action::Return;
+        let mut failsafe = Failsafe::default();
+        failsafe.hear_ground_station(false);
+        assert!(failsafe.finds(&scene.situation(), Cause::GroundStationLost));
+        let requests = take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true);
+        let [said_first, Request::Enter(Mode::Return)] = requests.as_slice() else { panic!("{requests:?}") };
+        assert_eq!(said(std::slice::from_ref(said_first)), ["Failsafe: Ground station lost: return"]);
+        assert_eq!(failsafe.engaged(), Some((Cause::GroundStationLost, Action::Return)));
+        // It is there: nothing more to be said.
+        assert!(take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true).is_empty());
+    }
+
+    #[test]
+    fn a_landing_is_not_called_off_and_nothing_happens_on_the_ground() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        (scene.mode, scene.conduct.failsafe.high_wind) = (Mode::Land, Action::Return);
+        let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
+        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s): goes on in Land mode"]);
+        let mut scene = Scene::on_the_ground();
+        scene.conduct.failsafe.high_wind = Action::Terminate;
+        let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
+        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s)"]);
+    }
+}

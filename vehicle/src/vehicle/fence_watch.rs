@@ -1,0 +1,182 @@
+//! The vehicle within its fence: refusing what leads out of it, and seeing a breach before it happens.
+
+use nalgebra::Vector3;
+
+use super::motion::Motion;
+use super::notice::Refusal;
+use super::set_point::{AxisTarget, PositionSetPoint};
+use super::situation::Situation;
+use super::steering::{Steering, SteeringKind};
+use crate::fence::Breach;
+
+/// An attitude that leads outside is left this late, s.
+const REACTION_S: f64 = 0.5;
+/// By so much more than its reference it may overshoot, m.
+const MARGIN_M: f64 = 0.5;
+/// How often the way to a stop is predicted, µs, and in which steps, s.
+const PREDICTION_PERIOD_US: u64 = 20_000;
+const STEP_S: f64 = 0.02;
+/// Longest stop, s.
+const LONGEST_STOP_S: f64 = 10.0;
+/// Slower than this, m/s, it stands.
+const STANDING_M_S: f64 = 0.1;
+
+/// What has become of the fence, for clients.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct FenceRecord {
+    /// The breach of now, if there is one.
+    pub now: Option<Breach>,
+    /// How many there were.
+    pub count: u16,
+    /// The latest, and when it began, µs.
+    pub latest: Option<(Breach, u64)>,
+}
+
+/// Looks for breaches.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct FenceWatch {
+    record: FenceRecord,
+}
+
+impl FenceWatch {
+    /// What has become of the fence.
+    pub fn record(&self) -> &FenceRecord {
+        &self.record
+    }
+
+    /// Looks whether the vehicle is, or cannot help coming, where it must not be.
+    pub fn watch(&mut self, situation: &Situation) {
+        let here = situation.breach_at(&situation.outputs.position_m);
+        if here.is_none() && !situation.time_us.is_multiple_of(PREDICTION_PERIOD_US) {
+            return;
+        }
+        let ahead = || situation.breach_to(&stopping_place_m(situation));
+        self.record.now =
+            here.or_else(|| if situation.conduct.failsafe.fence_ahead { ahead() } else { None });
+    }
+
+    /// Counts the breach of now, which has begun.
+    pub fn count(&mut self, time_us: u64) {
+        let Some(breach) = self.record.now else { return };
+        self.record.count = self.record.count.saturating_add(1);
+        self.record.latest = Some((breach, time_us));
+    }
+}
+
+/// Where the vehicle comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is
+/// not beyond the goal, where the shaper stops.
+fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
+    let position_m = situation.outputs.position_m;
+    let steering = situation.steering;
+    if !situation.armed || steering.kind() == SteeringKind::Idle {
+        return position_m;
+    }
+    let mut motion = steering.present(situation.outputs);
+    if !matches!(steering, Steering::Motion(_) | Steering::Goal(_)) {
+        motion.position_m += motion.velocity_m_s * REACTION_S;
+    }
+    let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
+    let mut braking = Motion::from(motion, PositionSetPoint::HOLD, 0);
+    for _ in 0..(LONGEST_STOP_S / STEP_S) as usize {
+        braking.step(situation.limits(), STEP_S);
+        motion = braking.reference(0);
+        if motion.velocity_m_s.norm() < STANDING_M_S {
+            break;
+        }
+    }
+    match steering {
+        Steering::Goal(goal) => {
+            let left_m = (goal.position_m - position_m).norm();
+            position_m + ahead * (motion.position_m - position_m).norm().min(left_m)
+        }
+        _ => motion.position_m + ahead * MARGIN_M,
+    }
+}
+
+/// Refuses a goal, NED, m, that the fence forbids, or the straight way to it.
+///
+/// # Errors
+/// [`Refusal::Denied`] that says what of it.
+pub fn check_goal(situation: &Situation, what: &str, goal_m: &Vector3<f64>) -> Result<(), Refusal> {
+    match situation.breach_to(goal_m) {
+        Some(breach) => Err(Refusal::denied(format!("{what} denied: {breach}"))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a set-point whose place the fence forbids. Speeds are looked at in flight.
+///
+/// # Errors
+/// [`Refusal::Denied`] that says what of it.
+pub fn check_set_point(situation: &Situation, set_point: &PositionSetPoint) -> Result<(), Refusal> {
+    let now = situation.outputs.position_m;
+    let mut placed = false;
+    let goal = Vector3::from_fn(|axis, _| match set_point.axes[axis] {
+        AxisTarget::Position(position_m) | AxisTarget::Track { position_m, .. } => {
+            placed = true;
+            position_m
+        }
+        _ => now[axis],
+    });
+    if placed { check_goal(situation, "Set-point", &goal) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::{AxisTarget, Breach, FenceWatch, PositionSetPoint, check_goal, check_set_point};
+    use crate::vehicle::scene::Scene;
+    use crate::vehicle::set_point::YawTarget;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        scene.conduct.failsafe.fence_radius_m = 50.0;
+        scene
+    }
+
+    #[test]
+    fn a_breach_is_seen_before_it_happens_and_counted_when_told() {
+        let mut scene = scene();
+        let mut watch = FenceWatch::default();
+        let mut at = |x: f64, speed_m_s: f64, ahead: bool| {
+            scene.come_to([x, 0.0, -10.0], [speed_m_s, 0.0, 0.0]);
+            scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+            scene.conduct.failsafe.fence_ahead = ahead;
+            watch.watch(&scene.situation());
+            watch.record().now
+        };
+        assert_eq!(at(40.0, 0.0, true), None);
+        assert_eq!(at(40.0, 1.0, true), None, "it can stop");
+        assert_eq!(at(48.0, 5.0, true), Some(Breach::Distance(50.0)));
+        assert_eq!(at(48.0, 5.0, false), None, "not beyond it yet");
+        assert_eq!(at(50.5, 0.0, false), Some(Breach::Distance(50.0)));
+        assert_eq!(watch.record().count, 0);
+        watch.count(7);
+        assert_eq!((watch.record().count, watch.record().latest), (1, Some((Breach::Distance(50.0), 7))));
+    }
+
+    #[test]
+    fn a_fence_that_is_switched_off_is_not_looked_at() {
+        let mut scene = scene();
+        scene.come_to([60.0, 0.0, -10.0], [0.0; 3]);
+        scene.conduct.failsafe.fence_enabled = false;
+        let mut watch = FenceWatch::default();
+        watch.watch(&scene.situation());
+        assert_eq!(watch.record().now, None);
+        assert_eq!(check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)), Ok(()));
+    }
+
+    #[test]
+    fn goals_beyond_are_refused_and_speeds_are_not() {
+        let scene = scene();
+        let refusal = check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)).unwrap_err();
+        assert_eq!(refusal.to_string(), "Takeoff denied: farther than 50 m from home");
+        let set_point = |north| PositionSetPoint {
+            axes: [north, AxisTarget::HOLD, AxisTarget::HOLD],
+            yaw: YawTarget::Hold,
+        };
+        assert!(check_set_point(&scene.situation(), &set_point(AxisTarget::Position(80.0))).is_err());
+        assert!(check_set_point(&scene.situation(), &set_point(AxisTarget::Velocity(80.0))).is_ok());
+    }
+}

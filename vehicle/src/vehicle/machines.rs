@@ -1,0 +1,43 @@
+//! The parts of the vehicle, each with a state of its own.
+
+use super::battery::Battery;
+use super::failsafe::Failsafe;
+use super::fence_watch::FenceWatch;
+use super::injection::Injection;
+use super::landing::Landing;
+use super::manual_control::ManualControl;
+use super::mission::Mission;
+use super::offboard::Offboard;
+use super::return_home::Return;
+use super::rotor_watch::RotorWatch;
+use super::speeds::Speeds;
+use super::takeoff::Takeoff;
+
+/// All parts. None of them sees another one: they look at a situation, and ask in a proposal.
+#[derive(Debug)]
+pub struct Machines {
+    /// What is broken.
+    pub injection: Injection,
+    /// The battery.
+    pub battery: Battery,
+    /// Breaches of the fence.
+    pub fence: FenceWatch,
+    /// Failsafes.
+    pub failsafe: Failsafe,
+    /// The rotors, and the descent without one.
+    pub rotors: RotorWatch,
+    /// Touch-down and lift-off.
+    pub landing: Landing,
+    /// Takeoffs.
+    pub takeoff: Takeoff,
+    /// Sticks.
+    pub manual_control: ManualControl,
+    /// Set-points.
+    pub offboard: Offboard,
+    /// The way home.
+    pub return_home: Return,
+    /// The mission.
+    pub mission: Mission,
+    /// Speeds that hold instead of the parameters'.
+    pub speeds: Speeds,
+}

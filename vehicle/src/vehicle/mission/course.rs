@@ -1,0 +1,289 @@
+//! How a step is flown: its task from the beginning to the end.
+
+use nalgebra::Vector3;
+
+use super::super::descent::descend;
+use super::super::motion::at_rest;
+use super::super::notice::Severity;
+use super::super::proposal::Proposal;
+use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::super::situation::Situation;
+use super::super::state::TICK_US;
+use super::super::steering::{Steering, SteeringKind};
+use super::super::takeoff::is_slow_near;
+use super::leg::{Carry, Leg, LegProgress};
+use super::route::Route;
+use super::task::{Task, TaskProgress, Then};
+use crate::plan::Place;
+use crate::plan::step::{Delay, Navigate};
+
+/// What is being done for the present step.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Course {
+    task: Option<Task>,
+    /// Motion that the next leg takes over.
+    carry: Option<Carry>,
+    /// Where the next leg begins, NED, m.
+    anchor_m: Vector3<f64>,
+    /// Heading of the present step, rad.
+    heading_rad: f64,
+}
+
+impl Course {
+    /// Whether something is being done.
+    pub fn is_busy(&self) -> bool {
+        self.task.is_some()
+    }
+
+    /// The present leg, if one is flown.
+    pub fn leg(&self) -> Option<&Leg> {
+        match &self.task {
+            Some(Task::Leg(leg, _)) => Some(leg),
+            _ => None,
+        }
+    }
+
+    /// Whether it climbs from the ground or descends to it.
+    pub fn is_vertical(&self) -> (bool, bool) {
+        (matches!(self.task, Some(Task::Climb { .. })), matches!(self.task, Some(Task::Descend(_))))
+    }
+
+    /// Heading of the present step, rad.
+    pub fn heading_rad(&self) -> f64 {
+        self.heading_rad
+    }
+
+    /// Gives up what is being done, to be begun again; the next leg may take a motion over.
+    pub fn give_up(&mut self, carry: Option<Carry>) {
+        (self.task, self.carry) = (None, carry);
+    }
+
+    /// Goes on from where the vehicle is.
+    pub fn take_over(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        self.carry = None;
+        self.anchor_m = proposal.steering().present(situation.outputs).position_m;
+        self.heading_rad = situation.outputs.attitude_rad.z;
+        proposal.hold(situation);
+    }
+
+    /// Plans the corner of the present leg again: limits of speed have changed.
+    pub fn replan(&mut self, route: &Route) {
+        if let Some(Task::Leg(leg, _)) = &mut self.task {
+            let again = route.leg(leg.from_m, leg.to_m, None);
+            *leg = leg.with_corner(again.corner());
+        }
+    }
+
+    /// One tick of a step: begins it, or goes on with it.
+    pub fn step(
+        &mut self,
+        step: &Navigate,
+        route: &Route,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        match self.task {
+            None => self.begin(step, route, situation, proposal),
+            Some(task) => self.carry_on(task, step, route, situation, proposal),
+        }
+    }
+
+    fn begin(
+        &mut self,
+        step: &Navigate,
+        route: &Route,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        let grounded = proposal.steering().kind() == SteeringKind::Idle;
+        let task = match step {
+            Navigate::Takeoff { place, .. } => {
+                return self.begin_takeoff(step, place, route, situation, proposal);
+            }
+            Navigate::ReturnToLaunch => return TaskProgress::Done(None),
+            Navigate::Land { .. } if grounded => return TaskProgress::Done(None),
+            Navigate::Delay(delay) => {
+                proposal.hold(situation);
+                Task::Wait(Some(delay_end_us(delay, situation)))
+            }
+            // On the ground a step above it begins with a climb: to its height, and at least to that of a takeoff.
+            _ if grounded => {
+                let least_z_m = proposal.home().position_m.z - situation.conduct.takeoff_height_m;
+                let end_m = route.leg_end_m(step, &situation.outputs.position_m);
+                let z_m = end_m.map_or(least_z_m, |end_m| end_m.z);
+                self.begin_climb(z_m.min(least_z_m), false, situation, proposal)
+            }
+            _ => match route.leg_end_m(step, &self.anchor_m) {
+                Some(end_m) => self.begin_leg(step, end_m, route),
+                None => {
+                    proposal.hold(situation);
+                    Task::Descend(None)
+                }
+            },
+        };
+        self.task = Some(task);
+        TaskProgress::Going
+    }
+
+    fn begin_climb(
+        &mut self,
+        z_m: f64,
+        takeoff: bool,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> Task {
+        let here = proposal.steering().present(situation.outputs).position_m;
+        let axes = [AxisTarget::Position(here.x), AxisTarget::Position(here.y), AxisTarget::Position(z_m)];
+        self.heading_rad = match proposal.steering() {
+            Steering::Goal(goal) => goal.yaw_rad,
+            _ => situation.outputs.attitude_rad.z,
+        };
+        proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Angle(self.heading_rad) });
+        self.anchor_m = Vector3::new(here.x, here.y, z_m);
+        Task::Climb { z_m, takeoff }
+    }
+
+    /// Up where it is. Who is above already does not come down for a takeoff.
+    fn begin_takeoff(
+        &mut self,
+        step: &Navigate,
+        place: &Place,
+        route: &Route,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        const LEAST_M: f64 = 0.5;
+        let home_z_m = proposal.home().position_m.z;
+        let z_m = match place.down_m(home_z_m) {
+            Some(z_m) if home_z_m - z_m >= LEAST_M => z_m,
+            _ => home_z_m - situation.conduct.takeoff_height_m,
+        };
+        let grounded = proposal.steering().kind() == SteeringKind::Idle;
+        if !grounded && situation.outputs.setpoint.position_m.z <= z_m {
+            return self.leave_takeoff(step, route, situation);
+        }
+        if grounded {
+            proposal.say(Severity::Info, format!("Taking off to {:.1} m above home", home_z_m - z_m));
+        }
+        self.task = Some(self.begin_climb(z_m, true, situation, proposal));
+        TaskProgress::Going
+    }
+
+    /// The climb is over.
+    fn leave_takeoff(&mut self, step: &Navigate, route: &Route, situation: &Situation) -> TaskProgress {
+        let Navigate::Takeoff { place: Place { horizontal_m: Some([x, y]), .. }, travels: true } = step
+        else {
+            return TaskProgress::Done(None);
+        };
+        let end_m = Vector3::new(*x, *y, self.anchor_m.z);
+        if (end_m - self.anchor_m).norm() <= situation.conduct.acceptance_radius_m {
+            return TaskProgress::Done(None);
+        }
+        self.task = Some(self.begin_leg(step, end_m, route));
+        TaskProgress::Going
+    }
+
+    fn begin_leg(&mut self, step: &Navigate, end_m: Vector3<f64>, route: &Route) -> Task {
+        let from_m = self.anchor_m;
+        let leg = route.leg(from_m, end_m, self.carry.take());
+        let (then, asked_rad) = match step {
+            Navigate::Waypoint(waypoint) => (Then::Wait(waypoint.hold_s), waypoint.heading_rad),
+            Navigate::Loiter { heading_rad, .. } => (Then::Stay, *heading_rad),
+            Navigate::LoiterTime { time_s, .. } => (Then::Wait(*time_s), None),
+            Navigate::LoiterTurns(turns) => {
+                let circle = route.circle(turns, &from_m);
+                (Then::Circle(circle), Some(circle.heading_rad()))
+            }
+            Navigate::Land { heading_rad, .. } => (Then::Land([end_m.x, end_m.y]), *heading_rad),
+            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => {
+                (Then::Wait(0.0), None)
+            }
+        };
+        if let Some(heading_rad) = asked_rad.or_else(|| leg.bearing_rad()) {
+            self.heading_rad = heading_rad;
+        }
+        Task::Leg(leg, then)
+    }
+
+    fn carry_on(
+        &mut self,
+        task: Task,
+        step: &Navigate,
+        route: &Route,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        match task {
+            Task::Climb { z_m, takeoff } if is_slow_near(situation.outputs, z_m) => {
+                if takeoff {
+                    return self.leave_takeoff(step, route, situation);
+                }
+                self.task = None;
+                TaskProgress::Again
+            }
+            Task::Leg(leg, then) => self.fly_leg(leg, then, situation, proposal),
+            Task::Wait(Some(until_us)) if situation.time_us >= until_us => TaskProgress::Done(None),
+            Task::Circle(mut circle) => {
+                let Some(set_point) = circle.step(situation.limits(), TICK_US as f64 / 1e6) else {
+                    (self.anchor_m, self.heading_rad) = (circle.position_m(), circle.heading_rad());
+                    proposal.steer(Steering::Goal(at_rest(self.anchor_m, self.heading_rad)));
+                    return TaskProgress::Done(None);
+                };
+                proposal.follow(situation, &set_point);
+                self.task = Some(Task::Circle(circle));
+                TaskProgress::Going
+            }
+            Task::Descend(_) if situation.landed => TaskProgress::Done(None),
+            Task::Descend(above) => {
+                descend(situation, proposal, above);
+                TaskProgress::Going
+            }
+            Task::Climb { .. } | Task::Wait(_) => TaskProgress::Going,
+        }
+    }
+
+    fn fly_leg(
+        &mut self,
+        mut leg: Leg,
+        then: Then,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        let outputs = situation.outputs;
+        let progress = leg.update(&outputs.setpoint, &outputs.position_m, &outputs.velocity_m_s);
+        let yaw_rad = match proposal.steering() {
+            Steering::Goal(goal) => goal.yaw_rad,
+            _ => outputs.setpoint.yaw_rad,
+        };
+        proposal.steer(Steering::Goal(leg.goal(yaw_rad)));
+        self.task = Some(Task::Leg(leg, then));
+        match progress {
+            LegProgress::Flying => return TaskProgress::Going,
+            LegProgress::Passed(carry) => {
+                self.anchor_m = leg.to_m;
+                return TaskProgress::Done(Some(carry));
+            }
+            LegProgress::Arrived => self.anchor_m = leg.to_m,
+        }
+        let (task, progress) = match then {
+            Then::Wait(0.0) => return TaskProgress::Done(None),
+            Then::Wait(time_s) => (Task::Wait(Some(situation.after_us(time_s))), TaskProgress::Going),
+            Then::Stay => (Task::Wait(None), TaskProgress::Staying),
+            Then::Circle(circle) => (Task::Circle(circle), TaskProgress::Going),
+            Then::Land(above) => (Task::Descend(Some(above)), TaskProgress::Going),
+        };
+        self.task = Some(task);
+        progress
+    }
+}
+
+/// When a delay ends that begins now, µs.
+fn delay_end_us(delay: &Delay, situation: &Situation) -> u64 {
+    match delay {
+        Delay::Until(time) => {
+            let unix_us = situation.unix_start_us + situation.time_us;
+            situation.time_us.saturating_add(time.wait_us(unix_us))
+        }
+        Delay::For(time_s) => situation.after_us(*time_s),
+    }
+}

@@ -1,0 +1,378 @@
+//! The mission as a machine: which step is flown, and what becomes of it.
+
+use super::super::notice::{Refusal, Severity};
+use super::super::plans::check_way;
+use super::super::proposal::Proposal;
+use super::super::set_point::PositionSetPoint;
+use super::super::situation::Situation;
+use super::super::speeds::SpeedChange;
+use super::super::steering::{Steering, SteeringKind};
+use super::actions::Actions;
+use super::course::Course;
+use super::jumps::Jumps;
+use super::leg::{Carry, Leg};
+use super::route::Route;
+use super::task::TaskProgress;
+use crate::mode::Mode;
+use crate::plan::Program;
+use crate::plan::step::{Navigate, Step};
+
+/// Steps that are begun within one tick; more wait for the next.
+const STEPS_PER_TICK: usize = 16;
+
+/// A mission, and how far it has come.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Mission {
+    program: Program,
+    progress: Progress,
+    /// Number of the step that is flown, or will be.
+    current: usize,
+    jumps: Jumps,
+    /// What is done for it.
+    course: Course,
+    /// What is done on the way to it.
+    actions: Actions,
+    /// Whether it waits in its own mode.
+    paused: bool,
+    /// Steps that were reached since the last look.
+    reached: Vec<u16>,
+}
+
+/// How far the mission has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Progress {
+    /// It waits for its start.
+    #[default]
+    NotStarted,
+    /// It has begun.
+    Started,
+    /// Its last step is done.
+    Complete,
+}
+
+impl Mission {
+    /// A mission that waits for its start.
+    pub fn new(program: Program) -> Self {
+        Self { current: program.first(), program, ..Self::default() }
+    }
+
+    /// Its steps.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// How far it has come.
+    pub fn progress(&self) -> Progress {
+        self.progress
+    }
+
+    /// Whether it has begun, and is not complete.
+    pub fn is_started(&self) -> bool {
+        self.progress == Progress::Started
+    }
+
+    /// Number of the step that is flown, or will be.
+    pub fn current(&self) -> usize {
+        self.current
+    }
+
+    /// Whether it waits in its own mode.
+    pub fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Steps that were reached since the last call.
+    pub fn take_reached(&mut self) -> Vec<u16> {
+        std::mem::take(&mut self.reached)
+    }
+
+    /// The present leg, if one is flown.
+    pub fn leg(&self) -> Option<&Leg> {
+        self.course.leg()
+    }
+
+    /// Whether it climbs from the ground or descends to it.
+    pub fn is_vertical(&self) -> (bool, bool) {
+        self.course.is_vertical()
+    }
+
+    /// Starts, or goes on; `first` is the number of the step to begin with.
+    ///
+    /// # Errors
+    /// [`Refusal`] without a mission, for one that the fence forbids, and for a step that there is not.
+    pub fn start(
+        &mut self,
+        situation: &Situation,
+        proposal: &mut Proposal,
+        first: Option<usize>,
+    ) -> Result<(), Refusal> {
+        if !self.program.is_flown() {
+            return Err(Refusal::later("Mission rejected: there is none"));
+        }
+        check_way(situation, &self.program)
+            .map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
+        if let Some(first) = first {
+            self.set_current(situation, proposal, first, true)?;
+        }
+        self.paused = false;
+        if situation.mode != Mode::Mission {
+            proposal.enter(Mode::Mission);
+        } else if self.progress == Progress::Complete {
+            self.begin(situation, proposal);
+        } else if !self.course.is_busy() {
+            self.take_over(situation, proposal);
+        }
+        Ok(())
+    }
+
+    /// Waits in the mission's own mode.
+    pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        self.paused = true;
+        self.course.give_up(None);
+        proposal.hold(situation);
+        proposal.say(Severity::Info, "Mission paused");
+    }
+
+    /// Whether there is something to go on with.
+    ///
+    /// # Errors
+    /// [`Refusal`] when nothing was paused.
+    pub fn may_continue(&self) -> Result<(), Refusal> {
+        if self.progress == Progress::Started && self.program.is_flown() {
+            Ok(())
+        } else {
+            Err(Refusal::denied("Nothing to continue"))
+        }
+    }
+
+    /// Makes a step the present one; with `reset` the jumps count anew.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a step that there is not.
+    pub fn set_current(
+        &mut self,
+        situation: &Situation,
+        proposal: &mut Proposal,
+        index: usize,
+        reset: bool,
+    ) -> Result<(), Refusal> {
+        let count = self.program.len();
+        if index >= count {
+            return Err(Refusal::denied(format!("Mission has no item {index} among {count}")));
+        }
+        if reset {
+            self.jumps.clear();
+        }
+        if self.progress == Progress::Complete {
+            self.progress = Progress::NotStarted;
+        }
+        self.give_up(None);
+        self.current = index.max(self.program.first());
+        if situation.mode == Mode::Mission && !self.paused {
+            self.take_over(situation, proposal);
+        }
+        Ok(())
+    }
+
+    /// Takes other steps: a new mission begins at its first one, an amended one goes on where it was.
+    pub fn replace(
+        &mut self,
+        situation: &Situation,
+        proposal: &mut Proposal,
+        program: Program,
+        amended: bool,
+    ) {
+        if amended {
+            self.program = program;
+        } else {
+            proposal.change_speeds(SpeedChange::ForgetMission);
+            proposal.look_at(None);
+            *self = Self { reached: self.take_reached(), ..Self::new(program) };
+        }
+        self.give_up(None);
+        if situation.mode != Mode::Mission {
+            return;
+        }
+        if self.program.is_flown() {
+            self.take_over(situation, proposal);
+        } else {
+            proposal.say(Severity::Warning, "Mission cleared: holding");
+            proposal.enter(Mode::Hold);
+        }
+    }
+
+    /// Its mode is entered.
+    pub fn enter(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        match self.progress {
+            Progress::NotStarted | Progress::Started => self.take_over(situation, proposal),
+            Progress::Complete => self.begin(situation, proposal),
+        }
+    }
+
+    /// Its mode is left.
+    pub fn leave(&mut self, proposal: &mut Proposal) {
+        self.paused = false;
+        self.course.give_up(None);
+        proposal.change_speeds(SpeedChange::InMission(false));
+    }
+
+    /// Other limits of speed hold now.
+    pub fn replan(&mut self, situation: &Situation, proposal: &Proposal) {
+        let route = Route::new(&self.program, self.current, &self.jumps, situation, proposal);
+        self.course.replan(&route);
+    }
+
+    /// One tick in its mode.
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.paused || self.progress == Progress::Complete {
+            proposal.turn_to_region(situation);
+            return;
+        }
+        // An attitude that was left behind, or a stick: the mission flies by position.
+        if proposal.steering().kind() == SteeringKind::Attitude {
+            proposal.follow(situation, &PositionSetPoint::HOLD);
+        }
+        self.progress = Progress::Started;
+        if self.fly(situation, proposal) {
+            self.act(situation, proposal);
+            self.turn(situation, proposal);
+        }
+    }
+
+    /// Flies one step after the other, as far as they are done. Returns whether the mission goes on.
+    fn fly(&mut self, situation: &Situation, proposal: &mut Proposal) -> bool {
+        for _ in 0..STEPS_PER_TICK {
+            let step = match self.program.step(self.current) {
+                Some(Step::Navigate(step)) => step,
+                Some(_) => {
+                    if !self.go_on_from(self.current, situation, proposal) {
+                        return false;
+                    }
+                    continue;
+                }
+                None => {
+                    self.complete(situation, proposal);
+                    return false;
+                }
+            };
+            let route = Route::new(&self.program, self.current, &self.jumps, situation, proposal);
+            match self.course.step(&step, &route, situation, proposal) {
+                TaskProgress::Going => break,
+                TaskProgress::Staying => {
+                    self.reach(self.current);
+                    break;
+                }
+                TaskProgress::Again => {}
+                TaskProgress::Done(carry) => {
+                    if !self.finish(&step, carry, situation, proposal) {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+
+    /// The present step is done. Returns whether the mission goes on.
+    fn finish(
+        &mut self,
+        step: &Navigate,
+        carry: Option<Carry>,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> bool {
+        let index = self.current;
+        self.give_up(carry);
+        self.reach(index);
+        if *step == Navigate::ReturnToLaunch {
+            self.complete(situation, proposal);
+            if proposal.steering().kind() != SteeringKind::Idle {
+                proposal.enter(Mode::Return);
+            }
+            return false;
+        }
+        if self.program.continues_after(index) {
+            return self.go_on_from(index + 1, situation, proposal);
+        }
+        self.current = index + 1;
+        proposal.say(Severity::Info, format!("Mission waits after item {index}"));
+        proposal.enter(Mode::Hold);
+        false
+    }
+
+    /// Looks for the next step that is flown; what lies before it is done on the way. Returns whether there is one.
+    fn go_on_from(&mut self, index: usize, situation: &Situation, proposal: &mut Proposal) -> bool {
+        let next = self.jumps.next(&self.program, index);
+        next.jumps.into_iter().for_each(|jump| self.reach(jump));
+        self.actions.begin(next.actions);
+        if let Some(index) = next.navigation {
+            self.current = index;
+            return true;
+        }
+        self.act(situation, proposal);
+        self.complete(situation, proposal);
+        false
+    }
+
+    fn act(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let done = self.actions.act(&self.program, self.course.leg(), situation, proposal);
+        done.into_iter().for_each(|index| self.reach(index));
+    }
+
+    /// Turns the vehicle to where it is to look.
+    fn turn(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let turned = self.actions.turn();
+        let Steering::Goal(goal) = *proposal.steering() else {
+            proposal.turn_to_region(situation);
+            return;
+        };
+        let next_m = self.course.leg().map(|leg| leg.to_m);
+        let heading = match (turned, proposal.region()) {
+            (Some(turned), _) => turned,
+            (None, Some(region)) => {
+                // What is too near to be looked at does not turn the vehicle.
+                region.heading(&situation.outputs.setpoint, next_m).unwrap_or((goal.yaw_rad, 0.0))
+            }
+            (None, None) => (self.course.heading_rad(), 0.0),
+        };
+        proposal.turn_on(Some(heading));
+    }
+
+    /// Begins with the first step.
+    fn begin(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        self.give_up(None);
+        self.jumps.clear();
+        proposal.look_at(None);
+        proposal.change_speeds(SpeedChange::ForgetMission);
+        self.progress = Progress::NotStarted;
+        self.current = self.program.first();
+        self.take_over(situation, proposal);
+    }
+
+    /// Goes on from where the vehicle is.
+    fn take_over(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        proposal.change_speeds(SpeedChange::InMission(true));
+        self.course.take_over(situation, proposal);
+    }
+
+    /// Gives up what is done for the present step and on the way to it.
+    fn give_up(&mut self, carry: Option<Carry>) {
+        self.course.give_up(carry);
+        self.actions.clear();
+    }
+
+    fn complete(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        self.give_up(None);
+        self.progress = Progress::Complete;
+        self.current = self.program.len().saturating_sub(1);
+        proposal.say(Severity::Info, "Mission complete");
+        // On the ground the vehicle disarms in its mode, as after any landing.
+        if !situation.identity.is_ardupilot() && proposal.steering().kind() != SteeringKind::Idle {
+            proposal.enter(Mode::Hold);
+        }
+    }
+
+    fn reach(&mut self, index: usize) {
+        self.reached.push(u16::try_from(index).unwrap_or(u16::MAX));
+    }
+}

@@ -1,0 +1,121 @@
+//! The way ahead: where legs end, and how fast their corners are passed.
+
+use nalgebra::Vector3;
+use quadrotor::Limits;
+
+use super::super::proposal::Proposal;
+use super::super::situation::Situation;
+use super::circle::Circle;
+use super::jumps::Jumps;
+use super::leg::{Carry, Leg};
+use super::path::{Stop, first_corner};
+use crate::plan::step::{Navigate, Turns, Waypoint};
+use crate::plan::{Place, Program};
+
+/// Places that are looked ahead.
+const AHEAD: usize = 6;
+
+/// The steps from the present one on, seen from now.
+#[derive(Clone, Copy, Debug)]
+pub struct Route<'a> {
+    program: &'a Program,
+    /// Number of the present step.
+    current: usize,
+    jumps: &'a Jumps,
+    /// Acceptance radius of steps that have none of their own, m.
+    radius_m: f64,
+    /// z of home, m.
+    home_z_m: f64,
+    limits: &'a Limits,
+}
+
+impl<'a> Route<'a> {
+    /// The steps from number `current` on.
+    pub fn new(
+        program: &'a Program,
+        current: usize,
+        jumps: &'a Jumps,
+        situation: &Situation<'a>,
+        proposal: &Proposal,
+    ) -> Self {
+        Self {
+            program,
+            current,
+            jumps,
+            radius_m: situation.conduct.acceptance_radius_m,
+            home_z_m: proposal.home().position_m.z,
+            limits: situation.limits(),
+        }
+    }
+
+    /// Where the leg of a step ends that begins at `from_m`, NED, m; `None` if it has none.
+    pub fn leg_end_m(&self, step: &Navigate, from_m: &Vector3<f64>) -> Option<Vector3<f64>> {
+        match step {
+            Navigate::Waypoint(Waypoint { place, .. })
+            | Navigate::Loiter { place, .. }
+            | Navigate::LoiterTime { place, .. } => Some(self.place_m(place, from_m)),
+            Navigate::LoiterTurns(turns) => Some(self.circle(turns, from_m).position_m()),
+            // Down it goes only there.
+            Navigate::Land { place, .. } => place.horizontal_m.map(|[x, y]| Vector3::new(x, y, from_m.z)),
+            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => None,
+        }
+    }
+
+    /// The turns of a vehicle that comes from a place, NED, m.
+    pub fn circle(&self, turns: &Turns, from_m: &Vector3<f64>) -> Circle {
+        Circle::new(self.place_m(&turns.place, from_m), from_m, turns)
+    }
+
+    /// A place, NED, m; what it leaves open is that of another one.
+    fn place_m(&self, place: &Place, open_m: &Vector3<f64>) -> Vector3<f64> {
+        let [x, y] = place.horizontal_m.unwrap_or([open_m.x, open_m.y]);
+        Vector3::new(x, y, place.down_m(self.home_z_m).unwrap_or(open_m.z))
+    }
+
+    /// A leg of the present step from place to place, NED, m, with its corner.
+    pub fn leg(&self, from_m: Vector3<f64>, to_m: Vector3<f64>, carry: Option<Carry>) -> Leg {
+        let stops = self.stops(&from_m);
+        let (start_m, velocity_m_s) = match carry {
+            Some(carry) => (carry.position_m, carry.velocity_m_s),
+            None => (from_m, Vector3::zeros()),
+        };
+        let corner = first_corner(&start_m, velocity_m_s.norm(), &stops, self.limits);
+        let radius_m = stops.first().map_or(self.radius_m, |stop| stop.radius_m);
+        Leg::new(from_m, to_m, radius_m, carry, corner)
+    }
+
+    /// The places from the present step on, as far as the vehicle goes from one to the next.
+    fn stops(&self, from_m: &Vector3<f64>) -> Vec<Stop> {
+        let mut jumps = self.jumps.clone();
+        let (mut next, mut from_m) = (Some(self.current), *from_m);
+        let mut stops = Vec::new();
+        while let Some(index) = next.filter(|_| stops.len() < AHEAD) {
+            let Some(step) = self.program.navigate(index) else { break };
+            let Some(position_m) = self.leg_end_m(&step, &from_m) else { break };
+            let rests = self.rests_at(index, &step);
+            stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
+            if rests {
+                break;
+            }
+            next = jumps.next(self.program, index + 1).navigation;
+            from_m = position_m;
+        }
+        stops
+    }
+
+    /// Whether the vehicle comes to rest at a step.
+    fn rests_at(&self, index: usize, step: &Navigate) -> bool {
+        match step {
+            Navigate::Waypoint(waypoint) => waypoint.hold_s > 0.0 || !self.program.continues_after(index),
+            _ => true,
+        }
+    }
+
+    fn acceptance_radius_m(&self, step: &Navigate) -> f64 {
+        let own_m = match step {
+            Navigate::Waypoint(waypoint) => waypoint.acceptance_radius_m,
+            _ => None,
+        };
+        own_m.unwrap_or(self.radius_m)
+    }
+}

@@ -1,0 +1,226 @@
+//! What a part of the vehicle asks for: it changes nothing of the vehicle by itself.
+
+use nalgebra::Vector3;
+use quadrotor::PositionReference;
+
+use super::failsafe::Cause;
+use super::home::Home;
+use super::notice::{Notice, Refusal, Severity};
+use super::region::RegionOfInterest;
+use super::set_point::{AttitudeSetPoint, PositionSetPoint, YawTarget};
+use super::situation::Situation;
+use super::speeds::SpeedChange;
+use super::steering::Steering;
+use crate::mode::Mode;
+use crate::plan::Site;
+use crate::world::FARTHEST_M;
+
+/// What can be asked for beside steering, home and the region of interest.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A line for the pilot.
+    Say(Notice),
+    /// Another mode, whatever speaks against it.
+    Enter(Mode),
+    /// Another mode that goes on with what is done already; set-points from before it do not count in it.
+    GoOnIn(Mode),
+    /// Limits of speed.
+    ChangeSpeeds(SpeedChange),
+    /// The failsafe is to take in whether a cause is there.
+    See(Cause, bool),
+    /// The rotors are to stop; the text says why.
+    StopRotors(String),
+    /// The flight is to end at once.
+    Terminate,
+}
+
+/// What a part asks for in one call.
+///
+/// Steering, home and region of interest are working copies, which the part changes one step after the other and reads again.
+/// The rest is a list of requests. Whoever decides takes the three copies first, then carries out the requests in their order.
+/// So a request for a mode comes after everything that the part steers in the same call: the mode begins with that.
+///
+/// A mission asks for all of it: steering ([`Proposal::hold`], [`Proposal::follow`], [`Proposal::steer`]), modes when it is done
+/// ([`Proposal::enter`]; leaving its mode comes back to it as an event), notices, speeds, home ([`Proposal::set_home`]) and the
+/// region of interest ([`Proposal::look_at`]). Changed speeds hold after the call; it plans its leg again then, when it is told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal {
+    steering: Steering,
+    home: Home,
+    region: Option<RegionOfInterest>,
+    requests: Vec<Request>,
+}
+
+impl Proposal {
+    /// Everything as it is.
+    pub fn new(situation: &Situation) -> Self {
+        Self {
+            steering: *situation.steering,
+            home: *situation.home,
+            region: situation.region,
+            requests: Vec::new(),
+        }
+    }
+
+    /// Steering, home, region of interest, and the requests in their order.
+    pub fn into_parts(self) -> (Steering, Home, Option<RegionOfInterest>, Vec<Request>) {
+        (self.steering, self.home, self.region, self.requests)
+    }
+
+    /// The working copy of the steering.
+    pub fn steering(&self) -> &Steering {
+        &self.steering
+    }
+
+    /// Steers like this.
+    pub fn steer(&mut self, steering: Steering) {
+        self.steering = steering;
+    }
+
+    /// Lets the rotors idle.
+    pub fn idle(&mut self, situation: &Situation) {
+        self.steering = Steering::Idle { yaw_rad: situation.outputs.attitude_rad.z };
+    }
+
+    /// Steers by position, unless a rotor is lost.
+    pub fn follow(&mut self, situation: &Situation, set_point: &PositionSetPoint) {
+        if situation.lost_rotor.is_none() {
+            self.steering.follow(set_point, situation.outputs);
+        }
+    }
+
+    /// Steers by attitude.
+    pub fn follow_attitude(&mut self, situation: &Situation, set_point: &AttitudeSetPoint) {
+        self.steering.follow_attitude(set_point, situation.outputs);
+    }
+
+    /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it; one that has not set out yet does
+    /// not.
+    pub fn hold(&mut self, situation: &Situation) {
+        const NEAR_M: f64 = 0.01;
+        const SLOW_M_S: f64 = 0.01;
+        let now = &situation.outputs.setpoint;
+        let rests_at = |goal: &PositionReference| {
+            (goal.position_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
+        };
+        match &self.steering {
+            Steering::Idle { .. } => {}
+            Steering::Goal(goal) if rests_at(goal) => {}
+            _ => self.follow(situation, &PositionSetPoint::HOLD),
+        }
+    }
+
+    /// Turns on to a heading, rad, that changes at a rate, rad/s; without one it stays.
+    pub fn turn_on(&mut self, heading: Option<(f64, f64)>) {
+        match (&mut self.steering, heading) {
+            (Steering::Goal(goal), Some((heading_rad, rate_rad_s))) => {
+                (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);
+            }
+            (Steering::Goal(goal), None) => goal.yaw_rate_rad_s = 0.0,
+            (Steering::Motion(motion), Some((heading_rad, rate_rad_s))) => {
+                motion.turn_to(YawTarget::Follow(heading_rad, rate_rad_s));
+            }
+            (Steering::Motion(motion), None) => motion.turn_to(YawTarget::Hold),
+            (Steering::Idle { .. } | Steering::Attitude { .. } | Steering::Descent { .. }, _) => {}
+        }
+    }
+
+    /// Turns to the region of interest where nothing else asks for a heading.
+    pub fn turn_to_region(&mut self, situation: &Situation) {
+        if let Some(region) = self.region {
+            self.turn_on(region.heading(&situation.outputs.setpoint, None));
+        }
+    }
+
+    /// The working copy of the region of interest.
+    pub fn region(&self) -> Option<RegionOfInterest> {
+        self.region
+    }
+
+    /// Looks at something else, or at nothing.
+    pub fn look_at(&mut self, region: Option<RegionOfInterest>) {
+        self.region = region;
+    }
+
+    /// The working copy of home.
+    pub fn home(&self) -> &Home {
+        &self.home
+    }
+
+    /// What the places of plans refer to, with the working copy of home.
+    pub fn site(&self, situation: &Situation) -> Site {
+        Site { home_m: self.home.position_m, ..situation.site() }
+    }
+
+    /// Moves home, NED, m, with a heading, rad, or the present one.
+    ///
+    /// # Errors
+    /// [`Refusal`] too far away.
+    pub fn set_home(
+        &mut self,
+        situation: &Situation,
+        position_m: Vector3<f64>,
+        yaw_rad: Option<f64>,
+    ) -> Result<(), Refusal> {
+        check_distance(&position_m)?;
+        let yaw_rad = yaw_rad.unwrap_or(situation.outputs.attitude_rad.z);
+        self.home = Home { position_m, yaw_rad, set_by_user: true };
+        self.say(Severity::Info, "Home set");
+        Ok(())
+    }
+
+    /// Moves home here, as arming does.
+    pub fn move_home_here(&mut self, situation: &Situation) {
+        self.home.position_m = situation.outputs.position_m;
+        self.home.yaw_rad = situation.outputs.attitude_rad.z;
+    }
+
+    /// Tells the pilot.
+    pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.requests.push(Request::Say(Notice { severity, text: text.into() }));
+    }
+
+    /// Asks for a mode.
+    pub fn enter(&mut self, mode: Mode) {
+        self.requests.push(Request::Enter(mode));
+    }
+
+    /// Asks for a mode that goes on with what is done already.
+    pub fn go_on_in(&mut self, mode: Mode) {
+        self.requests.push(Request::GoOnIn(mode));
+    }
+
+    /// Asks for other limits of speed.
+    pub fn change_speeds(&mut self, change: SpeedChange) {
+        self.requests.push(Request::ChangeSpeeds(change));
+    }
+
+    /// Tells the failsafe whether a cause is there.
+    pub fn see(&mut self, cause: Cause, present: bool) {
+        self.requests.push(Request::See(cause, present));
+    }
+
+    /// Asks that the rotors stop and says why.
+    pub fn stop_rotors(&mut self, why: impl Into<String>) {
+        self.requests.push(Request::StopRotors(why.into()));
+    }
+
+    /// Asks that the flight ends at once.
+    pub fn terminate(&mut self) {
+        self.requests.push(Request::Terminate);
+    }
+}
+
+/// Refuses what is too far away, or no number.
+///
+/// # Errors
+/// [`Refusal::Denied`] with the distance.
+pub fn check_distance(target_m: &Vector3<f64>) -> Result<(), Refusal> {
+    let distance_m = target_m.norm();
+    // NaN is not below.
+    if distance_m <= FARTHEST_M {
+        Ok(())
+    } else {
+        Err(Refusal::denied(format!("Target denied: {distance_m:.0} m away, at most {FARTHEST_M:.0} m")))
+    }
+}

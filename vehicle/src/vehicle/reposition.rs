@@ -1,0 +1,12 @@
+//! A place to go to.
+
+/// Where to go and stay; what is `None` stays as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Reposition {
+    /// North and east, m.
+    pub horizontal_m: Option<[f64; 2]>,
+    /// Down, m.
+    pub down_m: Option<f64>,
+    /// Heading, rad.
+    pub yaw_rad: Option<f64>,
+}

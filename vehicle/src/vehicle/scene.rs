@@ -1,0 +1,183 @@
+//! A vehicle to look at, made by hand: what tests of single parts show them.
+
+use nalgebra::Vector3;
+use quadrotor::{Activity, Configuration, Outputs, PositionReference};
+
+use super::conduct::Conduct;
+use super::home::Home;
+use super::motion::at_rest;
+use super::proposal::{Proposal, Request};
+use super::situation::Situation;
+use super::steering::Steering;
+use crate::estimation::{InstrumentHealth, Validity};
+use crate::fence::Zones;
+use crate::identity::Identity;
+use crate::mode::Mode;
+use crate::plan::Place;
+use crate::world::{Geodetic, LocalFrame};
+
+/// Everything that a situation refers to.
+pub struct Scene {
+    pub identity: Identity,
+    pub conduct: Conduct,
+    pub configuration: Configuration,
+    pub zones: Zones,
+    pub rally_points: Vec<Place>,
+    /// Known and true.
+    pub outputs: Outputs,
+    pub armed: bool,
+    pub mode: Mode,
+    pub steering: Steering,
+    pub home: Home,
+    pub validity: Validity,
+    pub landed: bool,
+    pub lost_rotor: Option<usize>,
+    pub set_points_are_recent: bool,
+    pub rotor_command_rad_s: [f64; 4],
+    frame: LocalFrame,
+}
+
+impl Scene {
+    /// It hovers at a place, NED, m, by position, in the hold mode.
+    pub fn hovering_at(position_m: [f64; 3]) -> Self {
+        let setpoint = PositionReference::goal(position_m, 0.0);
+        let configuration = Configuration::default();
+        let hover_rad_s = configuration.airframe.hover_rotor_speed_rad_s();
+        let origin = Geodetic { latitude_deg: 47.4, longitude_deg: 8.5, altitude_m: 488.0 };
+        Self {
+            identity: Identity::Px4,
+            conduct: Conduct::new(false),
+            configuration,
+            zones: Zones::default(),
+            rally_points: Vec::new(),
+            outputs: Outputs {
+                time_us: 100_000_000,
+                position_m: position_m.into(),
+                velocity_m_s: Vector3::zeros(),
+                acceleration_m_s2: Vector3::zeros(),
+                body_velocity_m_s: Vector3::zeros(),
+                attitude_rad: Vector3::zeros(),
+                quaternion: [1.0, 0.0, 0.0, 0.0],
+                body_rate_rad_s: Vector3::zeros(),
+                thrust_n: configuration.airframe.weight_n(),
+                torque_n_m: Vector3::zeros(),
+                rotor_speed_rad_s: [hover_rad_s; 4],
+                tilt_reference_rad: [0.0; 2],
+                setpoint,
+                tracking_error_m: Vector3::zeros(),
+                yaw_error_rad: 0.0,
+                activity: Activity::default(),
+            },
+            armed: true,
+            mode: Mode::Hold,
+            steering: Steering::Goal(setpoint),
+            home: Home { position_m: Vector3::zeros(), yaw_rad: 0.0, set_by_user: false },
+            validity: Validity {
+                tilt: true,
+                heading: true,
+                horizontal_velocity: true,
+                vertical_velocity: true,
+                horizontal_position: true,
+                vertical_position: true,
+            },
+            landed: false,
+            lost_rotor: None,
+            set_points_are_recent: false,
+            rotor_command_rad_s: [hover_rad_s; 4],
+            frame: LocalFrame::new(origin),
+        }
+    }
+
+    /// It stands at home, armed, and its rotors idle.
+    pub fn on_the_ground() -> Self {
+        let mut scene = Self::hovering_at([0.0; 3]);
+        scene.landed = true;
+        scene.steering = Steering::Idle { yaw_rad: 0.0 };
+        scene.outputs.thrust_n = 0.0;
+        scene
+    }
+
+    /// The vehicle comes to a place, NED, m, with a velocity, m/s.
+    pub fn come_to(&mut self, position_m: [f64; 3], velocity_m_s: [f64; 3]) {
+        (self.outputs.position_m, self.outputs.velocity_m_s) = (position_m.into(), velocity_m_s.into());
+        self.outputs.setpoint = PositionReference {
+            velocity_m_s: velocity_m_s.into(),
+            ..at_rest(position_m.into(), self.outputs.setpoint.yaw_rad)
+        };
+    }
+
+    /// Time goes on.
+    pub fn wait_us(&mut self, duration_us: u64) {
+        self.outputs.time_us += duration_us;
+    }
+
+    /// The situation of now.
+    pub fn situation(&self) -> Situation<'_> {
+        Situation {
+            time_us: self.outputs.time_us,
+            unix_start_us: 0,
+            identity: self.identity,
+            conduct: &self.conduct,
+            configuration: &self.configuration,
+            frame: &self.frame,
+            zones: &self.zones,
+            rally_points: &self.rally_points,
+            outputs: &self.outputs,
+            truth: &self.outputs,
+            validity: self.validity,
+            health: InstrumentHealth {
+                gyroscope: true,
+                accelerometer: true,
+                magnetometer: true,
+                barometer: true,
+                gps: true,
+            },
+            estimates: true,
+            fix_velocity_down_m_s: None,
+            rotor_command_rad_s: self.rotor_command_rad_s,
+            wind_m_s: Vector3::zeros(),
+            battery_remaining: 1.0,
+            armed: self.armed,
+            mode: self.mode,
+            steering: &self.steering,
+            home: &self.home,
+            region: None,
+            landed: self.landed,
+            lost_rotor: self.lost_rotor,
+            breach: None,
+            set_points_are_recent: self.set_points_are_recent,
+            set_point_is_applied: false,
+            mission_goes_on: false,
+        }
+    }
+
+    /// Shows the situation to a part, and steers as it asks; returns its requests.
+    pub fn show(&mut self, ask: impl FnOnce(&Situation, &mut Proposal)) -> Vec<Request> {
+        let situation = self.situation();
+        let mut proposal = Proposal::new(&situation);
+        ask(&situation, &mut proposal);
+        let (steering, _, _, requests) = proposal.into_parts();
+        self.steering = steering;
+        requests
+    }
+
+    /// Where the shaper leads, NED, m, if it leads anywhere.
+    pub fn goal_m(&self) -> Option<[f64; 3]> {
+        match &self.steering {
+            Steering::Goal(goal) => Some(goal.position_m.into()),
+            _ => None,
+        }
+    }
+}
+
+/// What is said, where nothing else is asked for.
+pub fn said(requests: &[Request]) -> Vec<&str> {
+    let mut lines = Vec::new();
+    for request in requests {
+        match request {
+            Request::Say(notice) => lines.push(notice.text.as_str()),
+            other => panic!("{other:?}"),
+        }
+    }
+    lines
+}

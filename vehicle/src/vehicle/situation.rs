@@ -1,0 +1,200 @@
+//! What the parts of the vehicle see of it: a read-only view of one moment.
+
+use nalgebra::Vector3;
+use quadrotor::{Configuration, Limits, Outputs};
+
+use super::conduct::Conduct;
+use super::home::Home;
+use super::notice::Refusal;
+use super::region::RegionOfInterest;
+use super::steering::{Steering, SteeringKind};
+use crate::estimation::{InstrumentHealth, Validity};
+use crate::fault::Sensor;
+use crate::fence::{Breach, Fence, Zones};
+use crate::identity::Identity;
+use crate::mode::Mode;
+use crate::plan::{Place, Site};
+use crate::world::LocalFrame;
+
+/// The vehicle as it is now. It consists of references and small copies, so it can be made anew for every look, and made by
+/// hand in a test of one part.
+#[derive(Clone, Copy, Debug)]
+pub struct Situation<'a> {
+    /// Simulation time, µs after the start.
+    pub time_us: u64,
+    /// Time of the start since 1970, µs.
+    pub unix_start_us: u64,
+    /// Whose conventions it follows.
+    pub identity: Identity,
+    /// Parameters of its behaviour.
+    pub conduct: &'a Conduct,
+    /// The closed loop's configuration, with the limits that are in force.
+    pub configuration: &'a Configuration,
+    /// The local frame.
+    pub frame: &'a LocalFrame,
+    /// The zones of the fence plan.
+    pub zones: &'a Zones,
+    /// The rally points.
+    pub rally_points: &'a [Place],
+    /// What the closed loop shows, as far as the vehicle knows its motion.
+    pub outputs: &'a Outputs,
+    /// What the closed loop shows in truth.
+    pub truth: &'a Outputs,
+    /// What of its motion is known well enough to fly by.
+    pub validity: Validity,
+    /// Which instruments work.
+    pub health: InstrumentHealth,
+    /// Whether it flies by instruments and an estimator; otherwise by the truth, or by what the controllers measure.
+    pub estimates: bool,
+    /// Down, m/s, by the latest fix of the receiver, if it flies by instruments and has one.
+    pub fix_velocity_down_m_s: Option<f64>,
+    /// Rotor speeds that the mixer commands, rad/s.
+    pub rotor_command_rad_s: [f64; 4],
+    /// Velocity of the air, NED, m/s.
+    pub wind_m_s: Vector3<f64>,
+    /// Remaining share of the battery, as the gauge has it.
+    pub battery_remaining: f64,
+    /// Whether the rotors may turn.
+    pub armed: bool,
+    /// The mode.
+    pub mode: Mode,
+    /// How it is steered. A part that steers reads the working copy in its proposal instead.
+    pub steering: &'a Steering,
+    /// Home.
+    pub home: &'a Home,
+    /// What its nose is turned to where nothing else asks for a heading.
+    pub region: Option<RegionOfInterest>,
+    /// Whether it stands on the ground.
+    pub landed: bool,
+    /// The rotor that is known to be lost: front (0), right, back or left (3).
+    pub lost_rotor: Option<usize>,
+    /// What of the fence is breached, or is about to be.
+    pub breach: Option<Breach>,
+    /// Whether the latest set-point is young enough to fly on.
+    pub set_points_are_recent: bool,
+    /// Whether the latest set-point has been steered to.
+    pub set_point_is_applied: bool,
+    /// Whether the mission goes on by itself on the ground.
+    pub mission_goes_on: bool,
+}
+
+impl<'a> Situation<'a> {
+    /// Limits that are in force.
+    pub fn limits(&self) -> &'a Limits {
+        &self.configuration.limits
+    }
+
+    /// So many seconds from now, µs.
+    pub fn after_us(&self, seconds: f64) -> u64 {
+        self.time_us.saturating_add((seconds * 1e6) as u64)
+    }
+
+    /// Whether there is a flight that could be ended, or flown otherwise.
+    pub fn flies(&self) -> bool {
+        self.armed && self.steering.kind() != SteeringKind::Idle
+    }
+
+    /// Whether the mode leaves the heading to the vehicle.
+    pub fn chooses_its_heading(&self) -> bool {
+        match self.mode {
+            Mode::Hold | Mode::Takeoff => true,
+            // ArduPilot's guided mode, before set-points steer it.
+            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_is_applied,
+            _ => false,
+        }
+    }
+
+    /// The mode in which it stays at a place that a command named.
+    pub fn holding_mode(&self) -> Mode {
+        if self.identity.is_ardupilot() { Mode::Offboard } else { Mode::Hold }
+    }
+
+    /// The instruments that do not work, by their names.
+    pub fn failed_instruments(&self) -> Vec<&'static str> {
+        let works = self.health;
+        let instruments = [
+            (works.gyroscope, Sensor::Gyroscope),
+            (works.accelerometer, Sensor::Accelerometer),
+            (works.magnetometer, Sensor::Magnetometer),
+            (works.barometer, Sensor::Barometer),
+            (works.gps, Sensor::Gps),
+        ];
+        instruments.into_iter().filter(|(works, _)| !works).map(|(_, sensor)| sensor.name()).collect()
+    }
+
+    /// Refuses what cannot be flown without a rotor.
+    ///
+    /// # Errors
+    /// [`Refusal::TemporarilyRejected`] that names the rotor.
+    pub fn refuse_without_rotor(&self) -> Result<(), Refusal> {
+        match self.lost_rotor {
+            Some(rotor) => Err(Refusal::later(format!("Rotor {} is lost: it can only land", rotor + 1))),
+            None => Ok(()),
+        }
+    }
+
+    /// What the places of plans refer to.
+    pub fn site(&self) -> Site {
+        Site { identity: self.identity, frame: *self.frame, home_m: self.home.position_m }
+    }
+
+    /// What the feet feel: the true motion, and the reference as far from it as the controllers believe.
+    pub fn felt(&self) -> Outputs {
+        let mut felt = *self.truth;
+        felt.setpoint.position_m += self.truth.position_m - self.outputs.position_m;
+        felt
+    }
+
+    /// Whether it knows enough of its motion to hold a place and a height: not without its inertial unit, nor when neither the
+    /// receiver nor the barometer is left to correct the height.
+    pub fn knows_its_place(&self) -> bool {
+        let (known, works) = (self.validity, self.health);
+        let estimated = known.tilt && known.horizontal_position && known.vertical_position;
+        // Ideal sensors know the rest by themselves.
+        let ideal = !self.estimates;
+        estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
+    }
+
+    /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
+    pub fn sink_rate_m_s(&self) -> f64 {
+        let works = self.health;
+        let supported = works.accelerometer && (works.gps || works.barometer);
+        let by_fix = self.fix_velocity_down_m_s.filter(|_| !supported);
+        by_fix.unwrap_or(self.outputs.velocity_m_s.z)
+    }
+
+    /// The fence as it is looked at; `None` while it is switched off.
+    pub fn fence(&self) -> Option<Fence<'a>> {
+        self.conduct.failsafe.fence_enabled.then(|| self.whole_fence())
+    }
+
+    /// The fence, switched on or off.
+    pub fn whole_fence(&self) -> Fence<'a> {
+        let settings = &self.conduct.failsafe;
+        let parts = settings.fence_parts;
+        let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
+        Fence {
+            zones: parts.zones.then_some(self.zones),
+            home_m: self.home.position_m,
+            radius_m: of(parts.distance, settings.fence_radius_m),
+            height_m: of(parts.height, settings.fence_height_m),
+        }
+    }
+
+    /// The highest that the fence allows, z, m, if it bounds the height.
+    pub fn fence_ceiling_z_m(&self) -> Option<f64> {
+        let fence = self.fence().filter(|fence| fence.height_m > 0.0)?;
+        Some(fence.home_m.z - fence.height_m)
+    }
+
+    /// What of the fence forbids a place, NED, m.
+    pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
+        self.fence()?.breach(place_m)
+    }
+
+    /// What of the fence forbids a place or the straight way to it.
+    pub fn breach_to(&self, place_m: &Vector3<f64>) -> Option<Breach> {
+        let fence = self.fence()?;
+        fence.breach(place_m).or_else(|| fence.breach_between(&self.outputs.position_m, place_m))
+    }
+}

@@ -1,0 +1,147 @@
+//! The one place that decides: it carries out what the parts ask for, in the order in which they ask.
+
+use quadrotor::{Configuration, ConfigurationError};
+
+use super::super::failsafe::{Cause, Change};
+use super::super::machines::Machines;
+use super::super::notice::Severity;
+use super::super::proposal::{Proposal, Request};
+use super::super::situation::Situation;
+use super::super::speeds::{SpeedChange, Speeds, with_speeds};
+use super::super::steering::SteeringKind;
+use super::Vehicle;
+use crate::mode::Mode;
+
+impl Vehicle {
+    /// Shows the situation to a part, and carries out what it asks for.
+    pub(super) fn consult<T>(
+        &mut self,
+        ask: impl FnOnce(&mut Machines, &Situation, &mut Proposal) -> T,
+    ) -> T {
+        let (situation, parts) = self.situation_and_machines();
+        let mut proposal = Proposal::new(&situation);
+        let answer = ask(parts, &situation, &mut proposal);
+        self.decide(proposal);
+        answer
+    }
+
+    fn decide(&mut self, proposal: Proposal) {
+        let (steering, home, region, requests) = proposal.into_parts();
+        self.decided.steer(steering);
+        self.decided.move_home(home);
+        self.decided.look_at(region);
+        for request in requests {
+            match request {
+                Request::Say(notice) => self.decided.pass_on(notice),
+                Request::Enter(mode) => self.enter(mode),
+                Request::GoOnIn(mode) => {
+                    self.decided.switch_to(mode);
+                    self.machines.offboard.forget();
+                }
+                Request::ChangeSpeeds(change) => self.use_speeds_or_say(self.machines.speeds.after(change)),
+                Request::See(cause, present) => self.see(cause, present),
+                Request::StopRotors(why) => self.stop_rotors(&why),
+                Request::Terminate => self.terminate(),
+            }
+        }
+    }
+
+    /// Lets the failsafe take in whether a cause is there.
+    pub(super) fn see(&mut self, cause: Cause, present: bool) {
+        self.consult(|parts, situation, proposal| {
+            let change = parts.failsafe.take_in(situation, proposal, cause, present);
+            if (cause, change) == (Cause::Fence, Some(Change::Begun)) {
+                parts.fence.count(situation.time_us);
+            }
+        });
+    }
+
+    /// Changes to a mode, whatever speaks against it.
+    pub(super) fn enter(&mut self, mode: Mode) {
+        let before = self.decided.mode();
+        if mode != before {
+            let name = self.setup.identity().mode_name(mode);
+            self.decided.say(Severity::Info, format!("{name} mode"));
+        }
+        if before == Mode::Mission && mode != Mode::Mission {
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
+        }
+        self.decided.switch_to(mode);
+        self.machines.takeoff.forget();
+        self.machines.offboard.begin();
+        self.consult(|parts, situation, proposal| match mode {
+            Mode::Hold | Mode::Position => proposal.hold(situation),
+            Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
+            Mode::Mission => parts.mission.enter(situation, proposal),
+            Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
+                parts.return_home.begin(situation, proposal);
+            }
+            _ => {}
+        });
+    }
+
+    /// Ends the flight at once: the rotors stop wherever it is.
+    pub fn terminate(&mut self) {
+        if self.decided.is_armed() {
+            self.decided.terminate();
+            self.stop_rotors("Flight terminated");
+        }
+    }
+
+    /// Stops the rotors, and ends what ends with a flight.
+    pub(super) fn stop_rotors(&mut self, why: &str) {
+        self.decided.disarm();
+        self.machines.landing.disarm();
+        self.machines.failsafe.release();
+        self.machines.failsafe.forget(Cause::SetPointsLost);
+        self.machines.takeoff.forget();
+        self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::ForgetCommands));
+        self.consult(|_, situation, proposal| {
+            proposal.look_at(None);
+            proposal.idle(situation);
+        });
+        // A mode that ends on the ground is not one to be armed in.
+        let mode = self.decided.mode();
+        if mode == Mode::Mission {
+            self.consult(|parts, _, proposal| parts.mission.leave(proposal));
+        }
+        if matches!(mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
+            self.decided.switch_to(self.setup.identity().first_mode());
+        }
+        self.decided.say(Severity::Info, why);
+    }
+
+    fn use_speeds_or_say(&mut self, speeds: Speeds) {
+        if let Err(error) = self.use_speeds(speeds) {
+            self.decided.say(Severity::Warning, format!("Speed not changed: {error}"));
+        }
+    }
+
+    /// Lets other limits of speed hold.
+    pub(super) fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ConfigurationError> {
+        let present = *self.closed_loop.simulation().configuration();
+        let configuration = with_speeds(present, speeds.in_force());
+        if configuration.limits != present.limits {
+            self.configure(&configuration)?;
+            self.consult(|parts, situation, proposal| parts.mission.replan(situation, proposal));
+        }
+        self.machines.speeds = speeds;
+        Ok(())
+    }
+
+    /// Changes the closed loop's parameters; the speeds that hold for now lie over them.
+    pub(super) fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
+        let speeds = self.machines.speeds.keeping(&kept.limits);
+        self.configure(&with_speeds(*kept, speeds.in_force()))?;
+        self.machines.speeds = speeds;
+        Ok(())
+    }
+
+    /// Changes the closed loop, what is fixed in flight only while it is disarmed on the ground.
+    fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        if self.closed_loop.configure(configuration, self.stands())? {
+            self.perception.look_again(self.closed_loop.simulation());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! What may be asked about plans: to replace one, and to fly the mission.
+
+use super::super::notice::{Refusal, Severity};
+use super::super::plans::{check_rally_points, check_way};
+use super::Vehicle;
+use crate::mode::Mode;
+use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
+
+impl Vehicle {
+    /// Replaces a plan.
+    ///
+    /// # Errors
+    /// [`PlanFault`]; the old plan stays then.
+    pub fn set_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
+        self.take_plan(kind, items, false)
+    }
+
+    /// Replaces a plan by one that goes on where the old one is.
+    ///
+    /// # Errors
+    /// [`PlanFault`]; the old plan stays then.
+    pub fn amend_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>) -> Result<(), PlanFault> {
+        self.take_plan(kind, items, true)
+    }
+
+    fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
+        let site = self.site();
+        check::plan(kind, &items, &site)?;
+        match kind {
+            PlanKind::Mission => return self.take_mission(items, &site, amended),
+            PlanKind::Fence => self.plans.take_fence(items, &site)?,
+            PlanKind::Rally => {
+                let points = compile::rally_points(&items, &site);
+                check_rally_points(&self.situation(), &points)?;
+                self.plans.take_rally_points(items, points);
+            }
+        }
+        if let Err(fault) = check_way(&self.situation(), self.machines.mission.program()) {
+            self.decided.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
+        }
+        Ok(())
+    }
+
+    fn take_mission(&mut self, items: Vec<MissionItem>, site: &Site, amended: bool) -> Result<(), PlanFault> {
+        let program = compile::mission(&items, site);
+        check_way(&self.situation(), &program)?;
+        self.plans.take_mission(items);
+        self.consult(|parts, situation, proposal| {
+            parts.mission.replace(situation, proposal, program, amended);
+        });
+        Ok(())
+    }
+
+    /// Starts the mission, or goes on with it; `first` names the item to begin with.
+    ///
+    /// # Errors
+    /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
+    pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        self.may_enter(Mode::Mission)?;
+        self.situation().refuse_without_rotor()?;
+        self.consult(|parts, situation, proposal| {
+            parts.mission.start(situation, proposal, first)?;
+            parts.failsafe.release();
+            Ok(())
+        })
+    }
+
+    /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's.
+    ///
+    /// # Errors
+    /// [`Refusal`] when it cannot hold now.
+    pub fn pause(&mut self) -> Result<(), Refusal> {
+        if self.mode() != Mode::Mission || !self.identity().is_ardupilot() {
+            return self.set_mode(Mode::Hold);
+        }
+        self.consult(|parts, situation, proposal| parts.mission.pause(situation, proposal));
+        Ok(())
+    }
+
+    /// Goes on with the item at which the mission was left.
+    ///
+    /// # Errors
+    /// [`Refusal`] when nothing was paused.
+    pub fn continue_mission(&mut self) -> Result<(), Refusal> {
+        self.machines.mission.may_continue()?;
+        self.start_mission(None)
+    }
+
+    /// Makes an item the current one; with `reset` the jumps count anew.
+    ///
+    /// # Errors
+    /// [`Refusal`] for an item that there is not.
+    pub fn set_mission_item(&mut self, index: usize, reset: bool) -> Result<(), Refusal> {
+        self.consult(|parts, situation, proposal| {
+            parts.mission.set_current(situation, proposal, index, reset)
+        })
+    }
+}

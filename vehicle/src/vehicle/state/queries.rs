@@ -1,0 +1,240 @@
+//! What can be asked about the vehicle.
+
+use nalgebra::Vector3;
+use quadrotor::{Configuration, Outputs, Simulation};
+
+use super::super::battery::Battery;
+use super::super::conduct::Conduct;
+use super::super::failsafe::Failsafe;
+use super::super::fence_watch::FenceRecord;
+use super::super::home::Home;
+use super::super::landed::LandedState;
+use super::super::mission::MissionStatus;
+use super::super::speeds::with_speeds;
+use super::super::steering::{SteeringKind, TrackedAttitude};
+use super::Vehicle;
+use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, Validity};
+use crate::fault::Faults;
+use crate::fence::{Breach, Fence};
+use crate::identity::Identity;
+use crate::mode::Mode;
+use crate::plan::{MissionItem, PlanKind, Plans, Site};
+use crate::world::LocalFrame;
+
+impl Vehicle {
+    /// Whose conventions it follows.
+    pub fn identity(&self) -> Identity {
+        self.setup.identity()
+    }
+
+    /// Simulation time, µs after the start.
+    pub fn time_us(&self) -> u64 {
+        self.outputs().time_us
+    }
+
+    /// Time of the start, µs since 1970.
+    pub fn unix_start_us(&self) -> u64 {
+        self.setup.unix_start_us()
+    }
+
+    /// What the closed loop shows, as far as the vehicle knows its motion.
+    pub fn outputs(&self) -> &Outputs {
+        self.perception.outputs()
+    }
+
+    /// What the closed loop shows in truth.
+    pub fn truth(&self) -> &Outputs {
+        self.perception.truth()
+    }
+
+    /// What of its motion it knows well enough to fly by.
+    pub fn validity(&self) -> Validity {
+        self.perception.validity()
+    }
+
+    /// Which instruments work.
+    pub fn instrument_health(&self) -> InstrumentHealth {
+        self.perception.health()
+    }
+
+    /// Instruments and estimator, if it flies by them.
+    pub fn navigation(&self) -> Option<&Navigation> {
+        self.perception.navigation()
+    }
+
+    /// The estimate, if it flies by one.
+    pub fn estimate(&self) -> Option<&Estimate> {
+        self.perception.estimate()
+    }
+
+    /// What the instruments show; ideal ones show the truth.
+    pub fn readings(&self) -> Readings {
+        self.perception.readings(self.frame())
+    }
+
+    /// The closed loop.
+    pub fn simulation(&self) -> &Simulation {
+        self.closed_loop.simulation()
+    }
+
+    /// The parameters of the closed loop, whatever speeds hold for now.
+    pub fn kept_configuration(&self) -> Configuration {
+        with_speeds(*self.simulation().configuration(), self.machines.speeds.kept_m_s())
+    }
+
+    /// The local frame.
+    pub fn frame(&self) -> &LocalFrame {
+        self.setup.frame()
+    }
+
+    /// Velocity of the air, NED, m/s.
+    pub fn wind_m_s(&self) -> Vector3<f64> {
+        self.closed_loop.wind_m_s()
+    }
+
+    /// The battery.
+    pub fn battery(&self) -> &Battery {
+        &self.machines.battery
+    }
+
+    /// Remaining share of the battery.
+    pub fn battery_remaining(&self) -> f64 {
+        self.battery().remaining(self.conduct().battery_capacity_ah)
+    }
+
+    /// Its own parameters.
+    pub fn conduct(&self) -> &Conduct {
+        self.setup.conduct()
+    }
+
+    /// Everything that is broken now.
+    pub fn faults(&self) -> &Faults {
+        self.machines.injection.faults()
+    }
+
+    /// Home.
+    pub fn home(&self) -> &Home {
+        self.decided.home()
+    }
+
+    /// Whether the rotors may turn.
+    pub fn is_armed(&self) -> bool {
+        self.decided.is_armed()
+    }
+
+    /// Whether its last flight has been terminated.
+    pub fn is_terminated(&self) -> bool {
+        self.decided.is_terminated()
+    }
+
+    /// The mode.
+    pub fn mode(&self) -> Mode {
+        self.decided.mode()
+    }
+
+    /// The failsafe.
+    pub fn failsafe(&self) -> &Failsafe {
+        &self.machines.failsafe
+    }
+
+    /// The rotor that is known to be lost: front (0), right, back or left (3). Until it is disarmed it only descends then.
+    pub fn lost_rotor(&self) -> Option<usize> {
+        self.machines.rotors.lost_rotor()
+    }
+
+    /// Whether the latest set-point is young enough to fly on.
+    pub fn set_points_are_recent(&self) -> bool {
+        self.situation().set_points_are_recent
+    }
+
+    /// How it is steered.
+    pub fn steering_kind(&self) -> SteeringKind {
+        self.decided.steering().kind()
+    }
+
+    /// What the attitude controller tracks now.
+    pub fn tracked_attitude(&self) -> TrackedAttitude {
+        let (_, strongest_n) = self.simulation().configuration().airframe.thrust_range_n();
+        self.decided.steering().tracked_attitude(self.outputs(), strongest_n)
+    }
+
+    /// Whether it stands, climbs from the ground, flies or descends to the ground.
+    pub fn landed_state(&self) -> LandedState {
+        let (climbs, descends) = self.machines.mission.is_vertical();
+        match self.mode() {
+            _ if self.machines.landing.is_landed() => LandedState::OnGround,
+            Mode::Mission if climbs => LandedState::TakingOff,
+            Mode::Mission if descends => LandedState::Landing,
+            Mode::Takeoff => LandedState::TakingOff,
+            Mode::Land => LandedState::Landing,
+            Mode::Return if self.machines.return_home.descends() => LandedState::Landing,
+            _ => LandedState::InAir,
+        }
+    }
+
+    /// The fence as it is looked at; `None` while it is switched off.
+    pub fn fence(&self) -> Option<Fence<'_>> {
+        self.situation().fence()
+    }
+
+    /// What has become of the fence.
+    pub fn fence_record(&self) -> &FenceRecord {
+        self.machines.fence.record()
+    }
+
+    /// Whether there is anything that it must keep to: zones, a greatest distance or height.
+    pub fn has_fence(&self) -> bool {
+        self.situation().whole_fence().bounds()
+    }
+
+    /// What of the fence forbids a place, NED, m.
+    pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
+        self.situation().breach_at(place_m)
+    }
+
+    /// Its plans.
+    pub fn plans(&self) -> &Plans {
+        self.plans.plans()
+    }
+
+    /// What the places of plans refer to.
+    pub fn site(&self) -> Site {
+        self.situation().site()
+    }
+
+    /// An item as a download shows it: in ArduPilot's convention the first one of a mission is home.
+    pub fn plan_item(&self, kind: PlanKind, index: usize) -> Option<MissionItem> {
+        let item = *self.plans().get(kind).items().get(index)?;
+        if kind != PlanKind::Mission || index > 0 || !self.identity().is_ardupilot() {
+            return Some(item);
+        }
+        Some(self.home_item())
+    }
+
+    /// Home as an item of a plan.
+    pub fn home_item(&self) -> MissionItem {
+        let place = self.frame().to_geodetic(&self.home().position_m);
+        MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
+    }
+
+    /// Whether there is something to be flown.
+    pub fn has_mission(&self) -> bool {
+        self.machines.mission.program().is_flown()
+    }
+
+    /// Where the mission is.
+    pub fn mission_status(&self) -> MissionStatus {
+        self.machines.mission.status(self.mode())
+    }
+
+    /// Items that were reached since the last call.
+    pub fn take_reached_items(&mut self) -> Vec<u16> {
+        self.machines.mission.take_reached()
+    }
+
+    /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
+    pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
+        let leg = self.machines.mission.leg()?;
+        Some((leg.to_m, leg.cross_track_m(&self.outputs().position_m)))
+    }
+}

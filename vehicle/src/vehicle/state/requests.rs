@@ -1,0 +1,273 @@
+//! What may be asked of the vehicle.
+
+use nalgebra::Vector3;
+use quadrotor::{Configuration, ConfigurationError};
+
+use super::super::conduct::Conduct;
+use super::super::failsafe::Cause;
+use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::notice::{Notice, Refusal, Severity};
+use super::super::proposal::check_distance;
+use super::super::region::RegionOfInterest;
+use super::super::reposition::Reposition;
+use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
+use super::super::steering::{Steering, SteeringKind};
+use super::super::sticks::Sticks;
+use super::Vehicle;
+use crate::fault::Fault;
+use crate::mode::Mode;
+use crate::plan::{ChangeSpeed, Look};
+
+/// Takeoffs end between these heights above home, m.
+const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
+
+impl Vehicle {
+    /// Notices since the last call.
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        self.decided.take_notices()
+    }
+
+    /// Tells what time it was at the start, µs since 1970.
+    pub fn set_unix_start_us(&mut self, unix_start_us: u64) {
+        self.setup.set_unix_start_us(unix_start_us);
+    }
+
+    /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,
+    /// and its own. Tunable parameters of the closed loop change in flight, without a bump; the others only while the vehicle
+    /// is disarmed on the ground.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`]; nothing has changed then.
+    pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ConfigurationError> {
+        if *kept != self.kept_configuration() {
+            self.reconfigure(kept)?;
+        }
+        self.setup.set_conduct(*conduct);
+        Ok(())
+    }
+
+    /// Tells whether a ground station is heard.
+    pub fn hear_ground_station(&mut self, heard: bool) {
+        self.machines.failsafe.hear_ground_station(heard);
+    }
+
+    /// Takes the pilot's sticks.
+    pub fn move_sticks(&mut self, sticks: Sticks) {
+        let time_us = self.time_us();
+        self.machines.manual_control.take(sticks, time_us);
+    }
+
+    /// Switches the fence on or off.
+    pub fn enable_fence(&mut self, enabled: bool) {
+        let mut conduct = *self.conduct();
+        if conduct.failsafe.fence_enabled != enabled {
+            conduct.failsafe.fence_enabled = enabled;
+            self.setup.set_conduct(conduct);
+            self.decided.say(Severity::Info, if enabled { "Fence enabled" } else { "Fence disabled" });
+        }
+    }
+
+    /// Breaks a unit, or mends it, as a client asks.
+    ///
+    /// # Errors
+    /// [`Refusal::Denied`] while the parameter SYS_FAILURE_EN forbids it, [`Refusal::Unsupported`] when it would change nothing.
+    pub fn inject(&mut self, fault: &Fault) -> Result<(), Refusal> {
+        if !self.conduct().failure_injection {
+            return Err(Refusal::denied("Failure injection denied: SYS_FAILURE_EN is 0"));
+        }
+        if self.navigation().is_none() && fault.needs_readings() {
+            let reason = "ideal sensors only fall silent: start with --sensors realistic";
+            return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
+        }
+        self.consult(|parts, _, proposal| parts.injection.inject(fault, proposal));
+        Ok(())
+    }
+
+    /// Whether a user may choose a mode now.
+    ///
+    /// # Errors
+    /// [`Refusal::TemporarilyRejected`] while the place is not known.
+    pub(super) fn may_enter(&self, mode: Mode) -> Result<(), Refusal> {
+        self.machines.failsafe.may_enter(&self.situation(), mode)
+    }
+
+    /// Changes the mode.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the mode cannot be flown now.
+    pub fn set_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
+        self.may_enter(mode)?;
+        let situation = self.situation();
+        let identity = situation.identity;
+        let flying = situation.steering.kind() != SteeringKind::Idle;
+        if mode != Mode::Land {
+            situation.refuse_without_rotor()?;
+        }
+        match mode {
+            Mode::Takeoff => return self.take_off(None),
+            Mode::Mission => return self.start_mission(None),
+            Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
+                return Err(Refusal::later("Offboard rejected: no recent set-point"));
+            }
+            Mode::Land | Mode::Return if situation.armed && !flying => {
+                return Err(Refusal::later(format!("{} rejected: on the ground", identity.mode_name(mode))));
+            }
+            _ => {}
+        }
+        // Asked again it goes on as it does.
+        self.machines.failsafe.release();
+        if mode != self.mode() {
+            self.enter(mode);
+        } else if mode == Mode::Hold {
+            self.consult(|_, situation, proposal| proposal.hold(situation));
+        }
+        Ok(())
+    }
+
+    /// Takes off to a height above home, m, or to that of the parameter; when it is armed, else as soon as it is
+    /// (ArduPilot: only when it is).
+    ///
+    /// # Errors
+    /// [`Refusal`] when it flies already or the height is no takeoff's.
+    pub fn take_off(&mut self, height_m: Option<f64>) -> Result<(), Refusal> {
+        let situation = self.situation();
+        situation.refuse_without_rotor()?;
+        let height_m = height_m.unwrap_or(situation.conduct.takeoff_height_m);
+        if !TAKEOFF_HEIGHT_M.contains(&height_m) {
+            let (low, high) = (TAKEOFF_HEIGHT_M.start(), TAKEOFF_HEIGHT_M.end());
+            return Err(Refusal::denied(format!(
+                "Takeoff denied: {height_m:.1} m above home is outside {low} to {high} m"
+            )));
+        }
+        let z = situation.home.position_m.z - height_m;
+        let here = situation.outputs.position_m;
+        check_goal(&situation, "Takeoff", &Vector3::new(here.x, here.y, z))?;
+        let flying = situation.steering.kind() != SteeringKind::Idle;
+        let taking_off = situation.mode == Mode::Takeoff && flying;
+        let goal_z_m = self.machines.takeoff.goal_z_m();
+        if taking_off && goal_z_m.is_some_and(|goal| (goal - z).abs() < 0.01) {
+            return Ok(());
+        }
+        if flying {
+            return Err(Refusal::later("Takeoff rejected: already flying"));
+        }
+        if situation.identity.is_ardupilot() {
+            if !situation.armed {
+                return Err(Refusal::Failed("Takeoff rejected: not armed".to_owned()));
+            }
+            if situation.mode != Mode::Offboard {
+                return Err(Refusal::Failed("Takeoff rejected: not in Guided mode".to_owned()));
+            }
+        }
+        self.enter(Mode::Takeoff);
+        self.machines.takeoff.aim(z);
+        Ok(())
+    }
+
+    /// Goes somewhere and holds there. In ArduPilot's identity this is its guided mode.
+    ///
+    /// # Errors
+    /// [`Refusal`] on the ground, or too far away.
+    pub fn reposition(&mut self, goal: &Reposition) -> Result<(), Refusal> {
+        let situation = self.situation();
+        situation.refuse_without_rotor()?;
+        if situation.steering.kind() == SteeringKind::Idle {
+            return Err(Refusal::later("Reposition rejected: not flying"));
+        }
+        let mode = situation.holding_mode();
+        self.may_enter(mode)?;
+        if *goal == Reposition::default() {
+            self.machines.failsafe.release();
+            self.enter(mode);
+            self.consult(|_, situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+            return Ok(());
+        }
+        // An axis that is not named stays where its reference is.
+        let now = match situation.steering {
+            Steering::Goal(goal) => goal.position_m,
+            _ => situation.outputs.setpoint.position_m,
+        };
+        let [x, y] = goal.horizontal_m.unwrap_or([now.x, now.y]);
+        let target = Vector3::new(x, y, goal.down_m.unwrap_or(now.z));
+        check_distance(&target)?;
+        check_goal(&situation, "Reposition", &target)?;
+        self.machines.failsafe.release();
+        self.enter(mode);
+        let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
+        let axes = target.data.0[0].map(AxisTarget::Position);
+        self.consult(|parts, situation, proposal| {
+            // A heading that is asked for goes before what was looked at.
+            if goal.yaw_rad.is_some() {
+                proposal.look_at(None);
+            }
+            proposal.follow(situation, &PositionSetPoint { axes, yaw });
+            parts.offboard.forget();
+        });
+        Ok(())
+    }
+
+    /// Turns to a heading, rad, where it is.
+    ///
+    /// # Errors
+    /// [`Refusal`] on the ground and in modes that turn by themselves.
+    pub fn turn_to(&mut self, yaw_rad: f64) -> Result<(), Refusal> {
+        let situation = self.situation();
+        if situation.mode != situation.holding_mode() {
+            let name = situation.identity.mode_name(situation.mode);
+            return Err(Refusal::later(format!("Turn rejected in {name} mode")));
+        }
+        self.reposition(&Reposition { yaw_rad: Some(yaw_rad), ..Reposition::default() })
+    }
+
+    /// Takes a set-point. It proves that its sender is alive in every mode, and is flown in the offboard mode.
+    ///
+    /// # Errors
+    /// [`Refusal`] in ArduPilot's identity on the ground, where only a takeoff lifts off, and outside its mode.
+    pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
+        let situation = self.situation();
+        if situation.identity.is_ardupilot() {
+            if situation.mode != Mode::Offboard {
+                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
+            }
+            let position = matches!(set_point, SetPoint::Position(_));
+            if position && situation.steering.kind() == SteeringKind::Idle {
+                return Err(Refusal::later("Set-point ignored: take off first"));
+            }
+        }
+        if let SetPoint::Position(position) = &set_point {
+            check_set_point(&situation, position)?;
+        }
+        self.see(Cause::SetPointsLost, false);
+        let time_us = self.time_us();
+        self.machines.offboard.take(set_point, time_us);
+        Ok(())
+    }
+
+    /// Changes a limit of speed until the rotors stop. In a mission it goes before the mission's own, until that changes it again.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a speed that there is not.
+    pub fn change_speed(&mut self, change: &ChangeSpeed) -> Result<(), Refusal> {
+        let speeds = self.machines.speeds.commanded(change);
+        self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
+    }
+
+    /// Moves home.
+    ///
+    /// # Errors
+    /// [`Refusal`] too far away.
+    pub fn set_home(&mut self, position_m: Vector3<f64>, yaw_rad: Option<f64>) -> Result<(), Refusal> {
+        self.consult(|_, situation, proposal| proposal.set_home(situation, position_m, yaw_rad))
+    }
+
+    /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
+    pub fn look(&mut self, look: Option<&Look>) {
+        self.consult(|_, situation, proposal| {
+            let (here_m, home_z_m) = (situation.outputs.position_m, situation.home.position_m.z);
+            proposal.look_at(look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m)));
+            if look.is_none() && situation.chooses_its_heading() {
+                proposal.turn_on(None);
+            }
+        });
+    }
+}
