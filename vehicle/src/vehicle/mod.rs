@@ -16,6 +16,16 @@
 //!           Land ──touched down──► disarms
 //!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
 //! ```
+//!
+//! It consists of machines. Each owns its state, sees a read-only situation, and asks for what it wants in a proposal; none sees
+//! another one. One place decides.
+//!
+//! ```text
+//!  state: situation ──► machine ──► proposal ──► decision: shared state, events of other machines
+//!     ▲                 injection, fence watch, failsafe, rotor watch, landing, takeoff, manual control,
+//!     │                 offboard, return, mission, speeds
+//!     └── perception ◄── closed loop ◄── steering
+//! ```
 
 mod battery;
 mod closed_loop;

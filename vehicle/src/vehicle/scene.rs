@@ -143,8 +143,6 @@ impl Scene {
             home: &self.home,
             region: None,
             landed: self.landed,
-            settled: false,
-            flown: false,
             lost_rotor: self.lost_rotor,
             breach: None,
             set_points_are_recent: self.set_points_are_recent,

@@ -66,17 +66,13 @@ pub struct Situation<'a> {
     pub region: Option<RegionOfInterest>,
     /// Whether it stands on the ground.
     pub landed: bool,
-    /// Whether it has touched the ground, still and unloaded, for a while.
-    pub settled: bool,
-    /// Whether it has flown since it was armed.
-    pub flown: bool,
     /// The rotor that is known to be lost: front (0), right, back or left (3).
     pub lost_rotor: Option<usize>,
     /// What of the fence is breached, or is about to be.
     pub breach: Option<Breach>,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
-    /// Whether it has been steered to.
+    /// Whether the latest set-point has been steered to.
     pub set_point_is_applied: bool,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,

@@ -187,7 +187,7 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.landing.wait(situation, proposal));
     }
 
-    /// Lets the closed loop fly as it has been decided.
+    /// Flies the closed loop as the steering asks.
     fn advance(&mut self) -> Result<(), SimulationError> {
         let mut steering = *self.decided.steering();
         let conditions = Conditions {
@@ -203,13 +203,14 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Looks at the motion that has come of it.
+    /// Perceives the motion after the tick.
     fn perceive(&mut self) {
         let (simulation, faults) = (self.closed_loop.simulation(), self.machines.injection.faults());
         let stands = self.stands();
         self.perception.step(simulation, self.setup.frame(), faults, stands);
     }
 
+    /// Draws the power of the tick from the battery.
     fn discharge(&mut self) {
         let airframe = &self.closed_loop.simulation().configuration().airframe;
         let capacity_ah = self.setup.conduct().battery_capacity_ah;
@@ -261,8 +262,6 @@ fn situation<'a>(
         home: decided.home(),
         region: decided.region(),
         landed: landing.is_landed(),
-        settled: landing.is_settled(),
-        flown: landing.has_flown(),
         lost_rotor: machines.rotors.lost_rotor(),
         breach: machines.fence.record().now,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
