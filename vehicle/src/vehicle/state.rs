@@ -32,16 +32,13 @@ use super::setup::Setup;
 use super::situation::Situation;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
+use super::tick::{TICK_S, TICK_US};
 use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::ScheduledFault;
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{PlanKind, Plans, Site, compile};
 use crate::world::{Geodetic, LocalFrame, WindSettings};
-
-/// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
-pub const TICK_US: u64 = 1_000;
-const TICK_S: f64 = TICK_US as f64 / 1e6;
 
 /// Everything that a vehicle is made from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
