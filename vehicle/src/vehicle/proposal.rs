@@ -14,7 +14,6 @@ use super::situation::Situation;
 use super::speeds::SpeedChange;
 use super::steering::Steering;
 use crate::mode::Mode;
-use crate::plan::Site;
 use crate::world::FARTHEST_M;
 
 /// What can be asked for beside steering, home and the region of interest.
@@ -165,11 +164,6 @@ impl<'a> Proposal<'a> {
     /// The working copy of home.
     pub fn home(&self) -> &Home {
         &self.home
-    }
-
-    /// What the places of plans refer to, with the working copy of home.
-    pub fn site(&self, situation: &Situation) -> Site {
-        Site { home_m: self.home.position_m, ..situation.site() }
     }
 
     /// Moves home, NED, m, with a heading, rad, or the present one.
