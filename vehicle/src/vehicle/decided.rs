@@ -88,6 +88,11 @@ impl Decided {
         self.steering = steering;
     }
 
+    /// The steering, for the closed loop that flies it: a reference that moves goes on with each tick.
+    pub fn steering_to_fly(&mut self) -> &mut Steering {
+        &mut self.steering
+    }
+
     /// Moves home.
     pub fn move_home(&mut self, home: Home) {
         self.home = home;

@@ -7,8 +7,8 @@ use super::situation::Situation;
 use crate::mode::Mode;
 
 impl Failsafe {
-    /// Whether a cause is there now. The end of set-points is told where it is noticed, and not looked for.
-    pub fn finds(&self, situation: &Situation, cause: Cause) -> bool {
+    /// Whether a cause is there now.
+    fn finds(&self, situation: &Situation, cause: Cause) -> bool {
         let settings = &situation.conduct.failsafe;
         let remaining = situation.battery_remaining;
         match cause {
@@ -22,6 +22,23 @@ impl Failsafe {
             Cause::GroundStationLost => self.misses_ground_station(),
             Cause::SetPointsLost => false,
         }
+    }
+
+    /// Looks at one cause after the other, up to the first that begins or ends, which it returns: what it asks for then is to be
+    /// decided before the rest is looked at.
+    pub fn watch(
+        &mut self,
+        situation: &Situation,
+        proposal: &mut Proposal,
+        causes: &mut core::slice::Iter<Cause>,
+    ) -> Option<(Cause, Change)> {
+        // That one is told where it is noticed.
+        let mut looked_for = causes.filter(|cause| **cause != Cause::SetPointsLost);
+        looked_for.find_map(|cause| {
+            let present = self.finds(situation, *cause);
+            let change = self.take_in(situation, proposal, *cause, present);
+            change.map(|change| (*cause, change))
+        })
     }
 
     /// Takes in whether a cause is there; announces what that changes, and asks for the action of a cause that begins.

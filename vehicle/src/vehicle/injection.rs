@@ -27,11 +27,15 @@ impl Injection {
         &self.faults
     }
 
+    /// Whether the schedule has something for a time, µs.
+    pub fn is_due(&self, time_us: u64) -> bool {
+        self.scheduled.front().is_some_and(|next| next.time_us <= time_us)
+    }
+
     /// Breaks and mends what is due by the schedule.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        let is_due = |next: &&ScheduledFault| next.time_us <= situation.time_us;
-        while let Some(scheduled) = self.scheduled.front().filter(is_due).copied() {
-            self.scheduled.pop_front();
+        while self.is_due(situation.time_us) {
+            let Some(scheduled) = self.scheduled.pop_front() else { return };
             self.inject(&scheduled.fault, proposal);
         }
     }

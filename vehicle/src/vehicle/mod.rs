@@ -62,6 +62,7 @@ mod state;
 mod steering;
 mod sticks;
 mod takeoff;
+mod tick;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
@@ -74,6 +75,7 @@ pub use motion::{heading_deg, wrapped};
 pub use notice::{Notice, Refusal, Severity};
 pub use reposition::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
-pub use state::{TICK_US, Vehicle, VehicleSettings};
+pub use state::{Vehicle, VehicleSettings};
 pub use steering::{SteeringKind, TrackedAttitude};
 pub use sticks::Sticks;
+pub use tick::TICK_US;

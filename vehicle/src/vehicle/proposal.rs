@@ -1,5 +1,7 @@
 //! What a part of the vehicle asks for: it changes nothing of the vehicle by itself.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 use quadrotor::PositionReference;
 
@@ -12,7 +14,6 @@ use super::situation::Situation;
 use super::speeds::SpeedChange;
 use super::steering::Steering;
 use crate::mode::Mode;
-use crate::plan::Site;
 use crate::world::FARTHEST_M;
 
 /// What can be asked for beside steering, home and the region of interest.
@@ -34,6 +35,19 @@ pub enum Request {
     Terminate,
 }
 
+/// What a proposal comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Other steering, if it has changed.
+    pub steering: Option<Steering>,
+    /// Home.
+    pub home: Home,
+    /// The region of interest.
+    pub region: Option<RegionOfInterest>,
+    /// The requests, in their order.
+    pub requests: Vec<Request>,
+}
+
 /// What a part asks for in one call.
 ///
 /// Steering, home and region of interest are working copies, which the part changes one step after the other and reads again.
@@ -44,27 +58,32 @@ pub enum Request {
 /// ([`Proposal::enter`]; leaving its mode comes back to it as an event), notices, speeds, home ([`Proposal::set_home`]) and the
 /// region of interest ([`Proposal::look_at`]). Changed speeds hold after the call; it plans its leg again then, when it is told.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Proposal {
-    steering: Steering,
+pub struct Proposal<'a> {
+    /// Copied when it changes.
+    steering: Cow<'a, Steering>,
     home: Home,
     region: Option<RegionOfInterest>,
     requests: Vec<Request>,
 }
 
-impl Proposal {
+impl<'a> Proposal<'a> {
     /// Everything as it is.
-    pub fn new(situation: &Situation) -> Self {
+    pub fn new(situation: &Situation<'a>) -> Self {
         Self {
-            steering: *situation.steering,
+            steering: Cow::Borrowed(situation.steering),
             home: *situation.home,
             region: situation.region,
             requests: Vec::new(),
         }
     }
 
-    /// Steering, home, region of interest, and the requests in their order.
-    pub fn into_parts(self) -> (Steering, Home, Option<RegionOfInterest>, Vec<Request>) {
-        (self.steering, self.home, self.region, self.requests)
+    /// What it comes to.
+    pub fn into_outcome(self) -> Outcome {
+        let steering = match self.steering {
+            Cow::Borrowed(_) => None,
+            Cow::Owned(steering) => Some(steering),
+        };
+        Outcome { steering, home: self.home, region: self.region, requests: self.requests }
     }
 
     /// The working copy of the steering.
@@ -74,24 +93,24 @@ impl Proposal {
 
     /// Steers like this.
     pub fn steer(&mut self, steering: Steering) {
-        self.steering = steering;
+        self.steering = Cow::Owned(steering);
     }
 
     /// Lets the rotors idle.
     pub fn idle(&mut self, situation: &Situation) {
-        self.steering = Steering::Idle { yaw_rad: situation.outputs.attitude_rad.z };
+        self.steer(Steering::Idle { yaw_rad: situation.outputs.attitude_rad.z });
     }
 
     /// Steers by position, unless a rotor is lost.
     pub fn follow(&mut self, situation: &Situation, set_point: &PositionSetPoint) {
         if situation.lost_rotor.is_none() {
-            self.steering.follow(set_point, situation.outputs);
+            self.steering.to_mut().follow(set_point, situation.outputs);
         }
     }
 
     /// Steers by attitude.
     pub fn follow_attitude(&mut self, situation: &Situation, set_point: &AttitudeSetPoint) {
-        self.steering.follow_attitude(set_point, situation.outputs);
+        self.steering.to_mut().follow_attitude(set_point, situation.outputs);
     }
 
     /// Brakes and holds the place. A vehicle that rests at its goal stays steered to it; one that has not set out yet does
@@ -103,7 +122,7 @@ impl Proposal {
         let rests_at = |goal: &PositionReference| {
             (goal.position_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
         };
-        match &self.steering {
+        match self.steering() {
             Steering::Idle { .. } => {}
             Steering::Goal(goal) if rests_at(goal) => {}
             _ => self.follow(situation, &PositionSetPoint::HOLD),
@@ -112,7 +131,7 @@ impl Proposal {
 
     /// Turns on to a heading, rad, that changes at a rate, rad/s; without one it stays.
     pub fn turn_on(&mut self, heading: Option<(f64, f64)>) {
-        match (&mut self.steering, heading) {
+        match (self.steering.to_mut(), heading) {
             (Steering::Goal(goal), Some((heading_rad, rate_rad_s))) => {
                 (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);
             }
@@ -145,11 +164,6 @@ impl Proposal {
     /// The working copy of home.
     pub fn home(&self) -> &Home {
         &self.home
-    }
-
-    /// What the places of plans refer to, with the working copy of home.
-    pub fn site(&self, situation: &Situation) -> Site {
-        Site { home_m: self.home.position_m, ..situation.site() }
     }
 
     /// Moves home, NED, m, with a heading, rad, or the present one.

@@ -156,9 +156,9 @@ impl Scene {
         let situation = self.situation();
         let mut proposal = Proposal::new(&situation);
         ask(&situation, &mut proposal);
-        let (steering, _, _, requests) = proposal.into_parts();
-        self.steering = steering;
-        requests
+        let outcome = proposal.into_outcome();
+        self.steering = outcome.steering.unwrap_or(self.steering);
+        outcome.requests
     }
 
     /// Where the shaper leads, NED, m, if it leads anywhere.

@@ -15,7 +15,7 @@ use super::closed_loop::{ClosedLoop, Conditions};
 use super::conduct::Conduct;
 use super::decided::Decided;
 use super::descent::descend;
-use super::failsafe::{Cause, Failsafe};
+use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
 use super::home::Home;
 use super::injection::Injection;
@@ -32,16 +32,13 @@ use super::setup::Setup;
 use super::situation::Situation;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
+use super::tick::{TICK_S, TICK_US};
 use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
 use crate::fault::ScheduledFault;
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{PlanKind, Plans, Site, compile};
 use crate::world::{Geodetic, LocalFrame, WindSettings};
-
-/// Length of a tick, µs: requests take effect, and telemetry is sampled, on this grid of simulation time.
-pub const TICK_US: u64 = 1_000;
-const TICK_S: f64 = TICK_US as f64 / 1e6;
 
 /// Everything that a vehicle is made from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -150,7 +147,9 @@ impl Vehicle {
     /// # Errors
     /// [`SimulationError`]: the flight has left the range of numbers.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
-        self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
+        if self.machines.injection.is_due(self.time_us()) {
+            self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
+        }
         self.watch();
         if self.decided.is_armed() {
             self.fly();
@@ -163,17 +162,20 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Looks at the fence, then at all causes of failsafes, which act one after the other.
+    /// Looks at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
         let (situation, parts) = self.situation_and_machines();
         parts.fence.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
-        for cause in Cause::ALL {
-            // It is told where it is noticed.
-            if cause != Cause::SetPointsLost {
-                let present = self.machines.failsafe.finds(&self.situation(), cause);
-                self.see(cause, present);
-            }
+        let mut causes = Cause::ALL.iter();
+        while !causes.as_slice().is_empty() {
+            self.consult(|parts, situation, proposal| {
+                if parts.failsafe.watch(situation, proposal, &mut causes)
+                    == Some((Cause::Fence, Change::Begun))
+                {
+                    parts.fence.count(situation.time_us);
+                }
+            });
         }
     }
 
@@ -194,13 +196,12 @@ impl Vehicle {
             if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
+            parts.landing.wait(situation, proposal);
         });
-        self.consult(|parts, situation, proposal| parts.landing.wait(situation, proposal));
     }
 
     /// Flies the closed loop as the steering asks.
     fn advance(&mut self) -> Result<(), SimulationError> {
-        let mut steering = *self.decided.steering();
         let conditions = Conditions {
             outputs: self.perception.outputs(),
             height_m: -self.perception.truth().position_m.z,
@@ -208,9 +209,7 @@ impl Vehicle {
             rotor_faults: self.machines.injection.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(&mut steering, &conditions, TICK_US)?;
-        self.decided.steer(steering);
-        Ok(())
+        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
     }
 
     /// Perceives the motion after the tick.

@@ -9,7 +9,7 @@ use super::super::proposal::Proposal;
 use super::super::region::RegionOfInterest;
 use super::super::situation::Situation;
 use super::super::speeds::SpeedChange;
-use super::super::state::TICK_US;
+use super::super::tick::TICK_S;
 use super::leg::Leg;
 use super::turning::Turning;
 use crate::plan::step::{Condition, Do, Step};
@@ -81,7 +81,7 @@ impl Actions {
     /// One tick of the turn: heading, rad, and its rate, rad/s, if there is one.
     pub fn turn(&mut self) -> Option<(f64, f64)> {
         let turning = self.turning.as_mut()?;
-        turning.step(TICK_US as f64 / 1e6);
+        turning.step(TICK_S);
         Some(turning.heading())
     }
 

@@ -8,9 +8,9 @@ use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::situation::Situation;
-use super::super::state::TICK_US;
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
+use super::super::tick::TICK_S;
 use super::leg::{Carry, Leg, LegProgress};
 use super::route::Route;
 use super::task::{Task, TaskProgress, Then};
@@ -224,7 +224,7 @@ impl Course {
             Task::Leg(leg, then) => self.fly_leg(leg, then, situation, proposal),
             Task::Wait(Some(until_us)) if situation.time_us >= until_us => TaskProgress::Done(None),
             Task::Circle(mut circle) => {
-                let Some(set_point) = circle.step(situation.limits(), TICK_US as f64 / 1e6) else {
+                let Some(set_point) = circle.step(situation.limits(), TICK_S) else {
                     (self.anchor_m, self.heading_rad) = (circle.position_m(), circle.heading_rad());
                     proposal.steer(Steering::Goal(at_rest(self.anchor_m, self.heading_rad)));
                     return TaskProgress::Done(None);

@@ -9,8 +9,8 @@ use crate::plan::{Altitude, ChangeSpeed, Place, Program, ProgramStep};
 use crate::vehicle::proposal::{Proposal, Request};
 use crate::vehicle::scene::{Scene, said};
 use crate::vehicle::speeds::SpeedChange;
-use crate::vehicle::state::TICK_US;
 use crate::vehicle::steering::Steering;
+use crate::vehicle::tick::TICK_US;
 
 fn place([x, y, z]: [f64; 3]) -> Place {
     Place { horizontal_m: Some([x, y]), altitude: Some(Altitude::Down(z)) }

@@ -2,10 +2,10 @@
 
 use quadrotor::{Configuration, ConfigurationError};
 
-use super::super::failsafe::{Cause, Change};
+use super::super::failsafe::Cause;
 use super::super::machines::Machines;
 use super::super::notice::Severity;
-use super::super::proposal::{Proposal, Request};
+use super::super::proposal::{Outcome, Proposal, Request};
 use super::super::situation::Situation;
 use super::super::speeds::{SpeedChange, Speeds, with_speeds};
 use super::super::steering::SteeringKind;
@@ -21,16 +21,18 @@ impl Vehicle {
         let (situation, parts) = self.situation_and_machines();
         let mut proposal = Proposal::new(&situation);
         let answer = ask(parts, &situation, &mut proposal);
-        self.decide(proposal);
+        let outcome = proposal.into_outcome();
+        self.decide(outcome);
         answer
     }
 
-    fn decide(&mut self, proposal: Proposal) {
-        let (steering, home, region, requests) = proposal.into_parts();
-        self.decided.steer(steering);
-        self.decided.move_home(home);
-        self.decided.look_at(region);
-        for request in requests {
+    fn decide(&mut self, outcome: Outcome) {
+        if let Some(steering) = outcome.steering {
+            self.decided.steer(steering);
+        }
+        self.decided.move_home(outcome.home);
+        self.decided.look_at(outcome.region);
+        for request in outcome.requests {
             match request {
                 Request::Say(notice) => self.decided.pass_on(notice),
                 Request::Enter(mode) => self.enter(mode),
@@ -49,10 +51,7 @@ impl Vehicle {
     /// Lets the failsafe take in whether a cause is there.
     pub(super) fn see(&mut self, cause: Cause, present: bool) {
         self.consult(|parts, situation, proposal| {
-            let change = parts.failsafe.take_in(situation, proposal, cause, present);
-            if (cause, change) == (Cause::Fence, Some(Change::Begun)) {
-                parts.fence.count(situation.time_us);
-            }
+            parts.failsafe.take_in(situation, proposal, cause, present)
         });
     }
 
