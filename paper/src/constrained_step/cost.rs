@@ -2,13 +2,12 @@
 
 use lmpc::{DesignError, Weighting, unknowns};
 use rayon::prelude::*;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::axis::Axis;
 use super::clarabel_moves::ClarabelMoves;
 use super::controllers::{Controller, End, clipped_regulator, laguerre, state_space};
-use super::flight::{Flown, fly};
+use super::cost_result::{Contender, CostResult, entry};
+use super::flight::fly;
 use super::optimum::optimum;
 use super::two_axes::two_axes;
 use crate::error::Error;
@@ -17,65 +16,6 @@ use crate::progress::Progress;
 /// a and α of the paper.
 pub(super) const PAPER_SCALE: f64 = 0.8187;
 pub(super) const PAPER_ALPHA: f64 = 1.2;
-
-/// One controller on one step under limits.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct CostResult {
-    /// The step.
-    pub problem: String,
-    /// The controller and its design choices.
-    pub controller: String,
-    /// Unknowns per input: N of LMPC, N_c of state-space MPC, 0 of the regulator.
-    pub n: usize,
-    /// Σ q (y − r)² + q_rate Δẏ² + R Δu² of the whole step; null where the design was refused.
-    pub cost: Option<f64>,
-    /// That over the least cost of the same step under all limits at all samples.
-    pub ratio_to_optimum: Option<f64>,
-    /// Largest excess over a limit during the step, as a share of the limit. A controller that exceeds one may
-    /// cost less than the optimum.
-    pub worst_excess: Option<f64>,
-    /// Median time of a sample, µs.
-    pub median_us: Option<f64>,
-    /// 99th percentile of the same, µs.
-    pub p99_us: Option<f64>,
-    /// Median time of those samples at which limits were active, µs; null when there were none.
-    pub median_limited_us: Option<f64>,
-    /// Most iterations of a sample.
-    pub worst_iterations: Option<u32>,
-    /// Why the design was refused.
-    pub refused: Option<String>,
-}
-
-impl CostResult {
-    pub(super) fn new(problem: &str, contender: Contender, optimum: f64, outcome: Option<Flown>) -> Self {
-        let quantile = |times: &[f64], share: f64| {
-            let mut times = times.to_vec();
-            times.sort_by(f64::total_cmp);
-            times.get((times.len() as f64 * share) as usize).copied()
-        };
-        let flown = outcome.as_ref();
-        Self {
-            problem: problem.to_owned(),
-            controller: contender.name,
-            n: contender.n,
-            cost: flown.map(|flown| flown.cost),
-            ratio_to_optimum: flown.map(|flown| flown.cost / optimum),
-            worst_excess: flown.map(|flown| flown.excess),
-            median_us: flown.and_then(|flown| quantile(&flown.times_us, 0.5)),
-            p99_us: flown.and_then(|flown| quantile(&flown.times_us, 0.99)),
-            median_limited_us: flown.and_then(|flown| quantile(&flown.limited_us, 0.5)),
-            worst_iterations: flown.map(|flown| flown.worst_iterations),
-            refused: contender.refused,
-        }
-    }
-}
-
-/// Who flies.
-pub(super) struct Contender {
-    pub name: String,
-    pub n: usize,
-    pub refused: Option<String>,
-}
 
 /// All controllers on all steps. The optima are found on all cores; the controllers fly on one, because they are
 /// timed.
@@ -151,19 +91,4 @@ fn state_space_contenders(axis: &Axis, step: f64) -> Result<Vec<Entry>, Error> {
         entries.push(entry(format!("{}, solved by Clarabel", weighted(25)), 25, Ok(clarabel))?);
     }
     Ok(entries)
-}
-
-/// A design that is not stable is a result; any other refusal is a mistake.
-pub(super) fn entry<T>(
-    name: String,
-    n: usize,
-    controller: Result<T, DesignError>,
-) -> Result<(Contender, Option<T>), Error> {
-    match controller {
-        Ok(controller) => Ok((Contender { name, n, refused: None }, Some(controller))),
-        Err(error @ DesignError::Unstable { .. }) => {
-            Ok((Contender { name, n, refused: Some(error.to_string()) }, None))
-        }
-        Err(error) => Err(error.into()),
-    }
 }

@@ -10,13 +10,15 @@ mod axis;
 mod clarabel_moves;
 mod controllers;
 mod cost;
+mod cost_result;
 mod flight;
 mod optimum;
 mod trade_off;
 mod two_axes;
 
 pub use axis::Axis;
-pub use cost::{CostResult, closed_loop_cost, closed_loop_cost_parts};
+pub use cost::{closed_loop_cost, closed_loop_cost_parts};
+pub use cost_result::CostResult;
 pub use trade_off::{
     ALPHAS, ExcessCost, LAST, PLACED_TERMS, SCALES, TERMS, TradeOff, trade_off, trade_off_parts,
 };

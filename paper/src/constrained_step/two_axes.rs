@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, Vector2, Vector4};
 use quadrotor::{GRAVITY_M_S2, position_model};
 
 use super::axis::Axis;
-use super::cost::{Contender, CostResult, entry};
+use super::cost_result::{Contender, CostResult, entry};
 use super::flight::Flown;
 use crate::error::Error;
 

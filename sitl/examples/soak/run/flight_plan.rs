@@ -7,7 +7,7 @@ use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
 };
 use nalgebra::Vector3;
-use vehicle::LandedState;
+use vehicle::{LandedState, Mode};
 
 use super::chance::Chance;
 use super::task::Step;
@@ -27,6 +27,10 @@ pub fn pilot(autopilot: &Autopilot, chance: &mut Chance) -> VecDeque<Step> {
     if vehicle.landed_state() == LandedState::OnGround {
         if vehicle.is_armed() {
             return [command(target, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, &[0.0]), pause(2.0)].into();
+        }
+        // A landing that somebody asked for when it stood already: no mode to be armed in.
+        if matches!(vehicle.mode(), Mode::Land | Mode::Return) {
+            steps.push_back(command(target, MavCmd::MAV_CMD_DO_SET_MODE, &HOLD));
         }
         if chance.share() < 0.5 {
             let (places, items) = mission(autopilot, chance);

@@ -50,6 +50,8 @@ pub struct Watch {
     standing_since_us: Option<u64>,
     /// Where the vehicle is asked to stay, since when, and whether it has rested there.
     stay: Option<(Vector3<f64>, u64, bool)>,
+    /// Whether it was armed at the last look.
+    armed: bool,
     told: bool,
 }
 
@@ -75,12 +77,14 @@ impl Watch {
         } else if time_us - *self.standing_since_us.get_or_insert(time_us) > KNOWS_US && !on_ground {
             wrong = Some(format!("stands, but is {:?}", vehicle.landed_state()));
         }
-        // A vehicle without power is on the ground, its rotors at rest, in a mode to be armed in.
+        // A vehicle without power is on the ground. It leaves a landing in a mode to be armed in; a pilot may choose another
+        // one afterwards.
+        let was_armed = std::mem::replace(&mut self.armed, vehicle.is_armed());
         if !vehicle.is_armed() {
             if height_m > FLIES_M {
                 wrong = Some(format!("disarmed at {height_m:.2} m"));
             }
-            if matches!(vehicle.mode(), Mode::Land | Mode::Return) {
+            if was_armed && matches!(vehicle.mode(), Mode::Land | Mode::Return) {
                 wrong = Some(format!("disarmed in {:?}", vehicle.mode()));
             }
         }
