@@ -50,9 +50,11 @@ impl FenceWatch {
         if here.is_none() && !situation.time_us.is_multiple_of(PREDICTION_PERIOD_US) {
             return;
         }
-        let ahead = || situation.breach_to(&stopping_place_m(situation));
-        self.record.now =
-            here.or_else(|| if situation.conduct.failsafe.fence_ahead { ahead() } else { None });
+        // The way to a stop is costly to predict: only for a fence that has bounds.
+        let bounded = situation.fence().is_some_and(|fence| fence.bounds());
+        let predicts = bounded && situation.conduct.failsafe.fence_ahead;
+        let ahead = || if predicts { situation.breach_to(&stopping_place_m(situation)) } else { None };
+        self.record.now = here.or_else(ahead);
     }
 
     /// Counts the breach of now, which has begun.
