@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use vehicle::world::Geodetic;
 
-use super::settings::numbers;
+use super::ranged::numbers;
 
 /// Where the vehicle stands at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::settings::numbers;
+use super::ranged::numbers;
 
 /// Standard deviations of the white noise on what the controllers measure.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -1,4 +1,4 @@
-//! Numbers of the command line and their ranges.
+//! How numbers of the command line are read, and within which ranges.
 
 use core::fmt::Display;
 use core::str::FromStr;
@@ -14,6 +14,11 @@ where
 /// A parser of numbers from `least` to `most`, which its refusal names.
 pub fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     within("number", least, most)
+}
+
+/// Finite numbers between commas; `None` if one of them is not.
+pub fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|word| word.trim().parse::<f64>().ok().filter(|value| value.is_finite())).collect()
 }
 
 fn within<T>(

@@ -304,8 +304,3 @@ fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, F
         }
     }
 }
-
-/// Numbers between commas; `None` unless all are finite.
-pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',').map(|word| word.trim().parse::<f64>().ok().filter(|value| value.is_finite())).collect()
-}

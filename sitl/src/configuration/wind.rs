@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::settings::numbers;
+use super::ranged::numbers;
 
 /// Steady wind.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
