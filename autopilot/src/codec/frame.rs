@@ -17,7 +17,7 @@ pub enum Version {
 /// Flag of incompatibility: the frame ends in a signature of 13 bytes.
 pub(super) const SIGNED: u8 = 1;
 pub(super) const SIGNATURE_LENGTH: usize = 13;
-pub(super) const TAG_LENGTH: usize = 6;
+const TAG_LENGTH: usize = 6;
 pub(super) const CHECKSUM_LENGTH: usize = 2;
 
 impl Version {

@@ -9,7 +9,7 @@ pub const PERIOD_US: u64 = 20_000;
 
 // Figures of the RM3100 (PNI Sensor, user manual r07, table 3-1), at 200 cycle counts.
 /// Noise: 15 nT; gauss.
-pub const NOISE_GAUSS: f64 = 15e-9 * 1e4;
+const NOISE_GAUSS: f64 = 15e-9 * 1e4;
 /// Gain: 75 LSB/µT.
 pub const COUNTS_PER_GAUSS: f64 = 7500.0;
 

@@ -48,11 +48,6 @@ impl Wind {
         Self { settings, generator, along: 0.0, across: [0.0; 2], vertical: [0.0; 2] }
     }
 
-    /// Whether it blows at all.
-    pub fn is_calm(&self) -> bool {
-        self.settings.speed_m_s == 0.0 && self.settings.gusts_m_s == 0.0
-    }
-
     /// Velocity of the air, NED, m/s, at `time_us` and a height above the ground, m. To be asked at growing times.
     pub fn velocity_m_s(&mut self, time_us: u64, height_m: f64) -> Vector3<f64> {
         if self.settings.gusts_m_s > 0.0 && time_us.is_multiple_of(PERIOD_US) {

@@ -3,7 +3,7 @@
 use super::{Action, Cause};
 
 /// A cause must have been away for so long, µs, before it counts as over: one that flickers acts once.
-pub const HOLD_US: u64 = 1_000_000;
+const HOLD_US: u64 = 1_000_000;
 /// Gusts shorter than this, s, are no high wind.
 const WIND_TIME_CONSTANT_S: f64 = 2.0;
 
