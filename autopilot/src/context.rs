@@ -10,8 +10,8 @@ use crate::parameters::Parameters;
 use crate::service::LinkProfile;
 use crate::stream::{Component, StreamTable};
 
-/// The vehicle, and the ways from it to its clients. A service keeps what it needs between two calls itself, and sees no
-/// other service.
+/// The vehicle and the ways to its clients, as each call of a service gets them. What a service remembers between two calls is in
+/// the service; it does not reach the state of another.
 #[derive(Debug)]
 pub struct Context {
     /// The vehicle.
@@ -24,9 +24,9 @@ pub struct Context {
     pub files: Box<dyn FileStore>,
     /// Messages that can be asked for.
     pub streams: StreamTable,
-    /// What its services can do.
+    /// Capabilities of all services together.
     pub capabilities: MavProtocolCapability,
-    /// What each link is for.
+    /// What each link is for, by the number of the link.
     pub links: Vec<LinkProfile>,
 }
 
@@ -41,7 +41,7 @@ impl Context {
         self.parameters.system_id()
     }
 
-    /// What messages are made of.
+    /// What messages of the table are made from.
     pub fn component(&self) -> Component<'_> {
         Component { vehicle: &self.vehicle, parameters: &self.parameters, capabilities: self.capabilities }
     }

@@ -38,7 +38,7 @@ impl Group {
     ];
 }
 
-/// What messages are made of.
+/// What messages are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Component<'a> {
     /// The vehicle.
@@ -49,47 +49,47 @@ pub struct Component<'a> {
     pub capabilities: MavProtocolCapability,
 }
 
-/// How a message is made of the state of now.
+/// How a message is made from the present state.
 #[derive(Clone, Copy, Debug)]
 pub enum Build {
-    /// Of the vehicle.
+    /// From the vehicle.
     Vehicle(fn(&Vehicle) -> MavMessage),
-    /// Of what this is and how it is set.
+    /// From the vehicle, its parameters and its capabilities.
     Component(fn(&Component<'_>) -> MavMessage),
-    /// One or several, by parameter 2 of MAV_CMD_REQUEST_MESSAGE; on request only.
+    /// One or several, chosen by parameter 2 of MAV_CMD_REQUEST_MESSAGE. It is sent on request only.
     Numbered(fn(&Vehicle, u32) -> Vec<MavMessage>),
 }
 
-/// A message that a link can get.
+/// A row of the table: a message with its rates, its group and how it is made.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     /// Identifier of the message.
     pub id: u32,
-    /// Rates at the start, Hz, on a ground station's link and on an onboard one; zero is never.
+    /// Rates at the start, Hz, on a ground station's link and on an onboard one; zero: not sent.
     pub rates_hz: [f64; 2],
-    /// The group of REQUEST_DATA_STREAM that it is of.
+    /// The group of REQUEST_DATA_STREAM that it belongs to.
     pub group: Option<Group>,
     /// How it is made.
     pub build: Build,
 }
 
 impl Stream {
-    /// A message of the vehicle with its rates on a ground station's link and on an onboard one, Hz.
+    /// A message made from the vehicle, with its rates on a ground station's link and on an onboard one, Hz.
     pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
         Self { id, rates_hz, group: None, build: Build::Vehicle(build) }
     }
 
-    /// A message that is not sent unless it is asked for.
+    /// A message that is sent only when it is asked for.
     pub const fn on_request(id: u32, build: Build) -> Self {
         Self { id, rates_hz: [0.0; 2], group: None, build }
     }
 
-    /// The same in a group of REQUEST_DATA_STREAM.
+    /// Puts it into a group of REQUEST_DATA_STREAM.
     pub const fn of(self, group: Group) -> Self {
         Self { group: Some(group), ..self }
     }
 
-    /// Interval at the start on a link of a profile, µs, if it is sent there at all.
+    /// Interval at the start on a link of this profile, µs; `None` if it is not sent there.
     pub fn default_interval_us(&self, profile: LinkProfile) -> Option<u64> {
         let [ground, onboard] = self.rates_hz;
         let rate = match profile {
@@ -99,7 +99,7 @@ impl Stream {
         (rate > 0.0).then(|| (1e6 / rate).round() as u64)
     }
 
-    /// The one message of now; `None` if it is sent on request only.
+    /// The message, from the present state; `None` for numbered ones.
     pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
         match self.build {
             Build::Vehicle(build) => Some(build(component.vehicle)),
@@ -108,7 +108,7 @@ impl Stream {
         }
     }
 
-    /// What answers a request: one message, or those of a number.
+    /// What answers a request with this number as its parameter 2.
     pub fn messages(&self, component: &Component<'_>, number: u32) -> Vec<MavMessage> {
         match self.build {
             Build::Numbered(build) => build(component.vehicle, number),
@@ -122,25 +122,25 @@ impl Stream {
     }
 }
 
-/// All of them, by their identifiers.
+/// The table, ordered by identifiers.
 #[derive(Clone, Debug, Default)]
 pub struct StreamTable(Vec<&'static Stream>);
 
 impl StreamTable {
-    /// A table of these. Of two with the same identifier, one is found.
+    /// A table of these rows. Identifiers must differ; a test of the registry checks it.
     pub fn new(streams: impl IntoIterator<Item = &'static Stream>) -> Self {
         let mut streams: Vec<_> = streams.into_iter().collect();
         streams.sort_by_key(|stream| stream.id);
         Self(streams)
     }
 
-    /// The message of an identifier.
+    /// The row of an identifier.
     pub fn get(&self, id: u32) -> Option<&'static Stream> {
         let place = self.0.binary_search_by_key(&id, |stream| stream.id).ok()?;
         self.0.get(place).copied()
     }
 
-    /// All, by their identifiers.
+    /// All rows, ordered by identifiers.
     pub fn iter(&self) -> impl Iterator<Item = &'static Stream> + '_ {
         self.0.iter().copied()
     }

@@ -5,10 +5,12 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
-//!  plan         items, checks and texts of missions, fences and rally points
+//!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  estimation   instruments and the estimator
-//!  vehicle      the state machine over the closed loop
+//!  mode         flight modes
+//!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
+//!  vehicle      the state machines over the closed loop, and the place that decides between them
 //!  parameters   all settings by their identifiers
 //! ```
 

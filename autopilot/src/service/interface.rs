@@ -14,8 +14,8 @@ use crate::stream::Stream;
 /// How a command that arrives twice is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repetition {
-    /// It asks for something: it is carried out again, because the first answer may be what was lost. Its refusal is
-    /// no news for the pilot: clients probe.
+    /// It asks for something: it is carried out again, because the first answer may be what was lost. Its refusal is not told
+    /// to the pilot: clients probe.
     Again,
     /// It changes something: it is carried out once and answered again. Its refusal is told to the pilot.
     Once,
@@ -51,11 +51,12 @@ pub enum Progress {
     Percent(u8),
 }
 
-/// What becomes of a command.
+/// What a service answers to a command.
 pub type Outcome = Result<Progress, Refusal>;
 
-/// A MAVLink microservice: it says what it takes, and owns what it remembers. It reaches the vehicle and its clients by the
-/// [`Context`] that each call brings, and no other service.
+/// A MAVLink microservice: it claims messages, commands and streams, and owns what it remembers. It reaches the vehicle and the
+/// clients through the [`Context`] of each call. Every method has a default that does nothing, so a service implements only what it
+/// needs.
 pub trait Service: Debug + Send {
     /// Identifiers of the messages that it takes. No two services take the same.
     fn messages(&self) -> &'static [u32] {
@@ -67,26 +68,26 @@ pub trait Service: Debug + Send {
         &[]
     }
 
-    /// Messages that clients can ask of it, once or regularly.
+    /// Messages that clients can get from it, once or regularly. No two services have the same.
     fn streams(&self) -> &'static [Stream] {
         &[]
     }
 
-    /// What AUTOPILOT_VERSION tells that it can do, in the terms of an identity.
+    /// Capabilities that it adds to AUTOPILOT_VERSION in the terms of an identity.
     fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
         MavProtocolCapability::empty()
     }
 
-    /// The vehicle has just started.
+    /// Called once, when the vehicle has just started.
     fn start(&mut self, _context: &mut Context) {}
 
-    /// Somebody was heard, whoever the message is for.
+    /// Called for every received frame, whoever it is for, before it is handed to its service.
     fn hear(&mut self, _context: &mut Context, _origin: &Origin) {}
 
-    /// Takes one of its messages in.
+    /// Takes in one of the messages that it claims.
     fn receive(&mut self, _context: &mut Context, _origin: &Origin, _frame: &Frame) {}
 
-    /// Carries one of its commands out. The answer is sent for it, before everything that it sends here.
+    /// Carries out one of the commands that it claims. The acknowledgement is sent for it, ahead of everything that it sends here.
     ///
     /// # Errors
     /// [`Refusal`], with the reason for the pilot.
@@ -94,17 +95,17 @@ pub trait Service: Debug + Send {
         Err(Refusal::Unsupported("not supported".to_owned()))
     }
 
-    /// A tick of simulation time is over.
+    /// Called after each tick of the vehicle.
     fn tick(&mut self, _context: &mut Context) {}
 
-    /// A tick or a message is over: what has changed by it is told.
+    /// Called after each tick and each received message: tells clients what has changed.
     fn announce(&mut self, _context: &mut Context) {}
 
-    /// What is due regularly is sent, after all changes of the tick.
+    /// Called at the end of each tick: sends what is due regularly.
     fn stream(&mut self, _context: &mut Context) {}
 
-    /// Sends up to this many messages of what is long, to peers that have room for them (`None`: the peer is gone). It
-    /// is called at the pace of links and wall clocks, not of the flight.
+    /// Sends up to `messages` messages of long downloads to peers whose link has room (`None`: the peer is gone). Called at the
+    /// pace of links and the wall clock, not of the flight.
     fn transfer(
         &mut self,
         _context: &mut Context,

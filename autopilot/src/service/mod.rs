@@ -1,5 +1,6 @@
-//! One file per MAVLink microservice. Each takes received messages, commands or a moment of simulation time, and puts
-//! answers into the outbox; none owns a socket, reads a clock or knows another.
+//! One file or folder per MAVLink microservice. Each takes received messages, commands or a tick of simulation time and puts
+//! answers into the outbox. None owns a socket, reads a clock or reaches the state of another; a message that several of them
+//! send, such as HEARTBEAT, is a function in the file of its service.
 //!
 //! ```text
 //!             claims: messages, commands, streams
@@ -8,7 +9,7 @@
 //!     └──────────────────────────────────────────►────┴──► vehicle, parameters, outbox, files
 //! ```
 //!
-//! A new service is a file with an implementation of the trait `Service`, named here and in the registry.
+//! A new service is a file with an implementation of the trait `Service`, a line here and one in the registry.
 
 mod envelope;
 mod interface;

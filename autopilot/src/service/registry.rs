@@ -1,4 +1,4 @@
-//! The list of all services, and which of them takes what.
+//! The list of all services, and which of them takes which message and command.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::stream::StreamTable;
 
-/// All services, called in this order: it is the order of what several of them tell at once.
+/// All services. They are called in this order, which is also the order of what they send in one tick.
 fn all() -> Vec<Box<dyn Service>> {
     vec![
         Box::new(super::mission::Missions::default()),
@@ -84,7 +84,7 @@ impl Registry {
         self.each(|service| service.start(context));
     }
 
-    /// Somebody was heard, whoever the message is for.
+    /// A frame was received, whoever it is for.
     pub fn hear(&mut self, context: &mut Context, origin: &Origin) {
         self.each(|service| service.hear(context, origin));
     }
@@ -111,7 +111,7 @@ impl Registry {
         self.each(|service| service.tick(context));
     }
 
-    /// Tells what has changed.
+    /// Tells clients what has changed.
     pub fn announce(&mut self, context: &mut Context) {
         self.each(|service| service.announce(context));
     }
@@ -121,7 +121,7 @@ impl Registry {
         self.each(|service| service.stream(context));
     }
 
-    /// Sends up to this many messages of what is long.
+    /// Sends up to `messages` messages of long downloads.
     pub fn transfer(
         &mut self,
         context: &mut Context,

@@ -1,4 +1,4 @@
-//! What has been decided: the state that all parts share. Parts ask for changes of it, one place makes them.
+//! What has been decided: the state that all machines share. They ask for changes of it, and one place makes them.
 
 use super::home::Home;
 use super::notice::{Notice, Severity};

@@ -1,4 +1,4 @@
-//! The way down, for every part that lands.
+//! The way down, for every machine that lands.
 
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -1,4 +1,4 @@
-//! The parts of the vehicle, each with a state of its own.
+//! The machines that the vehicle consists of, each with a state of its own.
 
 use super::battery::Battery;
 use super::failsafe::Failsafe;
@@ -13,7 +13,7 @@ use super::rotor_watch::RotorWatch;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 
-/// All parts. None of them sees another one: they look at a situation, and ask in a proposal.
+/// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
 pub struct Machines {
     /// What is broken.

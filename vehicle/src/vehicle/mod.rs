@@ -1,5 +1,4 @@
-//! The vehicle: a state machine over the closed loop. It takes requests in SI units and simulation time; it owns
-//! no socket and reads no clock.
+//! The vehicle: state machines over the closed loop. It takes requests in SI units and simulation time.
 //!
 //! ```text
 //!              arm                     take_off / set-point up / stick up
@@ -17,14 +16,23 @@
 //!           any ──a rotor lost──► Land, spinning ──touched down──► disarms
 //! ```
 //!
-//! It consists of machines. Each owns its state, sees a read-only situation, and asks for what it wants in a proposal; none sees
-//! another one. One place decides.
+//! Each machine owns its state, is shown a read-only situation and asks for what it wants in a proposal. None sees another one. One
+//! place decides (`state/decision.rs`):
 //!
 //! ```text
 //!  state: situation ──► machine ──► proposal ──► decision: shared state, events of other machines
-//!     ▲                 injection, fence watch, failsafe, rotor watch, landing, takeoff, manual control,
-//!     │                 offboard, return, mission, speeds
-//!     └── perception ◄── closed loop ◄── steering
+//! ```
+//!
+//! The order of a tick:
+//!
+//! ```text
+//!  injection        faults that are due
+//!  fence watch      breaches, present and predicted
+//!  failsafe         cause by cause
+//!  while armed      the machine of the mode (takeoff, manual control, offboard, return, mission),
+//!                   or the rotor watch while a rotor is lost; then what waits: lost set-points, disarming
+//!  closed loop      flies as the steering says; perception looks at the motion
+//!  afterwards       rotor watch, battery, touch-down and lift-off
 //! ```
 
 mod battery;

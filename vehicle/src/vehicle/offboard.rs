@@ -117,7 +117,7 @@ mod tests {
         SetPoint::Position(PositionSetPoint { axes, yaw: YawTarget::Hold })
     }
 
-    /// As the vehicle: the part is asked how recent its set-points are.
+    /// As the vehicle does it: the machine is asked how recent its set-points are.
     fn step(offboard: &mut Offboard, scene: &mut Scene) -> Vec<Request> {
         let timeout_s = scene.conduct.set_point_timeout_s;
         scene.set_points_are_recent = offboard.is_recent(scene.outputs.time_us, timeout_s);

@@ -1,4 +1,4 @@
-//! What a part of the vehicle asks for: it changes nothing of the vehicle by itself.
+//! What a machine asks for. The machine itself changes nothing but its own state.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use super::steering::Steering;
 use crate::mode::Mode;
 use crate::world::FARTHEST_M;
 
-/// What can be asked for beside steering, home and the region of interest.
+/// What can be asked for besides steering, home and the region of interest.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// A line for the pilot.
@@ -35,7 +35,7 @@ pub enum Request {
     Terminate,
 }
 
-/// What a proposal comes to.
+/// The result of a proposal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Other steering, if it has changed.
@@ -48,15 +48,15 @@ pub struct Outcome {
     pub requests: Vec<Request>,
 }
 
-/// What a part asks for in one call.
+/// What a machine asks for in one call.
 ///
-/// Steering, home and region of interest are working copies, which the part changes one step after the other and reads again.
-/// The rest is a list of requests. Whoever decides takes the three copies first, then carries out the requests in their order.
-/// So a request for a mode comes after everything that the part steers in the same call: the mode begins with that.
+/// Steering, home and region of interest are working copies: the machine may change them several times within the call, and reads
+/// its own changes. Everything else is a list of requests. The decision takes over the three copies first and then carries out
+/// the requests in order, so a mode that is asked for begins with whatever the machine steered in the same call.
 ///
-/// A mission asks for all of it: steering ([`Proposal::hold`], [`Proposal::follow`], [`Proposal::steer`]), modes when it is done
-/// ([`Proposal::enter`]; leaving its mode comes back to it as an event), notices, speeds, home ([`Proposal::set_home`]) and the
-/// region of interest ([`Proposal::look_at`]). Changed speeds hold after the call; it plans its leg again then, when it is told.
+/// The mission uses all of it: steering ([`Proposal::hold`], [`Proposal::follow`], [`Proposal::steer`]), a mode when it is done
+/// ([`Proposal::enter`]; it is told when its own mode is left), notices, speeds, home ([`Proposal::set_home`]) and the region of
+/// interest ([`Proposal::look_at`]). Changed speeds take effect after the call; the mission is told then, and plans its leg again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal<'a> {
     /// Copied when it changes.
@@ -77,7 +77,7 @@ impl<'a> Proposal<'a> {
         }
     }
 
-    /// What it comes to.
+    /// Ends the proposal.
     pub fn into_outcome(self) -> Outcome {
         let steering = match self.steering {
             Cow::Borrowed(_) => None,

@@ -1,4 +1,4 @@
-//! A vehicle to look at, made by hand: what tests of single parts show them.
+//! A vehicle made by hand, for tests of single machines.
 
 use nalgebra::Vector3;
 use quadrotor::{Activity, Configuration, Outputs, PositionReference};
@@ -151,7 +151,7 @@ impl Scene {
         }
     }
 
-    /// Shows the situation to a part, and steers as it asks; returns its requests.
+    /// Shows the situation to a machine and steers as it asks. Returns its requests.
     pub fn show(&mut self, ask: impl FnOnce(&Situation, &mut Proposal)) -> Vec<Request> {
         let situation = self.situation();
         let mut proposal = Proposal::new(&situation);

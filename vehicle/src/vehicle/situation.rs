@@ -1,4 +1,4 @@
-//! What the parts of the vehicle see of it: a read-only view of one moment.
+//! What the machines see of the vehicle: a read-only view of one moment.
 
 use nalgebra::Vector3;
 use quadrotor::{Configuration, Limits, Outputs};
@@ -16,8 +16,8 @@ use crate::mode::Mode;
 use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
-/// The vehicle as it is now. It consists of references and small copies, so it can be made anew for every look, and made by
-/// hand in a test of one part.
+/// The vehicle as it is now. It consists of references and small copies: it is made anew for every call of a machine, and a test of
+/// one machine can make it by hand.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// Simulation time, µs after the start.
@@ -58,7 +58,7 @@ pub struct Situation<'a> {
     pub armed: bool,
     /// The mode.
     pub mode: Mode,
-    /// How it is steered. A part that steers reads the working copy in its proposal instead.
+    /// How it is steered. A machine that steers reads the working copy in its proposal instead.
     pub steering: &'a Steering,
     /// Home.
     pub home: &'a Home,

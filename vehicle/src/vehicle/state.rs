@@ -130,13 +130,13 @@ impl Vehicle {
         })
     }
 
-    /// What the parts see of the vehicle now.
+    /// What the machines see of the vehicle now.
     fn situation(&self) -> Situation<'_> {
         let Self { setup, closed_loop, perception, plans, decided, machines } = self;
         situation(setup, closed_loop, perception, plans, decided, machines)
     }
 
-    /// What the parts see of the vehicle now, and the parts.
+    /// What the machines see of the vehicle now, and the machines.
     fn situation_and_machines(&mut self) -> (Situation<'_>, &mut Machines) {
         let Self { setup, closed_loop, perception, plans, decided, machines } = self;
         (situation(setup, closed_loop, perception, plans, decided, machines), machines)
@@ -234,7 +234,7 @@ impl Vehicle {
     }
 }
 
-/// The situation that the parts of a vehicle are in.
+/// The situation that is shown to the machines of a vehicle.
 fn situation<'a>(
     setup: &'a Setup,
     closed_loop: &'a ClosedLoop,

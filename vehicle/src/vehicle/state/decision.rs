@@ -1,4 +1,4 @@
-//! The one place that decides: it carries out what the parts ask for, in the order in which they ask.
+//! The one place that decides: it carries out what the machines ask for, in the order in which they ask.
 
 use quadrotor::{Configuration, ConfigurationError};
 
@@ -13,7 +13,7 @@ use super::Vehicle;
 use crate::mode::Mode;
 
 impl Vehicle {
-    /// Shows the situation to a part, and carries out what it asks for.
+    /// Shows the situation to a machine and carries out what it asks for. Returns the machine's answer.
     pub(super) fn consult<T>(
         &mut self,
         ask: impl FnOnce(&mut Machines, &Situation, &mut Proposal) -> T,
