@@ -63,6 +63,7 @@ mod rotor_watch;
 #[cfg(test)]
 mod scene;
 mod set_point;
+mod settings;
 mod setup;
 mod situation;
 mod speeds;
@@ -83,7 +84,8 @@ pub use motion::{heading_deg, wrapped};
 pub use notice::{Notice, Refusal, Severity};
 pub use reposition::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
-pub use state::{Vehicle, VehicleSettings};
+pub use settings::VehicleSettings;
+pub use state::Vehicle;
 pub use steering::{SteeringKind, TrackedAttitude};
 pub use sticks::Sticks;
 pub use tick::TICK_US;

@@ -7,12 +7,10 @@ mod queries;
 mod requests;
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, ConfigurationError, SimulationError};
-use serde::{Deserialize, Serialize};
+use quadrotor::{ConfigurationError, SimulationError};
 
 use super::battery::Battery;
 use super::closed_loop::{ClosedLoop, Conditions};
-use super::conduct::Conduct;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
@@ -28,54 +26,16 @@ use super::perception::Perception;
 use super::plans::KnownPlans;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
-use crate::estimation::{Estimate, Navigation, SensorModel, SensorSettings};
-use crate::fault::ScheduledFault;
-use crate::identity::Identity;
+use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::mode::Mode;
-use crate::plan::{PlanKind, Plans, Site, compile};
-use crate::world::{Geodetic, LocalFrame, WindSettings};
-
-/// Everything that a vehicle is made from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct VehicleSettings {
-    /// Whose conventions it follows.
-    pub identity: Identity,
-    /// The closed loop. Ground and shaper are always on; the initial state is at rest on the ground.
-    pub configuration: Configuration,
-    /// Its own parameters.
-    pub conduct: Conduct,
-    /// Where the local frame has its origin, on the ground; the start is where `configuration` has it from there.
-    pub origin: Geodetic,
-    /// Heading at the start, rad.
-    pub heading_rad: f64,
-    /// The wind.
-    pub wind: WindSettings,
-    /// What breaks when.
-    #[serde(default)]
-    pub faults: Vec<ScheduledFault>,
-    /// What it knows its motion by.
-    #[serde(default)]
-    pub sensors: SensorSettings,
-    /// What it is to fly, and where it may.
-    #[serde(default)]
-    pub plans: Plans,
-}
-
-impl VehicleSettings {
-    /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.
-    pub fn flown_configuration(&self) -> Configuration {
-        let mut configuration = self.configuration;
-        configuration.environment.ground_plane = true;
-        configuration.reference.shaping = true;
-        configuration.initial.attitude_rad[2] = self.heading_rad;
-        configuration
-    }
-}
+use crate::plan::{PlanKind, Site, compile};
+use crate::world::LocalFrame;
 
 /// The vehicle.
 #[derive(Debug)]

@@ -1,0 +1,48 @@
+//! What a vehicle is made from.
+
+use quadrotor::Configuration;
+use serde::{Deserialize, Serialize};
+
+use super::conduct::Conduct;
+use crate::estimation::SensorSettings;
+use crate::fault::ScheduledFault;
+use crate::identity::Identity;
+use crate::plan::Plans;
+use crate::world::{Geodetic, WindSettings};
+
+/// Everything that a vehicle is made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehicleSettings {
+    /// Whose conventions it follows.
+    pub identity: Identity,
+    /// The closed loop. Ground and shaper are always on; the initial state is at rest on the ground.
+    pub configuration: Configuration,
+    /// Its own parameters.
+    pub conduct: Conduct,
+    /// Where the local frame has its origin, on the ground; the start is where `configuration` has it from there.
+    pub origin: Geodetic,
+    /// Heading at the start, rad.
+    pub heading_rad: f64,
+    /// The wind.
+    pub wind: WindSettings,
+    /// What breaks when.
+    #[serde(default)]
+    pub faults: Vec<ScheduledFault>,
+    /// What it knows its motion by.
+    #[serde(default)]
+    pub sensors: SensorSettings,
+    /// What it is to fly, and where it may.
+    #[serde(default)]
+    pub plans: Plans,
+}
+
+impl VehicleSettings {
+    /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.
+    pub fn flown_configuration(&self) -> Configuration {
+        let mut configuration = self.configuration;
+        configuration.environment.ground_plane = true;
+        configuration.reference.shaping = true;
+        configuration.initial.attitude_rad[2] = self.heading_rad;
+        configuration
+    }
+}
