@@ -19,8 +19,6 @@ mod topics;
 mod ulog;
 
 pub use flight::FlightLog;
-pub use log_file::LogFile;
 pub use row::Row;
 pub use settings::{LogSettings, LogStart};
 pub use topics::{LogSource, TOPICS, Topic};
-pub use ulog::Definitions;

@@ -3,7 +3,7 @@
 use libm::cos;
 use quadrotor::Outputs;
 
-/// MAV_LANDED_STATE.
+/// Whether the vehicle is on the ground, in the air or between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LandedState {
     /// On the ground.

@@ -156,6 +156,9 @@ mod tests {
         scene.wait_us(9_999_999);
         assert!(wait(&mut landing, &mut scene).is_empty());
         scene.wait_us(1);
+        scene.mission_goes_on = true;
+        assert!(wait(&mut landing, &mut scene).is_empty(), "the mission goes on");
+        scene.mission_goes_on = false;
         let mut going_on = landing;
         let stop = Request::StopRotors("Disarmed: no takeoff".to_owned());
         assert_eq!(wait(&mut landing, &mut scene), [stop]);

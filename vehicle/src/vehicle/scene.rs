@@ -33,6 +33,7 @@ pub struct Scene {
     pub landed: bool,
     pub lost_rotor: Option<usize>,
     pub set_points_are_recent: bool,
+    pub mission_goes_on: bool,
     pub rotor_command_rad_s: [f64; 4],
     frame: LocalFrame,
 }
@@ -83,6 +84,7 @@ impl Scene {
             landed: false,
             lost_rotor: None,
             set_points_are_recent: false,
+            mission_goes_on: false,
             rotor_command_rad_s: [hover_rad_s; 4],
             frame: LocalFrame::new(origin),
         }
@@ -147,7 +149,7 @@ impl Scene {
             breach: None,
             set_points_are_recent: self.set_points_are_recent,
             set_point_is_applied: false,
-            mission_goes_on: false,
+            mission_goes_on: self.mission_goes_on,
         }
     }
 

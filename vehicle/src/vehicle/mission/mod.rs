@@ -8,8 +8,8 @@
 //!                 └─► actions on the way: conditions, speed, home, region of interest
 //! ```
 //!
-//! Steps that are flown (NAV_…) follow one another. Those between two of them (DO_…, CONDITION_…) begin with the second one's
-//! leg; a condition that is not fulfilled when the leg ends is dropped with what follows it, as ArduPilot has it.
+//! Steps that are flown follow one another. Actions and conditions between two of them begin with the second one's leg; a
+//! condition that is not fulfilled when the leg ends is dropped with what follows it, as ArduPilot has it.
 //!
 //! [`Mission`] is the machine: it owns the program and how far it has come. `course` owns what is done for the present step,
 //! `actions` what is done on the way, `jumps` how often each jump was made. They look at a situation and ask in a proposal.

@@ -1,9 +1,9 @@
-//! How far a mission has come, for whoever watches it.
+//! What clients are told of a mission.
 
 use super::machine::{Mission, Progress};
 use crate::mode::Mode;
 
-/// MISSION_STATE.
+/// How far a mission has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissionState {
     /// There is none.
