@@ -32,5 +32,5 @@ pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, BATTERY_CELLS, Battery, BatteryActions, Cause, Conduct, Failsafe,
     FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice,
     PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, heading_deg, wrapped,
+    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

@@ -5,8 +5,8 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::common::{HEARTBEAT_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavCmd, MavMessage};
-use vehicle::world::atmospheric_temperature_degc;
-use vehicle::{Cause, MissionState, Mode, Refusal, Severity, Vehicle, heading_deg};
+use vehicle::world::{atmospheric_temperature_degc, heading_deg};
+use vehicle::{Cause, MissionState, Mode, Refusal, Severity, Vehicle};
 
 use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service, heartbeat};
 use crate::codec::{Command, boot_ms, scaled_degrees};

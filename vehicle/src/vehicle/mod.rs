@@ -80,7 +80,7 @@ pub use fence_watch::FenceRecord;
 pub use home::Home;
 pub use landed::LandedState;
 pub use mission::{MissionState, MissionStatus};
-pub use motion::{heading_deg, wrapped};
+pub use motion::wrapped;
 pub use notice::{Notice, Refusal, Severity};
 pub use reposition::Reposition;
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};

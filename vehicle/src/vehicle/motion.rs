@@ -184,13 +184,6 @@ impl Motion {
     }
 }
 
-/// A heading as people tell it, degrees within [0, 360).
-pub fn heading_deg(yaw_rad: f64) -> f64 {
-    let degrees = yaw_rad.to_degrees();
-    let within = degrees - 360.0 * (degrees / 360.0).floor();
-    if within >= 360.0 { 0.0 } else { within }
-}
-
 /// An angle brought into [−π, π), rad.
 pub fn wrapped(angle_rad: f64) -> f64 {
     const TURN: f64 = core::f64::consts::TAU;

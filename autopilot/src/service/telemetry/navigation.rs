@@ -1,7 +1,8 @@
 //! How well the vehicle keeps to what it is steered to.
 
 use mavlink::dialects::common::{MavMessage, NAV_CONTROLLER_OUTPUT_DATA};
-use vehicle::{Mode, Vehicle, heading_deg};
+use vehicle::world::heading_deg;
+use vehicle::{Mode, Vehicle};
 
 /// NAV_CONTROLLER_OUTPUT: the tracking errors of the controllers. Across the leg of a mission, else across the heading; in
 /// altitude and speed against the reference. A distance is that to the end of the leg, else to the reference.

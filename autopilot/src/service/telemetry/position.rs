@@ -4,7 +4,8 @@ use mavlink::dialects::common::{
     ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MavEstimatorType,
     MavFrame, MavMessage, ODOMETRY_DATA, VFR_HUD_DATA,
 };
-use vehicle::{Vehicle, heading_deg};
+use vehicle::Vehicle;
+use vehicle::world::heading_deg;
 
 use crate::codec::{boot_ms, centimetres_per_second, floats, millimetres, scaled_degrees};
 

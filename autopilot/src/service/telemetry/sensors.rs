@@ -6,12 +6,12 @@ use mavlink::dialects::common::{
 };
 use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
+use vehicle::Vehicle;
 use vehicle::estimation::Readings;
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
 use vehicle::estimation::inertial::{ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COUNTS_PER_RAD_S};
 use vehicle::estimation::magnetometer::COUNTS_PER_GAUSS;
-use vehicle::world::atmospheric_temperature_degc;
-use vehicle::{Vehicle, heading_deg};
+use vehicle::world::{atmospheric_temperature_degc, heading_deg};
 
 use crate::codec::{boot_ms, scaled_degrees};
 

@@ -2,7 +2,7 @@
 
 use vehicle::estimation::TestRatios;
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
-use vehicle::heading_deg;
+use vehicle::world::heading_deg;
 
 use super::LogSource;
 use crate::flight_log::Row;
