@@ -65,13 +65,14 @@ impl Clock {
             return Err(CallError::StepSize { step_s });
         }
         let expected_s = self.communication_point_s;
-        let end_s = point_s + step_s;
         let scale_s =
             [self.start_s, expected_s, point_s].into_iter().fold(step_s, |most, t| most.max(t.abs()));
         let tolerance_s = TOLERANCE * scale_s;
         if !(point_s.is_finite() && (point_s - expected_s).abs() <= tolerance_s) {
             return Err(CallError::CommunicationPoint { given_s: point_s, expected_s });
         }
+        // A communication point may lie a rounding error before the last one; time never goes back.
+        let end_s = (point_s + step_s).max(expected_s);
         if let Some(stop_s) = self.stop_s
             && end_s > stop_s + tolerance_s
         {
@@ -81,9 +82,7 @@ impl Clock {
         if time_us > LONGEST_US {
             return Err(CallError::Time { name: "the end of the step", value: end_s });
         }
-        // A communication point may lie a rounding error before the last one; the run never goes back.
-        let time_us = (time_us as u64).max(self.time_us());
-        Ok(StepEnd { clock: Self { communication_point_s: end_s, ..*self }, time_us })
+        Ok(StepEnd { clock: Self { communication_point_s: end_s, ..*self }, time_us: time_us as u64 })
     }
 
     /// Goes on to the end of a step.
@@ -141,6 +140,18 @@ mod tests {
             stepped(&mut clock, f64::from(i) * 1e-7, 1e-7);
         }
         assert_eq!(clock.time_us(), 100);
+    }
+
+    /// At times so large that the tolerance is longer than a step.
+    #[test]
+    fn time_never_goes_back() {
+        let mut clock = clock(1e6, None);
+        assert_eq!(stepped(&mut clock, 1e6, 5e-4), 500);
+        for _ in 0..2 {
+            assert_eq!(stepped(&mut clock, 1e6, 1e-4), 500);
+            assert_eq!(clock.time_us(), 500);
+        }
+        assert!(clock.is_valid());
     }
 
     #[test]

@@ -12,10 +12,11 @@ pub trait Data: Clone + Debug + PartialEq + Serialize + DeserializeOwned {}
 
 impl<T: Clone + Debug + PartialEq + Serialize + DeserializeOwned> Data for T {}
 
-/// A model: what it is called, which variables it has, and how it goes on in time.
+/// A model: its name, its variables, and how it goes on in time.
 ///
-/// A value is one run: built from parameters and first inputs, and stepped from time 0. Everything else that an
-/// importer may do — set, get, save, restore, reset, in which order — is done by this crate.
+/// A value of the type is one run: built from parameters and first inputs, and stepped from time 0. This crate does
+/// everything else that an importer may ask for: it sets and gets variables, saves, restores and resets, and checks the
+/// order of calls.
 pub trait Model: Sized + 'static {
     /// Names and texts.
     const IDENTITY: Identity;
@@ -23,10 +24,10 @@ pub trait Model: Sized + 'static {
     /// The table of variables, in groups. A variable's value reference is its place in all of them, from 0.
     const VARIABLES: &'static [&'static [Variable<Self>]];
 
-    /// Quantities that the description lists first; others follow in the order in which variables use them.
+    /// Quantities that the description lists first, in this order; others follow in the order in which variables use them.
     const QUANTITIES: &'static [&'static Quantity] = &[];
 
-    /// What is set before the run, and some of it during the run. The default has the start values.
+    /// What is set before the run; tunable parameters also during it. The default has the start values.
     type Parameters: Data + Default;
 
     /// What comes from outside at communication points. The default has the start values.
@@ -59,16 +60,18 @@ pub trait Model: Sized + 'static {
     /// The present, µs since the start of the run.
     fn time_us(&self) -> u64;
 
-    /// Goes on to `time_us`, under the inputs as a function of time in µs.
+    /// Goes on to `time_us`, which is never before [`Model::time_us`] and may be equal to it: steps shorter than a
+    /// microsecond add up. `inputs` gives the inputs at a time in µs; ask it at any time of the step.
     ///
     /// # Errors
-    /// When the run cannot go on; what is observed then is where it failed.
+    /// When the run cannot go on. The instance is then in the state "error", in which outputs can still be read: they are
+    /// those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
     /// What can be observed at the present.
     fn outputs(&self) -> Self::Outputs;
 
-    /// Takes over new values of tunable parameters during the run.
+    /// Takes over new values of tunable parameters during the run; the others are unchanged.
     ///
     /// # Errors
     /// As for [`Model::new`]; nothing has changed then.
@@ -87,7 +90,7 @@ pub trait Model: Sized + 'static {
         Ok(())
     }
 
-    /// What is logged when initialization ends.
+    /// The message that is logged when initialization ends.
     fn initialized(&self) -> String {
         "initialized".to_owned()
     }

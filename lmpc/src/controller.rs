@@ -11,11 +11,12 @@ use crate::{ControllerState, Sample, Step};
 /// | law | what of the [`Sample`] it reads |
 /// | --- | --- |
 /// | [`StateFeedback`](crate::StateFeedback) | `increment`, `error`, `input_reference` |
-/// | [`LaguerreMpc`](crate::LaguerreMpc) | the same, and `upper` |
+/// | [`LaguerreMpc`](crate::LaguerreMpc) | the same, `upper`, and `measured` for limits of the state |
 /// | … [`with_model_increment`](crate::LaguerreMpc::with_model_increment) | `deviation` and `disturbance` instead of `increment` |
 /// | [`StateSpaceMpc`](crate::StateSpaceMpc) | `deviation`, `disturbance`, `input_reference`, `preview`, `upper` |
 ///
-/// Each remembers `measured`. A step allocates nothing and does not panic, whatever the numbers are.
+/// Each remembers `measured`, and holds its input when that is not finite. A step allocates nothing and does not panic,
+/// whatever the numbers are.
 pub trait Controller<const N: usize, const P: usize, const Q: usize, const W: usize> {
     /// One sample: from what is known at sample k to u(k), which the state takes as applied. Report a different
     /// input with [`ControllerState::apply`] before the next sample.

@@ -9,9 +9,7 @@ use crate::laguerre_walk::LaguerreWalk;
 use crate::limit_row::{LimitRow, limit_rows};
 use crate::model_increment::ModelIncrement;
 use crate::relaxable::RelaxableProgram;
-use crate::{
-    Controller, ControllerState, DesignError, Limit, LmpcDesign, Sample, StateFeedback, StateSpace, Step,
-};
+use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Sample, StateFeedback, Step};
 
 /// Relative violation that rounding may leave.
 const ROUNDING: f64 = 1e-9;
@@ -34,7 +32,6 @@ pub struct LaguerreMpc<const N: usize, const P: usize, const Q: usize, const E: 
     first_move: SMatrix<f64, P, E>,
     rows: Vec<KnownPart<N, P, Q>>,
     program: RelaxableProgram<E>,
-    bounds: usize,
 }
 
 /// What of a limit's left-hand side is known before η is chosen, and what it is at the unconstrained η.
@@ -83,25 +80,21 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> LaguerreMpc
             first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
             rows: rows.iter().map(|row| KnownPart::new(row, design.coefficient_gain())).collect(),
             program,
-            bounds: limits.iter().map(|limit| limit.directions.nrows()).sum(),
         })
     }
 
-    /// The same controller with Δx(k) from the model instead of the measured motion: the motion that leads to the
-    /// deviation from the reference under v(k−1) + d(k). The disturbance of each sample is then its integral action.
+    /// As [`LaguerreMpc::new`], with Δx(k) from the design's model instead of the measured motion: the motion that leads
+    /// to the deviation from the reference under v(k−1) + d(k). The disturbance of each sample is then its integral
+    /// action.
     ///
-    /// An actuator that answers late shows as a disturbance in the measured motion, and under limits that makes the
-    /// closed loop cycle.
+    /// Use it under limits when an actuator answers late: in the measured motion that looks like a disturbance, which makes
+    /// the closed loop oscillate while a limit is active.
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`] when A of the plant cannot be inverted.
-    pub fn with_model_increment(self, plant: &StateSpace) -> Result<Self, DesignError> {
-        Ok(Self { model_increment: Some(ModelIncrement::new(plant)?), ..self })
-    }
-
-    /// Number of run-time bounds: one per direction of each limit, in their order.
-    pub fn bounds(&self) -> usize {
-        self.bounds
+    /// As [`LaguerreMpc::new`], and [`DesignError::NotFinite`] when A of the plant cannot be inverted.
+    pub fn with_model_increment(design: &LmpcDesign, limits: &[Limit]) -> Result<Self, DesignError> {
+        let controller = Self::new(design, limits)?;
+        Ok(Self { model_increment: Some(ModelIncrement::new(design.model().plant())?), ..controller })
     }
 
     /// The law without limits.

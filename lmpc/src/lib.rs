@@ -30,8 +30,9 @@
 //!     └─► NoiseCovariance ─► KalmanDesign ───────────────────────────┼─► KalmanPredictor
 //! ```
 //!
-//! Every step of the design returns a [`DesignError`] for each violated precondition. N, P, Q are the numbers of states,
-//! inputs and outputs of the plant; E, the [number of unknowns](unknowns), is the room of a program.
+//! Every step of the design returns a [`DesignError`] when a precondition is violated. Of the const generics, N, P and Q
+//! are the numbers of states, inputs and outputs of the plant. E is the capacity of a program, at least its
+//! [number of unknowns](unknowns); W is the number of active limits that a [`ControllerState`] has room for.
 
 #![no_std]
 #![forbid(unsafe_code)]

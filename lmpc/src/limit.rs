@@ -11,20 +11,22 @@ pub enum Quantity {
     Increment,
     /// u(k+m), the input at sample m = 0, 1, …
     Input,
-    /// x_m(k+m), the plant state at sample m = 1, 2, …
+    /// The state at sample m = 1, 2, …: x_m(k+m) itself for a [`LaguerreMpc`](crate::LaguerreMpc), its deviation from the
+    /// reference trajectory for a [`StateSpaceMpc`](crate::StateSpaceMpc).
     State,
 }
 
-/// D · quantity ≤ upper at some future samples; the values of `upper` are given at run time.
+/// D · quantity ≤ upper at some future samples. The values of `upper` are given at run time, by
+/// [`Sample::upper`](crate::Sample::upper): one per row of D, for one limit after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// What is bounded.
     pub quantity: Quantity,
     /// D: one row per bound, one column per input or state.
     pub directions: DMatrix<f64>,
-    /// The samples m at which it holds, in any order. Gaps are fine, but the last one should be about where the
-    /// moves have ended: beyond it a plan may be anything, and far from the goal a controller leans on that, up to
-    /// setting off the wrong way.
+    /// The samples m at which it holds, in any order, with gaps if need be. The last one should be about where the moves
+    /// have ended: nothing bounds the plan beyond it, and far from the goal the optimum makes use of that, up to a first
+    /// move in the wrong direction.
     pub samples: Vec<usize>,
     /// Whether it gives way first when not all limits can be kept.
     pub soft: bool,

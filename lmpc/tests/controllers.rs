@@ -43,12 +43,13 @@ fn laws() -> Vec<(&'static str, Box<Law>, bool)> {
         terminal: Some(design.dlqr().cost().clone()),
     };
     let moves = StateSpaceMpcDesign::with_weights(&plant, &weights, 60, MOVES).unwrap();
-    let laguerre = || LaguerreMpc::<2, 1, 1, { unknowns(1, TERMS) }>::new(&design, &limits).unwrap();
+    type Laguerre = LaguerreMpc<2, 1, 1, { unknowns(1, TERMS) }>;
+    let by_model = Laguerre::with_model_increment(&design, &limits).unwrap();
     vec![
         ("Laguerre MPC without limits", Box::new(StateFeedback::from_design(&design).unwrap()), false),
         ("DLQR", Box::new(StateFeedback::new(design.dlqr().gain()).unwrap()), false),
-        ("Laguerre MPC", Box::new(laguerre()), true),
-        ("Laguerre MPC, model increment", Box::new(laguerre().with_model_increment(&plant).unwrap()), true),
+        ("Laguerre MPC", Box::new(Laguerre::new(&design, &limits).unwrap()), true),
+        ("Laguerre MPC, model increment", Box::new(by_model), true),
         ("state-space MPC", Box::new(StateSpaceMpc::<2, 1, 1, W>::new(&moves, &limits).unwrap()), true),
     ]
 }

@@ -77,14 +77,14 @@ impl Inputs {
         ControlInputs { target, armed: self.armed, shaping: self.shaping }
     }
 
-    /// Refuses what is not finite. What the control loop is asked for, it checks itself.
+    /// Refuses what is not finite, the reference also while something else is flown. The control loop checks what it is
+    /// asked for itself.
     pub(crate) fn check(&self, time_us: u64) -> Result<(), SimulationError> {
-        let usable = |body: &RigidBody| body.is_finite() && body.attitude.norm() > 0.5;
         let wrong = if let Some(name) = self.reference.not_finite() {
             Some(name)
         } else if let Some(name) = self.disturbance.not_finite() {
             Some(name)
-        } else if !self.estimate.as_ref().is_none_or(usable) {
+        } else if !self.estimate.as_ref().is_none_or(RigidBody::is_possible) {
             Some("estimate")
         } else if !self.rotor_faults.iter().flatten().all(|fault| fault.is_valid()) {
             Some("rotor_faults")

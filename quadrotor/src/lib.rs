@@ -10,17 +10,30 @@
 //!            └─────────────────────────────────────────────────────────────┘     └───────────────────┘
 //! ```
 //!
-//! * [`Plant`] is the vehicle without its controllers: f(x, u), and a step of it. Four rotors anywhere
-//!   ([`RotorLayout`]: "+", "X", "H" or your own).
-//! * [`ControlLoop`] is the controllers without a vehicle: references and measurements in, rotor commands out, at exact
-//!   instants of its own. It flies yours as well, see `examples/fly_another_plant.rs`.
-//! * [`Simulation`] composes both as a deterministic discrete-event simulation over integer microseconds.
+//! Three types do the work, each usable by itself:
 //!
-//! Each controller is a [`ControllerKind`]: Laguerre MPC, state-space MPC or DLQR on the same models and weights.
-//! World frame NED, body frame FRD, SI units, angles in rad; altitude is −z. [`PARAMETERS`] names every
-//! setting. State is apart from configuration everywhere: [`PlantState`], [`ControlState`] and [`SimulationState`] are
-//! plain data to copy, save and restore. The crate builds without the standard library; only the shaper, a default
-//! feature, needs it.
+//! * [`Plant`] is the vehicle without its controllers: f(x, u), and a Runge–Kutta step of it. Its four rotors may lie
+//!   anywhere ([`RotorLayout`]: "+", "X", "H" or your own).
+//! * [`ControlLoop`] is the controllers without a vehicle: references and measurements in, rotor commands out, sampled at
+//!   its own exact instants. It flies any plant or a real vehicle; `examples/fly_another_plant.rs` is an example.
+//! * [`Simulation`] runs both on one schedule of integer microseconds. The same inputs give the same flight, bit for bit.
+//!
+//! A [`ControllerKind`] chooses among Laguerre MPC, state-space MPC and DLQR on the same models and weights.
+//!
+//! **Conventions.** World frame NED (north, east, down), body frame FRD (forward, right, down), SI units, angles in rad,
+//! time in µs; altitude is −z. Rotors are numbered in the order of the airframe's layout. Numbers in parentheses are the
+//! equations of the paper.
+//!
+//! **Settings and state.** A [`Configuration`] holds every setting, and [`PARAMETERS`] names each with its unit and range.
+//! State is apart from it and is plain data to copy, save and restore: [`PlantState`], [`ControlState`],
+//! [`SimulationState`].
+//!
+//! **Errors.** A configuration that cannot fly is refused with a [`ConfigurationError`]. In flight, inputs or measurements
+//! that are not finite are refused with a [`ControlError`] or [`SimulationError`]; the state then is the one before the
+//! refused sample. Nothing panics.
+//!
+//! The crate builds without the standard library. Only the shaper, a default feature, needs it; without the shaper the
+//! control loop does not allocate in flight.
 //!
 //! # Example: the paper's flight to 5 m north, 5 m east, 10 m up
 //!

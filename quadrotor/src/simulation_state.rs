@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::control::control_state::ControlState;
+use crate::control::instants::LATEST_US;
 use crate::schedule::next_event_us;
 use crate::sensors::NoiseState;
 use crate::{
@@ -71,8 +72,6 @@ impl World {
 impl SimulationState {
     /// Whether a flight can have been in this state: saved states may come from anywhere.
     pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        // Nine thousand years: what is added to it below does not overflow.
-        const LATEST_US: u64 = u64::MAX / 64;
         let wrong = |reason| Err(ConfigurationError::State { reason });
         let World { time_us, event_us, .. } = self.world;
         if time_us > LATEST_US || event_us > time_us {

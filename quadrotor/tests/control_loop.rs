@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
-    AttitudeTarget, Configuration, ControlError, ControlInputs, ControlLaw, ControlLoop, ControlState,
-    ControllerKind, InitialState, Measurement, PlantState, PositionReference, Target,
+    AttitudeTarget, Configuration, ConfigurationError, ControlError, ControlInputs, ControlLaw, ControlLoop,
+    ControlState, ControllerKind, InitialState, Measurement, PlantState, PositionReference, Target,
 };
 
 mod common;
@@ -125,5 +125,37 @@ fn what_cannot_be_flown_is_refused_and_forgotten() {
         let refused = control.advance_to(20_000, &ControlInputs::armed(target), &mut swaying);
         assert_eq!(refused, Err(error));
         assert_eq!(control, before);
+    }
+}
+
+/// A sensor that fails must not become a rotor command.
+#[test]
+fn a_measurement_that_is_none_is_refused_and_forgotten() {
+    let configuration = unshaped();
+    let spoil: [fn(&mut Measurement); 4] = [
+        |measured| measured.motion.position_m.x = f64::NAN,
+        |measured| measured.motion.attitude.coords.fill(0.0),
+        |measured| measured.motion.body_rate_rad_s.z = f64::INFINITY,
+        |measured| measured.rotor_speed_rad_s[3] = f64::NAN,
+    ];
+    for spoil in spoil {
+        let mut broken = |time_us: u64| {
+            let mut measured = swaying(time_us);
+            spoil(&mut measured);
+            measured
+        };
+        let refused = ControlLoop::new(&configuration, &asked(0), &mut broken, 0);
+        assert_eq!(refused, Err(ConfigurationError::Measurement));
+        // Where it takes the vehicle over, and at a sample of the attitude controller.
+        for (from_us, at_us) in [(3_000, 4_000), (4_000, 10_000)] {
+            let mut control = new_loop(&configuration, 0);
+            control.advance_to(from_us, &asked, &mut swaying).unwrap();
+            let refused = control.advance_to(20_000, &asked, &mut broken);
+            assert_eq!(refused, Err(ControlError::Measurement { time_us: at_us }));
+            control.advance_to(20_000, &asked, &mut swaying).unwrap();
+            let mut sound = new_loop(&configuration, 0);
+            sound.advance_to(20_000, &asked, &mut swaying).unwrap();
+            assert_eq!(control, sound);
+        }
     }
 }

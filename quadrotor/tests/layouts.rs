@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use quadrotor::{
-    Configuration, ConfigurationError, Direction, Inputs, PositionReference, Rotor, RotorFault, RotorLayout,
-    Simulation,
+    Configuration, ConfigurationError, Direction, Disturbance, Environment, InitialState, Inputs, Plant,
+    PlantInputs, PlantState, PositionReference, Rotor, RotorFault, RotorLayout, Simulation,
 };
 
 mod common;
@@ -75,6 +75,24 @@ fn frames_stand_on_the_feet_below_their_rotors() {
     let mut flight = Simulation::new(&configuration, &inputs).unwrap();
     flight.advance_to(3_000_000, &inputs).unwrap();
     assert!(flight.outputs().attitude_rad.xy().norm() < 1e-3, "{:?}", flight.outputs());
+}
+
+/// Pushed over by 85 % of m g l: past the front feet of an "X", which are at l/√2, but not past that of a "+".
+#[test]
+fn frames_tip_over_the_feet_at_their_rotors() {
+    for (layout, tips) in [(RotorLayout::plus(), false), (RotorLayout::x(), true)] {
+        let airframe = with(layout).airframe;
+        let plant = Plant::new(&airframe, &Environment { ground_plane: true });
+        let torque_n_m = Vector3::new(0.0, -0.85 * airframe.weight_n() * airframe.arm_length_m, 0.0);
+        let disturbance = Disturbance { torque_n_m, ..Disturbance::default() };
+        let push = PlantInputs { disturbance, ..PlantInputs::default() };
+        let mut state = PlantState::at_rest(&InitialState::default());
+        for _ in 0..1_000 {
+            state = plant.step(&state, &push, 1e-3);
+        }
+        let (_, pitch_rad, _) = state.body.rotation().euler_angles();
+        assert_eq!(pitch_rad < -0.2, tips, "{layout:?}: {pitch_rad}");
+    }
 }
 
 #[test]

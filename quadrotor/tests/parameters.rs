@@ -107,5 +107,5 @@ fn values_that_contradict_one_another_are_refused() {
     let mut configuration = Configuration::default();
     set(&mut configuration, "controller.position.prediction_horizon", 3.0);
     let error = Simulation::new(&configuration, &Inputs::default()).unwrap_err();
-    assert!(matches!(error, ConfigurationError::Design { controller: "position", .. }), "{error}");
+    assert!(matches!(error, ConfigurationError::Design { part: "position controller", .. }), "{error}");
 }

@@ -1,6 +1,6 @@
 //! What a change of tunable parameters redesigns.
 
-use quadrotor::{CascadeDesign, Configuration, ControllerKind, Inputs, Redesigned, Simulation};
+use quadrotor::{CascadeDesign, Configuration, ControllerKind, Inputs, Redesigned, RotorLayout, Simulation};
 
 const NONE: Redesigned = Redesigned { altitude: false, position: false, attitude: false, estimator: false };
 
@@ -47,6 +47,16 @@ fn noise_redesigns_the_estimator() {
     assert_eq!(estimator, Redesigned { estimator: true, ..NONE });
     // It does not measure velocities.
     assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.sensors.velocity_noise_m_s = 0.1), NONE);
+}
+
+/// The mixer belongs to the airframe, and no controller needs to be designed again for it.
+#[test]
+fn another_airframe_has_another_mixer() {
+    let none = redesigned(ControllerKind::Lmpc, |changed| {
+        changed.airframe.layout = RotorLayout::x();
+        changed.airframe.rotor_speed_max_rad_s = 400.0;
+    });
+    assert_eq!(none, NONE);
 }
 
 /// A configuration that is refused changes nothing, also when some of its controllers could be designed.

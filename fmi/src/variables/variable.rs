@@ -24,7 +24,8 @@ pub enum Role<M: Model> {
     Input(Field<M::Inputs>),
     /// Can be observed.
     Output {
-        /// Names, or beginnings of names, of the inputs and parameters that its initial value depends on.
+        /// The inputs and parameters that its initial value depends on. Each entry stands for all variables whose names
+        /// begin with it. The description lists them under `InitialUnknowns`.
         initially_depends_on: &'static [&'static str],
         /// Type, range and place.
         signal: Signal<M::Outputs>,
@@ -38,7 +39,7 @@ pub enum Role<M: Model> {
     },
     /// A number that follows from parameters.
     CalculatedParameter {
-        /// Names, or beginnings of names, of the parameters that it depends on.
+        /// The parameters that it depends on. Each entry stands for all whose names begin with it.
         depends_on: &'static [&'static str],
         /// Its quantity.
         quantity: &'static Quantity,

@@ -33,11 +33,11 @@ pub enum ConfigurationError {
         /// The other value.
         other_value: f64,
     },
-    /// A controller cannot be designed.
-    #[error("the {controller} controller cannot be designed: {source}")]
+    /// A controller or the Kalman predictor cannot be designed.
+    #[error("the {part} cannot be designed: {source}")]
     Design {
-        /// "altitude", "position" or "attitude".
-        controller: &'static str,
+        /// What, for a person: "altitude controller", "Kalman predictor", …
+        part: &'static str,
         /// Why not.
         source: DesignError,
     },
@@ -53,6 +53,10 @@ pub enum ConfigurationError {
         /// Public name of the parameter.
         name: &'static str,
     },
+    /// The measurement in which a control loop should take its vehicle over is not finite, or its quaternion is far from a
+    /// unit one.
+    #[error("the first measurement is not finite, or has no attitude")]
+    Measurement,
     /// A saved state that no flight with this configuration can have been in.
     #[error("the saved state is none of this flight: {reason}")]
     State {

@@ -14,6 +14,12 @@ pub enum ControlError {
         /// When.
         time_us: u64,
     },
+    /// A measurement is not finite, or its quaternion is far from a unit one.
+    #[error("the measurement at {time_us} µs is not finite, or has no attitude")]
+    Measurement {
+        /// When.
+        time_us: u64,
+    },
     /// There is no such rotor to be lost.
     #[error("lost_rotor = {rotor} is outside [0, 3]")]
     NoSuchRotor {

@@ -39,8 +39,8 @@ impl ControlLoop {
     /// A loop that takes over a vehicle at `time_us`.
     ///
     /// # Errors
-    /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
-    /// controller cannot be designed.
+    /// [`ConfigurationError`] when a value is out of range, values contradict one another, a controller cannot be designed,
+    /// or the first measurement is not finite.
     pub fn new(
         configuration: &Configuration,
         inputs: &ControlInputs,
@@ -48,7 +48,7 @@ impl ControlLoop {
         time_us: u64,
     ) -> Result<Self, ConfigurationError> {
         let design = LoopDesign::new(configuration)?;
-        let state = ControlState::new(configuration, inputs, instruments, time_us);
+        let state = ControlState::new(configuration, inputs, instruments, time_us)?;
         Ok(Self { design, state })
     }
 
@@ -120,7 +120,8 @@ impl ControlLoop {
     /// Inputs and measurements are asked for at each of these instants; constants hold over all of them.
     ///
     /// # Errors
-    /// [`ControlError`]; the loop then stands before the instant at which it happened.
+    /// [`ControlError`] when an input or a measurement is not finite, or the target cannot be flown; the loop then stands
+    /// before the instant at which it happened, and its last rotor command still holds.
     pub fn advance_to(
         &mut self,
         time_us: u64,

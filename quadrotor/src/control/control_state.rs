@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::control::cascade::Cascade;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::{Command, Estimator};
-use crate::control::instants::{is_instant, next_instant_us, ticks};
+use crate::control::instants::{LATEST_US, is_instant, next_instant_us, ticks};
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::design::loop_design::LoopDesign;
@@ -42,18 +42,24 @@ struct Due {
 
 impl ControlState {
     /// Takes over a vehicle at `time_us`.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Measurement`].
     pub(crate) fn new(
         configuration: &Configuration,
         inputs: &ControlInputs,
         instruments: &mut impl Instruments,
         time_us: u64,
-    ) -> Self {
+    ) -> Result<Self, ConfigurationError> {
         let shaping = inputs.shaping.unwrap_or(configuration.reference.shaping);
         let start = instruments.read_at_takeover(time_us);
         let (guidance, cascade) = engaged(configuration, shaping, &start.motion, time_us);
         let first = instruments.read(time_us);
+        if !(start.is_possible() && first.is_possible()) {
+            return Err(ConfigurationError::Measurement);
+        }
         let at_once = is_instant(&configuration.controllers, time_us);
-        Self {
+        Ok(Self {
             next_us: if at_once { time_us } else { next_instant_us(&configuration.controllers, time_us) },
             armed: inputs.armed,
             law: inputs.target.law(),
@@ -62,13 +68,11 @@ impl ControlState {
             estimator: estimator(configuration, &first, time_us),
             cascade,
             rotor_command_rad_s: start.rotor_speed_rad_s,
-        }
+        })
     }
 
     /// Whether a loop can have been in this state: saved states may come from anywhere.
     pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        // Nine thousand years: what is added to it does not overflow.
-        const LATEST_US: u64 = u64::MAX / 64;
         if self.next_us > LATEST_US || !is_instant(&configuration.controllers, self.next_us) {
             return Err(ConfigurationError::State {
                 reason: "its controllers do not sample when they would",
@@ -117,7 +121,7 @@ impl ControlState {
         self.estimator.body_at(time_us)
     }
 
-    /// One sample, at its next instant.
+    /// One sample, at its next instant; on an error nothing has changed.
     pub(crate) fn sample(
         &mut self,
         design: &LoopDesign,
@@ -129,11 +133,13 @@ impl ControlState {
         if let Target::WithoutRotor { lost, .. } = inputs.target {
             design.rotor_loss.of(lost)?;
         }
-        self.take(&design.configuration, inputs, instruments, time_us);
-        if self.armed {
-            self.control(design, &inputs.target, instruments, time_us)?;
+        let mut next = *self;
+        next.take(&design.configuration, inputs, instruments, time_us)?;
+        if next.armed {
+            next.control(design, &inputs.target, instruments, time_us)?;
         }
-        self.next_us = next_instant_us(&design.configuration.controllers, time_us);
+        next.next_us = next_instant_us(&design.configuration.controllers, time_us);
+        *self = next;
         Ok(())
     }
 
@@ -144,7 +150,7 @@ impl ControlState {
         inputs: &ControlInputs,
         instruments: &mut impl Instruments,
         time_us: u64,
-    ) {
+    ) -> Result<(), ControlError> {
         let law = inputs.target.law();
         self.engage |= law != self.law && self.law != ControlLaw::Cascade;
         self.law = law;
@@ -152,16 +158,18 @@ impl ControlState {
             self.guidance = self.guidance.switched(&configuration.limits, shaping, time_us);
         }
         if inputs.armed && (!self.armed || self.engage) {
-            let start = instruments.read_at_takeover(time_us);
+            let start = instruments.read_at_takeover(time_us).checked(time_us)?;
             let shaping = self.guidance.is_shaped();
             (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
             self.rotor_command_rad_s = start.rotor_speed_rad_s;
         }
         if inputs.armed && !self.armed {
-            self.estimator = estimator(configuration, &instruments.read(time_us), time_us);
+            let first = instruments.read(time_us).checked(time_us)?;
+            self.estimator = estimator(configuration, &first, time_us);
         }
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
+        Ok(())
     }
 
     /// Runs the controllers whose clocks tick.
@@ -182,7 +190,7 @@ impl ControlState {
         if !(due.position || due.altitude || due.attitude) {
             return Ok(());
         }
-        let measurement = instruments.read(time_us);
+        let measurement = instruments.read(time_us).checked(time_us)?;
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
         match target {
             Target::Reference(reference) => self.track(design, &seen, reference, due, time_us),

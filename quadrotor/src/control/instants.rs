@@ -5,6 +5,9 @@ use crate::Controllers;
 /// From one look at the inputs to the next, µs: arming, for one, does not wait for a controller's sample.
 const INPUT_PERIOD_US: u64 = 1_000;
 
+/// The latest time that a saved state may have, µs: nine thousand years, so that what is added to it does not overflow.
+pub(crate) const LATEST_US: u64 = u64::MAX / 64;
+
 /// Whether a clock of `period_us` ticks at `time_us`.
 pub(crate) fn ticks(time_us: u64, period_us: u64) -> bool {
     time_us.is_multiple_of(period_us)

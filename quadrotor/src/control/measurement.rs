@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::RigidBody;
+use crate::{ControlError, RigidBody};
 
 /// The vehicle as it is measured or estimated at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,6 +12,18 @@ pub struct Measurement {
     /// Speeds of its rotors in the order of the airframe's layout, rad/s. The cascade looks at them when it takes the
     /// vehicle over, flight without a rotor at each sample.
     pub rotor_speed_rad_s: [f64; 4],
+}
+
+impl Measurement {
+    /// Whether a vehicle can be measured like this: its motion is possible, its rotor speeds are finite.
+    pub(crate) fn is_possible(&self) -> bool {
+        self.motion.is_possible() && self.rotor_speed_rad_s.iter().all(|speed| speed.is_finite())
+    }
+
+    /// The measurement itself, unless it is impossible.
+    pub(crate) fn checked(self, time_us: u64) -> Result<Self, ControlError> {
+        if self.is_possible() { Ok(self) } else { Err(ControlError::Measurement { time_us }) }
+    }
 }
 
 /// Where a control loop reads its measurements: any `FnMut(u64) -> Measurement` of microseconds, or a held

@@ -47,7 +47,7 @@ impl RotorLossLaw {
         let inertia_kg_m2 = [jx * x + jy * y, jx * y + jy * x, jz];
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         let design = ReducedAttitudeDesign::new(airframe, &rotors, inertia_kg_m2, sample_time_s)
-            .map_err(|source| ConfigurationError::Design { controller: "rotor loss", source })?;
+            .map_err(|source| ConfigurationError::Design { part: "controller for a lost rotor", source })?;
         Ok(Self { rotors, inertia_kg_m2, design })
     }
 

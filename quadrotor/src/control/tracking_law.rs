@@ -36,10 +36,12 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
             ControllerKind::Lmpc if limits.is_empty() => {
                 Self::Incremental(StateFeedback::from_design(design)?)
             }
+            // Under limits it goes by the motion that the model explains: in the measured motion an actuator that answers
+            // late looks like a disturbance.
             ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
-                Self::FewTerms(laguerre(design, limits)?)
+                Self::FewTerms(LaguerreMpc::with_model_increment(design, limits)?)
             }
-            ControllerKind::Lmpc => Self::ManyTerms(laguerre(design, limits)?),
+            ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
             ControllerKind::StateSpaceMpc => {
                 Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, limits)?)
             }
@@ -71,15 +73,6 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
             Self::Incremental(controller) => controller,
         }
     }
-}
-
-/// Laguerre MPC under limits. It goes by the motion that the model explains: in the measured motion an actuator that
-/// answers late looks like a disturbance.
-fn laguerre<const N: usize, const P: usize, const E: usize>(
-    design: &LmpcDesign,
-    limits: &[Limit],
-) -> Result<LaguerreMpc<N, P, P, E>, DesignError> {
-    LaguerreMpc::new(design, limits)?.with_model_increment(design.model().plant())
 }
 
 /// State-space MPC with the same weights: Q on y − r and on the increments of the rates, R on the moves, and the

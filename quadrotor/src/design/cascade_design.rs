@@ -82,6 +82,7 @@ impl CascadeDesign {
         configuration: &Configuration,
     ) -> Result<Redesigned, ConfigurationError> {
         validate(configuration)?;
+        let mixer = Mixer::new(&configuration.airframe)?;
         let redesigned = Redesigned::between(before, configuration);
         let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
         let position = redesigned.position.then(|| position_design(configuration)).transpose()?;
@@ -103,6 +104,7 @@ impl CascadeDesign {
         if let Some(designed) = estimator {
             self.estimator = designed;
         }
+        self.mixer = mixer;
         Ok(redesigned)
     }
 
@@ -158,7 +160,7 @@ type Attitude = Designed<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>;
 fn altitude_design(configuration: &Configuration) -> Result<Altitude, ConfigurationError> {
     let settings = &configuration.controllers;
     let limits = altitude_limits(&settings.altitude);
-    designed("altitude", settings.kind, &settings.altitude, &limits, |sample_time| {
+    designed("altitude controller", settings.kind, &settings.altitude, &limits, |sample_time| {
         altitude_model(sample_time, Discretization::ZeroOrderHold)
     })
 }
@@ -166,7 +168,7 @@ fn altitude_design(configuration: &Configuration) -> Result<Altitude, Configurat
 fn position_design(configuration: &Configuration) -> Result<Position, ConfigurationError> {
     let settings = &configuration.controllers;
     let limits = position_limits(&settings.position);
-    designed("position", settings.kind, &settings.position, &limits, |sample_time| {
+    designed("position controller", settings.kind, &settings.position, &limits, |sample_time| {
         position_model(sample_time, Discretization::ZeroOrderHold)
     })
 }
@@ -182,14 +184,14 @@ fn attitude_design(configuration: &Configuration) -> Result<Attitude, Configurat
     } else {
         Vec::new()
     };
-    designed("attitude", settings.kind, &settings.attitude, &limits, |sample_time| {
+    designed("attitude controller", settings.kind, &settings.attitude, &limits, |sample_time| {
         attitude_model(&inertia, sample_time, Discretization::ZeroOrderHold)
     })
 }
 
 fn estimator_design(configuration: &Configuration) -> Result<EstimatorDesign, ConfigurationError> {
     EstimatorDesign::new(configuration)
-        .map_err(|source| ConfigurationError::Design { controller: "estimator of the", source })
+        .map_err(|source| ConfigurationError::Design { part: "Kalman predictor", source })
 }
 
 fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
@@ -212,7 +214,7 @@ fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
             report: report(&design)?,
         })
     };
-    finished().map_err(|source| ConfigurationError::Design { controller: name, source })
+    finished().map_err(|source| ConfigurationError::Design { part: name, source })
 }
 
 fn laguerre_design<const P: usize>(

@@ -12,7 +12,7 @@ pub const GRAVITY_M_S2: f64 = 9.806_65;
 pub struct Airframe {
     /// m, kg.
     pub mass_kg: f64,
-    /// l, distance from the centre of mass to each rotor, m: the unit of the layout.
+    /// l, the unit of length of the layout, m: in "+", "X" and "H" the distance of each rotor from the centre of mass.
     pub arm_length_m: f64,
     /// Where the rotors are and which way they turn: "+" unless it is given.
     #[serde(default)]

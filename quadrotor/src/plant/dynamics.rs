@@ -29,8 +29,8 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// The vehicle in its world. The airframe is taken as it is; [`CascadeDesign::new`](crate::CascadeDesign::new) checks
-    /// one.
+    /// The vehicle in its world. The airframe is not checked: use one of a configuration that
+    /// [`CascadeDesign::new`](crate::CascadeDesign::new) accepts.
     pub fn new(airframe: &Airframe, environment: &Environment) -> Self {
         Self { airframe: *airframe, ground_plane: environment.ground_plane }
     }
@@ -51,9 +51,9 @@ impl Plant {
         if self.is_held(state, inputs) { Vector3::new(0.0, 0.0, acceleration.z) } else { acceleration }
     }
 
-    /// f(x, u): the time derivative of the state. It depends on nothing else, and continuously, so that any integrator can
-    /// use it. On the ground it has the friction of feet that slip; that a vehicle stands still in spite of a wind is a rule
-    /// of [`Plant::step`].
+    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it.
+    /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
+    /// [`Plant::step`] adds the rule that holds it still.
     pub fn derivative(&self, state: &PlantState, inputs: &PlantInputs) -> PlantState {
         let airframe = &self.airframe;
         let mut external = inputs.disturbance.external(airframe, &state.body.velocity_m_s);
@@ -92,8 +92,8 @@ impl Plant {
     /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
     ///
     /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
-    /// 0.1 m/s, and is pulled along the ground by less than μ N keeps its place and its heading exactly; it still settles
-    /// on its feet. Where it is pulled by more, it slips.
+    /// 0.1 m/s, and is pulled along the ground by less than μ N (μ = 0.7) keeps its place and heading exactly, while it may
+    /// still sink or tilt on its feet. Pulled by more, it slips.
     pub fn step(&self, state: &PlantState, inputs: &PlantInputs, h_s: f64) -> PlantState {
         if !self.is_held(state, inputs) {
             return runge_kutta(state, h_s, |state| self.derivative(state, inputs));

@@ -15,11 +15,11 @@ const FRICTION_COEFFICIENT: f64 = 0.7;
 /// Slip speed at which friction is fully developed, m/s; it keeps the equations smooth.
 const FRICTION_SLIP_M_S: f64 = 0.1;
 
-/// Force and torque of the ground on four feet below the rotors, level with the centre of mass, so that
-/// a vehicle at rest on the ground is at z = 0 but for the compliance.
+/// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one in place of each rotor, level with the
+/// centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
 ///
-/// Its friction is that of feet that slip: it is proportional to a slow slip, and none at rest. What keeps a vehicle at rest
-/// is [`is_held`].
+/// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`is_held`] decides when static
+/// friction holds the vehicle instead.
 pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
     let mut total = External::default();
     if is_above(airframe, body) {
@@ -37,9 +37,8 @@ pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
     total
 }
 
-/// Whether static friction holds the vehicle where it is: all feet carry load, it slips more slowly than
-/// friction needs to develop, and what pulls it along the ground, NED, N, and turns it, N·m, is less than the feet can take
-/// together. `pull` is beside the ground's own force.
+/// Whether static friction holds the vehicle where it is: all feet carry load, it slips more slowly than sliding friction
+/// needs to develop, and the feet together can take the `pull`, which is all force and torque but the ground's and gravity.
 pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
     let reach_m = airframe.arm_length_m * airframe.layout.reach();
     let slip_m_s = body.velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z) * reach_m;

@@ -69,6 +69,11 @@ impl RigidBody {
         }
     }
 
+    /// Whether a vehicle can have this motion: it is finite and has an attitude.
+    pub(crate) fn is_possible(&self) -> bool {
+        self.is_finite() && self.attitude.norm() > 0.5
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.position_m.iter().chain(&self.velocity_m_s).chain(&self.body_rate_rad_s).all(|x| x.is_finite())
             && self.attitude.coords.iter().all(|x| x.is_finite())

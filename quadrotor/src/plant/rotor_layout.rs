@@ -41,7 +41,7 @@ pub struct Rotor {
     pub direction: Direction,
 }
 
-/// The four rotors, in the order of all arrays of rotor speeds. A foot of the vehicle is below each.
+/// The four rotors, in the order of all arrays of rotor speeds. The vehicle has a foot at each.
 ///
 /// Equal thrusts make no torque: the rotors' centre is the centre of mass, and two turn each way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
