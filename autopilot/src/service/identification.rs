@@ -47,8 +47,9 @@ fn autopilot_version(component: &Component<'_>) -> MavMessage {
     })
 }
 
-/// Major, minor, patch and the type of the release (0: development), a byte each.
-fn version() -> u32 {
+/// This program's version as PX4 numbers releases: major, minor, patch and the type of the release (0: development), a byte
+/// each.
+pub fn version() -> u32 {
     let number = |text: &str| text.parse::<u8>().unwrap_or(0);
     u32::from_be_bytes([
         number(env!("CARGO_PKG_VERSION_MAJOR")),

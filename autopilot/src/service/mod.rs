@@ -39,4 +39,5 @@ mod telemetry;
 mod time_synchronization;
 
 pub use envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
+pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

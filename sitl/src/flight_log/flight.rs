@@ -5,6 +5,7 @@ use std::io;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
+use autopilot::service::version;
 use vehicle::Severity;
 use vehicle::parameters::Value;
 
@@ -200,17 +201,6 @@ fn parameters(autopilot: &Autopilot) -> Vec<Value> {
     autopilot.parameters().map(|(_, value)| value).collect()
 }
 
-/// The version as PX4 numbers releases: major, minor, patch and the type of the release (0: development), a byte each.
-fn release() -> u32 {
-    let number = |text: &str| text.parse::<u8>().unwrap_or(0);
-    u32::from_be_bytes([
-        number(env!("CARGO_PKG_VERSION_MAJOR")),
-        number(env!("CARGO_PKG_VERSION_MINOR")),
-        number(env!("CARGO_PKG_VERSION_PATCH")),
-        0,
-    ])
-}
-
 /// PX4's number of the meaning of topics: from 2 on, readers look for places of the GPS receiver in degrees.
 const DATA_FORMAT: u32 = 2;
 
@@ -220,7 +210,7 @@ fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
     definitions.information("ver_hw", "LMPC_SITL");
     definitions.information("ver_sw", concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION")));
     definitions.number("ver_data_format", DATA_FORMAT);
-    definitions.number("ver_sw_release", release());
+    definitions.number("ver_sw_release", version());
     definitions.information("sys_uuid", &format!("lmpc-sitl-{:03}", autopilot.system_id()));
     for topic in TOPICS {
         definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));
