@@ -8,11 +8,12 @@ use vehicle::{Severity, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
 use crate::context::Context;
+use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 use crate::file_store::{FileStore, Nothing};
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::registry::Registry;
-use crate::service::{Destination, LinkProfile, Origin, Outgoing, PeerId, heartbeat, parameter};
+use crate::service::{heartbeat, parameter};
 
 /// A vehicle with its services.
 #[derive(Debug)]

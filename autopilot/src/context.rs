@@ -4,10 +4,10 @@ use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::identity::Identity;
 use vehicle::{Severity, Vehicle};
 
+use crate::envelope::LinkProfile;
 use crate::file_store::FileStore;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
-use crate::service::LinkProfile;
 use crate::stream::{Component, StreamTable};
 
 /// The vehicle and the ways to its clients, as each call of a service gets them. What a service remembers between two calls is in

@@ -17,6 +17,7 @@
 mod autopilot;
 pub mod codec;
 mod context;
+pub mod envelope;
 pub mod file_store;
 mod outbox;
 mod parameters;

@@ -3,7 +3,7 @@
 use vehicle::Severity;
 
 use crate::codec::Message;
-use crate::service::{Destination, Outgoing};
+use crate::envelope::{Destination, Outgoing};
 use crate::status_text::{Line, StatusTexts};
 
 /// Messages in the order in which they are to be sent.

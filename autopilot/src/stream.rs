@@ -3,8 +3,8 @@
 use mavlink::dialects::common::{MavMessage, MavProtocolCapability};
 use vehicle::Vehicle;
 
+use crate::envelope::LinkProfile;
 use crate::parameters::Parameters;
-use crate::service::LinkProfile;
 
 /// Groups of REQUEST_DATA_STREAM (MAV_DATA_STREAM).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

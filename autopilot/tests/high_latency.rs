@@ -2,7 +2,7 @@
 
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
-use autopilot::service::{Destination, LinkProfile, Origin, PeerId};
+use autopilot::envelope::{Destination, LinkProfile, Origin, PeerId};
 use mavlink::dialects::common::{
     COMMAND_LONG_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavAutopilot, MavCmd, MavMessage, MavResult,
     MavType,

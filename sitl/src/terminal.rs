@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write, stderr};
 use std::time::{Duration, Instant};
 
-use autopilot::service::LinkProfile;
+use autopilot::envelope::LinkProfile;
 
 use crate::configuration::Settings;
 use crate::fleet::{Fleet, Member};

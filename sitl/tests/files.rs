@@ -282,8 +282,8 @@ fn quotas_hold_and_say_so() {
             session,
             (system, 190),
         );
-        let peer = autopilot::service::PeerId { link: 0, number: u64::from(system) };
-        let origin = autopilot::service::Origin { peer, system, component: 190 };
+        let peer = autopilot::envelope::PeerId { link: 0, number: u64::from(system) };
+        let origin = autopilot::envelope::Origin { peer, system, component: 190 };
         bench.autopilot.receive(&origin, &frame.expect("a frame"));
         bench.listen();
         answers(&bench.heard)[0].result.clone().map(|_| ())

@@ -5,7 +5,7 @@
 mod common;
 
 use autopilot::codec::{Frame, Message, Version};
-use autopilot::service::{Origin, PeerId};
+use autopilot::envelope::{Origin, PeerId};
 use common::channel::Lossy;
 use common::plan_client::{ack_of, count_message, item_message, mission_type, request_of, result};
 use common::{Bench, GROUND_STATION};

@@ -18,7 +18,7 @@ fn drag_n_s_m(own: &MemberSettings) -> [f64; 3] {
     own.vehicle.configuration.airframe.drag_n_s_m
 }
 
-const PROVIDED: &str = "wind acts through drag, and the airframe has none: AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z set to 0.15 N s/m; \
+const PROVIDED: &str = "wind acts through drag: AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z set to 0.15 N s/m; \
      choose others with --set";
 const NO_DRAG: &str =
     "wind does not push the vehicle, which has no drag: AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z are 0";

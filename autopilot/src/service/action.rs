@@ -7,9 +7,10 @@ use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile
 use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
 use super::command::{global_frame, told_frame, told_place};
-use super::{CommandEntry, Origin, Outcome, Progress, Service, parameter};
+use super::{CommandEntry, Outcome, Progress, Service, parameter};
 use crate::codec::Command;
 use crate::context::Context;
+use crate::envelope::Origin;
 
 /// How a command is carried out.
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;

@@ -5,9 +5,10 @@ use mavlink::dialects::common::{MavCmd, MavResult};
 use vehicle::{Refusal, Severity, Vehicle};
 
 use super::command::{acknowledge, acknowledge_outcome};
-use super::{CommandEntry, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, CommandKind, Frame, id};
 use crate::context::Context;
+use crate::envelope::Origin;
 
 const NUMBER: u16 = MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION as u16;
 

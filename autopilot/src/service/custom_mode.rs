@@ -4,9 +4,10 @@ use mavlink::dialects::common::MavCmd;
 use vehicle::{Mode, Refusal, Vehicle};
 
 use super::command::{acknowledge_outcome, explain};
-use super::{CommandEntry, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
+use crate::envelope::Origin;
 
 const NAV_GUIDED_ENABLE: u16 = MavCmd::MAV_CMD_NAV_GUIDED_ENABLE as u16;
 const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;

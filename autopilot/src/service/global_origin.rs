@@ -4,9 +4,10 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{GPS_GLOBAL_ORIGIN_DATA, MavMessage, SET_GPS_GLOBAL_ORIGIN_DATA};
 use vehicle::{Severity, Vehicle};
 
-use super::{Destination, Origin, Service};
+use super::Service;
 use crate::codec::{Frame, millimetres, scaled_degrees};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 use crate::stream::Stream;
 
 const STREAMS: &[Stream] = &[Stream::new(GPS_GLOBAL_ORIGIN_DATA::ID, [0.1, 1.0], message)];

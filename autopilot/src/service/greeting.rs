@@ -5,8 +5,9 @@ use std::collections::VecDeque;
 
 use vehicle::Severity;
 
-use super::{Destination, Origin, PeerId, Service, heartbeat};
+use super::{Service, heartbeat};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin, PeerId};
 use crate::status_text;
 
 const INTRODUCTION: &str =

@@ -5,8 +5,9 @@ use mavlink::dialects::common::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavMod
 use vehicle::identity::Identity;
 use vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
 
-use super::{Destination, Service};
+use super::Service;
 use crate::context::Context;
+use crate::envelope::Destination;
 use crate::stream::{Build, Stream};
 
 const PERIOD_US: u64 = 1_000_000;

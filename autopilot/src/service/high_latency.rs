@@ -8,9 +8,10 @@ use mavlink::dialects::common::{HEARTBEAT_DATA, HIGH_LATENCY2_DATA, HlFailureFla
 use vehicle::world::{atmospheric_temperature_degc, heading_deg};
 use vehicle::{Cause, MissionState, Mode, Refusal, Severity, Vehicle};
 
-use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service, heartbeat};
+use super::{CommandEntry, Outcome, Progress, Service, heartbeat};
 use crate::codec::{Command, boot_ms, scaled_degrees};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 use crate::stream::{Build, Stream};
 
 /// 0.2 Hz, as the protocol recommends.

@@ -6,9 +6,9 @@ use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::Refusal;
 use vehicle::identity::Identity;
 
-use super::{Origin, PeerId};
 use crate::codec::{Command, Frame};
 use crate::context::Context;
+use crate::envelope::{Origin, PeerId};
 use crate::stream::Stream;
 
 /// How a command that arrives twice is taken.

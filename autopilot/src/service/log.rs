@@ -3,9 +3,10 @@
 use mavlink::dialects::common::{LOG_DATA_DATA, LOG_ENTRY_DATA, MavMessage};
 use vehicle::Severity;
 
-use super::{Destination, Origin, PeerId, Service};
+use super::Service;
 use crate::codec::{Frame, id};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin, PeerId};
 use crate::file_store::{Access, LOGS, Listed, OpenFile};
 
 /// Bytes of a piece.

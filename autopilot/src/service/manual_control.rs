@@ -2,9 +2,10 @@
 
 use vehicle::Sticks;
 
-use super::{Origin, Service};
+use super::Service;
 use crate::codec::{Frame, id};
 use crate::context::Context;
+use crate::envelope::Origin;
 
 /// Hands sticks on to the vehicle.
 #[derive(Clone, Copy, Debug)]

@@ -3,9 +3,10 @@
 use mavlink::dialects::common::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
 use vehicle::{Refusal, TICK_US};
 
-use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;

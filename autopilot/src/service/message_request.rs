@@ -4,9 +4,10 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{AUTOPILOT_VERSION_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA};
 use vehicle::Refusal;
 
-use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::Command;
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 
 const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
 const REQUEST_MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;

@@ -11,7 +11,6 @@
 //!
 //! A new service is a file with an implementation of the trait `Service`, a line here and one in the registry.
 
-mod envelope;
 mod interface;
 pub(crate) mod registry;
 
@@ -38,6 +37,5 @@ mod standard_mode;
 mod telemetry;
 mod time_synchronization;
 
-pub use envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

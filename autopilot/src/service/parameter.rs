@@ -5,9 +5,10 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Value;
 use vehicle::{Refusal, Severity};
 
-use super::{CommandEntry, Destination, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Encoding, Frame, id};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 
 /// Name under which clients ask for the hash, and with which QGroundControl says that its cache is right.
 const HASH_CHECK: &str = "_HASH_CHECK";

@@ -6,9 +6,10 @@ use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::identity::Identity;
 
 use super::command::CommandProtocol;
-use super::{Origin, PeerId, Repetition, Service};
+use super::{Repetition, Service};
 use crate::codec::{Command, Frame};
 use crate::context::Context;
+use crate::envelope::{Origin, PeerId};
 use crate::stream::StreamTable;
 
 /// All services. They are called in this order, which is also the order of what they send in one tick.

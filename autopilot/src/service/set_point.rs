@@ -19,9 +19,10 @@ use vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
 };
 
-use super::{Origin, Service};
+use super::Service;
 use crate::codec::{Frame, SetAttitudeTarget, SetPositionTarget, TargetPosition, id};
 use crate::context::Context;
+use crate::envelope::Origin;
 
 /// POSITION_TARGET_TYPEMASK.
 const FORCE_SET: u16 = 1 << 9;

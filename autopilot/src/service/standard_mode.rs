@@ -6,9 +6,10 @@ use mavlink::dialects::common::{
 };
 use vehicle::{Mode, Refusal, Vehicle};
 
-use super::{CommandEntry, Origin, Outcome, Progress, Service};
+use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::Command;
 use crate::context::Context;
+use crate::envelope::Origin;
 use crate::stream::{Build, Stream};
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_DO_SET_STANDARD_MODE as u16)];

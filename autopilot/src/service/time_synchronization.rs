@@ -4,9 +4,10 @@ use mavlink::MessageData;
 use mavlink::dialects::common::{MavMessage, PING_DATA, TIMESYNC_DATA};
 use vehicle::Vehicle;
 
-use super::{Destination, Origin, Service};
+use super::Service;
 use crate::codec::{Frame, id};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 use crate::stream::Stream;
 
 const STREAMS: &[Stream] = &[Stream::new(TIMESYNC_DATA::ID, [0.0, 10.0], request)];

@@ -24,7 +24,7 @@ pub(super) fn note(configuration: &Configuration, chosen: &[String]) -> Option<S
     let provided: Vec<&str> = ids.iter().filter(|id| !chosen.contains(id)).map(String::as_str).collect();
     if !provided.is_empty() {
         return Some(format!(
-            "wind acts through drag, and the airframe has none: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
+            "wind acts through drag: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
             provided.join(", ")
         ));
     }

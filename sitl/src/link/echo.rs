@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use autopilot::codec::Frame;
-use autopilot::service::PeerId;
+use autopilot::envelope::PeerId;
 
 /// A frame that comes again within this time by another way is the same frame.
 const LATEST: Duration = Duration::from_millis(500);
@@ -41,7 +41,7 @@ mod tests {
 
     use super::{Echoes, LATEST, MOST};
     use autopilot::codec::{Frame, Version};
-    use autopilot::service::PeerId;
+    use autopilot::envelope::PeerId;
 
     fn frame(time_unix_usec: u64) -> Frame {
         let message =

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use autopilot::service::LinkProfile;
+use autopilot::envelope::LinkProfile;
 use serde::{Deserialize, Serialize};
 
 /// Nothing is reachable from outside unless it is asked for.

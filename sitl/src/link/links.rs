@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use autopilot::COMPONENT;
 use autopilot::codec::{Frame, Version, id, target_of};
-use autopilot::service::{Destination, Origin, Outgoing, PeerId};
+use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 
 use super::echo::Echoes;
 use super::endpoint::{Endpoint, LinkSpecification};
@@ -282,7 +282,7 @@ mod tests {
     use crate::link::transport::{Event, Transport};
     use crate::signing::{SecretKey, Signing};
     use autopilot::codec::{Frame, Message, Version};
-    use autopilot::service::{Destination, Outgoing};
+    use autopilot::envelope::{Destination, Outgoing};
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 

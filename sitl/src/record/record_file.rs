@@ -15,7 +15,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use autopilot::codec::Frame;
-use autopilot::service::{LinkProfile, Origin, PeerId};
+use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use serde::{Deserialize, Serialize};
 use vehicle::VehicleSettings;
 use vehicle::parameters::Speed;

@@ -11,7 +11,7 @@ pub mod recording;
 
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
-use autopilot::service::{LinkProfile, Origin, PeerId};
+use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use vehicle::estimation::SensorSettings;
 use vehicle::identity::Identity;

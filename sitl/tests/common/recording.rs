@@ -1,7 +1,7 @@
 //! A flight that is recorded, and its record.
 
 use autopilot::codec::Message;
-use autopilot::service::LinkProfile;
+use autopilot::envelope::LinkProfile;
 use sitl::record::{Digest, Header, Participant, Recorder, replay};
 use sitl::{Failure, Flight};
 use tempfile::TempDir;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use autopilot::Autopilot;
 use autopilot::codec::{Message, Version};
-use autopilot::service::{LinkProfile, Origin, PeerId};
+use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
 use sitl::record::{self, Digest, Header, Recorder};
 use sitl::signing::{Kept, SecretKey};

@@ -2,7 +2,7 @@
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, FrameDecoder};
-use autopilot::service::{LinkProfile, Origin, PeerId};
+use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Arguments, Conventions, Settings};
 use sitl::files::{Disk, LogFolder};
 use sitl::record::Digest;

@@ -4,8 +4,9 @@ use mavlink::dialects::common::MavResult;
 use vehicle::Refusal;
 
 use crate::codec::{CommandAck, Message};
+use crate::envelope::{Destination, Origin};
 use crate::outbox::Outbox;
-use crate::service::{Destination, Origin, Outcome, Progress};
+use crate::service::{Outcome, Progress};
 
 /// Answers a command.
 pub fn acknowledge(outbox: &mut Outbox, origin: &Origin, command: u16, result: MavResult) {

@@ -7,7 +7,8 @@ use super::acknowledgement::{acknowledge, acknowledge_outcome, result_of};
 use super::retry::Retries;
 use crate::codec::{Command, Frame};
 use crate::context::Context;
-use crate::service::{Origin, Outcome, Repetition, Service};
+use crate::envelope::Origin;
+use crate::service::{Outcome, Repetition, Service};
 
 /// The protocol, with the commands that were carried out lately.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,7 @@
 use mavlink::dialects::common::MavResult;
 
 use crate::codec::{Command, CommandKind};
-use crate::service::Origin;
+use crate::envelope::Origin;
 
 /// Commands that are remembered.
 const REMEMBERED: usize = 32;

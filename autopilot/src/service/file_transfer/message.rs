@@ -3,8 +3,8 @@
 use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
 
 use crate::codec::{Frame, Payload};
+use crate::envelope::Origin;
 use crate::file_store::FileError;
-use crate::service::Origin;
 
 /// Data bytes of one message.
 pub const DATA: usize = 239;

@@ -13,8 +13,9 @@ use super::{plan_pack, root};
 use crate::codec::checksum::Checksum;
 use crate::codec::{Frame, id};
 use crate::context::Context;
+use crate::envelope::{Destination, Origin};
 use crate::file_store::Access;
-use crate::service::{Destination, Origin, Service};
+use crate::service::Service;
 
 /// Requests that have changed something and are remembered.
 const REMEMBERED: usize = 32;

@@ -5,7 +5,7 @@ use vehicle::Severity;
 use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 
 use crate::context::Context;
-use crate::service::{Destination, Origin};
+use crate::envelope::{Destination, Origin};
 
 /// MAV_MISSION_TYPE; what is none is answered as all of them.
 pub fn kind_of(number: u8) -> MavMissionType {

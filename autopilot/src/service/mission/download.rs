@@ -6,7 +6,7 @@ use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 use super::answer;
 use crate::codec::{Frame, Message, MissionItemMessage, Target, id};
 use crate::context::Context;
-use crate::service::{Destination, Origin};
+use crate::envelope::{Destination, Origin};
 
 /// MISSION_REQUEST_LIST: how many items there are, and the id of the plan.
 pub fn request_list(context: &mut Context, origin: &Origin, frame: &Frame) {

@@ -8,7 +8,7 @@ use vehicle::{MissionState, MissionStatus, Refusal, Severity, Vehicle};
 
 use crate::codec::{Command, Frame};
 use crate::context::Context;
-use crate::service::Destination;
+use crate::envelope::Destination;
 
 /// What was told of the mission last.
 #[derive(Clone, Copy, Debug, Default)]

@@ -9,7 +9,8 @@ use super::progress::{self, MissionProgress};
 use super::upload::Uploads;
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
-use crate::service::{CommandEntry, Origin, Outcome, Progress, Service};
+use crate::envelope::Origin;
+use crate::service::{CommandEntry, Outcome, Progress, Service};
 use crate::stream::{Group, Stream};
 
 const DO_SET_MISSION_CURRENT: u16 = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16;

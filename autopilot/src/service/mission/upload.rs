@@ -10,7 +10,7 @@ use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind, check};
 use super::answer;
 use crate::codec::{Frame, MissionItemMessage};
 use crate::context::Context;
-use crate::service::{Destination, Origin};
+use crate::envelope::{Destination, Origin};
 
 /// An item is asked for again after this long, µs, as the protocol recommends.
 const RETRY_US: f64 = 250_000.0;

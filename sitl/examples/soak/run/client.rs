@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, Version};
-use autopilot::service::{Destination, Origin, PeerId};
+use autopilot::envelope::{Destination, Origin, PeerId};
 use mavlink::Message as _;
 use mavlink::dialects::common::{HEARTBEAT_DATA, MISSION_ITEM_INT_DATA, MavMessage};
 use vehicle::LandedState;

@@ -1,7 +1,7 @@
 //! One vehicle and its clients.
 
 use autopilot::codec::{Frame, Version};
-use autopilot::service::LinkProfile;
+use autopilot::envelope::LinkProfile;
 use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
