@@ -3,12 +3,10 @@
 use serde::Serialize;
 use vehicle::Vehicle;
 
-/// How often the motion is taken in, µs.
+/// How often the state is taken in, µs.
 const PERIOD_US: u64 = 100_000;
 
-/// FNV-1a with 64 bits over the true motion, the rotors' speeds and commands, and the estimate that the vehicle flies by, ten
-/// times per simulated second. It goes by what has happened, not by how the program lays its state out, so that a record
-/// outlives a change of form.
+/// FNV-1a with 64 bits over the whole state of the closed loop, and the estimate that it is flown by, ten times per simulated second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(u64);
 
@@ -19,13 +17,10 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// Takes the motion in, if it is time, and what the vehicle believes if that is something else.
+    /// Takes the state in, if it is time, and what the vehicle believes if that is something else.
     pub fn update(&mut self, vehicle: &Vehicle) {
         let time_us = vehicle.time_us();
-        let truth = vehicle.truth();
-        let motion = (truth.position_m, truth.velocity_m_s, truth.quaternion, truth.body_rate_rad_s);
-        let rotors = (truth.rotor_speed_rad_s, vehicle.simulation().rotor_command_rad_s());
-        self.update_with(time_us, &(motion, rotors));
+        self.update_with(time_us, &vehicle.simulation().state());
         if let Some(estimate) = vehicle.estimate() {
             self.update_with(time_us, &estimate.body);
         }

@@ -106,9 +106,16 @@ class Client:
         send()
         self.set_mode(mode)
 
-    def parameter(self, name: str):
-        self.mav.param_request_read_send(*self.target, name.encode(), -1)
-        return self.wait("PARAM_VALUE", lambda value: value.param_id == name)
+    def parameter(self, name: str, timeout: float = 10.0):
+        """Reads a parameter. UDP may lose an answer behind telemetry that nobody has read, so it asks again."""
+        end = time.monotonic() + timeout
+        while True:
+            self.mav.param_request_read_send(*self.target, name.encode(), -1)
+            try:
+                return self.wait("PARAM_VALUE", lambda value: value.param_id == name, timeout=1.0)
+            except AssertionError:
+                if time.monotonic() >= end:
+                    raise
 
     def set_parameter(self, name: str, value: float, kind: int = mavlink.MAV_PARAM_TYPE_REAL32):
         self.mav.param_set_send(*self.target, name.encode(), value, kind)

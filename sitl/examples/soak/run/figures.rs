@@ -37,10 +37,10 @@ pub struct Figures {
     /// Resident memory after each tenth of the time, kB.
     memory_kb: Vec<u64>,
     sampled_us: u64,
-    /// Digests of everything sent, of the flight log's topics, and of the motion: equal for equal flights.
+    /// Digests of everything sent, of the flight log's topics, and of the closed loops' states: equal for equal flights.
     pub messages: Digest,
     pub logged: Digest,
-    pub motion: Digest,
+    pub states: Digest,
     pub violations: Vec<String>,
 }
 
@@ -117,10 +117,10 @@ impl fmt::Display for Figures {
         )?;
         writeln!(
             formatter,
-            "digests: messages {:016x}, log {:016x}, motion {:016x}",
+            "digests: messages {:016x}, log {:016x}, states {:016x}",
             self.messages.value(),
             self.logged.value(),
-            self.motion.value()
+            self.states.value()
         )?;
         let of = |result: u8| -> u64 {
             self.commands.iter().filter(|((_, found), _)| *found == result).map(|(_, count)| count).sum()

@@ -78,7 +78,7 @@ impl Site {
                 }
             }
             self.autopilot.tick().expect("the flight goes on");
-            figures.motion.update(self.autopilot.vehicle());
+            figures.states.update(self.autopilot.vehicle());
             if now_us.is_multiple_of(LOG_PERIOD_US) {
                 self.log(figures);
             }
