@@ -47,6 +47,17 @@ pub enum ConfigurationError {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// The flight would start below the ground, which would throw the vehicle up.
+    #[error(
+        "initial.position.z = {z_m} m is below the ground (z points down); with environment.ground_plane = true and this \
+         initial attitude, allowed up to {greatest_m:.3} m"
+    )]
+    BelowGround {
+        /// Initial position down, m.
+        z_m: f64,
+        /// Greatest allowed value, at which the lowest foot touches the ground, m.
+        greatest_m: f64,
+    },
     /// A function that this build was made without.
     #[error("{name} = true needs the cargo feature \"shaper\"")]
     Unavailable {

@@ -1,6 +1,7 @@
 //! Checks on a configuration: every range, then what must fit together.
 
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
+use crate::plant::ground::greatest_start_z_m;
 use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, PARAMETERS, Parameter};
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -47,7 +48,18 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
             other_value: followed,
         });
     }
+    validate_start(configuration)?;
     validate_sample_times(&configuration.controllers)
+}
+
+/// A flight over ground starts above it, in the attitude that it starts with.
+fn validate_start(configuration: &Configuration) -> Result<(), ConfigurationError> {
+    if !configuration.environment.ground_plane {
+        return Ok(());
+    }
+    let [_, _, z_m] = configuration.initial.position_m;
+    let greatest_m = greatest_start_z_m(&configuration.airframe, &configuration.initial);
+    if z_m <= greatest_m { Ok(()) } else { Err(ConfigurationError::BelowGround { z_m, greatest_m }) }
 }
 
 /// The attitude controller is the inner one: it is the fastest.
