@@ -63,7 +63,7 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), CallError> {
         self.clock = Clock::new(start_s, stop_s)?;
         if tolerance.is_some() {
-            self.logger.warning("the tolerance is ignored: the integration step is fixed");
+            self.logger.warning("tolerance ignored: the integration step is fixed");
         }
         Ok(())
     }

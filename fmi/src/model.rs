@@ -158,6 +158,6 @@ impl Words {
         run: "simulation",
         retuned: "parameters changed",
         events: "Initialization, changed parameters, reset",
-        errors: "Refused calls, and simulations that cannot go on; always logged",
+        errors: "Rejected calls and failed simulations; always logged",
     };
 }

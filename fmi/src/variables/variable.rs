@@ -182,7 +182,7 @@ impl<M: Model> Variable<M> {
         }
     }
 
-    /// Refuses what is not between its smallest and its largest value; NaN never is.
+    /// Rejects a value below the smallest or above the largest one, and NaN.
     pub(crate) fn check_range(&self, value: Value) -> Result<(), CallError> {
         let number = |value| match value {
             Value::Real(value) => Some(value),
@@ -192,7 +192,8 @@ impl<M: Model> Variable<M> {
         let (Some(minimum), Some(maximum)): Range = self.range() else { return Ok(()) };
         match (number(value), number(minimum), number(maximum)) {
             (Some(given), Some(least), Some(most)) if !(least..=most).contains(&given) => {
-                Err(CallError::OutOfRange { name: self.name, value, minimum, maximum })
+                let (value, allowed) = (self.with_unit(value), self.allowed(minimum, maximum));
+                Err(CallError::OutOfRange { name: self.name, value, allowed })
             }
             _ => Ok(()),
         }
