@@ -41,22 +41,21 @@ enum Task {
     ///
     /// The same sources and toolchain give the same bytes.
     Fmu {
-        /// An FMU of the same sources, built on another platform, whose binaries are taken over; may be
-        /// given several times.
+        /// Adds the binaries of an FMU that was built from the same sources on another platform; can be repeated.
         #[arg(long, value_name = "OTHER.fmu")]
         merge: Vec<PathBuf>,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
-    /// A test fails as long as that file is not what the FMU's table of variables gives.
+    /// A test fails if the file differs from what the FMU's table of variables generates.
     ModelDescription,
     /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables and plots to target/demo.
     ///
     /// Builds both and the Python environment first. Fails when a flight misses its goal.
     Demo,
-    /// Computes the paper's tables and figures again: target/paper/report.html, results.json and PNG files.
+    /// Recomputes the paper's tables and figures: target/paper/report.html, results.json and PNG files.
     Paper {
-        /// Prints gains, eigenvalues and condition numbers of the discrete model in this file as JSON instead.
+        /// Prints gains, closed-loop eigenvalues and condition numbers for the discrete model in this file as JSON instead.
         #[arg(long, value_name = "MODEL.toml")]
         gain: Option<PathBuf>,
     },
@@ -84,7 +83,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { merge } => bundle::make(&workspace, &progress, merge).map(|_| ()),
         Task::ModelDescription => model_description::write(&workspace),
         Task::Demo => demo::fly(&workspace, &progress),
-        Task::Paper { gain } => paper::run(&workspace, gain.as_deref()),
+        Task::Paper { gain } => paper::run(&workspace, &progress, gain.as_deref()),
         Task::Test => test::run_all(&workspace, &progress),
     }
 }
