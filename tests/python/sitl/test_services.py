@@ -3,6 +3,7 @@
 import struct
 import time
 
+from pymavlink import mavparm
 from pymavlink.dialects.v20 import common as mavlink
 
 
@@ -47,6 +48,9 @@ def test_parameters(start, connect, tmp_path):
 
     # They are kept, and there again after the next start.
     assert "POS_R_PITCH 900" in file.read_text() and "COM_OBL_RC_ACT 4" in file.read_text()
+    # MAVProxy's own reader takes the file.
+    kept = mavparm.MAVParmDict()
+    assert kept.load(str(file)) and kept["POS_R_PITCH"] == 900.0
     again = connect(start("--parameters", str(file)))
     assert again.parameter("POS_R_PITCH").param_value == 900.0
     assert abs(again.parameter("FRAME_MASS").param_value - 0.8) < 1e-6
