@@ -15,7 +15,7 @@ pub enum ListFormat {
     /// One line per parameter, for people and grep
     #[default]
     Table,
-    /// One object per vehicle, for programs
+    /// One object per parameter, for programs
     Json,
 }
 
@@ -39,11 +39,10 @@ pub fn parameter_list(settings: &Settings, format: ListFormat) -> String {
             text
         }
         ListFormat::Json => {
-            let vehicles = settings.vehicles.iter().map(|own| {
-                let parameters: Vec<Json> = rows(settings, own).iter().map(object).collect();
-                json!({ "system_id": own.system_id, "parameters": parameters })
+            let objects = settings.vehicles.iter().flat_map(|own| {
+                rows(settings, own).into_iter().map(|(entry, value)| object(own.system_id, &entry, value))
             });
-            format!("{:#}", Json::Array(vehicles.collect()))
+            format!("{:#}", Json::Array(objects.collect()))
         }
     }
 }
@@ -93,11 +92,12 @@ fn table(text: &mut String, rows: &[(Entry, Value)]) {
     }
 }
 
-fn object((entry, value): &(Entry, Value)) -> Json {
+fn object(system_id: u8, entry: &Entry, value: Value) -> Json {
     let description = entry.describe();
     let range = description.range;
     let names = description.names.iter().map(|named| json!({ "value": named.value, "name": named.name }));
     json!({
+        "system_id": system_id,
         "name": entry.id,
         "dotted_name": entry.dotted(),
         "value": match value {
@@ -110,8 +110,8 @@ fn object((entry, value): &(Entry, Value)) -> Json {
             Value::Integer(_) => "int32",
         },
         "unit": range.unit,
-        "minimum": range.minimum,
-        "maximum": range.maximum,
+        "min": range.minimum,
+        "max": range.maximum,
         "values": names.collect::<Vec<_>>(),
         "fixed_in_flight": description.fixed_in_flight,
         "group": description.group,
