@@ -3,7 +3,7 @@
 
 use quadrotor::{ConfigurationError, SimulationError};
 use vehicle::identity::Identity;
-use vehicle::parameters::{ParameterTable, SPEED_PARAMETER, Speed, Value};
+use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
 use vehicle::{Severity, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
@@ -150,12 +150,12 @@ impl Autopilot {
     }
 
     /// All parameters with their values, in the order of the table.
-    pub fn parameters(&self) -> impl Iterator<Item = (&str, Value)> {
+    pub fn parameters(&self) -> impl Iterator<Item = (&'static str, Value)> {
         self.context.parameters.all(&self.context.vehicle)
     }
 
     /// The parameters as the text of a file, if one has changed since the last call.
-    pub fn take_changed_parameters(&mut self) -> Option<String> {
-        self.context.parameters.take_changed(&self.context.vehicle)
+    pub fn take_changed_parameters(&mut self, format: FileFormat) -> Option<String> {
+        self.context.parameters.take_changed(format, &self.context.vehicle)
     }
 }

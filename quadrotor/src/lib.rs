@@ -118,12 +118,14 @@ mod simulation_error;
 mod simulation_state;
 
 pub use configuration::error::ConfigurationError;
-pub use configuration::parameter::{Access, Choice, Parameter, Unit};
+pub use configuration::parameter::{Access, Choice, Parameter};
 pub use configuration::parameters::PARAMETERS;
+pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
     ReferenceSettings, Sensors,
 };
+pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
 pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use tracing_subscriber::EnvFilter;
 
-use crate::configuration::{Arguments, Settings, file};
+use crate::configuration::{Arguments, Settings, file, parameter_list};
 use crate::failure::Failure;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
@@ -22,6 +22,10 @@ use crate::terminal::{LogLines, banner, hil_banner};
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let arguments = with_file(arguments)?;
     log_to_stderr(arguments.log.as_deref())?;
+    if let Some(format) = arguments.list_parameters {
+        say(parameter_list(&Settings::resolve(&arguments)?, format).trim_end());
+        return Ok(());
+    }
     if let Some(path) = &arguments.replay {
         for flight in replay(path)? {
             say(&format!(

@@ -155,7 +155,7 @@ fn a_meaningless_choice_is_refused_with_those_that_there_are() {
         param_type: MavParamType::MAV_PARAM_TYPE_INT32,
     }));
     let told = bench.texts().pop().expect("a reason");
-    let reason = "Parameter refused: COM_ACT_FAIL_ACT = 1 has no meaning here: 2 Land, 4 Terminate";
+    let reason = "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)";
     assert_eq!(told, reason);
 }
 

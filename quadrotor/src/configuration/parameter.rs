@@ -1,45 +1,6 @@
 //! A number or switch of a [`Configuration`], by its public name.
 
-use crate::{Configuration, ConfigurationError};
-
-/// Unit of a parameter or output, SI.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Dimensionless.
-    One,
-    /// kg
-    Kilogram,
-    /// m
-    Metre,
-    /// s
-    Second,
-    /// rad
-    Radian,
-    /// N
-    Newton,
-    /// N·m
-    NewtonMetre,
-    /// m/s
-    MetrePerSecond,
-    /// m/s²
-    MetrePerSecondSquared,
-    /// m/s³
-    MetrePerSecondCubed,
-    /// rad/s
-    RadianPerSecond,
-    /// rad/s²
-    RadianPerSecondSquared,
-    /// rad/s³
-    RadianPerSecondCubed,
-    /// kg·m²
-    KilogramSquareMetre,
-    /// N·s²
-    NewtonSecondSquared,
-    /// N·m·s²
-    NewtonMetreSecondSquared,
-    /// N·s/m
-    NewtonSecondPerMetre,
-}
+use crate::{Configuration, ConfigurationError, Unit, ValueRange};
 
 /// One parameter of a [`Configuration`].
 #[derive(Clone, Copy, Debug)]
@@ -136,11 +97,11 @@ impl Parameter {
             // Only items can be stored.
             Access::Enumeration { .. } | Access::Boolean { .. } => return Ok(()),
         };
-        // NaN is in no range.
-        if (minimum..=maximum).contains(&value) {
+        let range = ValueRange { minimum, maximum, unit: self.unit.symbol() };
+        if range.contains(value) {
             Ok(())
         } else {
-            Err(ConfigurationError::OutOfRange { name: self.name, value, minimum, maximum })
+            Err(ConfigurationError::OutOfRange { name: self.name, value, range })
         }
     }
 }

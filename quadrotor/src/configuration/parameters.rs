@@ -2,7 +2,8 @@
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
 use crate::ControllerKind;
-use crate::configuration::parameter::{Access, Choice, Parameter, Unit};
+use crate::configuration::parameter::{Access, Choice, Parameter};
+use crate::configuration::unit::Unit;
 use crate::design::capacities::{MOST_MOVES, MOST_TERMS};
 
 /// A real parameter: name, unit, variability, range, place and description.

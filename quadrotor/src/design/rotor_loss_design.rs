@@ -1,7 +1,7 @@
 //! The control laws for the loss of each rotor.
 
 use crate::control::rotor_loss::RotorLossLaw;
-use crate::{Configuration, ConfigurationError, ControlError};
+use crate::{Configuration, ConfigurationError, ControlError, ValueRange};
 
 /// The control laws for the loss of each rotor, as far as the airframe has them. What they depend on is fixed during a
 /// flight.
@@ -23,9 +23,8 @@ impl RotorLossDesign {
 
     /// Why there is no law for the loss of a rotor, if there is none.
     pub(crate) fn check(&self, lost: usize) -> Result<(), ConfigurationError> {
-        let value = lost as f64;
-        let no_such_rotor =
-            ConfigurationError::OutOfRange { name: "lost_rotor", value, minimum: 0.0, maximum: 3.0 };
+        let range = ValueRange { minimum: 0.0, maximum: 3.0, unit: "" };
+        let no_such_rotor = ConfigurationError::OutOfRange { name: "lost_rotor", value: lost as f64, range };
         match self.laws.get(lost) {
             None => Err(no_such_rotor),
             Some(Ok(_)) => Ok(()),

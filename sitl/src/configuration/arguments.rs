@@ -9,7 +9,7 @@ use vehicle::parameters::Speed;
 
 use super::Conventions;
 use super::ranged::{number, whole};
-use super::{Addressed, Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
+use super::{Addressed, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom};
 use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::link::LinkSpecification;
@@ -117,7 +117,7 @@ pub struct Arguments {
     pub speed: Option<Speed>,
 
     /// Steady wind: speed in m/s, 0 to 30, and the direction in degrees that it comes from. It acts through drag
-    /// (AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z), of which a vehicle in wind or gusts has 0.15 N s/m unless --set or --parameters
+    /// (FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z), of which a vehicle in wind or gusts has 0.15 N s/m unless --set or --parameters
     /// say otherwise [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true)]
     pub wind: Option<WindFrom>,
@@ -149,7 +149,8 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SEED", value_name = "N", value_parser = whole(0, u64::MAX), allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
-    /// Parameter at the start, by its MAVLink id or its dotted name (airframe.mass=0.9); repeat it for more
+    /// Parameter at the start, by its MAVLink name or its dotted name (airframe.mass=0.9, controller.kind=dlqr); repeat it
+    /// for more
     #[arg(long, env = "LMPC_SITL_SET", value_name = "NAME=VALUE", value_delimiter = ';')]
     pub set: Option<Vec<String>>,
 
@@ -158,9 +159,17 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_FAULT", value_name = "[ID:]SECONDS:UNIT=KIND", value_delimiter = ';')]
     pub fault: Option<Vec<Addressed<ScheduledFault>>>,
 
-    /// Parameter file: read at the start if it exists, written whenever a parameter changes
+    /// Parameter file: read at the start if it exists, written whenever a parameter changes. Reads `NAME VALUE`,
+    /// `NAME,VALUE`, `NAME = VALUE` and QGroundControl's files; writes QGroundControl's form to .params, else `NAME VALUE`
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE")]
     pub parameters: Option<PathBuf>,
+
+    /// List all parameters with the values at the start, and exit: as a table or as JSON [default: table]
+    #[arg(
+        long, env = "LMPC_SITL_LIST_PARAMETERS", value_name = "table|json", num_args = 0..=1,
+        default_missing_value = "table"
+    )]
+    pub list_parameters: Option<ListFormat>,
 
     /// Plan to start with: QGroundControl's .plan (mission, fence and rally points) or a QGC WPL 110 text (mission). Repeat
     /// it for plans of single vehicles, with their system ids in front
@@ -258,6 +267,7 @@ impl Arguments {
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),
             parameters: self.parameters.or(file.parameters),
+            list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),
             record: self.record.or(file.record),
             replay: self.replay.or(file.replay),

@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn numbers_and_lists_read_as_a_person_writes_them() {
-        let text = "speed = 5\nwind = \"4,270\"\ngusts = 1.5\nlink = \"tcpin:5760\"\nset = [\"AF_MASS=1\", \"AF_DRAG_X=0.1\"]\n\
+        let text = "speed = 5\nwind = \"4,270\"\ngusts = 1.5\nlink = \"tcpin:5760\"\nset = [\"FRAME_MASS=1\", \"FRAME_DRAG_X=0.1\"]\n\
                     kalman = true\nseed = 7\nlog-dir = \"logs\"\n";
         let read = parse(text).expect("a file");
         let expected = Arguments {
@@ -80,7 +80,7 @@ mod tests {
             wind: Some("4,270".parse().expect("wind")),
             gusts: Some(1.5),
             link: Some(vec!["tcpin:5760".parse().expect("a link")]),
-            set: Some(vec!["AF_MASS=1".to_owned(), "AF_DRAG_X=0.1".to_owned()]),
+            set: Some(vec!["FRAME_MASS=1".to_owned(), "FRAME_DRAG_X=0.1".to_owned()]),
             kalman: Some(true),
             seed: Some(7),
             log_dir: Some("logs".into()),

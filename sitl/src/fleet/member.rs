@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
-use vehicle::parameters::Speed;
+use vehicle::parameters::{FileFormat, Speed};
 
 use crate::failure::Failure;
 use crate::files::{Disk, Readers, replace};
@@ -140,7 +140,7 @@ impl Member {
     /// Writes its parameters into their file, if one has changed.
     pub(super) fn save_parameters(&mut self) -> Result<(), Failure> {
         let Some(path) = &self.parameters else { return Ok(()) };
-        let Some(text) = self.autopilot.take_changed_parameters() else { return Ok(()) };
+        let Some(text) = self.autopilot.take_changed_parameters(FileFormat::of(path)) else { return Ok(()) };
         replace(path, text.as_bytes(), Readers::All)
     }
 }

@@ -166,7 +166,7 @@ impl FlightLog {
         let entries = autopilot.parameter_table().entries();
         for ((entry, value), logged) in entries.iter().zip(&present).zip(&current.parameters) {
             if value != logged {
-                ulog::parameter(&mut self.messages, &entry.id, *value);
+                ulog::parameter(&mut self.messages, entry.id, *value);
             }
         }
         current.parameters = present;
@@ -216,7 +216,7 @@ fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
         definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));
     }
     for (entry, value) in autopilot.parameter_table().entries().iter().zip(parameters) {
-        definitions.parameter(&entry.id, *value);
+        definitions.parameter(entry.id, *value);
     }
     definitions.finish()
 }

@@ -8,7 +8,7 @@ use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
 use sitl::record::{self, Digest, Header, Recorder};
 use sitl::signing::{Kept, SecretKey};
-use vehicle::parameters::{ParameterTable, ParameterValues, Speed, render};
+use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, render};
 
 use super::bytes::Bytes;
 
@@ -38,7 +38,7 @@ const WAYPOINTS: &str = include_str!("../corpus/mission.waypoints");
 const TIMESTAMPS: &str =
     "lmpc-sitl signing timestamps 1\nsent 7\nheard 19\nstream 0 255 190 5\nstream 3 1 1 19\n";
 const CONFIGURATION: &str = "# a vehicle\nautopilot = \"ardupilot\"\nhome = \"-35.363262,149.165237,584,353\"\nspeed = \"5\"\nwind = \"4,270\"\ngusts = 1.5\n\
-    seed = 7\nvehicles = 3\nformation = \"circle,6\"\nset = [\"AF_MASS=0.8\"]\nfault = [\"12.5:rotor1=off\"]\nnoise = \"rtk-gps\"\nkalman = true\nduration = 9.0\n";
+    seed = 7\nvehicles = 3\nformation = \"circle,6\"\nset = [\"FRAME_MASS=0.8\"]\nfault = [\"12.5:rotor1=off\"]\nnoise = \"rtk-gps\"\nkalman = true\nduration = 9.0\n";
 
 /// Reads one file of each kind. Panics if a reader does, or if what it has accepted does not fly. Returns how many there were.
 pub fn changed(seed: u64) -> u64 {
@@ -54,8 +54,10 @@ pub fn changed(seed: u64) -> u64 {
         let mission = Some(vec![Addressed { system_id: None, value: mission }]);
         fly(&Arguments { mission, ..Arguments::default() });
     }
-    let parameters = write("a.params", edited(&mut bytes, &parameters()));
-    fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
+    for (name, format) in [("a.parm", FileFormat::Plain), ("a.params", FileFormat::QGroundControl)] {
+        let parameters = write(name, edited(&mut bytes, &parameters(format)));
+        fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
+    }
     let configuration = write("a.toml", edited(&mut bytes, CONFIGURATION));
     if let Ok(arguments) = sitl::configuration::file::read(&configuration) {
         fly(&arguments);
@@ -79,7 +81,7 @@ pub fn changed(seed: u64) -> u64 {
         assert_eq!(Kept::parse(&kept.render()), Ok(kept));
     }
     let _key = SecretKey::read(edited(&mut bytes, &"5a".repeat(32)).as_bytes());
-    7
+    8
 }
 
 /// What is refused says why in one line; what is not flies.
@@ -104,12 +106,12 @@ fn fly(arguments: &Arguments) {
 }
 
 /// The parameters as the vehicle writes them.
-fn parameters() -> String {
+fn parameters(format: FileFormat) -> String {
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
     let vehicle = &settings.vehicles[0].vehicle;
     let table = ParameterTable::new(vehicle.identity);
     let (configuration, conduct) = (vehicle.configuration, vehicle.conduct);
-    render(&table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
+    render(format, &table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
 }
 
 /// A short record.
