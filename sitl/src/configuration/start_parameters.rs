@@ -5,6 +5,7 @@ use std::path::Path;
 use vehicle::VehicleSettings;
 use vehicle::parameters::{ParameterTable, ParameterValues, Speed, identifier, parse};
 
+use super::text_file::read_text;
 use crate::failure::Failure;
 
 /// Sets the parameters of the file, then those that are named as `NAME=VALUE`, and returns the identifiers of all of them.
@@ -17,9 +18,7 @@ pub(super) fn set_parameters(
     named: &[String],
 ) -> Result<Vec<String>, Failure> {
     let text = match file {
-        Some(path) if path.exists() => {
-            Some((path, std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?))
-        }
+        Some(path) if path.exists() => Some((path, read_text(path)?)),
         // It will be written when a parameter changes: better now than in flight is said that it cannot be.
         Some(path)
             if path.parent().is_some_and(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) =>
@@ -49,7 +48,7 @@ pub(super) fn set_parameters(
     for setting in named {
         let wrong = || Failure::Value {
             name: "--set".to_owned(),
-            reason: format!("`{setting}` is not NAME=VALUE with a number"),
+            reason: format!("`{setting}` must be NAME=VALUE with a number as VALUE"),
         };
         let (name, value) = setting.split_once('=').ok_or_else(wrong)?;
         let value: f64 = value.trim().parse().map_err(|_| wrong())?;

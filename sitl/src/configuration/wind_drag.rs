@@ -2,6 +2,7 @@
 
 use quadrotor::Configuration;
 use vehicle::parameters::identifier;
+use vehicle::{Notice, Severity};
 
 /// Linear drag of an airframe in a wind, unless the user chooses another, N·s/m: 0.7 kg with an open frame drifts with
 /// 10 m/s of wind at a lean of 12°.
@@ -19,15 +20,16 @@ pub(super) fn provide(configuration: &mut Configuration) {
 
 /// What the user needs to know about the drag in a wind: which of it was provided, or that there is none. `chosen` are the
 /// identifiers of the parameters that the user has set.
-pub(super) fn note(configuration: &Configuration, chosen: &[String]) -> Option<String> {
+pub(super) fn note(configuration: &Configuration, chosen: &[String]) -> Option<Notice> {
+    let info = |text| Notice { severity: Severity::Info, text };
     let ids = NAMES.map(identifier);
     let provided: Vec<&str> = ids.iter().filter(|id| !chosen.contains(id)).map(String::as_str).collect();
     if !provided.is_empty() {
-        return Some(format!(
-            "wind acts through drag: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
-            provided.join(", ")
-        ));
+        let names = provided.join(", ");
+        return Some(info(format!(
+            "wind needs drag: {names} set to {DRAG_N_S_M} N s/m; change it with --set"
+        )));
     }
     let none = configuration.airframe.drag_n_s_m == [0.0; 3];
-    none.then(|| format!("wind does not push the vehicle, which has no drag: {} are 0", ids.join(", ")))
+    none.then(|| info(format!("wind has no effect: {} are 0", ids.join(", "))))
 }
