@@ -68,7 +68,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_AUTOPILOT", help_heading = VEHICLE)]
     pub autopilot: Option<Conventions>,
 
-    /// Start position: LAT,LON,ALT[,HEADING]
+    /// Start: LAT,LON,ALT or LAT,LON,ALT,HEADING
     ///
     /// Latitude and longitude in degrees, altitude above sea level in m, heading in degrees from north through east.
     /// [default: 47.397742,8.545594,488,0]
