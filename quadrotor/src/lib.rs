@@ -137,6 +137,7 @@ pub use control::rotor_monitor::RotorMonitor;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
+pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use guidance::attitude_target::AttitudeTarget;
 pub use guidance::position_reference::PositionReference;
 pub use inputs::{InputSignal, Inputs};

@@ -1,4 +1,4 @@
-//! Why the program ends otherwise than asked.
+//! Errors that end the program, and their exit codes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub enum Failure {
         reason: String,
     },
     /// A command line that cannot be read.
-    #[error("{0} (--help tells more)")]
+    #[error("{0} (see --help)")]
     Usage(String),
     /// The closed loop cannot be built.
     #[error(transparent)]
@@ -49,7 +49,7 @@ pub enum Failure {
         /// Why.
         source: io::Error,
     },
-    /// A file whose content is none.
+    /// A file with wrong content.
     #[error("{}: {reason}", path.display())]
     Content {
         /// The file.
@@ -59,7 +59,7 @@ pub enum Failure {
     },
     /// The replayed flight is another one.
     #[error(
-        "the replayed flight of system {system_id} differs: recorded {recorded:016x}, replayed {replayed:016x}"
+        "the replayed flight of system {system_id} differs from the recorded one: digest {replayed:016x} instead of {recorded:016x}"
     )]
     Differs {
         /// The vehicle.
@@ -69,7 +69,7 @@ pub enum Failure {
         /// Digest of the replayed flight.
         replayed: u64,
     },
-    /// The flight left the range of numbers.
+    /// The state of the simulation is no longer finite.
     #[error("the simulation failed: {0}")]
     Simulation(#[from] SimulationError),
     /// The handlers of signals.

@@ -1,10 +1,10 @@
 //! From arguments to an ended run.
 
-use std::io::{IsTerminal, Write, stdout};
+use std::io::{Write, stdout};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use tracing_subscriber::EnvFilter;
+use vehicle::{Notice, Severity};
 
 use crate::configuration::{Arguments, Settings, file, parameter_list};
 use crate::failure::Failure;
@@ -13,7 +13,7 @@ use crate::ready;
 use crate::record::replay;
 use crate::session::Session;
 use crate::summary::Summary;
-use crate::terminal::{LogLines, banner, hil_banner};
+use crate::terminal::{banner, hil_banner, start_log};
 
 /// Does what the arguments say.
 ///
@@ -21,7 +21,7 @@ use crate::terminal::{LogLines, banner, hil_banner};
 /// [`Failure`] that ends the program.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let arguments = with_file(arguments)?;
-    log_to_stderr(arguments.log.as_deref())?;
+    start_log(arguments.log.clone().unwrap_or_default().into());
     if let Some(format) = arguments.list_parameters {
         say(parameter_list(&Settings::resolve(&arguments)?, format).trim_end());
         return Ok(());
@@ -29,7 +29,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.replay {
         for flight in replay(path)? {
             say(&format!(
-                "system {}: replayed {:.3} s, digest {:016x}: the same flight",
+                "system {}: replayed {:.3} s, flight digest {:016x}: identical to the recorded flight",
                 flight.system_id,
                 flight.time_us as f64 / 1e6,
                 flight.digest
@@ -52,7 +52,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     for flight in summary.flights {
         let simulated_s = flight.time_us as f64 / 1e6;
         say(&format!(
-            "system {}: flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), digest {:016x}",
+            "system {}: flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), flight digest {:016x}",
             flight.system_id,
             simulated_s / wall_s.max(1e-9),
             flight.digest
@@ -61,7 +61,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The plant for an external autopilot.
+/// Simulates the plant for an external autopilot.
 fn simulate(settings: HilSettings, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
     let ready_file = settings.ready_file.as_deref();
     ready_file.map(ready::forget).transpose()?;
@@ -80,24 +80,6 @@ fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
     }
 }
 
-fn log_to_stderr(filter: Option<&str>) -> Result<(), Failure> {
-    let filter = filter.unwrap_or("info");
-    let filter = EnvFilter::try_new(filter).map_err(|_| Failure::Value {
-        name: "--log".to_owned(),
-        reason: format!(
-            "`{filter}` is no filter: error, warn, info, debug, trace, off, or TARGET=LEVEL between commas"
-        ),
-    })?;
-    let subscriber = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(|| LogLines)
-        .with_target(false)
-        .with_ansi(std::io::stderr().is_terminal());
-    // Somebody who has set one up already keeps it.
-    let _kept = subscriber.try_init();
-    Ok(())
-}
-
 fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -108,9 +90,15 @@ fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// Lines of the log.
-fn log(notes: &[String]) {
-    notes.iter().for_each(|note| tracing::info!("{note}"));
+/// Logs what the user is told at the start.
+fn log(notes: &[Notice]) {
+    for Notice { severity, text } in notes {
+        match severity {
+            Severity::Info => tracing::info!("{text}"),
+            Severity::Warning => tracing::warn!("{text}"),
+            Severity::Critical | Severity::Error => tracing::error!("{text}"),
+        }
+    }
 }
 
 /// A line on the standard output. Whoever has closed it does not want it.

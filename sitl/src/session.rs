@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::fleet::{Clock, Fleet};
 use crate::ready;
 use crate::summary::{Flight, Summary};
-use crate::terminal::StatusLine;
+use crate::terminal::{StatusLine, of_fleet};
 
 /// Longest rest between two looks at the links.
 const REST: Duration = Duration::from_millis(1);
@@ -64,7 +64,7 @@ impl Session {
             fleet.keep_links_alive(now)?;
             fleet.keep_logs(now)?;
             fleet.flush();
-            status.update(now, &fleet);
+            status.update(now, fleet.time_us(), || of_fleet(&fleet));
             if !behind {
                 std::thread::sleep(REST);
             }

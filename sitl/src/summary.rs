@@ -5,7 +5,7 @@ use std::time::Duration;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Time of the wall clock.
+    /// Duration by the wall clock.
     pub wall: Duration,
     /// The flight of each vehicle.
     pub flights: Vec<Flight>,

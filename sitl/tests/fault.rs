@@ -198,12 +198,12 @@ fn faults_come_and_go_by_the_schedule() {
 fn what_has_no_meaning_is_refused_with_the_reason() {
     let mut bench = Bench::new(Identity::Px4);
     for (unit, kind, instance, result, reason) in [
-        (5.0, OFF, 0.0, UNSUPPORTED, "no failure unit 5"),
-        (MOTOR, 9.0, 0.0, UNSUPPORTED, "no failure type 9"),
-        (MOTOR, OFF, 5.0, UNSUPPORTED, "no motor 5"),
+        (5.0, OFF, 0.0, UNSUPPORTED, "unknown failure unit 5"),
+        (MOTOR, 9.0, 0.0, UNSUPPORTED, "unknown failure type 9"),
+        (MOTOR, OFF, 5.0, UNSUPPORTED, "unknown motor 5"),
         (MOTOR, 3.0, 1.0, UNSUPPORTED, "a motor cannot be `garbage`"),
         (BATTERY, 6.0, 0.0, UNSUPPORTED, "a battery cannot be `delayed`"),
-        (4.0, OFF, 3.0, UNSUPPORTED, "no instance 3"),
+        (4.0, OFF, 3.0, UNSUPPORTED, "unknown instance 3"),
         (0.5, OFF, 0.0, DENIED, "needs a unit"),
     ] {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");

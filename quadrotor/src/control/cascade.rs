@@ -9,9 +9,7 @@ use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
-use crate::design::controller_limits::{
-    COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
-};
+use crate::design::controller_limits::{COMMANDED_TILT_SHARE, attitude_bounds, largest_tilt, thrust_range_n};
 use crate::guidance::ramp::Ramp;
 use crate::guidance::reference_guidance::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -229,15 +227,6 @@ fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vecto
     let limit = libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0);
     let norm = wanted.norm();
     if norm > limit { wanted * (limit / norm) } else { wanted }
-}
-
-/// Smallest and largest thrust to ask for, N.
-fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
-    let limits = &configuration.limits;
-    let weight = configuration.airframe.weight_n();
-    let (weakest, strongest) = configuration.airframe.thrust_range_n();
-    let least = (limits.thrust_min * weight).max(weakest);
-    (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

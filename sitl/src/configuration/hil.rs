@@ -33,18 +33,18 @@ impl HilSettings {
             if given {
                 return Err(wrong(
                     name,
-                    "does not go with --hil: only the plant is ours then, the autopilot is another program"
+                    "does not go with --hil, which only simulates the plant for another program's autopilot"
                         .into(),
                 ));
             }
         }
         let speed = arguments.speed.unwrap_or(Speed::Factor(1.0));
         if speed == Speed::Paused {
-            return Err(wrong("speed", "0 does not go with --hil: nobody could end the pause".into()));
+            return Err(wrong("speed", "0 does not go with --hil: nothing could end the pause".into()));
         }
         let link = format!("tcpin:{address}").parse::<LinkSpecification>();
         let Ok(Endpoint::TcpIn { host, port }) = link.map(|link| link.endpoint) else {
-            return Err(wrong("hil", format!("`{address}` is not [HOST:]PORT")));
+            return Err(wrong("hil", format!("invalid address `{address}`; use [HOST:]PORT")));
         };
         let (vehicle, note) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
         Ok(Self {

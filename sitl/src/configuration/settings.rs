@@ -11,10 +11,10 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, VehicleSettings};
+use vehicle::{Conduct, Notice, VehicleSettings};
 
 use super::start_parameters::set_parameters;
-use super::{Arguments, Clocks, Ports, read_plans, wind_drag};
+use super::{Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
@@ -41,12 +41,12 @@ pub struct Settings {
     pub ftp_root: Option<(PathBuf, bool)>,
     /// Key to sign with.
     pub signing_key: Option<PathBuf>,
-    /// File that tells that clients can connect.
+    /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
-    /// What the user is to be told at the start, a line each.
-    pub notes: Vec<String>,
+    /// What the user is told at the start.
+    pub notes: Vec<Notice>,
 }
 
 /// One vehicle of them.
@@ -79,7 +79,9 @@ impl Settings {
                 parameters.map(|path| if count > 1 { of_system(path, system_id) } else { path.to_owned() });
             let (vehicle, note) = vehicle(arguments, number, count, parameters.as_deref())?;
             let hub = if shared { 0 } else { number };
-            Ok((MemberSettings { system_id, vehicle, hub, parameters }, note))
+            let warning = wind_hold::warning(&vehicle.configuration, &vehicle.wind);
+            let own = MemberSettings { system_id, vehicle, hub, parameters };
+            Ok((own, note.into_iter().chain(warning).collect()))
         };
         let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
@@ -121,13 +123,17 @@ impl Settings {
 }
 
 /// Notes about vehicles: one for all that have the same, else each with the system that it is about.
-fn notes(vehicles: &[MemberSettings], notes: Vec<Option<String>>) -> Vec<String> {
+fn notes(vehicles: &[MemberSettings], notes: Vec<Vec<Notice>>) -> Vec<Notice> {
     let same = notes.windows(2).all(|pair| pair.first() == pair.last());
     if same {
-        return notes.into_iter().flatten().take(1).collect();
+        return notes.into_iter().next().unwrap_or_default();
     }
     let of_each = vehicles.iter().zip(notes);
-    of_each.filter_map(|(own, note)| Some(format!("system {}: {}", own.system_id, note?))).collect()
+    let named = |(own, notes): (&MemberSettings, Vec<Notice>)| {
+        let name = |note: Notice| Notice { text: format!("system {}: {}", own.system_id, note.text), ..note };
+        notes.into_iter().map(name).collect::<Vec<_>>()
+    };
+    of_each.flat_map(named).collect()
 }
 
 /// End, µs of simulation time.
@@ -149,8 +155,9 @@ fn system_ids(arguments: &Arguments) -> Result<Vec<u8>, Failure> {
     let first = u16::from(first_system_id(arguments));
     let last = (first + count).saturating_sub(1);
     if last > LAST {
-        let reason =
-            format!("{count} vehicles from system {first} on need system {last}; the last is {LAST}");
+        let reason = format!(
+            "{count} vehicles from system {first} on need system ids up to {last}; the largest is {LAST}"
+        );
         return Err(Failure::Value { name: "--vehicles".to_owned(), reason });
     }
     Ok((first..=last).filter_map(|id| u8::try_from(id).ok()).collect())
@@ -164,7 +171,7 @@ fn hub(arguments: &Arguments, instance: u16, number: usize) -> Result<Vec<LinkSp
     let counted = |link: &LinkSpecification| {
         link.of_vehicle(number).ok_or_else(|| Failure::Value {
             name: "--link".to_owned(),
-            reason: format!("`{link}` leaves no port to vehicle {}: try --ports shared", number + 1),
+            reason: format!("`{link}` leaves no port for vehicle {}; use --ports shared", number + 1),
         })
     };
     links.iter().map(counted).collect()
@@ -187,7 +194,7 @@ pub(super) fn vehicle(
     number: usize,
     count: usize,
     parameters: Option<&Path>,
-) -> Result<(VehicleSettings, Option<String>), Failure> {
+) -> Result<(VehicleSettings, Option<Notice>), Failure> {
     let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
     let identity: Identity = arguments.autopilot.unwrap_or_default().into();
     let home = arguments.home.unwrap_or_default();
@@ -239,7 +246,7 @@ fn named_parameters(arguments: &Arguments, number: usize) -> Result<Vec<String>,
         named.push(format!("sensor.output_feedback={}", u8::from(kalman)));
     }
     if !named.is_empty() && arguments.sensors.unwrap_or_default() != SensorModel::Ideal {
-        let reason = "realistic sensors have noise and an estimator of their own".to_owned();
+        let reason = "not with --sensors realistic, which has noise and an estimator of its own".to_owned();
         return Err(Failure::Value { name: "--noise, --kalman".to_owned(), reason });
     }
     if arguments.seed.is_some() {
@@ -259,7 +266,7 @@ fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
     const MEGABYTES: f64 = 100.0;
     const COUNT: u32 = 100;
     if arguments.ftp_write == Some(true) && arguments.ftp_root.is_none() {
-        let reason = "there is no --ftp-root to write to".to_owned();
+        let reason = "needs --ftp-root".to_owned();
         return Err(Failure::Value { name: "--ftp-write".to_owned(), reason });
     }
     Ok(LogSettings {
@@ -283,7 +290,8 @@ fn check_addresses(arguments: &Arguments, systems: &[u8]) -> Result<(), Failure>
         file.check("--mission", file.value.display(), systems)?;
         if planned.contains(&file.system_id) {
             let whose = file.system_id.map_or("all".to_owned(), |id| format!("system {id}"));
-            let reason = format!("`{}` is a second plan for {whose}", file.value.display());
+            let reason =
+                format!("`{}` is a second plan for {whose}; give one plan each", file.value.display());
             return Err(Failure::Value { name: "--mission".to_owned(), reason });
         }
         planned.push(file.system_id);
@@ -299,7 +307,7 @@ fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, F
     match faults.iter().find(|scheduled| ideal && scheduled.fault.needs_readings()) {
         None => Ok(faults),
         Some(scheduled) => {
-            let reason = format!("`{scheduled}` needs --sensors realistic: ideal ones only fall silent");
+            let reason = format!("`{scheduled}` needs --sensors realistic; ideal sensors can only be `off`");
             Err(Failure::Value { name: "--fault".to_owned(), reason })
         }
     }

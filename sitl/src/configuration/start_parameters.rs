@@ -5,6 +5,7 @@ use std::path::Path;
 use vehicle::VehicleSettings;
 use vehicle::parameters::{Entry, ParameterTable, ParameterValues, SPEED_PARAMETER, SetError, Speed, parse};
 
+use super::text_file::read_text;
 use crate::failure::Failure;
 
 /// Sets the parameters of the file, then those that are named as `NAME=VALUE`, and returns the MAVLink names of all of them.
@@ -17,9 +18,7 @@ pub(super) fn set_parameters(
     named: &[String],
 ) -> Result<Vec<&'static str>, Failure> {
     let text = match file {
-        Some(path) if path.exists() => {
-            Some((path, std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?))
-        }
+        Some(path) if path.exists() => Some((path, read_text(path)?)),
         // It will be written when a parameter changes: better now than in flight is said that it cannot be.
         Some(path)
             if path.parent().is_some_and(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) =>

@@ -1,6 +1,7 @@
 //! The drag that the wind acts through.
 
 use quadrotor::Configuration;
+use vehicle::{Notice, Severity};
 
 /// Linear drag of an airframe in a wind, unless the user chooses another, N·s/m: 0.7 kg with an open frame drifts with
 /// 10 m/s of wind at a lean of 12°.
@@ -18,14 +19,15 @@ pub(super) fn provide(configuration: &mut Configuration) {
 
 /// What the user needs to know about the drag in a wind: which of it was provided, or that there is none. `chosen` are the
 /// MAVLink names of the parameters that the user has set.
-pub(super) fn note(configuration: &Configuration, chosen: &[&str]) -> Option<String> {
+pub(super) fn note(configuration: &Configuration, chosen: &[&str]) -> Option<Notice> {
+    let info = |text| Notice { severity: Severity::Info, text };
     let provided: Vec<&str> = NAMES.into_iter().filter(|name| !chosen.contains(name)).collect();
     if !provided.is_empty() {
-        return Some(format!(
-            "wind acts through drag: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
-            provided.join(", ")
-        ));
+        let names = provided.join(", ");
+        return Some(info(format!(
+            "wind needs drag: {names} set to {DRAG_N_S_M} N s/m; change it with --set"
+        )));
     }
     let none = configuration.airframe.drag_n_s_m == [0.0; 3];
-    none.then(|| format!("wind does not push the vehicle, which has no drag: {} are 0", NAMES.join(", ")))
+    none.then(|| info(format!("wind has no effect: {} are 0", NAMES.join(", "))))
 }

@@ -11,6 +11,7 @@ use crate::failure::Failure;
 use crate::files::{Disk, Readers, replace};
 use crate::flight_log::FlightLog;
 use crate::record::{Digest, Participant};
+use crate::terminal::set_simulation_time;
 
 /// A client must hear a heartbeat this often, however slow simulation time is.
 const HEARTBEAT: Duration = Duration::from_millis(1_100);
@@ -87,6 +88,7 @@ impl Member {
 
     /// One tick on.
     pub(super) fn tick(&mut self, now: Instant) -> Result<(), Failure> {
+        set_simulation_time(self.time_us());
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
         if let Some(log) = &mut self.log {

@@ -6,8 +6,7 @@
 //!               or each its own  digest      or each its own
 //! ```
 //!
-//! Vehicles do not see one another: the flight of each depends on nothing but its own messages and their simulation
-//! times, whoever flies beside it.
+//! Vehicles do not interact: the flight of each depends only on its own messages and their simulation times.
 
 mod books;
 mod clock;

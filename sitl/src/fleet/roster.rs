@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::files::{Disk, LogFolder};
 use crate::flight_log::FlightLog;
 use crate::link::Links;
+use crate::terminal::set_simulation_time;
 
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]
@@ -66,6 +67,11 @@ impl Fleet {
         &self.members
     }
 
+    /// Simulation time of the vehicle that is furthest, µs.
+    pub fn time_us(&self) -> u64 {
+        self.members.iter().map(Member::time_us).max().unwrap_or(0)
+    }
+
     /// The links.
     pub fn hubs(&self) -> &[Links] {
         &self.hubs
@@ -85,6 +91,7 @@ impl Fleet {
                         continue;
                     };
                     let time_us = member.time_us();
+                    set_simulation_time(time_us);
                     if !std::mem::replace(&mut logged, true) {
                         self.books.traffic(time_us, &received.frame)?;
                     }

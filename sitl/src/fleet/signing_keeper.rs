@@ -1,4 +1,4 @@
-//! Signing at the edge: the wall clock, the files, and what is said about it.
+//! Signing at the edge: the wall clock, the key files and the announcements.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::link::{Links, SigningSetup};
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
 
-/// Refused frames are told this often.
+/// Rejected frames are announced this often.
 const TOLD: Duration = Duration::from_secs(5);
 
 /// What is to be said, and whether another key is used from now on.
@@ -78,7 +78,7 @@ impl SigningKeeper {
             return None;
         }
         (self.told, self.told_at) = (counts, Some(now));
-        Some((Severity::Warning, format!("Signing: refused so far {counts}")))
+        Some((Severity::Warning, format!("Signing: rejected so far: {counts}")))
     }
 
     /// Keeps the state at an end that was asked for.
@@ -88,7 +88,7 @@ impl SigningKeeper {
     pub fn finish(&self, links: &mut Links) -> Result<(), Failure> {
         let counts = links.signing().counts();
         if counts != self.told {
-            tracing::warn!("Signing: refused in all {counts}");
+            tracing::warn!("Signing: rejected in total: {counts}");
         }
         match &self.file {
             Some(file) => file.keep(&links.signing().at_end()),

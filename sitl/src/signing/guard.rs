@@ -32,7 +32,7 @@ pub enum Refusal {
     #[error("late")]
     Late,
     /// There is no room for its stream, or behind its timestamp.
-    #[error("beyond what can be remembered")]
+    #[error("beyond capacity")]
     NoRoom,
 }
 

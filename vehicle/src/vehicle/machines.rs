@@ -3,6 +3,7 @@
 use super::battery::Battery;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
@@ -26,6 +27,8 @@ pub struct Machines {
     pub failsafe: Failsafe,
     /// The rotors, and the descent without one.
     pub rotors: RotorWatch,
+    /// Whether the position can be held.
+    pub hold: HoldWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
     /// Takeoffs.

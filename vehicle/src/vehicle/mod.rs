@@ -32,7 +32,7 @@
 //!  while armed      the machine of the mode (takeoff, manual control, offboard, return, mission),
 //!                   or the rotor watch while a rotor is lost; then what waits: lost set-points, disarming
 //!  closed loop      flies as the steering says; perception looks at the motion
-//!  afterwards       rotor watch, battery, touch-down and lift-off
+//!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
 //! ```
 
 mod battery;
@@ -43,6 +43,7 @@ mod descent;
 mod failsafe;
 mod failsafe_watch;
 mod fence_watch;
+mod hold_watch;
 mod home;
 mod injection;
 mod landed;

@@ -15,6 +15,7 @@ use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
 use super::landing::Landing;
@@ -72,6 +73,7 @@ impl Vehicle {
             fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
+            hold: HoldWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
@@ -117,6 +119,7 @@ impl Vehicle {
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
+        self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
