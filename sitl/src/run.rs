@@ -6,12 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use tracing_subscriber::EnvFilter;
 
-use crate::configuration::{Arguments, Settings, file};
+use crate::configuration::{Arguments, Settings, check_replay, file};
 use crate::failure::Failure;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
-use crate::record::replay;
+use crate::record::{RecordEnd, Replayed, replay};
 use crate::session::Session;
+use crate::signals::stop_on_signals;
 use crate::summary::Summary;
 use crate::terminal::{LogLines, banner, hil_banner};
 
@@ -23,14 +24,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let arguments = with_file(arguments)?;
     log_to_stderr(arguments.log.as_deref())?;
     if let Some(path) = &arguments.replay {
-        for flight in replay(path)? {
-            say(&format!(
-                "system {}: replayed {:.3} s, digest {:016x}: the same flight",
-                flight.system_id,
-                flight.time_us as f64 / 1e6,
-                flight.digest
-            ));
-        }
+        check_replay(&arguments)?;
+        replay(path)?.iter().for_each(|replayed| say(&told(replayed)));
         return Ok(());
     }
     let stop = stop_on_signals().map_err(Failure::Signals)?;
@@ -54,7 +49,23 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             flight.digest
         ));
     }
-    Ok(())
+    if summary.incomplete.is_empty() { Ok(()) } else { Err(Failure::Incomplete(summary.incomplete)) }
+}
+
+/// A line about a replayed flight.
+fn told(replayed: &Replayed) -> String {
+    let Replayed { flight, end, verified_us } = replayed;
+    let end = match end {
+        RecordEnd::Complete => "the same flight".to_owned(),
+        RecordEnd::Limit => {
+            "the same flight as far as it was recorded; the record ends at its size limit".to_owned()
+        }
+        RecordEnd::Cut => {
+            format!("the same flight up to {:.3} s; the record ends early", *verified_us as f64 / 1e6)
+        }
+    };
+    let replayed_s = flight.time_us as f64 / 1e6;
+    format!("system {}: replayed {replayed_s:.3} s, digest {:016x}: {end}", flight.system_id, flight.digest)
 }
 
 /// The plant for an external autopilot.
@@ -92,16 +103,6 @@ fn log_to_stderr(filter: Option<&str>) -> Result<(), Failure> {
     // Somebody who has set one up already keeps it.
     let _kept = subscriber.try_init();
     Ok(())
-}
-
-fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // A second one ends the program at once.
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok(stop)
 }
 
 /// Lines of the log.

@@ -60,9 +60,13 @@ Every flag can be set in the configuration file by its name (`speed = 5`;
 environment by LMPC_SITL_ and its name in capitals (several between `;`). Flags
 go before the environment, the environment before the file.
 
+Files: no file ends a flight. One that cannot be written is announced, tried
+again every second, and named at the end, with exit code 4. A file that another
+process is writing is refused at the start (NAME.lock beside it is the lock).
+
 Exit codes: 0 ended as asked, 1 the simulation failed, 2 a wrong flag or value,
-3 a port or device cannot be used, 4 a file cannot be used, 5 a replayed flight
-differs from the recorded one.";
+3 a port or device cannot be used, 4 a file cannot be used or is incomplete,
+5 a replayed flight differs from the recorded one.";
 
 /// A simulated quadrotor under Laguerre model predictive control that MAVLink clients fly.
 #[derive(Clone, Debug, Default, PartialEq, Parser)]
@@ -167,17 +171,23 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_MISSION", value_name = "[ID:]FILE", value_delimiter = ';')]
     pub mission: Option<Vec<Addressed<PathBuf>>>,
 
-    /// Record received messages with their simulation times, to be replayed
-    #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay")]
+    /// Record the received messages with their simulation times, for --replay
+    #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE")]
     pub record: Option<PathBuf>,
 
-    /// Fly a record again, without links, and compare the flight with the recorded one
+    /// A record stops at this size, 0.1 to 100000 MB; the flight goes on [default: 1000]
+    #[arg(long, env = "LMPC_SITL_RECORD_SIZE", value_name = "MB", value_parser = number(0.1, 100_000.0), allow_hyphen_values = true)]
+    pub record_size: Option<f64>,
+
+    /// Fly a record again, as fast as possible and without links, and compare the flight with the recorded one. The record has
+    /// all settings: only --log, and a --config with nothing else in it, go with this flag. The record of a program that was
+    /// killed replays up to its last whole line
     #[arg(long, env = "LMPC_SITL_REPLAY", value_name = "FILE")]
     pub replay: Option<PathBuf>,
 
     /// Only the plant, as the simulator of an external autopilot that connects to this TCP port (PX4 to 4560): HIL_SENSOR,
     /// HIL_GPS and HIL_STATE_QUATERNION for HIL_ACTUATOR_CONTROLS, in lock-step
-    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", conflicts_with = "replay")]
+    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT")]
     pub hil: Option<String>,
 
     /// How that autopilot sits on the airframe: forward between two arms (x) or along one (plus) [default: x]
@@ -260,6 +270,7 @@ impl Arguments {
             parameters: self.parameters.or(file.parameters),
             mission: self.mission.or(file.mission),
             record: self.record.or(file.record),
+            record_size: self.record_size.or(file.record_size),
             replay: self.replay.or(file.replay),
             hil: self.hil.or(file.hil),
             hil_mount: self.hil_mount.or(file.hil_mount),

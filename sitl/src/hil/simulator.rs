@@ -89,7 +89,7 @@ impl Simulator {
                 break;
             }
         }
-        Ok(Summary { wall: start.elapsed(), flights })
+        Ok(Summary { wall: start.elapsed(), flights, incomplete: Vec::new() })
     }
 
     fn serve(&self, stream: TcpStream, stop: &Arc<AtomicBool>) -> Result<Flight, Failure> {
