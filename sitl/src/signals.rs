@@ -13,21 +13,22 @@ use signal_hook::flag;
 /// When the system refuses handlers.
 pub fn stop_on_signals() -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
-    let mut signals = vec![SIGINT, SIGTERM];
+    // With a handler a limit on the size of files is an error of the file, and not the end of the flight.
     #[cfg(unix)]
-    {
-        use signal_hook::consts::{SIGHUP, SIGXFSZ};
-        if !is_ignored(SIGHUP) {
-            signals.push(SIGHUP);
-        }
-        // With a handler a limit on the size of files is an error of the file, and not the end of the flight.
-        flag::register(SIGXFSZ, Arc::default())?;
-    }
-    for signal in signals {
+    flag::register(signal_hook::consts::SIGXFSZ, Arc::default())?;
+    for signal in [SIGINT, SIGTERM].into_iter().chain(hangup()) {
         flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
         flag::register(signal, Arc::clone(&stop))?;
     }
     Ok(stop)
+}
+
+/// The signal of a terminal that is closed, if there is one and it is not ignored.
+fn hangup() -> Option<i32> {
+    #[cfg(unix)]
+    return Some(signal_hook::consts::SIGHUP).filter(|signal| !is_ignored(*signal));
+    #[cfg(not(unix))]
+    None
 }
 
 /// Whether whoever started the program wants a signal to be ignored, as `nohup` does. Where the system does not tell, the signal
