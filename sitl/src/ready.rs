@@ -58,4 +58,5 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
 
 fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {
     replace(path, format!("{content}\n").as_bytes(), Readers::All)
+        .map_err(|source| Failure::write(path, source))
 }

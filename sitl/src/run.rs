@@ -6,12 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use vehicle::{Notice, Severity};
 
-use crate::configuration::{Arguments, Settings, file, parameter_list};
+use crate::configuration::{Arguments, Settings, check_replay, file, parameter_list};
 use crate::failure::Failure;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
-use crate::record::replay;
+use crate::record::{RecordEnd, Replayed, replay};
 use crate::session::Session;
+use crate::signals::stop_on_signals;
 use crate::summary::Summary;
 use crate::terminal::{banner, hil_banner, start_log};
 
@@ -27,14 +28,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     if let Some(path) = &arguments.replay {
-        for flight in replay(path)? {
-            say(&format!(
-                "system {}: replayed {:.3} s, flight digest {:016x}: identical to the recorded flight",
-                flight.system_id,
-                flight.time_us as f64 / 1e6,
-                flight.digest
-            ));
-        }
+        check_replay(&arguments)?;
+        replay(path)?.iter().for_each(|replayed| say(&told(replayed)));
         return Ok(());
     }
     let stop = stop_on_signals().map_err(Failure::Signals)?;
@@ -58,7 +53,26 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             flight.digest
         ));
     }
-    Ok(())
+    if summary.incomplete.is_empty() { Ok(()) } else { Err(Failure::Incomplete(summary.incomplete)) }
+}
+
+/// A line about a replayed flight.
+fn told(replayed: &Replayed) -> String {
+    let Replayed { flight, end, verified_us } = replayed;
+    let end = match end {
+        RecordEnd::Complete => "the same flight".to_owned(),
+        RecordEnd::Limit => {
+            "the same flight as far as it was recorded; the record ends at its size limit".to_owned()
+        }
+        RecordEnd::Cut => {
+            format!("the same flight up to {:.3} s; the record ends early", *verified_us as f64 / 1e6)
+        }
+    };
+    let replayed_s = flight.time_us as f64 / 1e6;
+    format!(
+        "system {}: replayed {replayed_s:.3} s, flight digest {:016x}: {end}",
+        flight.system_id, flight.digest
+    )
 }
 
 /// Simulates the plant for an external autopilot.
@@ -78,16 +92,6 @@ fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
         Some(path) => file::read(path).map(|file| arguments.or(file)),
         None => Ok(arguments),
     }
-}
-
-fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // A second one ends the program at once.
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok(stop)
 }
 
 /// Logs what the user is told at the start.

@@ -9,6 +9,8 @@ pub struct Summary {
     pub wall: Duration,
     /// The flight of each vehicle.
     pub flights: Vec<Flight>,
+    /// What is missing from files, a sentence each.
+    pub incomplete: Vec<String>,
 }
 
 /// How the flight of a vehicle ended.

@@ -189,12 +189,20 @@ pub struct Arguments {
     /// Record received messages for --replay
     ///
     /// Each message is recorded with its simulation time.
-    #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay", help_heading = FILES)]
+    #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", help_heading = FILES)]
     pub record: Option<PathBuf>,
+
+    /// Size at which a record ends [default: 1000]
+    ///
+    /// From 0.1 to 100000 MB. The flight goes on without the record.
+    #[arg(long, env = "LMPC_SITL_RECORD_SIZE", value_name = "MB", value_parser = number(0.1, 100_000.0), allow_hyphen_values = true, help_heading = FILES, hide_short_help = true)]
+    pub record_size: Option<f64>,
 
     /// Fly a record again and compare the flights
     ///
-    /// No links are opened. Exit code 5 tells that the flights differ.
+    /// It flies as fast as possible and opens no links. The record holds all settings, so only --log goes with this flag, and a
+    /// --config with nothing else in it. The record of a program that was killed replays up to its last whole line. Exit code 5
+    /// tells that the flights differ.
     #[arg(long, env = "LMPC_SITL_REPLAY", value_name = "FILE", help_heading = FILES)]
     pub replay: Option<PathBuf>,
 
@@ -246,7 +254,7 @@ pub struct Arguments {
     /// PX4 connects to port 4560; HOST defaults to 127.0.0.1. Sends HIL_SENSOR, HIL_GPS and HIL_STATE_QUATERNION, receives
     /// HIL_ACTUATOR_CONTROLS, in lock-step. Start PX4 with `make px4_sitl none_iris`; on another machine, set its
     /// PX4_SIM_HOSTNAME to this one.
-    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", conflicts_with = "replay", help_heading = HIL, hide_short_help = true)]
+    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", help_heading = HIL, hide_short_help = true)]
     pub hil: Option<String>,
 
     /// How the autopilot is mounted on the airframe [default: x]
@@ -283,6 +291,7 @@ impl Arguments {
             list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),
             record: self.record.or(file.record),
+            record_size: self.record_size.or(file.record_size),
             replay: self.replay.or(file.replay),
             hil: self.hil.or(file.hil),
             hil_mount: self.hil_mount.or(file.hil_mount),

@@ -87,12 +87,17 @@ Output:
   off. The digest at the end is a fingerprint of the flight: equal digests mean
   identical flights.
 
+Files:
+  No file ends a flight. A file that cannot be written is announced, tried again
+  every second, and named at the end with exit code 4. A file that another
+  process is writing is refused at the start; FILE.lock beside it is the lock.
+
 Exit codes:
   0  ended as asked
   1  the simulation failed
   2  a flag, value or environment variable is wrong
   3  a port or device cannot be used
-  4  a file cannot be used
+  4  a file cannot be used or is incomplete
   5  a replayed flight differs from the recorded one";
 
 /// The command line. The names of environment variables follow from those of the flags, and are not listed.

@@ -22,6 +22,7 @@ impl HilSettings {
             ("clocks", arguments.clocks.is_some()),
             ("link", arguments.link.is_some()),
             ("record", arguments.record.is_some()),
+            ("record-size", arguments.record_size.is_some()),
             ("tlog", arguments.tlog.is_some()),
             ("sensors", arguments.sensors.is_some()),
             ("noise", arguments.noise.is_some()),

@@ -20,6 +20,9 @@ use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
 
+/// Size that a record may get unless told otherwise, MB: a client's set-points at 50 Hz for more than a day.
+const RECORD_MEGABYTES: f64 = 1000.0;
+
 /// What the program does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -33,6 +36,8 @@ pub struct Settings {
     pub speed: Speed,
     /// Record to be written.
     pub record: Option<PathBuf>,
+    /// Size that the record may get, bytes.
+    pub record_most_bytes: u64,
     /// Traffic log.
     pub tlog: Option<PathBuf>,
     /// Flight logs, and sizes and numbers of files of the traffic log.
@@ -93,6 +98,7 @@ impl Settings {
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
             record: arguments.record.clone(),
+            record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
             logs: log_settings(arguments)?,
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),

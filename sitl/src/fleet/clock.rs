@@ -38,9 +38,9 @@ impl Clock {
     /// behind after that.
     ///
     /// # Errors
-    /// [`Failure`] of the simulation or of a file.
+    /// [`Failure`] of the simulation.
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> Result<bool, Failure> {
-        self.agree_on_speed(fleet, now)?;
+        self.agree_on_speed(fleet, now);
         match self.pace.goal_us(self.speed, now, self.time_us) {
             None => self.fly_for(fleet, BURST / clocks.max(1)),
             Some(goal_us) => self.fly_to(fleet, goal_us, 4 * BURST / clocks.max(1)),
@@ -48,19 +48,18 @@ impl Clock {
     }
 
     /// A new speed of one vehicle is that of all, and told by all.
-    fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
+    fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) {
         let speeds = self.members.clone().filter_map(|number| fleet.members().get(number));
         let mut news = speeds.map(|member| member.autopilot().speed()).filter(|speed| *speed != self.speed);
-        let Some(speed) = news.next() else { return Ok(()) };
+        let Some(speed) = news.next() else { return };
         self.speed = speed;
         for number in self.members.clone() {
             let Some(member) = fleet.member_mut(number) else { continue };
             if member.autopilot.speed() != speed {
                 member.autopilot.set_speed(speed);
-                fleet.send(number, now)?;
+                fleet.send(number, now);
             }
         }
-        Ok(())
     }
 
     fn tick(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {

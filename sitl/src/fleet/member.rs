@@ -1,14 +1,14 @@
 //! One vehicle among those of a run.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
-use vehicle::parameters::{FileFormat, Speed};
+use vehicle::parameters::Speed;
 
+use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
-use crate::files::{Disk, Readers, replace};
+use crate::files::Disk;
 use crate::flight_log::FlightLog;
 use crate::record::{Digest, Participant};
 use crate::terminal::set_simulation_time;
@@ -30,7 +30,7 @@ pub struct Member {
     /// When a ground station was heard last, and what the vehicle knows of it.
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
-    parameters: Option<PathBuf>,
+    parameters: Option<ParameterFile>,
     log: Option<FlightLog>,
     started: Instant,
     log_messages: u64,
@@ -42,7 +42,7 @@ impl Member {
         participant: &Participant,
         speed: Speed,
         hub: usize,
-        parameters: Option<PathBuf>,
+        parameters: Option<ParameterFile>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
         let Participant { system_id, links, vehicle } = participant;
@@ -126,11 +126,15 @@ impl Member {
         news.min(MOST_LOG_MESSAGES)
     }
 
-    /// Ends its log.
-    pub(super) fn finish_log(&mut self) {
+    /// Ends its files. Returns what is missing from them, a sentence each.
+    pub(super) fn finish(&mut self) -> Vec<String> {
+        let mut lacking = Vec::new();
         if let Some(log) = &mut self.log {
             log.finish(&mut self.autopilot);
+            lacking.append(&mut log.take_lacking());
         }
+        lacking.extend(self.parameters.as_mut().and_then(ParameterFile::finish));
+        lacking
     }
 
     /// Whether its links would look dead, because simulation time is slow.
@@ -140,9 +144,11 @@ impl Member {
     }
 
     /// Writes its parameters into their file, if one has changed.
-    pub(super) fn save_parameters(&mut self) -> Result<(), Failure> {
-        let Some(path) = &self.parameters else { return Ok(()) };
-        let Some(text) = self.autopilot.take_changed_parameters(FileFormat::of(path)) else { return Ok(()) };
-        replace(path, text.as_bytes(), Readers::All)
+    pub(super) fn save_parameters(&mut self, now: Instant) {
+        let Some(file) = &mut self.parameters else { return };
+        let changed = self.autopilot.take_changed_parameters(file.format());
+        if let Some((severity, text)) = file.save(changed, now) {
+            self.autopilot.announce(severity, &text);
+        }
     }
 }

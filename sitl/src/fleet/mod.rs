@@ -11,6 +11,7 @@
 mod books;
 mod clock;
 mod member;
+mod parameter_file;
 mod roster;
 mod signing_keeper;
 

@@ -95,7 +95,7 @@ impl Simulator {
             }
         }
         status.clear();
-        Ok(Summary { wall: start.elapsed(), flights })
+        Ok(Summary { wall: start.elapsed(), flights, incomplete: Vec::new() })
     }
 
     fn serve(

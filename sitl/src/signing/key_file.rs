@@ -55,19 +55,24 @@ impl KeyFile {
         Ok((file, key, kept))
     }
 
+    /// Where the timestamps are.
+    pub fn timestamps(&self) -> &Path {
+        &self.timestamps
+    }
+
     /// Keeps timestamps.
     ///
     /// # Errors
-    /// [`Failure::File`]
-    pub fn keep(&self, kept: &Kept) -> Result<(), Failure> {
+    /// The error of the file system; the old ones are still there.
+    pub fn keep(&self, kept: &Kept) -> std::io::Result<()> {
         replace(&self.timestamps, kept.render().as_bytes(), Readers::Owner)
     }
 
     /// Keeps another key, or none.
     ///
     /// # Errors
-    /// [`Failure::File`]
-    pub fn keep_key(&self, key: Option<&SecretKey>) -> Result<(), Failure> {
+    /// The error of the file system; the old one is still there.
+    pub fn keep_key(&self, key: Option<&SecretKey>) -> std::io::Result<()> {
         let digits = key.map(SecretKey::to_digits).unwrap_or_default();
         replace(&self.path, digits.as_bytes(), Readers::Owner)
     }

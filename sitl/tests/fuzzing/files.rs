@@ -6,7 +6,7 @@ use autopilot::Autopilot;
 use autopilot::codec::{Message, Version};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
-use sitl::record::{self, Digest, Header, Recorder};
+use sitl::record::{Digest, Header, Reader, Recorder};
 use sitl::signing::{Kept, SecretKey};
 use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, render};
 
@@ -65,9 +65,16 @@ pub fn changed(seed: u64) -> u64 {
     let path = folder.path().join("a.lmpc");
     recorded(&path);
     let text = std::fs::read_to_string(&path).expect("a record");
-    std::fs::write(&path, edited(&mut bytes, &text)).expect("written");
-    if let Ok((header, _entries)) = record::read(&path) {
-        for participant in header.vehicles {
+    // With the checksums of somebody who knows how they are made, and without.
+    let mut text = edited(&mut bytes, &text);
+    if bytes.below(4) > 0 {
+        text = sealed(&text);
+    }
+    std::fs::write(&path, text).expect("written");
+    if let Ok(mut reader) = Reader::open(&path) {
+        let entries = reader.by_ref().take_while(Result::is_ok).count();
+        assert!(entries < 100, "{entries} entries of a short record");
+        for participant in &reader.header().vehicles {
             let _refused = Autopilot::new(
                 &participant.vehicle,
                 participant.system_id,
@@ -119,16 +126,28 @@ fn recorded(path: &Path) {
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
     let mut recorder =
-        Recorder::create(path, &Header::new(Speed::Max, settings.participants())).expect("a file");
+        Recorder::create(path, &Header::new(Speed::Max, settings.participants()), u64::MAX).expect("a file");
     let message = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
     let frame = autopilot::codec::Frame::encode(&message, Version::Two, 0, (255, 190)).expect("a frame");
     let origin = Origin { peer: PeerId { link: 0, number: 0 }, system: 255, component: 190 };
     for time_us in [0, 1_000, 250_000] {
-        recorder.frame(0, time_us, &origin, &frame).expect("written");
+        recorder.frame(0, time_us, &origin, &frame);
     }
-    recorder.ground_station(0, 300_000, true).expect("written");
-    recorder.end(0, 400_000, Digest::default()).expect("written");
-    recorder.finish().expect("written");
+    recorder.ground_station(0, 300_000, true);
+    recorder.end(0, 400_000, Digest::default());
+    assert_eq!(recorder.finish(), None);
+}
+
+/// A record with right checksums: each line ends with the CRC-32 of all bytes before it.
+fn sealed(text: &str) -> String {
+    let mut sealed = String::new();
+    for line in text.lines() {
+        let content = line.rsplit_once(' ').map_or(line, |(content, _)| content);
+        sealed.push_str(&format!("{content} "));
+        let checksum = crc32fast::hash(sealed.as_bytes());
+        sealed.push_str(&format!("{checksum:08x}\n"));
+    }
+    sealed
 }
 
 /// A text after some edits, still UTF-8.

@@ -11,6 +11,7 @@ from mavsdk.plugins.action import Action
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import common as mavlink
 
+import records
 from client import PX4_OFFBOARD
 
 
@@ -187,8 +188,8 @@ def test_a_record_holds_all_vehicles(start, connect, program, tmp_path):
     assert "MIS_TAKEOFF_ALT 3.5\n" in (tmp_path / "fleet-3.params").read_text()
 
     # What one vehicle was told is left out: its flight is another, and is named.
-    lines = record.read_text().splitlines()
+    lines = records.entries(record)
     told = next(line for line in lines if line.startswith("frame") and line.split()[2] == "2" and "9001" in line.split()[-1])
-    record.write_text("\n".join(line for line in lines if line != told) + "\n")
+    records.write(record, [line for line in lines if line != told])
     result = subprocess.run([program, "--replay", record], capture_output=True, text=True, timeout=60)
     assert result.returncode == 5 and "system 3 differs" in result.stderr, result
