@@ -10,6 +10,7 @@ use vehicle::parameters::Speed;
 use super::Conventions;
 use super::ranged::{number, whole};
 use super::{Addressed, Clocks, Formation, HomePosition, MeasurementNoise, Ports, WindFrom};
+use crate::fleet::LockstepPhase;
 use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::link::LinkSpecification;
@@ -33,6 +34,18 @@ Many vehicles:
   --parameters fleet.params       of system 3 among several: fleet-3.params
   --mission 3:own.plan            of system 3, instead of another one for all
   --fault 3:12.5:rotor1=off       of system 3 alone
+
+Lock-step (--speed max --lockstep):
+  Each set-point (SET_POSITION_TARGET_*, SET_ATTITUDE_TARGET) lets the vehicle
+  fly one --lockstep-period; then it stops, sends LOCAL_POSITION_NED unless it did
+  in that period, and waits for the next set-point. Messages that come in
+  between take effect when the period ends. So a client that sends one set-point
+  for each report flies the same at every speed, bit for bit with `always`:
+  then the vehicle does not move until the first set-point. Send them from the
+  first moment on; other modes than Offboard (Guided) ignore them, but for the
+  time they grant. Ask for telemetry at the period or slower. An armed vehicle
+  whose client disconnects, or is silent for --lockstep-timeout, says so and
+  flies on as without lock-step, until the next set-point.
 
 External autopilot:
   --hil 4560   then, for PX4: make px4_sitl none_iris (its motors 1 to 4: front
@@ -115,6 +128,24 @@ pub struct Arguments {
     /// [default: 1]
     #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max", allow_hyphen_values = true)]
     pub speed: Option<Speed>,
+
+    /// Let simulation time wait for a client's set-points, so that a closed loop flies the same at every --speed, see below:
+    /// `offboard` while they steer the vehicle, `always` from the start and in every mode [default: off; `offboard` without
+    /// a value]
+    #[arg(
+        long, env = "LMPC_SITL_LOCKSTEP", value_name = "offboard|always", num_args = 0..=1,
+        default_missing_value = "offboard"
+    )]
+    pub lockstep: Option<LockstepPhase>,
+
+    /// Simulated seconds that a set-point is good for in lock-step, 0.001 to 1 [default: 0.02]
+    #[arg(long, env = "LMPC_SITL_LOCKSTEP_PERIOD", value_name = "SECONDS", value_parser = number(0.001, 1.0), allow_hyphen_values = true)]
+    pub lockstep_period: Option<f64>,
+
+    /// Seconds of the wall clock that an armed vehicle waits for a set-point in lock-step before it flies on, 0.1 to 1000000
+    /// [default: 5]
+    #[arg(long, env = "LMPC_SITL_LOCKSTEP_TIMEOUT", value_name = "SECONDS", value_parser = number(0.1, 1e6), allow_hyphen_values = true)]
+    pub lockstep_timeout: Option<f64>,
 
     /// Steady wind: speed in m/s, 0 to 30, and the direction in degrees that it comes from. It acts through drag
     /// (AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z), of which a vehicle in wind or gusts has 0.15 N s/m unless --set or --parameters
@@ -249,6 +280,9 @@ impl Arguments {
             autopilot: self.autopilot.or(file.autopilot),
             home: self.home.or(file.home),
             speed: self.speed.or(file.speed),
+            lockstep: self.lockstep.or(file.lockstep),
+            lockstep_period: self.lockstep_period.or(file.lockstep_period),
+            lockstep_timeout: self.lockstep_timeout.or(file.lockstep_timeout),
             wind: self.wind.or(file.wind),
             gusts: self.gusts.or(file.gusts),
             sensors: self.sensors.or(file.sensors),

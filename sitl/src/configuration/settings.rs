@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use nalgebra::Vector3;
 use quadrotor::Configuration;
@@ -11,11 +12,12 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, VehicleSettings};
+use vehicle::{Conduct, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{Arguments, Clocks, Ports, read_plans, wind_drag};
 use crate::failure::Failure;
+use crate::fleet::LockstepSettings;
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
@@ -31,6 +33,8 @@ pub struct Settings {
     pub clocks: Clocks,
     /// Pace.
     pub speed: Speed,
+    /// Whether and how simulation time waits for set-points.
+    pub lockstep: Option<LockstepSettings>,
     /// Record to be written.
     pub record: Option<PathBuf>,
     /// Traffic log.
@@ -90,6 +94,7 @@ impl Settings {
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
+            lockstep: lockstep(arguments)?,
             record: arguments.record.clone(),
             tlog: arguments.tlog.clone(),
             logs: log_settings(arguments)?,
@@ -118,6 +123,27 @@ impl Settings {
         };
         self.vehicles.iter().map(participant).collect()
     }
+}
+
+/// Whether and how simulation time waits for set-points.
+fn lockstep(arguments: &Arguments) -> Result<Option<LockstepSettings>, Failure> {
+    const PERIOD_S: f64 = 0.02;
+    const TIMEOUT_S: f64 = 5.0;
+    let Some(phase) = arguments.lockstep else {
+        for (name, given) in [
+            ("--lockstep-period", arguments.lockstep_period),
+            ("--lockstep-timeout", arguments.lockstep_timeout),
+        ] {
+            if given.is_some() {
+                let reason = "needs --lockstep".to_owned();
+                return Err(Failure::Value { name: name.to_owned(), reason });
+            }
+        }
+        return Ok(None);
+    };
+    let ticks = (arguments.lockstep_period.unwrap_or(PERIOD_S) * 1e6 / TICK_US as f64).round() as u64;
+    let timeout = Duration::from_secs_f64(arguments.lockstep_timeout.unwrap_or(TIMEOUT_S));
+    Ok(Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout }))
 }
 
 /// Notes about vehicles: one for all that have the same, else each with the system that it is about.
