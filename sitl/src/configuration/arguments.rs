@@ -36,16 +36,18 @@ Many vehicles:
   --fault 3:12.5:rotor1=off       of system 3 alone
 
 Lock-step (--speed max --lockstep):
-  Each set-point (SET_POSITION_TARGET_*, SET_ATTITUDE_TARGET) lets the vehicle
-  fly one --lockstep-period; then it stops, sends LOCAL_POSITION_NED unless it did
-  in that period, and waits for the next set-point. Messages that come in
-  between take effect when the period ends. So a client that sends one set-point
-  for each report flies the same at every speed, bit for bit with `always`:
-  then the vehicle does not move until the first set-point. Send them from the
-  first moment on; other modes than Offboard (Guided) ignore them, but for the
-  time they grant. Ask for telemetry at the period or slower. An armed vehicle
-  whose client disconnects, or is silent for --lockstep-timeout, says so and
-  flies on as without lock-step, until the next set-point.
+  Each set-point (SET_POSITION_TARGET_*, SET_ATTITUDE_TARGET), in any mode, lets
+  the vehicle fly one --lockstep-period. Then time stops: the vehicle sends
+  LOCAL_POSITION_NED, unless it did in that period, and waits for the next
+  set-point. Messages that come in between take effect when the period ends.
+  A client that answers each report with one set-point flies the same at every
+  speed. Do not ask for reports more often than once per period.
+  streaming   time waits from the first set-point on; outside of Offboard (Guided)
+              until none has come for 0.5 s
+  always      time also waits for the first set-point, so that the whole flight
+              is the same bit for bit; send set-points from the first moment on
+  If the client disconnects in flight, or is silent for --lockstep-timeout, the
+  vehicle says so and flies on without waiting, until the next set-point.
 
 External autopilot:
   --hil 4560   then, for PX4: make px4_sitl none_iris (its motors 1 to 4: front
@@ -130,11 +132,10 @@ pub struct Arguments {
     pub speed: Option<Speed>,
 
     /// Let simulation time wait for a client's set-points, so that a closed loop flies the same at every --speed, see below:
-    /// `offboard` while they steer the vehicle, `always` from the start and in every mode [default: off; `offboard` without
-    /// a value]
+    /// `streaming` while it streams them, `always` from the start [default: off; `streaming` without a value]
     #[arg(
-        long, env = "LMPC_SITL_LOCKSTEP", value_name = "offboard|always", num_args = 0..=1,
-        default_missing_value = "offboard"
+        long, env = "LMPC_SITL_LOCKSTEP", value_name = "streaming|always", num_args = 0..=1,
+        default_missing_value = "streaming"
     )]
     pub lockstep: Option<LockstepPhase>,
 
@@ -142,7 +143,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_LOCKSTEP_PERIOD", value_name = "SECONDS", value_parser = number(0.001, 1.0), allow_hyphen_values = true)]
     pub lockstep_period: Option<f64>,
 
-    /// Seconds of the wall clock that an armed vehicle waits for a set-point in lock-step before it flies on, 0.1 to 1000000
+    /// Seconds of the wall clock that a vehicle in flight waits for a set-point in lock-step before it flies on, 0.1 to 1000000
     /// [default: 5]
     #[arg(long, env = "LMPC_SITL_LOCKSTEP_TIMEOUT", value_name = "SECONDS", value_parser = number(0.1, 1e6), allow_hyphen_values = true)]
     pub lockstep_timeout: Option<f64>,

@@ -4,7 +4,7 @@
 //!                       set-point                        end of the period
 //!   free-running ─────────────────────► flying a period ───────────────────► waiting
 //!        ▲                                     ▲           ◄── set-point ──     │
-//!        └──── no longer steered by set-points, or none within the time-out ────┘
+//!        └──────────────────── no set-point for too long ────────────────────────┘
 //! ```
 //!
 //! While a period is flown, received messages are held until it ends. So each message takes effect at a simulation time
@@ -23,15 +23,18 @@ use crate::link::Received;
 const MOST_SET_POINTS: usize = 1;
 /// Messages that are held at most.
 const MOST_HELD: usize = 1_000;
+/// Where nothing depends on set-points, a client that is silent for so long has ended its stream: PX4, too, asks for two a
+/// second.
+const STREAM_END: Duration = Duration::from_millis(500);
 /// A client that does not answer a report gets another one: UDP may have lost it.
 const REMINDER: Duration = Duration::from_secs(1);
 
 /// When simulation time waits for set-points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum LockstepPhase {
-    /// While set-points steer the vehicle.
+    /// While a client streams them.
     #[default]
-    Offboard,
+    Streaming,
     /// From the start, in every mode.
     Always,
 }
@@ -43,7 +46,7 @@ pub struct LockstepSettings {
     pub phase: LockstepPhase,
     /// Simulated time that each set-point is good for, µs.
     pub period_us: u64,
-    /// An armed vehicle that has waited so long flies on.
+    /// A vehicle in flight that has waited so long flies on.
     pub timeout: Duration,
 }
 
@@ -136,8 +139,7 @@ impl Lockstep {
             }
         }
         let received = self.held.pop_front()?;
-        if is_set_point(&received.frame) && (self.settings.phase == LockstepPhase::Always || is_steered(now))
-        {
+        if is_set_point(&received.frame) {
             self.until_us = Some(now.time_us + self.settings.period_us);
             self.client = Some(received.origin.peer);
             (self.reported, self.waiting_since, self.reminded) = (false, None, None);
@@ -156,18 +158,18 @@ impl Lockstep {
             Some(until_us) if now.time_us >= until_us => {}
             _ => return Step::Fly,
         }
-        if self.settings.phase == LockstepPhase::Offboard && !is_steered(now) {
-            self.until_us = None;
-            return Step::Fly;
-        }
+        let always = self.settings.phase == LockstepPhase::Always;
         // On the ground nothing is lost by waiting.
-        if !now.armed {
+        let unlimited = always && !now.armed;
+        if unlimited {
             self.waiting_since = None;
         }
+        let needed = always || is_steered(now);
+        let longest = if needed { self.settings.timeout } else { STREAM_END };
         let waited = wall.saturating_duration_since(*self.waiting_since.get_or_insert(wall));
-        if now.armed && (waited >= self.settings.timeout || !connected) {
+        if !unlimited && (waited >= longest || !connected) {
             (self.until_us, self.waiting_since) = (None, None);
-            return Step::GiveUp;
+            return if needed { Step::GiveUp } else { Step::Fly };
         }
         let silent = wall.saturating_duration_since(*self.reminded.get_or_insert(wall));
         match self.client {
@@ -235,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_set_point_is_good_for_one_period_and_what_comes_meanwhile_waits_for_its_end() {
-        let mut lockstep = lockstep(LockstepPhase::Offboard);
+        let mut lockstep = lockstep(LockstepPhase::Streaming);
         assert_eq!(lockstep.limit_us(), None);
         set_point(&mut lockstep);
         heartbeat(&mut lockstep);
@@ -252,7 +254,7 @@ mod tests {
 
     #[test]
     fn surplus_set_points_do_not_pile_up() {
-        let mut lockstep = lockstep(LockstepPhase::Offboard);
+        let mut lockstep = lockstep(LockstepPhase::Streaming);
         (0..5).for_each(|_| set_point(&mut lockstep));
         assert_eq!(taken(&mut lockstep, &STEERED).len(), 4);
         assert_eq!(lockstep.limit_us(), Some(120_000));
@@ -273,7 +275,7 @@ mod tests {
 
     #[test]
     fn the_client_is_told_where_the_vehicle_is_and_told_again() {
-        let mut lockstep = lockstep(LockstepPhase::Offboard);
+        let mut lockstep = lockstep(LockstepPhase::Streaming);
         set_point(&mut lockstep);
         assert_eq!(taken(&mut lockstep, &STEERED).len(), 1);
         let end = Circumstances { time_us: 120_000, ..STEERED };
@@ -293,7 +295,7 @@ mod tests {
     #[test]
     fn an_armed_vehicle_gives_up_after_the_timeout_or_when_the_client_is_gone() {
         for (waited, connected) in [(TIMEOUT, true), (Duration::ZERO, false)] {
-            for phase in [LockstepPhase::Offboard, LockstepPhase::Always] {
+            for phase in [LockstepPhase::Streaming, LockstepPhase::Always] {
                 let mut lockstep = lockstep(phase);
                 set_point(&mut lockstep);
                 assert_eq!(taken(&mut lockstep, &STEERED).len(), 1);
@@ -325,16 +327,21 @@ mod tests {
     }
 
     #[test]
-    fn offboard_lockstep_ends_with_the_mode() {
-        let mut lockstep = lockstep(LockstepPhase::Offboard);
-        // Before it steers, a set-point is only a sign of life.
-        set_point(&mut lockstep);
-        assert_eq!(taken(&mut lockstep, &Circumstances { offboard: false, ..STEERED }).len(), 1);
-        assert_eq!(lockstep.limit_us(), None);
-        set_point(&mut lockstep);
-        assert_eq!(taken(&mut lockstep, &STEERED).len(), 1);
-        let landing = Circumstances { time_us: 120_000, offboard: false, ..STEERED };
-        assert_eq!(lockstep.step(&landing, Instant::now(), true), Step::Fly);
-        assert_eq!(lockstep.limit_us(), None);
+    fn a_stream_may_end_without_a_word_where_nothing_depends_on_it() {
+        let mut lockstep = lockstep(LockstepPhase::Streaming);
+        for not_steered in
+            [Circumstances { offboard: false, ..STEERED }, Circumstances { armed: false, ..STEERED }]
+        {
+            // The stream begins before the mode that follows it.
+            set_point(&mut lockstep);
+            assert_eq!(taken(&mut lockstep, &not_steered).len(), 1);
+            assert_eq!(lockstep.limit_us(), Some(120_000));
+            let end = Circumstances { time_us: 120_000, ..not_steered };
+            let wall = Instant::now();
+            assert_eq!(lockstep.step(&end, wall, true), Step::Report(CLIENT));
+            assert_eq!(lockstep.step(&end, wall + Duration::from_millis(499), true), Step::Wait);
+            assert_eq!(lockstep.step(&end, wall + Duration::from_millis(500), true), Step::Fly);
+            assert_eq!(lockstep.limit_us(), None);
+        }
     }
 }
