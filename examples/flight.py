@@ -173,7 +173,13 @@ class Flight:
             each_tick()
             self.tick()
 
+    def stand(self):
+        """Waits until the vehicle is known to stand on the ground, where it can be armed."""
+        self.until(lambda: getattr(self.latest.get("EXTENDED_SYS_STATE"), "landed_state", None) == mavlink.MAV_LANDED_STATE_ON_GROUND,
+                   20, "standing on the ground")
+
     def take_off(self):
+        self.stand()
         self.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
         self.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
         self.until(lambda: abs(self.position[2] + 2.5) < 0.1 and abs(self.velocity[2]) < 0.1, 20, "takeoff")

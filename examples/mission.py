@@ -36,6 +36,7 @@ def beside(position, start, end) -> float:
 options = arguments(__doc__, "mission.png")
 flight = Flight(options.connect)
 flight.upload(MISSION)
+flight.stand()
 flight.command(mavlink.MAV_CMD_MISSION_START)
 for kind in ("MISSION_CURRENT", "MISSION_ITEM_REACHED"):
     flight.latest.pop(kind, None)  # of an earlier mission
