@@ -108,7 +108,15 @@ fn what_does_not_fit_is_refused_by_its_name() {
         let error = settings(line).expect_err(line).to_string();
         assert!(error.contains(words), "{error}");
     }
-    for wrong in ["--lockstep never", "--lockstep --lockstep-period 2", "--vehicles 0", "--vehicles 251", "--ports mine", "--clocks none", "--formation star"] {
+    for wrong in [
+        "--lockstep never",
+        "--lockstep --lockstep-period 2",
+        "--vehicles 0",
+        "--vehicles 251",
+        "--ports mine",
+        "--clocks none",
+        "--formation star",
+    ] {
         let words = ["lmpc-sitl"].into_iter().chain(wrong.split_whitespace());
         assert!(Arguments::try_parse_from(words).is_err(), "{wrong}");
     }

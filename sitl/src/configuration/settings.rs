@@ -17,7 +17,7 @@ use vehicle::{Conduct, TICK_US, VehicleSettings};
 use super::start_parameters::set_parameters;
 use super::{Arguments, Clocks, Ports, read_plans, wind_drag};
 use crate::failure::Failure;
-use crate::fleet::LockstepSettings;
+use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
@@ -89,7 +89,7 @@ impl Settings {
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
         let hubs = if shared { 1 } else { count };
         Ok(Self {
-            notes: notes(&vehicles, vehicle_notes),
+            notes: lockstep_note(arguments).into_iter().chain(notes(&vehicles, vehicle_notes)).collect(),
             vehicles,
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
@@ -144,6 +144,12 @@ fn lockstep(arguments: &Arguments) -> Result<Option<LockstepSettings>, Failure> 
     let ticks = (arguments.lockstep_period.unwrap_or(PERIOD_S) * 1e6 / TICK_US as f64).round() as u64;
     let timeout = Duration::from_secs_f64(arguments.lockstep_timeout.unwrap_or(TIMEOUT_S));
     Ok(Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout }))
+}
+
+/// A vehicle that does not move must not look broken.
+fn lockstep_note(arguments: &Arguments) -> Option<String> {
+    let waits = arguments.lockstep == Some(LockstepPhase::Always);
+    waits.then(|| "Lock-step: simulation time begins with the first set-point".to_owned())
 }
 
 /// Notes about vehicles: one for all that have the same, else each with the system that it is about.

@@ -13,7 +13,7 @@ use crate::pace::Pace;
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);
 
-/// Simulation time of some vehicles: they tick in lock-step, and share its speed.
+/// Simulation time of some vehicles: they tick together, and share its speed.
 #[derive(Debug)]
 pub struct Clock {
     pace: Pace,

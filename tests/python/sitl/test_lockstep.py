@@ -137,7 +137,7 @@ def test_a_waiting_vehicle_ends_when_it_is_told_to(start):
     vehicle = start("--lockstep", "always")
     begin = time.monotonic()
     assert vehicle.stop() == 0 and time.monotonic() - begin < 5
-    assert "flew 0.000 s" in vehicle.output()
+    assert "flew 0.000 s" in vehicle.output() and "simulation time begins with the first set-point" in vehicle.output()
 
 
 @pytest.mark.parametrize("arguments, reason", [
