@@ -82,6 +82,14 @@ impl Autopilot {
         self.context.outbox.send(Destination::Everyone, heartbeat::message(&self.context.vehicle));
     }
 
+    /// A message of the table of streams, to one client, beside the regular ones.
+    pub fn report(&mut self, id: u32, to: PeerId) {
+        let stream = self.context.streams.get(id);
+        if let Some(message) = stream.and_then(|stream| stream.message(&self.context.component())) {
+            self.context.outbox.send(Destination::Peer(to), message);
+        }
+    }
+
     /// Lines for the pilot since the last call, with their times, µs.
     pub fn take_texts(&mut self) -> Vec<(u64, Severity, String)> {
         self.context.outbox.take_lines()

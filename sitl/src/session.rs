@@ -13,6 +13,8 @@ use crate::terminal::{StatusLine, of_fleet};
 
 /// Longest rest between two looks at the links.
 const REST: Duration = Duration::from_millis(1);
+/// The same while a set-point is expected: a client's answer must not wait for us.
+const SHORT_REST: Duration = Duration::from_micros(20);
 
 /// A fleet with its clocks.
 #[derive(Debug)]
@@ -87,12 +89,13 @@ fn fly(
         for clock in clocks.iter_mut().filter(|clock| !clock.is_over()) {
             behind |= clock.advance(fleet, now, several)?;
         }
+        let expected = fleet.keep_in_step(now);
         fleet.keep_links_alive(now);
         fleet.keep_logs(now);
         fleet.flush();
         status.update(now, fleet.time_us(), || of_fleet(fleet));
         if !behind {
-            std::thread::sleep(REST);
+            std::thread::sleep(if expected { SHORT_REST } else { REST });
         }
     }
     status.clear();

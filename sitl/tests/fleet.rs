@@ -105,11 +105,21 @@ fn what_does_not_fit_is_refused_by_its_name() {
         ("--vehicles 2 --system-id 250", "the largest is 250"),
         ("--vehicles 2 --link serial:/dev/null", "leaves no port for vehicle 2"),
         ("--vehicles 2 --link tcpin:65535", "leaves no port for vehicle 2"),
+        ("--lockstep-period 0.05", "--lockstep-period: needs --lockstep"),
+        ("--lockstep-timeout 9", "--lockstep-timeout: needs --lockstep"),
     ] {
         let error = settings(line).expect_err(line).to_string();
         assert!(error.contains(words), "{error}");
     }
-    for wrong in ["--vehicles 0", "--vehicles 251", "--ports mine", "--clocks none", "--formation star"] {
+    for wrong in [
+        "--lockstep never",
+        "--lockstep --lockstep-period 2",
+        "--vehicles 0",
+        "--vehicles 251",
+        "--ports mine",
+        "--clocks none",
+        "--formation star",
+    ] {
         let words = ["lmpc-sitl"].into_iter().chain(wrong.split_whitespace());
         assert!(Arguments::try_parse_from(words).is_err(), "{wrong}");
     }

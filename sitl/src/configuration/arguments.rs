@@ -12,6 +12,7 @@ use super::help::{self, FILES, FLEET, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{Addressed, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom};
 use super::{Conventions, LogFilter};
+use crate::fleet::LockstepPhase;
 use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::link::LinkSpecification;
@@ -134,6 +135,28 @@ pub struct Arguments {
     /// From 0.01 to 1000; 0 is paused. The parameter SIM_SPEEDUP changes it in flight.
     #[arg(long, env = "LMPC_SITL_SPEED", value_name = "X|max", allow_hyphen_values = true, help_heading = SIMULATION)]
     pub speed: Option<Speed>,
+
+    /// Simulated time waits for a client's set-points
+    ///
+    /// A closed loop then flies the same at every --speed; see "Lock-step" below. `streaming` waits while a client streams
+    /// set-points, `always` from the start. [default: off; `streaming` without a value]
+    #[arg(
+        long, env = "LMPC_SITL_LOCKSTEP", value_name = "PHASE", num_args = 0..=1,
+        default_missing_value = "streaming", help_heading = SIMULATION
+    )]
+    pub lockstep: Option<LockstepPhase>,
+
+    /// Simulated time that a set-point grants [default: 0.02]
+    ///
+    /// From 0.001 to 1 s, in lock-step.
+    #[arg(long, env = "LMPC_SITL_LOCKSTEP_PERIOD", value_name = "SECONDS", value_parser = number(0.001, 1.0), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
+    pub lockstep_period: Option<f64>,
+
+    /// Longest wait for a set-point in flight [default: 5]
+    ///
+    /// Seconds of the wall clock, 0.1 to 1000000. The vehicle then flies on without waiting.
+    #[arg(long, env = "LMPC_SITL_LOCKSTEP_TIMEOUT", value_name = "SECONDS", value_parser = number(0.1, 1e6), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
+    pub lockstep_timeout: Option<f64>,
 
     /// End after this much simulated time
     #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", value_parser = number(0.0, 1e9), allow_hyphen_values = true, help_heading = SIMULATION)]
@@ -279,6 +302,9 @@ impl Arguments {
             autopilot: self.autopilot.or(file.autopilot),
             home: self.home.or(file.home),
             speed: self.speed.or(file.speed),
+            lockstep: self.lockstep.or(file.lockstep),
+            lockstep_period: self.lockstep_period.or(file.lockstep_period),
+            lockstep_timeout: self.lockstep_timeout.or(file.lockstep_timeout),
             wind: self.wind.or(file.wind),
             gusts: self.gusts.or(file.gusts),
             sensors: self.sensors.or(file.sensors),

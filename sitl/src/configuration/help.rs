@@ -64,6 +64,20 @@ Examples:
   Flight logs  lmpc-sitl --log-dir logs --log-start boot
   PX4          lmpc-sitl --hil 4560
 
+Lock-step (--speed max --lockstep always):
+  Each set-point (SET_POSITION_TARGET_*, SET_ATTITUDE_TARGET), in any mode, lets
+  the vehicle fly one --lockstep-period. Then time stops: the vehicle sends
+  LOCAL_POSITION_NED, unless it did in that period, and waits for the next
+  set-point. Messages that arrive in between take effect when the period ends.
+  A client that answers each report with one set-point flies the same at every
+  speed. Do not ask for reports more often than once per period.
+    streaming   time waits from the first set-point on; outside of Offboard
+                (Guided) until none has come for 0.5 s
+    always      time also waits for the first set-point, so that the whole
+                flight is the same bit for bit
+  If the client disconnects in flight, or is silent for --lockstep-timeout, the
+  vehicle says so and flies on without waiting, until the next set-point.
+
 Several vehicles:
   Each has its own default ports, as PX4's instances have; with --link, local
   ports count up (tcpin:5760 to tcpin:5764), and so does the port that an onboard

@@ -20,6 +20,7 @@ impl HilSettings {
             ("ports", arguments.ports.is_some()),
             ("formation", arguments.formation.is_some()),
             ("clocks", arguments.clocks.is_some()),
+            ("lockstep", arguments.lockstep.is_some()),
             ("link", arguments.link.is_some()),
             ("record", arguments.record.is_some()),
             ("record-size", arguments.record_size.is_some()),

@@ -21,6 +21,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         autopilot,
         home,
         speed,
+        lockstep,
+        lockstep_period,
+        lockstep_timeout,
         wind,
         gusts,
         sensors,
@@ -60,6 +63,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("autopilot", autopilot.is_some()),
         ("home", home.is_some()),
         ("speed", speed.is_some()),
+        ("lockstep", lockstep.is_some()),
+        ("lockstep-period", lockstep_period.is_some()),
+        ("lockstep-timeout", lockstep_timeout.is_some()),
         ("wind", wind.is_some()),
         ("gusts", gusts.is_some()),
         ("sensors", sensors.is_some()),
@@ -120,6 +126,7 @@ mod tests {
         ("wind", "3"),
         ("list-parameters", "json"),
         ("log", "warn"),
+        ("lockstep", "always"),
     ];
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use nalgebra::Vector3;
 use quadrotor::Configuration;
@@ -11,11 +12,12 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, Notice, VehicleSettings};
+use vehicle::{Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
+use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
@@ -34,6 +36,8 @@ pub struct Settings {
     pub clocks: Clocks,
     /// Pace.
     pub speed: Speed,
+    /// Whether and how simulation time waits for set-points.
+    pub lockstep: Option<LockstepSettings>,
     /// Record to be written.
     pub record: Option<PathBuf>,
     /// Size that the record may get, bytes.
@@ -92,11 +96,12 @@ impl Settings {
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
         let hubs = if shared { 1 } else { count };
         Ok(Self {
-            notes: notes(&vehicles, vehicle_notes),
+            notes: lockstep_note(arguments).into_iter().chain(notes(&vehicles, vehicle_notes)).collect(),
             vehicles,
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
+            lockstep: lockstep(arguments)?,
             record: arguments.record.clone(),
             record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
@@ -126,6 +131,34 @@ impl Settings {
         };
         self.vehicles.iter().map(participant).collect()
     }
+}
+
+/// Whether and how simulation time waits for set-points.
+fn lockstep(arguments: &Arguments) -> Result<Option<LockstepSettings>, Failure> {
+    const PERIOD_S: f64 = 0.02;
+    const TIMEOUT_S: f64 = 5.0;
+    let Some(phase) = arguments.lockstep else {
+        for (name, given) in [
+            ("--lockstep-period", arguments.lockstep_period),
+            ("--lockstep-timeout", arguments.lockstep_timeout),
+        ] {
+            if given.is_some() {
+                let reason = "needs --lockstep".to_owned();
+                return Err(Failure::Value { name: name.to_owned(), reason });
+            }
+        }
+        return Ok(None);
+    };
+    let ticks = (arguments.lockstep_period.unwrap_or(PERIOD_S) * 1e6 / TICK_US as f64).round() as u64;
+    let timeout = Duration::from_secs_f64(arguments.lockstep_timeout.unwrap_or(TIMEOUT_S));
+    Ok(Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout }))
+}
+
+/// A vehicle that does not move must not look broken.
+fn lockstep_note(arguments: &Arguments) -> Option<Notice> {
+    let waits = arguments.lockstep == Some(LockstepPhase::Always);
+    let text = || "lock-step: simulation time starts with the first set-point".to_owned();
+    waits.then(|| Notice { severity: Severity::Info, text: text() })
 }
 
 /// Notes about vehicles: one for all that have the same, else each with the system that it is about.

@@ -13,7 +13,7 @@ pub enum Ports {
 /// Whose simulation time is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Clocks {
-    /// All vehicles tick in lock-step, at one speed
+    /// All vehicles tick together, at one speed
     #[default]
     Shared,
     /// Each vehicle has its own time and SIM_SPEEDUP

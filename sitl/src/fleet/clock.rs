@@ -13,7 +13,7 @@ use crate::pace::Pace;
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);
 
-/// Simulation time of some vehicles: they tick in lock-step, and share its speed.
+/// Simulation time of some vehicles: they tick together, and share its speed.
 #[derive(Debug)]
 pub struct Clock {
     pace: Pace,
@@ -41,9 +41,10 @@ impl Clock {
     /// [`Failure`] of the simulation.
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> Result<bool, Failure> {
         self.agree_on_speed(fleet, now);
+        let limit_us = fleet.limit_us(self.members.clone());
         match self.pace.goal_us(self.speed, now, self.time_us) {
-            None => self.fly_for(fleet, BURST / clocks.max(1)),
-            Some(goal_us) => self.fly_to(fleet, goal_us, 4 * BURST / clocks.max(1)),
+            None => self.fly_for(fleet, limit_us, BURST / clocks.max(1)),
+            Some(goal_us) => self.fly_to(fleet, goal_us.min(limit_us), 4 * BURST / clocks.max(1)),
         }
     }
 
@@ -81,12 +82,15 @@ impl Clock {
         Ok(false)
     }
 
-    /// As fast as possible.
-    fn fly_for(&mut self, fleet: &mut Fleet, longest: Duration) -> Result<bool, Failure> {
+    /// As fast as possible, but no further than a limit.
+    fn fly_for(&mut self, fleet: &mut Fleet, limit_us: u64, longest: Duration) -> Result<bool, Failure> {
         let start = Instant::now();
         while start.elapsed() < longest && !self.is_over() {
             // Asking the clock costs more than a tick.
             for _ in 0..16 {
+                if self.time_us + TICK_US > limit_us {
+                    return Ok(false);
+                }
                 if self.is_over() {
                     break;
                 }

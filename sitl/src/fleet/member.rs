@@ -4,8 +4,10 @@ use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
+use vehicle::Mode;
 use vehicle::parameters::Speed;
 
+use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
 use crate::files::Disk;
@@ -27,6 +29,7 @@ pub struct Member {
     pub(super) autopilot: Autopilot,
     pub(super) hub: usize,
     pub(super) last_heartbeat: Instant,
+    pub(super) lockstep: Option<Lockstep>,
     /// When a ground station was heard last, and what the vehicle knows of it.
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
@@ -50,6 +53,7 @@ impl Member {
             autopilot: Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
             hub,
             last_heartbeat: Instant::now(),
+            lockstep: None,
             ground_station: None,
             digest: Digest::default(),
             parameters,
@@ -64,6 +68,23 @@ impl Member {
         self.autopilot.share(Box::new(files));
         self.log = log;
         self
+    }
+
+    /// Lets its simulation time wait for set-points.
+    pub(super) fn keep_step(mut self, settings: Option<LockstepSettings>) -> Self {
+        self.lockstep = settings.map(Lockstep::new);
+        self
+    }
+
+    /// What lock-step goes by.
+    pub(super) fn circumstances(&self) -> Circumstances {
+        let vehicle = self.autopilot.vehicle();
+        Circumstances {
+            time_us: vehicle.time_us(),
+            armed: vehicle.is_armed(),
+            offboard: vehicle.mode() == Mode::Offboard,
+            paused: self.autopilot.speed() == Speed::Paused,
+        }
     }
 
     /// The vehicle with its services.
@@ -139,7 +160,7 @@ impl Member {
 
     /// Whether its links would look dead, because simulation time is slow.
     pub(super) fn is_silent(&self, now: Instant) -> bool {
-        let slow = !matches!(self.autopilot.speed(), Speed::Max);
+        let slow = self.lockstep.is_some() || !matches!(self.autopilot.speed(), Speed::Max);
         slow && now.saturating_duration_since(self.last_heartbeat) > HEARTBEAT
     }
 

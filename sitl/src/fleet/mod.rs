@@ -10,11 +10,13 @@
 
 mod books;
 mod clock;
+mod lockstep;
 mod member;
 mod parameter_file;
 mod roster;
 mod signing_keeper;
 
 pub use clock::Clock;
+pub use lockstep::{LockstepPhase, LockstepSettings};
 pub use member::Member;
 pub use roster::Fleet;

@@ -1,18 +1,22 @@
 //! All vehicles with their links: messages go to those that they are for.
 
+use std::ops::Range;
 use std::time::Instant;
 
 use autopilot::codec::{id, target_of};
+use autopilot::envelope::{Destination, Outgoing};
+use vehicle::Severity;
 
 use super::Member;
 use super::books::Books;
+use super::lockstep::{Lockstep, Step};
 use super::parameter_file::ParameterFile;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, FileLock, LogFolder};
 use crate::flight_log::FlightLog;
-use crate::link::Links;
+use crate::link::{Links, Received};
 use crate::terminal::set_simulation_time;
 
 /// The vehicles of a run and the hubs that they are behind.
@@ -60,7 +64,7 @@ impl Fleet {
                 let parameters = own.parameters.as_deref().map(ParameterFile::open).transpose()?;
                 let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
-                Ok(member.keep(files, log))
+                Ok(member.keep(files, log).keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Self { members, hubs, signing, books, _key_lock: key_lock })
@@ -102,13 +106,80 @@ impl Fleet {
                     }
                     if target == 0 || target == member.autopilot.system_id() {
                         member.hear(&received.frame, now);
-                        self.books.received(number, time_us, &received);
-                        member.autopilot.receive(&received.origin, &received.frame);
-                        self.send(number, now);
+                        match &mut member.lockstep {
+                            Some(lockstep) => lockstep.put(received.clone()),
+                            None => self.take_in(number, &received, now),
+                        }
                     }
                 }
             }
         }
+        self.take_held(now);
+    }
+
+    /// A message takes effect on a vehicle.
+    fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
+        let Some(member) = self.members.get_mut(number) else { return };
+        self.books.received(number, member.time_us(), received);
+        member.autopilot.receive(&received.origin, &received.frame);
+        self.send(number, now);
+    }
+
+    /// Messages that lock-step has held take effect if it is time.
+    fn take_held(&mut self, now: Instant) {
+        for number in 0..self.members.len() {
+            while let Some(received) = self.members.get_mut(number).and_then(|member| {
+                let circumstances = member.circumstances();
+                member.lockstep.as_mut()?.take(&circumstances)
+            }) {
+                self.take_in(number, &received, now);
+            }
+        }
+    }
+
+    /// Simulation time that lock-step lets these vehicles reach now, µs.
+    pub(super) fn limit_us(&self, members: Range<usize>) -> u64 {
+        let members = self.members.get(members).unwrap_or_default();
+        let limits = members.iter().filter_map(|member| member.lockstep.as_ref()?.limit_us());
+        limits.min().unwrap_or(u64::MAX)
+    }
+
+    /// Tells clients that a vehicle waits for where it is, and gives up those that are gone. Whether a set-point can be
+    /// expected at any moment.
+    pub(crate) fn keep_in_step(&mut self, now: Instant) -> bool {
+        let mut expected = false;
+        for number in 0..self.members.len() {
+            let Some(member) = self.members.get_mut(number) else { continue };
+            let circumstances = member.circumstances();
+            let Some(lockstep) = &mut member.lockstep else { continue };
+            let hub = self.hubs.get(member.hub);
+            let connected = lockstep
+                .client()
+                .is_none_or(|client| hub.is_some_and(|links| links.has_room(client).is_some()));
+            let timeout_s = lockstep.timeout().as_secs_f64();
+            match lockstep.step(&circumstances, now, connected) {
+                Step::Fly | Step::Wait => continue,
+                Step::Expect => expected = true,
+                Step::Report(client) => {
+                    expected = true;
+                    member.autopilot.report(id::LOCAL_POSITION_NED, client);
+                }
+                Step::GiveUp => {
+                    let reason = if connected {
+                        format!("no set-point for {timeout_s} s")
+                    } else {
+                        "client disconnected".to_owned()
+                    };
+                    let system = member.autopilot.system_id();
+                    tracing::warn!(
+                        "system {system}: lock-step suspended ({reason}); the next set-point resumes it"
+                    );
+                    member.autopilot.announce(Severity::Warning, &format!("Lock-step suspended: {reason}"));
+                }
+            }
+            self.send(number, now);
+        }
+        expected
     }
 
     /// Keeps what has changed about signing at a hub before it takes effect, and tells it to those behind it. A key is
@@ -154,6 +225,11 @@ impl Fleet {
         for outgoing in member.autopilot.take_outgoing() {
             if outgoing.message.id() == id::HEARTBEAT {
                 member.last_heartbeat = now;
+            }
+            if let Some(lockstep) = &mut member.lockstep
+                && reports_to_client(&outgoing, lockstep)
+            {
+                lockstep.has_reported();
             }
             if let Some(frame) = links.send(&outgoing, member.autopilot.system_id()) {
                 self.books.traffic(member.time_us(), &frame);
@@ -210,4 +286,14 @@ impl Fleet {
         lacking.append(&mut self.books.finish(&self.members));
         (self.members, lacking)
     }
+}
+
+/// Whether a message tells the client of lock-step where the vehicle is.
+fn reports_to_client(outgoing: &Outgoing, lockstep: &Lockstep) -> bool {
+    outgoing.message.id() == id::LOCAL_POSITION_NED
+        && lockstep.client().is_some_and(|client| match outgoing.to {
+            Destination::Everyone => true,
+            Destination::Link(link) => link == client.link,
+            Destination::Peer(peer) => peer == client,
+        })
 }
