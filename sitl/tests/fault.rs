@@ -178,7 +178,7 @@ fn faults_come_and_go_by_the_schedule() {
     assert!(remaining(&bench) > 0.99);
     bench.fly(0.002);
     assert_eq!(remaining(&bench), 0.0);
-    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, needs 15 %"]);
+    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, required 15 %"]);
     bench.fly(1.1);
     let voltage = bench.heard.iter().rev().find_map(|message| match message {
         Message::Typed(MavMessage::SYS_STATUS(status)) => {
@@ -198,12 +198,12 @@ fn faults_come_and_go_by_the_schedule() {
 fn what_has_no_meaning_is_refused_with_the_reason() {
     let mut bench = Bench::new(Identity::Px4);
     for (unit, kind, instance, result, reason) in [
-        (5.0, OFF, 0.0, UNSUPPORTED, "no failure unit 5"),
-        (MOTOR, 9.0, 0.0, UNSUPPORTED, "no failure type 9"),
+        (5.0, OFF, 0.0, UNSUPPORTED, "unknown failure unit 5"),
+        (MOTOR, 9.0, 0.0, UNSUPPORTED, "unknown failure type 9"),
         (MOTOR, OFF, 5.0, UNSUPPORTED, "no motor 5"),
-        (MOTOR, 3.0, 1.0, UNSUPPORTED, "a motor cannot be `garbage`"),
-        (BATTERY, 6.0, 0.0, UNSUPPORTED, "a battery cannot be `delayed`"),
-        (4.0, OFF, 3.0, UNSUPPORTED, "no instance 3"),
+        (MOTOR, 3.0, 1.0, UNSUPPORTED, "unknown fault `garbage` of motor"),
+        (BATTERY, 6.0, 0.0, UNSUPPORTED, "unknown fault `delayed` of battery"),
+        (4.0, OFF, 3.0, UNSUPPORTED, "unknown instance 3"),
         (0.5, OFF, 0.0, DENIED, "needs a unit"),
     ] {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");

@@ -99,11 +99,7 @@ fn it_stops_in_front_of_the_border() {
     assert!(fastest > 3.0, "{fastest} m/s");
     assert!((26.0..30.0).contains(&farthest), "{farthest} m");
     assert_eq!(bench.mode(), Mode::Hold);
-    assert!(
-        bench.texts().iter().any(|text| text == "Failsafe: Fence breached (outside the fence): hold"),
-        "{:?}",
-        bench.texts()
-    );
+    assert!(bench.texts().iter().any(|text| text == "Fence ahead: holding"), "{:?}", bench.texts());
     assert_eq!(bench.set_mode(Mode::Position), 0);
     bench.stream(5.0, |bench| {
         forward(bench);
@@ -253,14 +249,14 @@ fn each_action_is_taken_at_the_border() {
         assert_eq!(status.breach_type, FenceBreach::FENCE_BREACH_BOUNDARY);
         assert!((1000..bench.autopilot.vehicle().time_us() as u32 / 1000).contains(&status.breach_time));
         let texts = bench.texts();
-        let told = texts.into_iter().filter(|text| text.starts_with("Failsafe: Fence"));
+        let told = texts.into_iter().filter(|text| text.starts_with("Fence"));
         let told: Vec<_> = told.take(if fell { 1 } else { usize::MAX }).collect();
         match action {
             Action::None => assert!(told.is_empty(), "{told:?}"),
-            Action::Warn => assert_eq!(told, ["Failsafe: Fence breached (outside the fence)"]),
+            Action::Warn => assert_eq!(told, ["Fence ahead"]),
             _ => {
-                let action = action.name();
-                assert_eq!(told, [format!("Failsafe: Fence breached (outside the fence): {action}")]);
+                let action = action.doing();
+                assert_eq!(told, [format!("Fence ahead: {action}")]);
             }
         }
         match action {
@@ -393,9 +389,9 @@ fn a_mission_that_a_later_fence_forbids_is_not_begun() {
     let mut bench = Bench::of(&start);
     bench.heard = upload(&mut bench, PlanKind::Fence, &square(&start, 30.0));
     assert_eq!(result(&bench.heard), Some(0));
-    let told = "Mission cannot be flown: item 2: outside the fence";
+    let told = "Mission cannot be flown: item 3: outside the fence";
     assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
-    let reason = "Mission denied: item 2: outside the fence";
+    let reason = "Mission rejected: item 3: outside the fence";
     assert_eq!(bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), DENIED);
     assert!(bench.texts().iter().any(|text| text == reason), "{:?}", bench.texts());
     assert_eq!(bench.set_mode(Mode::Mission), DENIED);

@@ -237,13 +237,17 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
         (with(93, [-0.5, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "delay -0.5"),
         (with(93, [-1.0; 4]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "needs an hour"),
         (with(93, [-1.0, 24.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "hour 24"),
-        (with(93, [-1.0, 1.0, 0.5, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM3, "0.5 is not a whole"),
+        (
+            with(93, [-1.0, 1.0, 0.5, 0.0]),
+            MavMissionResult::MAV_MISSION_INVALID_PARAM3,
+            "= 0.5 must be a whole",
+        ),
     ];
     for (wrong, expected, line) in cases {
         let heard = client.upload(PlanKind::Mission, &[good, wrong, good]);
         assert_eq!(result(&heard), Some(expected as u8), "{wrong:?}");
         let text = texts(heard);
-        assert!(text.contains("item 1") && text.contains(line), "{text}");
+        assert!(text.contains("item 2") && text.contains(line), "{text}");
         assert_eq!(client.plan(PlanKind::Mission), old);
         client.bench.fly(1.1);
     }

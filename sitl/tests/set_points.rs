@@ -232,11 +232,7 @@ fn a_position_with_a_velocity_runs_on_until_it_is_lost() {
     assert!(reference.position_m.x > 0.8 && bench.mode() == Mode::Offboard, "{reference:?}");
     bench.fly(0.1);
     assert_eq!(bench.mode(), Mode::Hold);
-    assert!(
-        bench.texts().iter().any(|text| text == "Failsafe: Set-points lost: hold"),
-        "{:?}",
-        bench.texts()
-    );
+    assert!(bench.texts().iter().any(|text| text == "Set-points lost: holding"), "{:?}", bench.texts());
     bench.fly(6.0);
     assert!(bench.velocity()[0].abs() < 0.02);
 }

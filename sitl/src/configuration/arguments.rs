@@ -167,6 +167,10 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_MISSION", value_name = "[ID:]FILE", value_delimiter = ';')]
     pub mission: Option<Vec<Addressed<PathBuf>>>,
 
+    /// Arm and start the mission of --mission as soon as the vehicle is ready [default: false]
+    #[arg(long, env = "LMPC_SITL_AUTOSTART", value_name = "true|false", num_args = 0..=1, default_missing_value = "true")]
+    pub autostart: Option<bool>,
+
     /// Record received messages with their simulation times, to be replayed
     #[arg(long, env = "LMPC_SITL_RECORD", value_name = "FILE", conflicts_with = "replay")]
     pub record: Option<PathBuf>,
@@ -259,6 +263,7 @@ impl Arguments {
             fault: self.fault.or(file.fault),
             parameters: self.parameters.or(file.parameters),
             mission: self.mission.or(file.mission),
+            autostart: self.autostart.or(file.autostart),
             record: self.record.or(file.record),
             replay: self.replay.or(file.replay),
             hil: self.hil.or(file.hil),

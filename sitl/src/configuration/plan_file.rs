@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use autopilot::codec::command_name;
 use vehicle::plan::{Plans, Site, file};
 
 use crate::failure::Failure;
@@ -12,5 +13,6 @@ use crate::failure::Failure;
 /// [`Failure::File`], or [`Failure::Content`] that names the line or the item, the value and its range.
 pub fn read_plans(path: &Path, site: &Site) -> Result<Plans, Failure> {
     let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
-    file::parse(&text, site).map_err(|reason| Failure::Content { path: path.to_owned(), reason })
+    file::parse(&text, site)
+        .map_err(|fault| Failure::Content { path: path.to_owned(), reason: fault.described(command_name) })
 }

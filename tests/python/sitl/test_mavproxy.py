@@ -146,4 +146,4 @@ def test_a_fence_is_loaded_and_kept(start, connect, shell, tmp_path):
     console.ask("fence disable", "fence disabled|Fence disabled")
     console.type(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5")
     watcher.wait("LOCAL_POSITION_NED", lambda place: place.x > 20, 30)
-    console.ask("fence enable", "Failsafe: Fence breached")
+    console.ask("fence enable", "Fence")

@@ -69,11 +69,11 @@ impl Fault {
     pub fn of_numbers(unit: u32, kind: u32, instance: u32) -> Result<Self, Meaningless> {
         let name = usize::try_from(kind).ok().and_then(|kind| KINDS.get(kind)).copied();
         let Some(name) = name else {
-            return Err(Meaningless(format!("no failure type {kind}: 0 to 7")));
+            return Err(Meaningless(format!("unknown failure type {kind}; allowed 0 to 7")));
         };
         if unit == unit::MOTOR {
             let Some(rotors) = Rotors::numbered(instance) else {
-                return Err(Meaningless(format!("no motor {instance}: 1 to 4, 0 for all")));
+                return Err(Meaningless(format!("unknown motor {instance}; allowed 1 to 4, or 0 for all")));
             };
             let name = if matches!(name, "wrong" | "slow") { "weak" } else { name };
             return Ok(Self::Rotors(rotors, among("motor", name, &ROTOR_FAULTS)?));
@@ -82,10 +82,12 @@ impl Fault {
         if sensor.is_none() && unit != unit::BATTERY {
             let known =
                 "0 gyroscope, 1 accelerometer, 2 magnetometer, 3 barometer, 4 GPS, 100 battery, 101 motor";
-            return Err(Meaningless(format!("no failure unit {unit}: {known}")));
+            return Err(Meaningless(format!("unknown failure unit {unit}; known: {known}")));
         }
         if instance > 1 {
-            return Err(Meaningless(format!("no instance {instance} of that unit: there is one")));
+            return Err(Meaningless(format!(
+                "unknown instance {instance}: the vehicle has one of this unit"
+            )));
         }
         match sensor {
             Some(sensor) => Ok(Self::Sensor(sensor, sensor_fault(sensor, name)?)),
@@ -131,7 +133,7 @@ impl FromStr for Fault {
     /// `UNIT=KIND`; a weak rotor with the share of its thrust behind a colon.
     fn from_str(text: &str) -> Result<Self, Meaningless> {
         let Some((unit, kind)) = text.split_once('=') else {
-            return Err(Meaningless(format!("`{text}` is not UNIT=KIND")));
+            return Err(Meaningless(format!("`{text}` must have the form UNIT=KIND")));
         };
         let (unit, kind) = (unit.trim(), kind.trim());
         if let Some(sensor) = Sensor::ALL.into_iter().find(|sensor| sensor.name() == unit) {
@@ -145,7 +147,7 @@ impl FromStr for Fault {
         let Some(rotors) = rotors.filter(|_| unit != "rotor0") else {
             let sensors = Sensor::ALL.map(Sensor::name).join(", ");
             return Err(Meaningless(format!(
-                "no unit `{unit}`: {sensors}, battery, rotor1 to rotor4, rotors"
+                "unknown unit `{unit}`; known: {sensors}, battery, rotor1 to rotor4, rotors"
             )));
         };
         let fault = match kind.strip_prefix("weak:") {
@@ -158,9 +160,9 @@ impl FromStr for Fault {
 
 fn weak(share: &str) -> Result<RotorFault, Meaningless> {
     let fault = share.parse().ok().map(|share| RotorFault::Weak { share });
-    fault
-        .filter(|fault| fault.is_valid())
-        .ok_or_else(|| Meaningless(format!("a weak rotor makes 0 to 1 of its thrust, not `{share}`")))
+    fault.filter(|fault| fault.is_valid()).ok_or_else(|| {
+        Meaningless(format!("invalid share `{share}`: a weak rotor keeps 0 to 1 of its thrust"))
+    })
 }
 
 fn sensor_fault(sensor: Sensor, name: &str) -> Result<Option<SensorFault>, Meaningless> {
@@ -172,7 +174,7 @@ fn among<T: Copy>(unit: &str, name: &str, faults: &[(&str, Option<T>)]) -> Resul
     let found = faults.iter().find(|(known, _)| *known == name);
     found.map(|(_, fault)| *fault).ok_or_else(|| {
         let known: Vec<_> = faults.iter().map(|(known, _)| *known).collect();
-        Meaningless(format!("a {unit} cannot be `{name}`: {}", known.join(", ")))
+        Meaningless(format!("unknown fault `{name}` of {unit}; allowed: {}", known.join(", ")))
     })
 }
 
@@ -213,12 +215,12 @@ mod tests {
     #[test]
     fn what_there_is_not_is_refused_with_what_there_is() {
         for (text, reason) in [
-            ("gps", "`gps` is not UNIT=KIND"),
-            ("rotor5=off", "no unit `rotor5`: gyroscope"),
-            ("rotor0=off", "no unit `rotor0`: gyroscope"),
-            ("rotor1=garbage", "a rotor1 cannot be `garbage`: ok, off, stuck, weak"),
-            ("rotor1=weak:1.5", "0 to 1 of its thrust, not `1.5`"),
-            ("rotor1=weak:nan", "0 to 1 of its thrust, not `nan`"),
+            ("gps", "`gps` must have the form UNIT=KIND"),
+            ("rotor5=off", "unknown unit `rotor5`; known: gyroscope"),
+            ("rotor0=off", "unknown unit `rotor0`; known: gyroscope"),
+            ("rotor1=garbage", "unknown fault `garbage` of rotor1; allowed: ok, off, stuck, weak"),
+            ("rotor1=weak:1.5", "invalid share `1.5`"),
+            ("rotor1=weak:nan", "invalid share `nan`"),
             ("battery=slow", "ok, off, stuck, wrong"),
         ] {
             let error = text.parse::<Fault>().expect_err(text).to_string();
