@@ -46,8 +46,8 @@ missed |= verdict("into the circle", max(-gap, 0), 0, "m") | verdict("short of i
 # A goal behind the square is refused: the vehicle stays.
 flight.set_point(POSITION, (2 * HALF, 0.0, -3.0))
 flight.asked.pop()  # not for the plot
-text = flight.connection.recv_match(type="STATUSTEXT", condition="'denied' in STATUSTEXT.text", blocking=True, timeout=5)
-print(f"refused: {text.text if text else 'nothing'}")
+text = flight.connection.recv_match(type="STATUSTEXT", condition="'rejected' in STATUSTEXT.text", blocking=True, timeout=5)
+print(f"rejected: {text.text if text else 'nothing'}")
 missed |= text is None
 flight.land()
 flight.clear(mavlink.MAV_MISSION_TYPE_FENCE)

@@ -100,9 +100,8 @@ fn two_lost_rotors_are_a_fall() {
             assert_eq!(inject(&mut bench, MOTOR, OFF, rotor), 0);
         }
         bench.fly(0.7);
-        let falls = |bench: &Bench| {
-            bench.texts().iter().filter(|text| text.ends_with("rotor lost: it falls")).count()
-        };
+        let falls =
+            |bench: &Bench| bench.texts().iter().filter(|text| text.ends_with("rotor lost: falling")).count();
         assert!(bench.texts().iter().any(|text| text == first), "{:?}", bench.texts());
         let all = first == "Rotor 1 lost";
         assert_eq!(falls(&bench), usize::from(all), "{:?}", bench.texts());
@@ -200,11 +199,11 @@ fn what_has_no_meaning_is_refused_with_the_reason() {
     for (unit, kind, instance, result, reason) in [
         (5.0, OFF, 0.0, UNSUPPORTED, "unknown failure unit 5"),
         (MOTOR, 9.0, 0.0, UNSUPPORTED, "unknown failure type 9"),
-        (MOTOR, OFF, 5.0, UNSUPPORTED, "no motor 5"),
-        (MOTOR, 3.0, 1.0, UNSUPPORTED, "unknown fault `garbage` of motor"),
+        (MOTOR, OFF, 5.0, UNSUPPORTED, "unknown motor 5"),
+        (MOTOR, 3.0, 1.0, UNSUPPORTED, "unknown fault `garbage` of"),
         (BATTERY, 6.0, 0.0, UNSUPPORTED, "unknown fault `delayed` of battery"),
         (4.0, OFF, 3.0, UNSUPPORTED, "unknown instance 3"),
-        (0.5, OFF, 0.0, DENIED, "needs a unit"),
+        (0.5, OFF, 0.0, DENIED, "requires unit"),
     ] {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
@@ -297,7 +296,7 @@ fn a_parameter_forbids_it() {
     start.conduct.failure_injection = false;
     let mut bench = Bench::of(&start);
     assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
-    assert!(bench.texts().iter().any(|text| text.contains("SYS_FAILURE_EN is 0")), "{:?}", bench.texts());
+    assert!(bench.texts().iter().any(|text| text.contains("set SYS_FAILURE_EN to 1")), "{:?}", bench.texts());
     assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 

@@ -140,7 +140,7 @@ fn what_leads_outside_is_refused_with_the_reason() {
     let fence = [square(&start, 30.0), wall].concat();
     let mut bench = hovering(&start, fence, Vec::new());
     for (north, why) in
-        [(31.0, "Reposition denied: outside the fence"), (6.0, "Reposition denied: in an exclusion zone")]
+        [(31.0, "Reposition rejected: outside the fence"), (6.0, "Reposition rejected: in an exclusion zone")]
     {
         assert_eq!(go_to(&mut bench, north, 0.0), DENIED);
         assert!(bench.texts().iter().any(|text| text == why), "{north}: {:?}", bench.texts());
@@ -160,7 +160,7 @@ fn what_leads_outside_is_refused_with_the_reason() {
     target.x = -40.0;
     bench.heard.clear();
     bench.stream(8.0, |bench| bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone())));
-    let told = "Set-point denied: outside the fence";
+    let told = "Set-point rejected: outside the fence";
     assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
     let [x, y, _] = bench.position();
     assert!((-6.0..-2.0).contains(&x) && y.abs() < 0.1, "{x} {y}");

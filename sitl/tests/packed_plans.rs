@@ -86,7 +86,7 @@ fn what_is_wrong_is_told_and_the_old_plan_stays() {
         (packed(1, &mission()), "type 1"),
         (b"QGC WPL 110".to_vec(), "begins with 0x4751"),
         (Vec::new(), "begins with 0x0000"),
-        (partial, "only whole plans"),
+        (partial, "only complete plans"),
     ] {
         assert_eq!(write(&mut client, "/@MISSION/mission.dat", &wrong), Err(FAIL), "{reason}");
         let texts = client.bench.texts();

@@ -91,9 +91,13 @@ fn errors_name_the_file_the_place_the_value_and_its_range() {
         (
             "a.plan",
             replaced(PLAN, "[47.3978, 8.5457, 20]", "[97, 8, 20]"),
-            "rally point 0: latitude 97 is outside",
+            "rally point 1: NAV_RALLY_POINT (5100): latitude = 97",
         ),
-        ("a.plan", replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"), "fence polygon 0: longitude 190"),
+        (
+            "a.plan",
+            replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"),
+            "fence polygon 1: NAV_FENCE_POLYGON_VERTEX_EXCLUSION (5002): longitude = 190",
+        ),
         ("a.plan", "{".to_owned(), "no .plan: EOF"),
         (
             "a.txt",

@@ -142,7 +142,7 @@ def test_a_fence_is_loaded_and_kept(start, connect, shell, tmp_path):
     console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
     console.ask("takeoff 5", "Got COMMAND_ACK: NAV_TAKEOFF: ACCEPTED")
     watcher.wait("GLOBAL_POSITION_INT", lambda place: abs(place.relative_alt - 5000) < 200, 30)
-    console.ask(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5", "denied: outside the fence")
+    console.ask(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5", "rejected: outside the fence")
     console.ask("fence disable", "fence disabled|Fence disabled")
     console.type(f"guided {latitude + 2 * north:.7f} {longitude:.7f} 5")
     watcher.wait("LOCAL_POSITION_NED", lambda place: place.x > 20, 30)

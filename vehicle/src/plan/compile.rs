@@ -142,7 +142,10 @@ mod tests {
         let named = |number| look(&item(DO_SET_ROI, [2.0, number, 0.0, 0.0], [0.0; 3]), &items, &site);
         assert_eq!(named(0.0), Ok(Some(Look::At(place([1.0, 2.0, -3.0])))));
         for number in [1.0, -1.0, NAN] {
-            assert_eq!(named(number).unwrap_err().reason, format!("no item has sequence number {number}; the plan has 1 items"));
+            assert_eq!(
+                named(number).unwrap_err().reason,
+                format!("no item has sequence number {number}; the plan has 1 items")
+            );
         }
         assert!(look(&items[0], &items, &site).is_err(), "a waypoint is no look");
     }

@@ -37,7 +37,7 @@ impl Vehicle {
         let identity = situation.identity;
         match situation.mode {
             Mode::Land | Mode::Return => {
-                obstacles.push(format!("cannot arm in {} mode", identity.mode_name(situation.mode)));
+                obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
