@@ -59,13 +59,13 @@ refusal = None
 def is_refused() -> bool:
     global refusal
     text = flight.latest.get("STATUSTEXT")
-    if text is not None and "denied" in text.text:
+    if text is not None and "rejected" in text.text:
         refusal = text.text
     return refusal is not None
 
 
-flight.until(is_refused, 5, "the refusal")
-print(f"refused: {refusal}")
+flight.until(is_refused, 5, "the rejection")
+print(f"rejected: {refusal}")
 flight.land()
 flight.clear(mavlink.MAV_MISSION_TYPE_FENCE)
 

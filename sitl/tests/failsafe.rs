@@ -21,7 +21,7 @@ fn every_action_as(identity: Identity, cause: Cause) {
         // Until the next heartbeat that comes by itself.
         bench.fly(1.1);
         let (vehicle, texts) = (bench.autopilot.vehicle(), bench.texts());
-        let told = format!("Failsafe: {}", cause.name());
+        let told = cause.name().to_owned();
         let announced = texts.iter().any(|text| text.starts_with(&told));
         assert_eq!(announced, action != Action::None, "{cause:?} {action:?}: {texts:?}");
         match action {

@@ -191,7 +191,11 @@ fn the_current_item_can_be_set_and_is_told() {
     assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(4.0)), 0);
     assert_eq!(flight.current(), 4);
     assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(5.0)), 2);
-    assert!(flight.bench.texts().iter().any(|text| text.contains("no item 5")), "{:?}", flight.bench.texts());
+    assert!(
+        flight.bench.texts().iter().any(|text| text.contains("item 5 does not exist")),
+        "{:?}",
+        flight.bench.texts()
+    );
     let flight = flight.complete(60.0);
     assert_eq!(flight.order(), [0, 4]);
 }

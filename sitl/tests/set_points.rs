@@ -199,10 +199,10 @@ fn what_means_nothing_is_refused_and_says_so() {
         assert!(bench.is_near([0.0, 0.0, -10.0]));
     };
     let ned = MavFrame::MAV_FRAME_LOCAL_NED;
-    let nothing = "neither position, velocity nor acceleration";
+    let nothing = "it contains no target";
     refused(&local(ned, 0b1101_1111_1111, [1.0; 3], [0.0; 3]), nothing);
     refused(&local(ned, 0b1001_1111_1111, [1.0; 3], [0.0; 3]), nothing);
-    refused(&local(ned, POSITION_ONLY | 1 << 9, [1.0; 3], [0.0; 3]), "forces are not supported");
+    refused(&local(ned, POSITION_ONLY | 1 << 9, [1.0; 3], [0.0; 3]), "force is not supported");
     refused(&local(ned, POSITION_ONLY, [f32::NAN; 3], [0.0; 3]), nothing);
     refused(&local(MavFrame::MAV_FRAME_BODY_FRD, POSITION_ONLY, [1.0; 3], [0.0; 3]), "frame 12");
     refused(&local(MavFrame::MAV_FRAME_BODY_NED, POSITION_ONLY, [1.0; 3], [0.0; 3]), nothing);
@@ -232,11 +232,7 @@ fn a_position_with_a_velocity_runs_on_until_it_is_lost() {
     assert!(reference.position_m.x > 0.8 && bench.mode() == Mode::Offboard, "{reference:?}");
     bench.fly(0.1);
     assert_eq!(bench.mode(), Mode::Hold);
-    assert!(
-        bench.texts().iter().any(|text| text == "Failsafe: Set-points lost: hold"),
-        "{:?}",
-        bench.texts()
-    );
+    assert!(bench.texts().iter().any(|text| text == "Set-points lost: holding"), "{:?}", bench.texts());
     bench.fly(6.0);
     assert!(bench.velocity()[0].abs() < 0.02);
 }

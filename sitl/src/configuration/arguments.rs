@@ -110,6 +110,16 @@ pub struct Arguments {
     )]
     pub mission: Option<Vec<Addressed<PathBuf>>>,
 
+    /// Arm and start the mission at once [default: false]
+    ///
+    /// The vehicle arms and starts the mission of --mission as soon as nothing speaks against it. A pilot who arms or chooses
+    /// another mode takes over.
+    #[arg(
+        long, env = "LMPC_SITL_AUTOSTART", value_name = "true|false", num_args = 0..=1,
+        default_missing_value = "true", help_heading = VEHICLE
+    )]
+    pub autostart: Option<bool>,
+
     /// Number of vehicles, 1 to 250 [default: 1]
     ///
     /// Their system ids count up from --system-id. Gusts and noise of each have a seed of their own.
@@ -316,6 +326,7 @@ impl Arguments {
             parameters: self.parameters.or(file.parameters),
             list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),
+            autostart: self.autostart.or(file.autostart),
             record: self.record.or(file.record),
             record_size: self.record_size.or(file.record_size),
             replay: self.replay.or(file.replay),

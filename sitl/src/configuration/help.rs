@@ -57,6 +57,7 @@ Examples:
   Vehicle      lmpc-sitl --autopilot ardupilot --set airframe.mass=0.9
   Fleet        lmpc-sitl --vehicles 5 --formation circle,6 --ports shared
   Wind         lmpc-sitl --wind 8,270 --gusts 1.5 --sensors realistic
+  Mission      lmpc-sitl --mission survey.plan --autostart
   Fault        lmpc-sitl --mission survey.plan --fault 60:rotor1=off
   Speed        lmpc-sitl --speed max --duration 600
   Record       lmpc-sitl --record flight.record

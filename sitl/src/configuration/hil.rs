@@ -30,6 +30,7 @@ impl HilSettings {
             ("kalman", arguments.kalman.is_some()),
             ("fault", arguments.fault.is_some()),
             ("mission", arguments.mission.is_some()),
+            ("autostart", arguments.autostart.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
         ] {
             if given {

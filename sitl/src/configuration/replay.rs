@@ -35,6 +35,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         parameters,
         list_parameters,
         mission,
+        autostart,
         record,
         record_size,
         replay: _,
@@ -77,6 +78,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("parameters", parameters.is_some()),
         ("list-parameters", list_parameters.is_some()),
         ("mission", mission.is_some()),
+        ("autostart", autostart.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
         ("hil", hil.is_some()),
@@ -126,6 +128,7 @@ mod tests {
         ("wind", "3"),
         ("list-parameters", "json"),
         ("log", "warn"),
+        ("autostart", "true"),
         ("lockstep", "always"),
     ];
 

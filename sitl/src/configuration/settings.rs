@@ -257,6 +257,7 @@ pub(super) fn vehicle(
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
         plans: Plans::default(),
+        autostart: arguments.autostart.unwrap_or(false),
     };
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
@@ -325,6 +326,10 @@ fn mission_of(arguments: &Arguments, system_id: u8) -> Option<&Path> {
 /// Refuses plans and faults of systems that there are not, and a second plan for the same.
 fn check_addresses(arguments: &Arguments, systems: &[u8]) -> Result<(), Failure> {
     let mut planned = Vec::new();
+    if arguments.autostart == Some(true) && arguments.mission.iter().flatten().next().is_none() {
+        let reason = "no mission to start; add --mission FILE".to_owned();
+        return Err(Failure::Value { name: "--autostart".to_owned(), reason });
+    }
     for file in arguments.mission.iter().flatten() {
         file.check("--mission", file.value.display(), systems)?;
         if planned.contains(&file.system_id) {

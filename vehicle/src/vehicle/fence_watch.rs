@@ -26,6 +26,8 @@ const STANDING_M_S: f64 = 0.1;
 pub struct FenceRecord {
     /// The breach of now, if there is one.
     pub now: Option<Breach>,
+    /// Whether it still lies ahead: the vehicle is inside, and could not stop before it.
+    pub is_ahead: bool,
     /// How many there were.
     pub count: u16,
     /// The latest, and when it began, µs.
@@ -54,6 +56,7 @@ impl FenceWatch {
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
         let ahead = || if predicts { situation.breach_to(&stopping_place_m(situation)) } else { None };
+        self.record.is_ahead = here.is_none();
         self.record.now = here.or_else(ahead);
     }
 
@@ -101,7 +104,7 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
 /// [`Refusal::Denied`] that says what of it.
 pub fn check_goal(situation: &Situation, what: &str, goal_m: &Vector3<f64>) -> Result<(), Refusal> {
     match situation.breach_to(goal_m) {
-        Some(breach) => Err(Refusal::denied(format!("{what} denied: {breach}"))),
+        Some(breach) => Err(Refusal::denied(format!("{what} rejected: {breach}"))),
         None => Ok(()),
     }
 }
@@ -173,7 +176,7 @@ mod tests {
     fn goals_beyond_are_refused_and_speeds_are_not() {
         let scene = scene();
         let refusal = check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)).unwrap_err();
-        assert_eq!(refusal.to_string(), "Takeoff denied: farther than 50 m from home");
+        assert_eq!(refusal.to_string(), "Takeoff rejected: farther than 50 m from home");
         let set_point = |north| PositionSetPoint {
             axes: [north, AxisTarget::HOLD, AxisTarget::HOLD],
             yaw: YawTarget::Hold,

@@ -1,5 +1,6 @@
 //! The machines that the vehicle consists of, each with a state of its own.
 
+use super::autostart::Autostart;
 use super::battery::Battery;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
@@ -17,6 +18,8 @@ use super::takeoff::Takeoff;
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
 pub struct Machines {
+    /// The start of the mission without a pilot.
+    pub autostart: Autostart,
     /// What is broken.
     pub injection: Injection,
     /// The battery.

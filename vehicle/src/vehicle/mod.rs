@@ -26,6 +26,7 @@
 //! The order of a tick:
 //!
 //! ```text
+//!  autostart        arms and starts the mission, if it was asked to
 //!  injection        faults that are due
 //!  fence watch      breaches, present and predicted
 //!  failsafe         cause by cause
@@ -35,6 +36,7 @@
 //!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
 //! ```
 
+mod autostart;
 mod battery;
 mod closed_loop;
 mod conduct;

@@ -235,6 +235,6 @@ pub fn check_distance(target_m: &Vector3<f64>) -> Result<(), Refusal> {
     if distance_m <= FARTHEST_M {
         Ok(())
     } else {
-        Err(Refusal::denied(format!("Target denied: {distance_m:.0} m away, at most {FARTHEST_M:.0} m")))
+        Err(Refusal::denied(format!("Target rejected: {distance_m:.0} m away; allowed {FARTHEST_M:.0} m")))
     }
 }

@@ -149,6 +149,7 @@ impl Scene {
             landed: self.landed,
             lost_rotor: self.lost_rotor,
             breach: None,
+            fence_is_ahead: false,
             set_points_are_recent: self.set_points_are_recent,
             set_point_is_applied: false,
             mission_goes_on: self.mission_goes_on,

@@ -107,10 +107,11 @@ impl Mission {
         first: Option<usize>,
     ) -> Result<(), Refusal> {
         if !self.program.is_flown() {
-            return Err(Refusal::later("Mission rejected: there is none"));
+            return Err(Refusal::later("Mission rejected: no mission uploaded"));
         }
         check_way(situation, &self.program)
-            .map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
+            .map_err(|fault| fault.located(situation.identity))
+            .map_err(|reason| Refusal::denied(format!("Mission rejected: {reason}")))?;
         if let Some(first) = first {
             self.set_current(situation, proposal, first, true)?;
         }
@@ -141,7 +142,7 @@ impl Mission {
         if self.progress == Progress::Started && self.program.is_flown() {
             Ok(())
         } else {
-            Err(Refusal::denied("Nothing to continue"))
+            Err(Refusal::denied("No paused mission to continue"))
         }
     }
 
@@ -158,7 +159,7 @@ impl Mission {
     ) -> Result<(), Refusal> {
         let count = self.program.len();
         if index >= count {
-            return Err(Refusal::denied(format!("Mission has no item {index} among {count}")));
+            return Err(Refusal::denied(format!("Mission item {index} does not exist; it has {count}")));
         }
         if reset {
             self.jumps.clear();
@@ -295,7 +296,10 @@ impl Mission {
             return self.go_on_from(index + 1, situation, proposal);
         }
         self.current = index + 1;
-        proposal.say(Severity::Info, format!("Mission waits after item {index}"));
+        proposal.say(
+            Severity::Info,
+            format!("Mission paused after item {}", situation.identity.item_number(index)),
+        );
         proposal.enter(Mode::Hold);
         false
     }
