@@ -78,8 +78,8 @@ pub fn parameters(values: &Parameters) -> Vec<u8> {
             if !description.unit.is_empty() {
                 put("units", json!(description.unit));
             }
-            if description.fixed_in_flight {
-                put("longDesc", json!("Changes only while disarmed on the ground."));
+            if description.needs_restart {
+                put("rebootRequired", json!(true));
             }
             if !description.names.is_empty() {
                 let name = |(value, text): &(i32, String)| json!({ "value": value, "description": text });

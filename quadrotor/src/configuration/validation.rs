@@ -1,7 +1,9 @@
 //! Checks on a configuration: every range, then what must fit together.
 
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
-use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, PARAMETERS, Parameter};
+use crate::{
+    Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS, Parameter,
+};
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
@@ -70,16 +72,13 @@ fn validate_sample_times(controllers: &Controllers) -> Result<(), ConfigurationE
     Ok(())
 }
 
-/// Parameters that are fixed must not differ between the two.
-pub(crate) fn only_tunables_differ(
-    old: &Configuration,
-    new: &Configuration,
-) -> Result<(), ConfigurationError> {
+/// What describes the start of a flight must not differ between two configurations of it.
+pub(crate) fn same_start(old: &Configuration, new: &Configuration) -> Result<(), ConfigurationError> {
     if old.airframe.layout != new.airframe.layout {
         return Err(ConfigurationError::Fixed { name: "airframe.layout" });
     }
-    for Parameter { name, tunable, access, .. } in PARAMETERS {
-        if !tunable && !access.same(old, new) {
+    for Parameter { name, mutability, access, .. } in PARAMETERS {
+        if *mutability == Mutability::Start && !access.same(old, new) {
             return Err(ConfigurationError::Fixed { name });
         }
     }

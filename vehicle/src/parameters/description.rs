@@ -1,6 +1,6 @@
 //! What a parameter means, for a person.
 
-use quadrotor::{Access, Unit};
+use quadrotor::{Access, Mutability, Unit};
 
 use super::Entry;
 use super::entry::Source;
@@ -19,8 +19,8 @@ pub struct Description {
     pub names: Vec<(i32, String)>,
     /// What it belongs to.
     pub group: &'static str,
-    /// Whether it only changes on the ground.
-    pub fixed_in_flight: bool,
+    /// Whether a change takes effect at the next start only.
+    pub needs_restart: bool,
 }
 
 /// Text and unit of the vehicle's own parameters, by PX4's identifiers. ArduPilot's units are others: see [`ardupilot_unit`].
@@ -106,7 +106,7 @@ impl Entry {
                     range,
                     names,
                     group: group(parameter.name),
-                    fixed_in_flight: !parameter.tunable,
+                    needs_restart: parameter.mutability == Mutability::Start,
                 }
             }
             Source::Conduct(parameter, scale) => {
@@ -123,7 +123,7 @@ impl Entry {
                     range: (parameter.minimum * scale, parameter.maximum * scale),
                     names: names.map(|(value, name)| (*value, (*name).to_owned())).collect(),
                     group: "Vehicle",
-                    fixed_in_flight: false,
+                    needs_restart: false,
                 }
             }
             Source::SystemId => Description {
@@ -132,7 +132,7 @@ impl Entry {
                 range: (1.0, 250.0),
                 names: Vec::new(),
                 group: "MAVLink",
-                fixed_in_flight: true,
+                needs_restart: true,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
@@ -140,7 +140,7 @@ impl Entry {
                 range: (-1.0, 1000.0),
                 names: Vec::new(),
                 group: "Simulation",
-                fixed_in_flight: false,
+                needs_restart: false,
             },
         }
     }

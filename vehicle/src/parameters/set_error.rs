@@ -30,12 +30,9 @@ pub enum SetError {
         /// Those that mean something, in words.
         meanings: String,
     },
-    /// It is fixed since the start.
-    #[error("{0} is set by the command line")]
+    /// It is fixed from the start on.
+    #[error("{0} is fixed from the start: restart with --system-id")]
     ReadOnly(String),
-    /// It can only change while the vehicle is disarmed on the ground.
-    #[error("{0} is fixed while armed")]
-    Armed(String),
     /// The closed loop refuses it.
     #[error("{id}: {source}")]
     Refused {
@@ -49,9 +46,6 @@ pub enum SetError {
 impl SetError {
     /// The closed loop refuses the value of a parameter.
     pub fn refused(id: &str, source: ConfigurationError) -> Self {
-        match source {
-            ConfigurationError::Fixed { .. } => Self::Armed(id.to_owned()),
-            source => Self::Refused { id: id.to_owned(), source: Box::new(source) },
-        }
+        Self::Refused { id: id.to_owned(), source: Box::new(source) }
     }
 }
