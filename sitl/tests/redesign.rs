@@ -30,7 +30,7 @@ fn others(present: Value, description: &Description) -> Vec<Value> {
     let (minimum, maximum) = description.range;
     let within = |value: f64| value.clamp(minimum, maximum);
     let values: Vec<Value> = match present {
-        Value::Real(present) if present == 0.0 => vec![Value::Real(within(0.01) as f32)],
+        Value::Real(0.0) => vec![Value::Real(within(0.01) as f32)],
         Value::Real(present) => {
             [0.97, 1.1, 2.0, 0.5].map(|factor| Value::Real(within(f64::from(present) * factor) as f32)).into()
         }

@@ -43,7 +43,7 @@ def test_parameters(start, connect, tmp_path):
     client.wait("STATUSTEXT", lambda text: "outside" in text.text)
     field = struct.unpack("<f", struct.pack("<i", 9))[0]
     client.set_parameter("MAV_SYS_ID", field, mavlink.MAV_PARAM_TYPE_INT32)
-    client.wait("STATUSTEXT", lambda text: "fixed from the start" in text.text)
+    client.wait("STATUSTEXT", lambda text: "MAV_SYS_ID is fixed" in text.text)
     # Integers travel as bytes.
     field = struct.unpack("<f", struct.pack("<i", 4))[0]
     answer = client.set_parameter("COM_OBL_RC_ACT", field, mavlink.MAV_PARAM_TYPE_INT32)
