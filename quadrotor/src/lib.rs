@@ -118,7 +118,7 @@ mod simulation_error;
 mod simulation_state;
 
 pub use configuration::error::ConfigurationError;
-pub use configuration::parameter::{Access, Choice, Parameter};
+pub use configuration::parameter::{Access, Choice, Mutability, Parameter};
 pub use configuration::parameters::PARAMETERS;
 pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
@@ -129,7 +129,7 @@ pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
 pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
-pub use control::control_loop::ControlLoop;
+pub use control::control_loop::{ControlLoop, PreparedDesign};
 pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::Mixer;

@@ -79,11 +79,11 @@ pub fn parameters(values: &Parameters) -> Vec<u8> {
             if !unit.is_empty() {
                 put("units", json!(unit));
             }
-            let dotted = entry.dotted().map(|dotted| format!("Dotted name: {dotted}."));
-            let fixed = description.fixed_in_flight.then(|| "Can only change while disarmed.".to_owned());
-            let long: Vec<String> = dotted.into_iter().chain(fixed).collect();
-            if !long.is_empty() {
-                put("longDesc", json!(long.join(" ")));
+            if let Some(dotted) = entry.dotted() {
+                put("longDesc", json!(format!("Dotted name: {dotted}.")));
+            }
+            if description.needs_restart {
+                put("rebootRequired", json!(true));
             }
             if !description.names.is_empty() {
                 let name =

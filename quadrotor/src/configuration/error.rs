@@ -98,8 +98,8 @@ pub enum ConfigurationError {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// A parameter that is fixed during the flight would change.
-    #[error("{name} cannot change during the flight")]
+    /// A parameter that describes the start of the flight would change.
+    #[error("{name} is fixed for the whole flight: a change takes effect at the next start")]
     Fixed {
         /// Public name of the parameter.
         name: &'static str,

@@ -11,10 +11,22 @@ pub struct Parameter {
     pub description: &'static str,
     /// Unit of its value.
     pub unit: Unit,
-    /// Whether it may change during the flight; else it is fixed at the start.
-    pub tunable: bool,
+    /// When a change takes effect.
+    pub mutability: Mutability,
     /// Its type, range and place in the configuration.
     pub access: Access,
+}
+
+/// When a changed value of a parameter takes effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mutability {
+    /// At the next sample: a number that the controllers, the shaper or the sensors read. FMI: tunable.
+    Tunable,
+    /// At the next sample: it changes the structure of the controllers or the vehicle itself, and the flight is handed over
+    /// ([`ControlLoop::hand_over`](crate::ControlLoop::hand_over)). FMI: fixed, because an importer may rely on the structure.
+    Structural,
+    /// At the next start: it describes how a flight begins. FMI: fixed.
+    Start,
 }
 
 /// Type, range and place of a parameter.

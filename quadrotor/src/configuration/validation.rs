@@ -3,7 +3,8 @@
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
-    Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, PARAMETERS, Parameter, Quantity,
+    Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS, Parameter,
+    Quantity,
 };
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -99,16 +100,13 @@ fn rounded_down(value: f64, unit: &'static str) -> Quantity {
     Quantity { value: libm::floor(value * scale) / scale, unit }
 }
 
-/// Parameters that are fixed must not differ between the two.
-pub(crate) fn only_tunables_differ(
-    old: &Configuration,
-    new: &Configuration,
-) -> Result<(), ConfigurationError> {
+/// What describes the start of a flight must not differ between two configurations of it.
+pub(crate) fn same_start(old: &Configuration, new: &Configuration) -> Result<(), ConfigurationError> {
     if old.airframe.layout != new.airframe.layout {
         return Err(ConfigurationError::Fixed { name: "airframe.layout" });
     }
-    for Parameter { name, tunable, access, .. } in PARAMETERS {
-        if !tunable && !access.same(old, new) {
+    for Parameter { name, mutability, access, .. } in PARAMETERS {
+        if *mutability == Mutability::Start && !access.same(old, new) {
             return Err(ConfigurationError::Fixed { name });
         }
     }

@@ -3,8 +3,7 @@
 use crate::control::rotor_loss::RotorLossLaw;
 use crate::{Configuration, ConfigurationError, ControlError, ValueRange};
 
-/// The control laws for the loss of each rotor, as far as the airframe has them. What they depend on is fixed during a
-/// flight.
+/// The control laws for the loss of each rotor, as far as the airframe has them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RotorLossDesign {
     laws: [Result<RotorLossLaw, ConfigurationError>; 4],
@@ -13,6 +12,12 @@ pub(crate) struct RotorLossDesign {
 impl RotorLossDesign {
     pub(crate) fn new(configuration: &Configuration) -> Self {
         Self { laws: core::array::from_fn(|lost| RotorLossLaw::new(configuration, lost)) }
+    }
+
+    /// Whether two configurations have the same laws.
+    pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
+        one.airframe == other.airframe
+            && one.controllers.attitude.sample_time_us == other.controllers.attitude.sample_time_us
     }
 
     /// The law for the loss of a rotor.

@@ -113,7 +113,7 @@ fn object(system_id: u8, entry: &Entry, value: Value) -> Json {
         "min": range.minimum,
         "max": range.maximum,
         "values": names.collect::<Vec<_>>(),
-        "fixed_in_flight": description.fixed_in_flight,
+        "needs_restart": description.needs_restart,
         "group": description.group,
         "description": description.text,
     })

@@ -34,17 +34,22 @@ def test_parameters(start, connect, tmp_path):
     place = client.wait("LOCAL_POSITION_NED")
     assert abs(place.x) < 0.02 and abs(place.z + 2.5) < 0.1
 
-    # Refused, with the reason: out of range, and fixed while armed.
+    # A part of the vehicle, and a kind of controllers: it goes on from the thrust that it had.
+    assert abs(client.set_parameter("FRAME_MASS", 0.8).param_value - 0.8) < 1e-6
+    place = client.wait("LOCAL_POSITION_NED")
+    assert abs(place.x) < 0.02 and abs(place.z + 2.5) < 0.1
+
+    # Refused, with the reason: out of range, and fixed from the start.
     assert client.set_parameter("LIM_TILT", 9.0).param_value < 1.0
     client.wait("STATUSTEXT", lambda text: "allowed 0.05 to 1.2 rad" in text.text)
-    assert client.set_parameter("FRAME_MASS", 0.8).param_value != 0.8
-    client.wait("STATUSTEXT", lambda text: "fixed while armed" in text.text)
+    field = struct.unpack("<f", struct.pack("<i", 9))[0]
+    client.set_parameter("MAV_SYS_ID", field, mavlink.MAV_PARAM_TYPE_INT32)
+    client.wait("STATUSTEXT", lambda text: "MAV_SYS_ID is read-only" in text.text)
     # Integers travel as bytes.
     field = struct.unpack("<f", struct.pack("<i", 4))[0]
     answer = client.set_parameter("COM_OBL_RC_ACT", field, mavlink.MAV_PARAM_TYPE_INT32)
     assert struct.pack("<f", answer.param_value) == struct.pack("<i", 4)
     client.land()
-    assert abs(client.set_parameter("FRAME_MASS", 0.8).param_value - 0.8) < 1e-6
 
     # They are kept, and there again after the next start.
     assert "POS_R_PITCH 900" in file.read_text() and "COM_OBL_RC_ACT 4" in file.read_text()

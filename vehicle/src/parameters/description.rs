@@ -1,6 +1,6 @@
 //! What a parameter means, for a person.
 
-use quadrotor::{Access, Parameter, ValueRange};
+use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
 use super::entry::Source;
 use super::{ConductParameter, Entry, NamedValue};
@@ -19,8 +19,8 @@ pub struct Description {
     pub names: Vec<NamedValue>,
     /// What it belongs to.
     pub group: &'static str,
-    /// Whether it only changes on the ground.
-    pub fixed_in_flight: bool,
+    /// Whether a change takes effect at the next start only.
+    pub needs_restart: bool,
 }
 
 /// Text and unit of the vehicle's own parameters, by PX4's identifiers. ArduPilot's units are others: see [`ardupilot_unit`].
@@ -119,7 +119,7 @@ impl Entry {
                 whole: true,
                 names: Vec::new(),
                 group: "MAVLink",
-                fixed_in_flight: true,
+                needs_restart: true,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
@@ -127,7 +127,7 @@ impl Entry {
                 whole: false,
                 names: Vec::new(),
                 group: "Simulation",
-                fixed_in_flight: false,
+                needs_restart: false,
             },
         }
     }
@@ -158,7 +158,7 @@ fn describe_loop(parameter: &Parameter) -> Description {
         whole: !matches!(parameter.access, Access::Real { .. }),
         names,
         group: group(parameter.name),
-        fixed_in_flight: !parameter.tunable,
+        needs_restart: parameter.mutability == Mutability::Start,
     }
 }
 
@@ -180,7 +180,7 @@ fn describe_conduct(parameter: &ConductParameter, scale: f64) -> Description {
         whole: parameter.integer,
         names: names.map(|(value, name)| plain(*value, name)).collect(),
         group: "Vehicle",
-        fixed_in_flight: false,
+        needs_restart: false,
     }
 }
 

@@ -24,11 +24,8 @@ pub enum SetError {
         allowed: String,
     },
     /// It is set at the start.
-    #[error("{0} is read-only: it is set at the start")]
+    #[error("{0} is read-only: restart with --system-id")]
     ReadOnly(String),
-    /// It can only change while the vehicle is disarmed on the ground.
-    #[error("{0} is fixed while armed; disarm first")]
-    Armed(String),
     /// The closed loop cannot fly with it.
     #[error("{name}: {source}")]
     Refused {
@@ -42,9 +39,6 @@ pub enum SetError {
 impl SetError {
     /// The closed loop refuses the value of a parameter.
     pub fn refused(name: &str, source: ConfigurationError) -> Self {
-        match source {
-            ConfigurationError::Fixed { .. } => Self::Armed(name.to_owned()),
-            source => Self::Refused { name: name.to_owned(), source: Box::new(source) },
-        }
+        Self::Refused { name: name.to_owned(), source: Box::new(source) }
     }
 }

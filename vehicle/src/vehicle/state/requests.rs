@@ -33,8 +33,8 @@ impl Vehicle {
     }
 
     /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,
-    /// and its own. Tunable parameters of the closed loop change in flight, without a bump; the others only while the vehicle
-    /// is disarmed on the ground.
+    /// and its own. All of them change in flight, too: the closed loop designs its controllers beside the running ones, and
+    /// hands over to them at its next sample.
     ///
     /// # Errors
     /// [`ConfigurationError`]; nothing has changed then.
