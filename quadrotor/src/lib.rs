@@ -136,7 +136,14 @@ pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
 pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::heading::Heading;
+#[cfg(feature = "shaper")]
+pub use guidance::heading_shaper::HeadingShaper;
+#[cfg(feature = "shaper")]
+pub use guidance::motion_profile::{Motion, MotionProfile};
 pub use guidance::position_reference::PositionReference;
+#[cfg(feature = "shaper")]
+pub use guidance::state_to_state::AxisLimits;
 pub use inputs::{InputSignal, Inputs};
 /// How a controller found its last input.
 pub use lmpc::Status as ControllerStatus;

@@ -13,7 +13,7 @@ use crate::design::controller_limits::{
     COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
 };
 use crate::guidance::ramp::Ramp;
-use crate::guidance::reference_guidance::Heading;
+use crate::guidance::heading::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{

@@ -59,6 +59,20 @@ impl MotionProfile {
         }
     }
 
+    /// When the last piece begins, s: from then on the velocity stays as it is.
+    pub fn duration_s(&self) -> f64 {
+        self.last().0
+    }
+
+    /// The motion at the beginning of the last piece.
+    pub fn end(&self) -> Motion {
+        self.last().1
+    }
+
+    fn last(&self) -> &(f64, Motion) {
+        self.pieces.get(..self.count).and_then(<[_]>::last).unwrap_or(&self.pieces[0])
+    }
+
     /// The motion at `time_s` ≥ 0 after the start.
     pub fn at(&self, time_s: f64) -> Motion {
         let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);
