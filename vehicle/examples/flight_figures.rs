@@ -156,7 +156,9 @@ fn hover(seed: u64) -> Outcome<[f64; 3]> {
 
 fn hovers() -> Outcome<()> {
     let found: Vec<[f64; 3]> = (1..=SEEDS).map(hover).collect::<Outcome<_>>()?;
-    println!("| RMS over {HOVER_S:.0} s, {SEEDS} seeds | median | least | worst |\n| --- | --- | --- | --- |");
+    println!(
+        "| RMS over {HOVER_S:.0} s, {SEEDS} seeds | median | least | worst |\n| --- | --- | --- | --- |"
+    );
     for (index, name) in ["horizontal", "vertical", "together"].into_iter().enumerate() {
         let mut values: Vec<f64> = found.iter().map(|figures| figures[index]).collect();
         values.sort_by(f64::total_cmp);

@@ -12,8 +12,8 @@ use crate::control::position_controller::PositionController;
 use crate::design::controller_limits::{
     COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
 };
-use crate::guidance::ramp::Ramp;
 use crate::guidance::heading::Heading;
+use crate::guidance::ramp::Ramp;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::Limits;
 use crate::attitude::wrapped;
-use crate::guidance::motion_profile::{Motion, MotionProfile};
 use crate::guidance::heading::Heading;
+use crate::guidance::motion_profile::{Motion, MotionProfile};
 use crate::guidance::state_to_state::StateToState;
 
 /// A goal that moves by less than this, rad, is followed as it is, without a new plan.

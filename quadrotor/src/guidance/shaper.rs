@@ -6,9 +6,9 @@ use nalgebra::{Rotation2, Vector2, Vector3};
 use rsruckig::prelude::ControlInterface;
 use serde::{Deserialize, Serialize};
 
+use crate::guidance::heading::Heading;
 use crate::guidance::heading_shaper::HeadingShaper;
 use crate::guidance::motion_profile::{Motion, MotionProfile};
-use crate::guidance::heading::Heading;
 use crate::guidance::state_to_state::StateToState;
 use crate::{Limits, PositionReference};
 

@@ -53,6 +53,7 @@ mod mission;
 mod motion;
 mod notice;
 mod offboard;
+mod path_steering;
 mod perception;
 mod plans;
 mod proposal;
@@ -72,6 +73,7 @@ mod steering;
 mod sticks;
 mod takeoff;
 mod tick;
+mod trajectory;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;
