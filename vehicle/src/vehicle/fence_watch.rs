@@ -69,11 +69,11 @@ impl FenceWatch {
 fn breach_ahead(situation: &Situation) -> Option<Breach> {
     let stopping_m = stopping_place_m(situation);
     let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
-    // It stops on its way, around the next corner if it must.
+    // It stops on its way, around the next corner if need be.
     let mut from_m = situation.outputs.position_m;
     let mut left_m = (stopping_m - from_m).norm();
-    path.ahead_m().into_iter().find_map(|corner_m| {
-        let way = corner_m - from_m;
+    path.places_m(situation.time_us).find_map(|place_m| {
+        let way = place_m - from_m;
         let to_m = from_m + way.cap_magnitude(left_m);
         left_m -= (to_m - from_m).norm();
         let fence = situation.fence()?;

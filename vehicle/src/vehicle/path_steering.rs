@@ -9,8 +9,8 @@ use super::trajectory::PieceFlight;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathSteering {
     flight: PieceFlight,
-    /// The corners of the way from here on, NED, m: it stays between them.
-    ahead_m: [Vector3<f64>; 2],
+    /// The corners of the way after the piece, NED, m.
+    after_m: [Vector3<f64>; 2],
     heading: HeadingShaper,
     /// Where the nose is to point.
     goal: Heading,
@@ -20,18 +20,18 @@ impl PathSteering {
     /// Begins with a reference's heading, which is to become another one.
     pub fn new(
         flight: PieceFlight,
-        ahead_m: [Vector3<f64>; 2],
+        after_m: [Vector3<f64>; 2],
         now: &PositionReference,
         yaw_rad: f64,
         time_us: u64,
     ) -> Self {
         let heading = HeadingShaper::moving(&Heading::of(now), time_us);
-        Self { flight, ahead_m, heading, goal: Heading { yaw_rad, yaw_rate_rad_s: 0.0 } }
+        Self { flight, after_m, heading, goal: Heading { yaw_rad, yaw_rate_rad_s: 0.0 } }
     }
 
     /// The same on another piece.
-    pub fn onto(self, flight: PieceFlight, ahead_m: [Vector3<f64>; 2]) -> Self {
-        Self { flight, ahead_m, ..self }
+    pub fn onto(self, flight: PieceFlight, after_m: [Vector3<f64>; 2]) -> Self {
+        Self { flight, after_m, ..self }
     }
 
     /// The same with the nose somewhere else.
@@ -44,9 +44,14 @@ impl PathSteering {
         self.goal
     }
 
-    /// The corners of the way from here on, NED, m.
-    pub fn ahead_m(&self) -> [Vector3<f64>; 2] {
-        self.ahead_m
+    /// Places on the way from a time, µs, on, NED, m, as far as it is known: on the present piece, then its corners.
+    pub fn places_m(&self, time_us: u64) -> impl Iterator<Item = Vector3<f64>> {
+        self.flight.places_m(time_us).chain(self.after_m)
+    }
+
+    /// The highest that the known way leads, z, m.
+    pub fn highest_z_m(&self) -> f64 {
+        self.after_m.iter().map(|place_m| place_m.z).fold(self.end().position_m.z, f64::min)
     }
 
     /// Motion at the end of the piece.

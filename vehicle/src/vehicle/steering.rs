@@ -137,13 +137,13 @@ impl Steering {
 
     /// Whether it goes by position, and nowhere above z, m.
     pub(super) fn stays_below(&self, z_m: f64) -> bool {
-        let leads_up = |goal_m: &Vector3<f64>| {
-            let axes = goal_m.data.0[0].map(AxisTarget::Position);
+        let leads_up = |goal_z_m: f64| {
+            let axes = [AxisTarget::HOLD, AxisTarget::HOLD, AxisTarget::Position(goal_z_m)];
             PositionSetPoint { axes, yaw: YawTarget::Hold }.leads_up(z_m)
         };
         match self {
-            Self::Goal(goal) => !leads_up(&goal.position_m),
-            Self::Path(path) => path.ahead_m().iter().all(|place_m| !leads_up(place_m)),
+            Self::Goal(goal) => !leads_up(goal.position_m.z),
+            Self::Path(path) => !leads_up(path.highest_z_m()),
             Self::Motion(motion) => !motion.leads_up(z_m),
             Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => false,
         }

@@ -66,7 +66,7 @@ pub enum LegProgress {
 pub enum Guide {
     /// Through the shaper, to a place that is passed with a velocity.
     Goal(PositionReference),
-    /// Along a piece; with the corners of the way from here on.
+    /// Along a piece; with the corners of the way after it.
     Path(PieceFlight, [Vector3<f64>; 2]),
 }
 
@@ -83,7 +83,8 @@ pub struct Leg {
     phase: Phase,
 }
 
-/// The nearest that an end at rest is waited for, m, and the farthest; and how slow, m/s.
+/// The nearest that an end at rest is waited for, m, and the farthest; and how slow, m/s. The reference is waited for as the
+/// nearest.
 const REST_M: (f64, f64) = (0.1, 0.5);
 const SLOW_M_S: f64 = 0.5;
 /// A reference slower than this, m/s, rests.
@@ -150,12 +151,14 @@ impl Leg {
 
     /// How the vehicle is to be steered.
     pub fn guide(&self) -> Guide {
-        let ahead_m = [self.to_m, self.corner.map_or(self.to_m, |corner| corner.after_m)];
         match self.phase {
-            Phase::Leaving(turn) => Guide::Path(turn.flight(), [turn.end().position_m, self.to_m]),
+            Phase::Leaving(turn) => Guide::Path(turn.flight(), [self.to_m; 2]),
             Phase::Joining => Guide::Goal(self.joint()),
-            Phase::Straight(flight) => Guide::Path(flight, ahead_m),
-            Phase::Turning(turn) => Guide::Path(turn.flight(), [turn.end().position_m, turn.corner.after_m]),
+            Phase::Straight(flight) => {
+                let after_m = self.corner.map_or(self.to_m, |corner| corner.after_m);
+                Guide::Path(flight, [self.to_m, after_m])
+            }
+            Phase::Turning(turn) => Guide::Path(turn.flight(), [turn.corner.after_m; 2]),
         }
     }
 
@@ -206,7 +209,9 @@ impl Leg {
             }
             Phase::Joining | Phase::Straight(_) if self.corner.is_none() => {
                 let near_m = self.radius_m.clamp(REST_M.0, REST_M.1);
-                let arrived = distance_m < near_m && outputs.velocity_m_s.norm() < SLOW_M_S;
+                let led_m = (outputs.setpoint.position_m - self.to_m).norm();
+                let near = distance_m < near_m && led_m < REST_M.0;
+                let arrived = near && outputs.velocity_m_s.norm() < SLOW_M_S;
                 if arrived { LegProgress::Arrived } else { LegProgress::Flying }
             }
             _ => LegProgress::Flying,

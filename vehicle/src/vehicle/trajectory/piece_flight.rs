@@ -1,5 +1,6 @@
 //! A piece of a way that is being flown.
 
+use nalgebra::Vector3;
 use quadrotor::PositionReference;
 
 use super::blend::Blend;
@@ -50,6 +51,20 @@ impl PieceFlight {
             Piece::Straight(straight) => straight.at(time_s),
             Piece::Blend(blend) => blend.at(time_s),
         }
+    }
+
+    /// Places on the way from a time, µs, to its end, NED, m: the way between them is straight, or nearly so.
+    pub fn places_m(&self, time_us: u64) -> impl Iterator<Item = Vector3<f64>> {
+        const PARTS: u32 = 8;
+        let count = match &self.piece {
+            Piece::Straight(_) => 1,
+            Piece::Blend(_) => PARTS,
+        };
+        let (flight, left_us) = (*self, self.end_us().saturating_sub(time_us));
+        (1..=count).map(move |part| match part {
+            _ if part == count => flight.end().position_m,
+            _ => flight.at(time_us + left_us * u64::from(part) / u64::from(count)).position_m,
+        })
     }
 
     /// Motion at its end. The heading is zero.
