@@ -214,7 +214,8 @@ fn what_happens_in_the_middle_of_a_turn_is_flown_smoothly() {
         }
         vehicle.set_mode(Mode::Mission).expect("goes on");
     };
-    let cases: [(&str, &dyn Fn(&mut Vehicle)); 4] =
+    type Interference<'a> = (&'a str, &'a dyn Fn(&mut Vehicle));
+    let cases: [Interference; 4] =
         [("slower", &slower), ("pause", &pause), ("back", &back), ("mode", &position_mode)];
     for (name, interfere) in cases {
         for late in [0, 60, 110, 170] {
@@ -252,7 +253,7 @@ fn corners_keep_out_of_the_fence() {
     {
         let places = [[40.0, 0.0, -10.0], [40.0, 40.0, -10.0]];
         let ways = places.map(|place| waypoint(place, radius_m)).to_vec();
-        let flight = Flight::new(8.0, WindSettings::default(), vec![fence.clone()], ways).complete();
+        let flight = Flight::new(8.0, WindSettings::default(), vec![fence], ways).complete();
         let [x, y, _] = fence.position;
         let gap = |at: &Vector3<f64>| (at.x - x).hypot(at.y - y) - fence.parameters[0];
         let least = flight.truth_m.iter().map(gap).fold(f64::INFINITY, f64::min);

@@ -134,6 +134,16 @@ impl Entry {
                 group: "MAVLink",
                 fixed_in_flight: true,
             },
+            Source::HoverThrust => Description {
+                text: "Thrust in hover as a share of the largest thrust, as set-points of the attitude have it; read-only: \
+                       weight / (4 AF_ROT_K1 × squared largest rotor speed)"
+                    .to_owned(),
+                unit: "norm",
+                range: (0.0, 1.0),
+                names: Vec::new(),
+                group: "Airframe",
+                fixed_in_flight: true,
+            },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
                 unit: "",

@@ -33,6 +33,9 @@ pub enum SetError {
     /// It is fixed since the start.
     #[error("{0} is set by the command line")]
     ReadOnly(String),
+    /// It follows from other parameters.
+    #[error("{0} is calculated from mass and rotors (read-only); set those instead")]
+    Calculated(String),
     /// It can only change while the vehicle is disarmed on the ground.
     #[error("{0} is fixed while armed")]
     Armed(String),

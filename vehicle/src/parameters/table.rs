@@ -52,7 +52,9 @@ impl ParameterTable {
             Entry { id: id.to_owned(), source: Source::Conduct(parameter, scale) }
         });
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
+        let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
         let others = [
+            Entry { id: hover.to_owned(), source: Source::HoverThrust },
             Entry { id: system.to_owned(), source: Source::SystemId },
             Entry { id: SPEED_PARAMETER.to_owned(), source: Source::Speed },
         ];
@@ -106,6 +108,7 @@ impl ParameterTable {
                 Ok(Change::Conduct)
             }
             Source::SystemId => Err(SetError::ReadOnly(id.to_owned())),
+            Source::HoverThrust => Err(SetError::Calculated(id.to_owned())),
             Source::Speed => {
                 values.speed = Speed::from_parameter(value).ok_or_else(|| SetError::OutOfRange {
                     id: id.to_owned(),
@@ -186,6 +189,7 @@ mod tests {
             ("SIM_SPEEDUP", 5.0, Ok(Change::Speed)),
             ("MAV_SYS_ID", 7.0, Ok(Change::Nothing)),
             ("MAV_SYS_ID", 8.0, Err(())),
+            ("MPC_THR_HOVER", 0.5, Err(())),
             ("SIM_SPEEDUP", -2.0, Err(())),
             ("AF_MASS", f64::NAN, Err(())),
             ("COM_OBL_RC_ACT", 1.0, Err(())),
