@@ -27,8 +27,7 @@ fn set(id: &str, value: Value) -> MavMessage {
 
 /// Other values than the present one, the likelier ones first.
 fn others(present: Value, description: &Description) -> Vec<Value> {
-    let (minimum, maximum) = description.range;
-    let within = |value: f64| value.clamp(minimum, maximum);
+    let within = |value: f64| value.clamp(description.range.minimum, description.range.maximum);
     let values: Vec<Value> = match present {
         Value::Real(0.0) => vec![Value::Real(within(0.01) as f32)],
         Value::Real(present) => {
@@ -57,22 +56,25 @@ fn every_parameter_changes_in_flight_unless_it_needs_a_restart() {
         let mut changes = others(before, &description).into_iter();
         bench.heard.clear();
         let accepted = changes.any(|value| {
-            bench.send(set(&entry.id, value));
+            bench.send(set(entry.id, value));
             present(&bench, index) == value
         });
-        assert_eq!(accepted, !description.needs_restart, "{}: {:?}", entry.id, bench.texts());
+        assert_eq!(accepted, !description.read_only, "{}: {:?}", entry.id, bench.texts());
         if !accepted {
-            refused.push((entry.id.clone(), bench.texts().swap_remove(0)));
+            refused.push((entry.id, bench.texts().swap_remove(0)));
         }
         bench.fly(0.1);
-        bench.send(set(&entry.id, before));
+        bench.send(set(entry.id, before));
         assert_eq!(present(&bench, index), before, "{}: {:?}", entry.id, bench.texts());
         bench.fly(0.1);
         let apart = nalgebra::Vector3::from(bench.position()) - nalgebra::Vector3::from(place);
         assert!(apart.norm() < 0.1, "{}: {apart:?}", entry.id);
     }
-    let told = "Parameter refused: MAV_SYS_ID is fixed from the start: restart with --system-id".to_owned();
-    assert_eq!(refused, [("MAV_SYS_ID".to_owned(), told)]);
+    let told = [
+        ("MAV_SYS_ID", "MAV_SYS_ID is read-only: restart with --system-id"),
+        ("MPC_THR_HOVER", "MPC_THR_HOVER is calculated from mass and rotors (read-only); set those instead"),
+    ];
+    assert_eq!(refused, told.map(|(id, text)| (id, text.to_owned())));
 }
 
 /// Controllers, sample times and mass change in the middle of a cruise: replayed, it is the same flight.
@@ -98,11 +100,11 @@ fn a_record_with_changes_of_structure_replays_bit_for_bit() {
             12_000 => recording.send(away.clone()),
             16_003 => {
                 before = recording.bench.velocity()[0];
-                recording.send(set("C_KIND", Value::Integer(2)));
-                recording.send(set("C_ATT_DT", Value::Real(0.007)));
-                recording.send(set("AF_MASS", Value::Real(0.6)));
+                recording.send(set("CTRL_KIND", Value::Integer(2)));
+                recording.send(set("ATT_SAMPLE_TIME", Value::Real(0.007)));
+                recording.send(set("FRAME_MASS", Value::Real(0.6)));
             }
-            18_000 => recording.send(set("C_POS_DT", Value::Real(0.04))),
+            18_000 => recording.send(set("POS_SAMPLE_TIME", Value::Real(0.04))),
             20_000 => after = recording.bench.velocity()[0],
             _ => {}
         }

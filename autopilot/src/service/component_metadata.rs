@@ -82,6 +82,9 @@ pub fn parameters(values: &Parameters) -> Vec<u8> {
             if let Some(dotted) = entry.dotted() {
                 put("longDesc", json!(format!("Dotted name: {dotted}.")));
             }
+            if description.read_only {
+                put("readOnly", json!(true));
+            }
             if description.needs_restart {
                 put("rebootRequired", json!(true));
             }

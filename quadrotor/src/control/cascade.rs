@@ -12,8 +12,8 @@ use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, attitude_bounds, largest_tilt, thrust_range_n};
 use crate::design::loop_design::LoopDesign;
+use crate::guidance::heading::Heading;
 use crate::guidance::ramp::Ramp;
-use crate::guidance::reference_guidance::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{

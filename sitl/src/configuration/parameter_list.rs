@@ -114,6 +114,7 @@ fn object(system_id: u8, entry: &Entry, value: Value) -> Json {
         "max": range.maximum,
         "values": names.collect::<Vec<_>>(),
         "needs_restart": description.needs_restart,
+        "read_only": description.read_only,
         "group": description.group,
         "description": description.text,
     })

@@ -50,8 +50,8 @@ pub(super) fn set_parameters(
             setting.split_once('=').ok_or_else(|| wrong(format!("expected NAME=VALUE, got `{setting}`")))?;
         let name = name.trim();
         let entry = table.require(name).map_err(unknown)?;
-        if !entry.is_kept() {
-            return Err(wrong(format!("{name} has a flag of its own: {}", own_flag(entry))));
+        if let Some(flag) = own_flag(entry) {
+            return Err(wrong(format!("{name} has a flag of its own: {flag}")));
         }
         table.set_checked(name, table.number(name, value)?, &mut values)?;
         set.push(entry.id);
@@ -66,8 +66,13 @@ fn wrong(reason: String) -> Failure {
 }
 
 /// The flag of a parameter that belongs to a run, not to the vehicle.
-fn own_flag(entry: &Entry) -> &'static str {
-    if entry.id == SPEED_PARAMETER { "--speed" } else { "--system-id" }
+fn own_flag(entry: &Entry) -> Option<&'static str> {
+    match entry.id {
+        SPEED_PARAMETER => Some("--speed"),
+        "MAV_SYS_ID" | "SYSID_THISMAV" => Some("--system-id"),
+        _ => None,
+    }
+}
 }
 
 /// Where nothing similar is known, the list helps.

@@ -21,6 +21,8 @@ pub struct Description {
     pub group: &'static str,
     /// Whether a change takes effect at the next start only.
     pub needs_restart: bool,
+    /// Whether it is only told: it follows from others, or from the start.
+    pub read_only: bool,
 }
 
 /// Text and unit of the vehicle's own parameters, by PX4's identifiers. ArduPilot's units are others: see [`ardupilot_unit`].
@@ -120,6 +122,18 @@ impl Entry {
                 names: Vec::new(),
                 group: "MAVLink",
                 needs_restart: true,
+                read_only: true,
+            },
+            Source::HoverThrust => Description {
+                text: "Thrust in hover as a share of the largest thrust, as attitude set-points take it; calculated from mass \
+                       and rotors (read-only)"
+                    .to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: 1.0, unit: "norm" },
+                whole: false,
+                names: Vec::new(),
+                group: "Airframe",
+                needs_restart: false,
+                read_only: true,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
@@ -128,6 +142,7 @@ impl Entry {
                 names: Vec::new(),
                 group: "Simulation",
                 needs_restart: false,
+                read_only: false,
             },
         }
     }
@@ -159,6 +174,7 @@ fn describe_loop(parameter: &Parameter) -> Description {
         names,
         group: group(parameter.name),
         needs_restart: parameter.mutability == Mutability::Start,
+        read_only: false,
     }
 }
 
@@ -181,6 +197,7 @@ fn describe_conduct(parameter: &ConductParameter, scale: f64) -> Description {
         names: names.map(|(value, name)| plain(*value, name)).collect(),
         group: "Vehicle",
         needs_restart: false,
+        read_only: false,
     }
 }
 

@@ -17,6 +17,8 @@ pub(super) enum Source {
     SystemId,
     /// Pace of simulation time.
     Speed,
+    /// Thrust in hover as a share of the largest, calculated from the airframe.
+    HoverThrust,
 }
 
 /// A parameter with its names.
@@ -72,6 +74,7 @@ impl Entry {
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
+            Source::HoverThrust => Value::Real(values.configuration.airframe.hover_thrust_share() as f32),
         }
     }
 }

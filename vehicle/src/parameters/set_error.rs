@@ -26,6 +26,9 @@ pub enum SetError {
     /// It is set at the start.
     #[error("{0} is read-only: restart with --system-id")]
     ReadOnly(String),
+    /// It follows from other parameters.
+    #[error("{0} is calculated from mass and rotors (read-only); set those instead")]
+    Calculated(String),
     /// The closed loop cannot fly with it.
     #[error("{name}: {source}")]
     Refused {

@@ -48,7 +48,12 @@ impl ParameterTable {
             Entry::new(id, Source::Conduct(parameter, scale))
         });
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
-        let others = [Entry::new(system, Source::SystemId), Entry::new(SPEED_PARAMETER, Source::Speed)];
+        let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
+        let others = [
+            Entry::new(hover, Source::HoverThrust),
+            Entry::new(system, Source::SystemId),
+            Entry::new(SPEED_PARAMETER, Source::Speed),
+        ];
         let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).collect();
         entries.sort_by_key(|entry| entry.id);
         Self { entries }
@@ -112,6 +117,7 @@ impl ParameterTable {
                 set_conduct(parameter, value, scale, &mut values.conduct).map(|()| Change::Conduct)
             }
             Source::SystemId => return Err(SetError::ReadOnly(name.to_owned())),
+            Source::HoverThrust => return Err(SetError::Calculated(name.to_owned())),
             Source::Speed => Speed::from_parameter(value).map(|speed| {
                 values.speed = speed;
                 Change::Speed
@@ -176,6 +182,7 @@ mod tests {
             ("SIM_SPEEDUP", 5.0, Ok(Change::Speed)),
             ("MAV_SYS_ID", 7.0, Ok(Change::Nothing)),
             ("MAV_SYS_ID", 8.0, Err(())),
+            ("MPC_THR_HOVER", 0.5, Err(())),
             ("SIM_SPEEDUP", -2.0, Err(())),
             ("FRAME_MASS", f64::NAN, Err(())),
             ("COM_OBL_RC_ACT", 1.0, Err(())),

@@ -55,8 +55,8 @@ impl FenceWatch {
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
-        let ahead = || if predicts { situation.breach_to(&stopping_place_m(situation)) } else { None };
         self.record.is_ahead = here.is_none();
+        let ahead = || if predicts { breach_ahead(situation) } else { None };
         self.record.now = here.or_else(ahead);
     }
 
@@ -68,6 +68,24 @@ impl FenceWatch {
     }
 }
 
+/// What of the fence the vehicle cannot help breaching.
+fn breach_ahead(situation: &Situation) -> Option<Breach> {
+    let stopping_m = stopping_place_m(situation);
+    let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
+    // It stops on its way, around the next corner if need be.
+    let mut from_m = situation.outputs.position_m;
+    let mut left_m = (stopping_m - from_m).norm();
+    path.places_m(situation.time_us).find_map(|place_m| {
+        let way = place_m - from_m;
+        let to_m = from_m + way.cap_magnitude(left_m);
+        left_m -= (to_m - from_m).norm();
+        let fence = situation.fence()?;
+        let breach = fence.breach(&to_m).or_else(|| fence.breach_between(&from_m, &to_m));
+        from_m = to_m;
+        breach
+    })
+}
+
 /// Where the vehicle comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is
 /// not beyond the goal, where the shaper stops.
 fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
@@ -77,7 +95,7 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
         return position_m;
     }
     let mut motion = steering.present(situation.outputs);
-    if !matches!(steering, Steering::Motion(_) | Steering::Goal(_)) {
+    if !matches!(steering, Steering::Motion(_) | Steering::Goal(_) | Steering::Path(_)) {
         motion.position_m += motion.velocity_m_s * REACTION_S;
     }
     let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
@@ -94,6 +112,8 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
             let left_m = (goal.position_m - position_m).norm();
             position_m + ahead * (motion.position_m - position_m).norm().min(left_m)
         }
+        // A planned way ends where it is to.
+        Steering::Path(_) => motion.position_m,
         _ => motion.position_m + ahead * MARGIN_M,
     }
 }

@@ -56,6 +56,7 @@ mod mission;
 mod motion;
 mod notice;
 mod offboard;
+mod path_steering;
 mod perception;
 mod plans;
 mod proposal;
@@ -75,6 +76,7 @@ mod steering;
 mod sticks;
 mod takeoff;
 mod tick;
+mod trajectory;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;

@@ -170,6 +170,7 @@ impl Scene {
     pub fn goal_m(&self) -> Option<[f64; 3]> {
         match &self.steering {
             Steering::Goal(goal) => Some(goal.position_m.into()),
+            Steering::Path(path) => Some(path.end().position_m.into()),
             _ => None,
         }
     }

@@ -10,7 +10,7 @@ use super::super::steering::{Steering, SteeringKind};
 use super::actions::Actions;
 use super::course::Course;
 use super::jumps::Jumps;
-use super::leg::{Carry, Leg};
+use super::leg::{Leg, Turn};
 use super::route::Route;
 use super::task::TaskProgress;
 use crate::mode::Mode;
@@ -220,7 +220,7 @@ impl Mission {
     /// Other limits of speed hold now.
     pub fn replan(&mut self, situation: &Situation, proposal: &Proposal) {
         let route = Route::new(&self.program, self.current, &self.jumps, situation, proposal);
-        self.course.replan(&route);
+        self.course.replan(&route, situation);
     }
 
     /// One tick in its mode.
@@ -264,8 +264,8 @@ impl Mission {
                     break;
                 }
                 TaskProgress::Again => {}
-                TaskProgress::Done(carry) => {
-                    if !self.finish(&step, carry, situation, proposal) {
+                TaskProgress::Done(turn) => {
+                    if !self.finish(&step, turn, situation, proposal) {
                         return false;
                     }
                 }
@@ -278,12 +278,12 @@ impl Mission {
     fn finish(
         &mut self,
         step: &Navigate,
-        carry: Option<Carry>,
+        turn: Option<Turn>,
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> bool {
         let index = self.current;
-        self.give_up(carry);
+        self.give_up(turn);
         self.reach(index);
         if *step == Navigate::ReturnToLaunch {
             self.complete(situation, proposal);
@@ -326,16 +326,20 @@ impl Mission {
     /// Turns the vehicle to where it is to look.
     fn turn(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let turned = self.actions.turn();
-        let Steering::Goal(goal) = *proposal.steering() else {
-            proposal.turn_to_region(situation);
-            return;
+        let yaw_rad = match proposal.steering() {
+            Steering::Goal(goal) => goal.yaw_rad,
+            Steering::Path(path) => path.goal().yaw_rad,
+            _ => {
+                proposal.turn_to_region(situation);
+                return;
+            }
         };
         let next_m = self.course.leg().map(|leg| leg.to_m);
         let heading = match (turned, proposal.region()) {
             (Some(turned), _) => turned,
             (None, Some(region)) => {
                 // What is too near to be looked at does not turn the vehicle.
-                region.heading(&situation.outputs.setpoint, next_m).unwrap_or((goal.yaw_rad, 0.0))
+                region.heading(&situation.outputs.setpoint, next_m).unwrap_or((yaw_rad, 0.0))
             }
             (None, None) => (self.course.heading_rad(), 0.0),
         };
@@ -360,8 +364,8 @@ impl Mission {
     }
 
     /// Gives up what is done for the present step and on the way to it.
-    fn give_up(&mut self, carry: Option<Carry>) {
-        self.course.give_up(carry);
+    fn give_up(&mut self, turn: Option<Turn>) {
+        self.course.give_up(turn);
         self.actions.clear();
     }
 
