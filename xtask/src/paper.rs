@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::cargo::cargo;
-use crate::failure::Failure;
-use crate::process;
-use crate::workspace::Workspace;
+use xtask::cargo::cargo;
+use xtask::failure::Failure;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// Computes the paper's results in a release build, because it times the controllers; or designs a controller for the model in a file.
 pub fn run(workspace: &Workspace, gain: Option<&Path>) -> Result<(), Failure> {
