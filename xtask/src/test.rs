@@ -22,12 +22,8 @@ use xtask::workspace::Workspace;
 /// Environment variable by which a test knows that the Python tests follow.
 pub const ALL_TESTS: &str = "LMPC_QUADROTOR_ALL_TESTS";
 
-/// Runs of the Python tests with their options. Most tests wait for a vehicle most of the time, so several run at once; those that
-/// measure the wall clock have the machine to themselves.
-const PYTHON_RUNS: [(&str, &[&str]); 2] = [
-    ("Running the Python tests", &["-m", "not alone", "--numprocesses", "auto", "--dist", "worksteal"]),
-    ("Running the Python tests that measure time", &["-m", "alone"]),
-];
+/// Python tests that run at once, per core: most wait for a vehicle most of the time.
+const PYTHON_TESTS_PER_CORE: usize = 2;
 
 /// Tests that ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -60,7 +56,14 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     let sitl = progress
         .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Tests))?;
     let mut python_passed = true;
-    for (what, options) in PYTHON_RUNS {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let processes = (PYTHON_TESTS_PER_CORE * cores).to_string();
+    let at_once = ["-m", "not alone", "--numprocesses", &processes, "--dist", "worksteal"];
+    // Those that measure the wall clock have the machine to themselves.
+    let alone = ["-m", "alone"];
+    let runs: [(&str, &[&str]); 2] =
+        [("Running the Python tests", &at_once), ("Running the Python tests that measure time", &alone)];
+    for (what, options) in runs {
         let (counted, passed) =
             progress.timed(what, || python_tests(workspace, &python, options, &fmu, &sitl))?;
         count += counted;

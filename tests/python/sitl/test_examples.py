@@ -27,6 +27,7 @@ def fly(name, vehicle, tmp_path):
     assert "at most" in done.stdout and plot.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("name", ALONE)
 def test_example(start, tmp_path, name):
     fly(name, start(*ALONE[name]), tmp_path)
