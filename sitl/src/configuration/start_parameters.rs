@@ -73,7 +73,6 @@ fn own_flag(entry: &Entry) -> Option<&'static str> {
         _ => None,
     }
 }
-}
 
 /// Where nothing similar is known, the list helps.
 fn unknown(error: SetError) -> Failure {

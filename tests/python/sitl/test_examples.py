@@ -35,6 +35,7 @@ def test_examples_fly_one_after_the_other(start, tmp_path):
         fly(name, vehicle, tmp_path)
 
 
+@pytest.mark.alone
 @pytest.mark.parametrize("options", [("--speed", "2"), ("--speed", "50", "--lockstep")], ids=" ".join)
 def test_streamed_circle(start, tmp_path, options):
     fly("circle", start(*options), tmp_path)

@@ -9,6 +9,7 @@ import time
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.telemetry import Telemetry
+import pytest
 from pymavlink.dialects.v20 import common as mavlink
 
 import records
@@ -150,6 +151,7 @@ def elapsed(client, seconds):
     return {system: (end[system].time_boot_ms - begin[system].time_boot_ms) / 1e3 / (time.monotonic() - wall) for system in end}
 
 
+@pytest.mark.alone
 def test_clocks_are_one_or_each_their_own(start, connect):
     for clocks, factors in (("shared", (5, 5)), ("separate", (2, 5))):
         client = connect(start("--vehicles", "2", "--ports", "shared", "--clocks", clocks, "--speed", "2"))

@@ -145,6 +145,7 @@ def test_the_same_autopilot_flies_the_same_flight(start):
     assert len(digests[0]) == 1 and digests[0] == digests[1]
 
 
+@pytest.mark.alone
 def test_broken_autopilots(start):
     vehicle = start("--hil", "0", "--speed", "max", links=())
     address = vehicle.addresses[0]

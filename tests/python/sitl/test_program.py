@@ -191,6 +191,7 @@ def test_who_closes_the_streams_does_not_end_it(program, flags, code):
     assert process.wait(20) == code
 
 
+@pytest.mark.alone
 def test_speed_pause_and_time(start, connect):
     client = connect(start("--speed", "4"))
 

@@ -1,25 +1,14 @@
-//! The library: built for release, without the paths of the machine that built it.
+//! The FMU's library: built for release, without the paths of the machine that built it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use fmi::Model;
-use fmu::ClosedLoop;
 use serde::Deserialize;
 
-use crate::cargo::{cargo, metadata_with_dependencies};
-use crate::failure::Failure;
-use crate::files;
-use crate::process;
-use crate::workspace::Workspace;
-
-/// The built library and its place in the FMU.
-pub struct Library {
-    /// `binaries/<platform>/<model identifier>.<extension>`.
-    pub entry: String,
-    /// Its content.
-    pub bytes: Vec<u8>,
-}
+use xtask::cargo::{cargo, metadata_with_dependencies};
+use xtask::failure::Failure;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// One message of `cargo build --message-format=json`, as far as it is used here.
 #[derive(Deserialize)]
@@ -35,22 +24,18 @@ struct Target {
     name: String,
 }
 
-/// Builds the library for this machine.
-pub fn build(workspace: &Workspace) -> Result<Library, Failure> {
+/// Builds the library for this machine and returns its path.
+pub fn build(workspace: &Workspace) -> Result<PathBuf, Failure> {
     let messages = process::output(
         cargo()
-            .args(["build", "--release", "--package", "fmu", "--message-format=json-render-diagnostics"])
+            .args(["build", "--quiet", "--release", "--package", "fmu"])
+            .arg("--message-format=json-render-diagnostics")
             .env_remove("RUSTFLAGS")
             .env("CARGO_ENCODED_RUSTFLAGS", flags(workspace)?)
             .current_dir(workspace.root()),
         "building the FMU's library",
     )?;
-    let path = built(&messages)?;
-    let (platform, extension) = platform()?;
-    Ok(Library {
-        entry: format!("binaries/{platform}/{}.{extension}", ClosedLoop::IDENTITY.model_identifier),
-        bytes: files::read(&path)?,
-    })
+    built(&messages)
 }
 
 /// The file that cargo says it has built.
@@ -102,20 +87,6 @@ fn flags(workspace: &Workspace) -> Result<OsString, Failure> {
     }
     flags.retain(|flag| !flag.is_empty());
     Ok(flags.join(SEPARATOR.as_ref()))
-}
-
-/// FMI 2.0's name of the platform that this task is built for, and its library extension.
-fn platform() -> Result<(&'static str, &'static str), Failure> {
-    use std::env::consts::{ARCH, DLL_EXTENSION, OS};
-    let name = match (OS, cfg!(target_pointer_width = "64")) {
-        ("linux", true) => "linux64",
-        ("linux", false) => "linux32",
-        ("windows", true) => "win64",
-        ("windows", false) => "win32",
-        ("macos", true) => "darwin64",
-        _ => return Err(Failure::Platform { os: OS, architecture: ARCH }),
-    };
-    Ok((name, DLL_EXTENSION))
 }
 
 #[cfg(test)]

@@ -6,17 +6,14 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
-use super::archive::{Archive, MODEL_DESCRIPTION};
+use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
+use xtask::files;
 
 /// Takes over the binaries of an FMU that was built from the same sources on another platform. Platforms
 /// that the archive already has stay as they are.
 pub fn binaries(archive: &mut Archive, other: &Path, description: &str) -> Result<(), Failure> {
-    let file = File::open(other).map_err(|source| Failure::File {
-        action: "read",
-        path: other.to_owned(),
-        source,
-    })?;
+    let file = files::open(other)?;
     let unreadable = |source| Failure::Archive { path: other.to_owned(), source };
     let mut read = ZipArchive::new(BufReader::new(file)).map_err(unreadable)?;
 
@@ -64,7 +61,7 @@ mod tests {
 
     use super::{Archive, binaries, platform_folder};
     use crate::failure::Failure;
-    use crate::files;
+    use xtask::files;
 
     const DESCRIPTION: &str = "<fmiModelDescription/>";
 

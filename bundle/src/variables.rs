@@ -16,8 +16,7 @@ const GROUPS: [(&str, &str); 4] = [
 
 /// HTML tables of all variables, grouped by causality.
 pub fn tables(description: &str) -> Result<String, Failure> {
-    let document = Document::parse(description)
-        .map_err(|error| Failure::Answer { what: "modelDescription.xml", detail: error.to_string() })?;
+    let document = Document::parse(description)?;
     let mut html = String::new();
     for (title, causality) in GROUPS {
         let rows: String = document

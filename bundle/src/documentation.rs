@@ -1,9 +1,9 @@
 //! documentation/index.html: the template with the generated parts put in.
 
-use super::{picture, variables};
 use crate::failure::Failure;
-use crate::files;
-use crate::workspace::Workspace;
+use crate::{picture, variables};
+use xtask::files;
+use xtask::workspace::Workspace;
 
 /// The page.
 pub fn page(workspace: &Workspace, description: &str) -> Result<String, Failure> {
@@ -17,7 +17,7 @@ pub fn page(workspace: &Workspace, description: &str) -> Result<String, Failure>
 #[cfg(test)]
 mod tests {
     use super::page;
-    use crate::workspace::Workspace;
+    use xtask::workspace::Workspace;
 
     #[test]
     fn every_place_holder_is_filled() {

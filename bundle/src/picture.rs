@@ -2,7 +2,7 @@
 
 use quadrotor::{Configuration, Inputs, Outputs, Simulation};
 
-use super::chart::{Chart, Line, Svg};
+use crate::chart::{Chart, Line, Svg};
 use crate::failure::Failure;
 
 /// End of the flight, s.

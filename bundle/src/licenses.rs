@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::cargo::{Package, cargo, metadata_with_dependencies};
 use crate::failure::Failure;
-use crate::files;
-use crate::process;
-use crate::workspace::Workspace;
+use xtask::cargo::{Package, cargo, metadata_with_dependencies};
+use xtask::files;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// Files of the folder `licenses/`, by name.
 pub fn texts(workspace: &Workspace) -> Result<Vec<(&'static str, String)>, Failure> {
