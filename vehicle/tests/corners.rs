@@ -43,6 +43,7 @@ impl Flight {
             faults: Vec::new(),
             sensors: vehicle::estimation::SensorSettings::default(),
             plans: vehicle::plan::Plans::default(),
+            autostart: false,
         };
         let mut vehicle = Vehicle::new(&settings).expect("valid settings");
         vehicle.set_plan(PlanKind::Fence, fence).expect("a fence");
