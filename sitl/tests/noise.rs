@@ -105,5 +105,5 @@ fn what_is_no_noise_is_refused() {
         sensors: Some(vehicle::estimation::SensorModel::Realistic),
         ..Arguments::default()
     };
-    assert!(Settings::resolve(&both).expect_err("both").to_string().contains("of their own"));
+    assert!(Settings::resolve(&both).expect_err("both").to_string().contains("of its own"));
 }

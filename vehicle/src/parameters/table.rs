@@ -247,7 +247,7 @@ mod tests {
                 -2.0,
                 "SIM_SPEEDUP = -2; allowed 0 (paused), 0.01–1000, -1 (as fast as possible)",
             ),
-            ("MAV_SYS_ID", 9.0, "MAV_SYS_ID is read-only: it is set at the start"),
+            ("MAV_SYS_ID", 9.0, "MAV_SYS_ID is read-only: restart with --system-id"),
             ("airframe.mas", 1.0, "unknown parameter airframe.mas; did you mean airframe.mass?"),
             ("FRAME_MAS", 1.0, "unknown parameter FRAME_MAS; did you mean FRAME_MASS?"),
             ("AF_MAS", 1.0, "unknown parameter AF_MAS; did you mean FRAME_MASS?"),
