@@ -3,7 +3,7 @@
 import math
 import sys
 
-from flight import TRAJECTORY, Flight, arguments, verdict
+from flight import TRAJECTORY, Flight, arguments
 
 RADIUS, HEIGHT = 4.0, 5.0
 RATE = 2 * math.pi / 10  # rad/s
@@ -32,9 +32,9 @@ flight.go_to(circle(0)[0])
 begin = flight.now
 flight.stream(RAMP / 2 + TURNS * 2 * math.pi / RATE, lambda t: flight.set_point(TRAJECTORY, *circle(t)))
 distances = [abs(math.dist(position[:2], (0.0, RADIUS)) - RADIUS) for _, position, _ in flight.since(begin)]
-missed = verdict("farthest from the circle", 100 * max(distances), 5, "cm")
+missed = flight.verdict("farthest from the circle", 100 * max(distances), 5, "cm")
 late = [math.dist(position, circle(at - begin)[0]) for at, position, _ in flight.since(begin)]
-missed |= verdict("farthest from the moving point", 100 * max(late[:-1]), 20, "cm")
+missed |= flight.verdict("farthest from the moving point", 100 * flight.most(late[:-1], "the way"), 20, "cm")
 flight.land()
 flight.plot(options.plot, "streamed circle with feed-forward")
 sys.exit(missed)

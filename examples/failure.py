@@ -3,7 +3,7 @@
 import math
 import sys
 
-from flight import Flight, arguments, verdict
+from flight import Flight, arguments
 from pymavlink.dialects.v20 import common as mavlink
 
 START = (0.0, 0.0, -20.0)
@@ -21,7 +21,7 @@ tilts, spins, sinks, drifts = [], [], [], []
 
 
 def watch():
-    attitude = flight.connection.messages.get("ATTITUDE")
+    attitude = flight.latest.get("ATTITUDE")
     if attitude is not None and flight.position[2] < -0.3:
         tilts.append(math.degrees(math.acos(math.cos(attitude.roll) * math.cos(attitude.pitch))))
         spins.append(abs(attitude.yawspeed))
@@ -29,12 +29,13 @@ def watch():
         drifts.append(math.dist(flight.position[:2], START[:2]))
 
 
-armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-flight.until(lambda: not flight.connection.messages["HEARTBEAT"].base_mode & armed, 60, "coming down", watch)
+flight.idle()
+flight.until(lambda: not flight.armed, 60, "coming down", watch)
+largest_tilt = flight.most(tilts, "coming down")
 print(f"down in {flight.now - broken_at:.1f} s, {drifts[-1]:.1f} m away, spinning with {spins[-1]:.1f} rad/s")
-missed = verdict("largest tilt", max(tilts), 40, "degrees")
-missed |= verdict("sink rate at touch-down", sinks[-1], 1, "m/s")
-missed |= verdict("largest drift", max(drifts), 30, "m")
+missed = flight.verdict("largest tilt", largest_tilt, 40, "degrees")
+missed |= flight.verdict("sink rate at touch-down", sinks[-1], 1, "m/s")
+missed |= flight.verdict("largest drift", max(drifts), 30, "m")
 flight.command(mavlink.MAV_CMD_INJECT_FAILURE, mavlink.FAILURE_UNIT_SYSTEM_MOTOR, mavlink.FAILURE_TYPE_OK, ROTOR)
 flight.plot(options.plot, f"without rotor {ROTOR}")
 sys.exit(missed)

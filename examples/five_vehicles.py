@@ -1,7 +1,7 @@
 """Five vehicles on one connection: they take off from a circle, turn around its centre once, rising and sinking and
 further out where they are high, and land where they began. They stand behind one port, on one clock:
 
-    cargo run --release -p sitl -- --vehicles 5 --ports shared --formation circle,6
+    cargo run --release -p sitl -- --vehicles 5 --ports shared --formation circle,6 --speed max --lockstep always
     python examples/five_vehicles.py --plot five_vehicles.png
 """
 
@@ -13,10 +13,9 @@ import time
 
 os.environ.setdefault("MAVLINK20", "1")
 
-from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
-from flight import INTERVAL, OFFBOARD, TRAJECTORY, arguments, verdict  # noqa: E402
+from flight import INTERVAL, OFFBOARD, SILENCE, TRAJECTORY, VELOCITY, arguments, beat, connect, receive, remedy, verdict  # noqa: E402
 
 COUNT = 5
 START = f"--vehicles {COUNT} --ports shared --formation circle,6"
@@ -26,42 +25,64 @@ ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 
 class Fleet:
     def __init__(self, address: str):
-        self.connection = mavutil.mavlink_connection(address, dialect="common")
+        self.connection = connect(address)
         self.mav = self.connection.mav
-        if address.startswith(("udpout", "tcp")):
-            self.beat()
         self.flown = {}  # system: time in s and position of each report
         self.armed, self.answers = {}, {}
         self.beaten = -math.inf
+        self.longest_gap = 0.0  # between two reports of a vehicle, s
+        # In lock-step no time passes until all have a set-point, so that all begin together.
         end = time.monotonic() + 5
-        while len(self.flown) < COUNT:
-            if time.monotonic() > end:
-                raise SystemExit(f"no {COUNT} vehicles at {address}, only {sorted(self.flown)}: start them with {START}")
+        while len(self.armed) < COUNT and time.monotonic() < end:
             self.read(0.1)
+        if len(self.armed) < COUNT:
+            raise SystemExit(f"no {COUNT} vehicles at {address}, only {sorted(self.armed)}: start them with {START}")
         self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 1e6 * INTERVAL)
+        for system in sorted(self.armed):
+            self.idle(system)
+        # The first reports come at once, the others at the interval: from the second ones on, each is answered.
+        end = time.monotonic() + 5
+        while min(len(self.flown.get(system, ())) for system in self.armed) < 2:
+            if time.monotonic() > end:
+                raise SystemExit("the vehicles do not tell where they are")
+            self.read(0.5)
+        for system in sorted(self.armed):
+            self.idle(system)
+        self.longest_gap = 0.0
 
-    def beat(self):
-        self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+    def fail(self, reason: str):
+        """Ends the program with one line."""
+        raise SystemExit(reason + remedy(self.longest_gap))
 
-    def read(self, timeout: float = 10):
+    def read(self, timeout: float = SILENCE):
         """Takes a message in; returns the vehicle whose place it tells, if it does."""
-        message = self.connection.recv_match(blocking=True, timeout=timeout)
+        message = receive(self.connection, timeout=timeout)
         if message is None:
-            if timeout > 1:
-                raise SystemExit("the vehicles have fallen silent")
+            if timeout == SILENCE:
+                self.fail("the vehicles have fallen silent")
             return None
         system, kind = message.get_srcSystem(), message.get_type()
-        if kind == "HEARTBEAT":
+        if kind == "HEARTBEAT" and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
             self.armed[system] = bool(message.base_mode & ARMED)
         elif kind == "COMMAND_ACK":
             self.answers[system, message.command] = message.result
         elif kind == "LOCAL_POSITION_NED":
-            self.flown.setdefault(system, []).append((message.time_boot_ms / 1e3, (message.x, message.y, message.z)))
+            at, reports = message.time_boot_ms / 1e3, self.flown.setdefault(system, [])
+            if reports and at <= reports[-1][0]:
+                return system  # told again, because nothing has answered it
+            if reports:
+                self.longest_gap = max(self.longest_gap, at - reports[-1][0])
+            reports.append((at, (message.x, message.y, message.z)))
             if self.now - self.beaten >= 1:
-                self.beat()
+                beat(self.connection)
                 self.beaten = self.now
             return system
         return None
+
+    def idle(self, system: int):
+        """Asks for nothing but to stay, which modes other than offboard ignore; in lock-step the vehicle waits for a set-point."""
+        self.mav.set_position_target_local_ned_send(
+            0, system, 1, mavlink.MAV_FRAME_LOCAL_NED, VELOCITY, *[0.0] * 9, 0, 0)
 
     @property
     def now(self) -> float:
@@ -71,12 +92,13 @@ class Fleet:
     def place(self, system: int):
         return self.flown[system][-1][1]
 
-    def command(self, number: int, *parameters: float, each_report=lambda system: None):
+    def command(self, number: int, *parameters: float, each_report=None):
         """The same command to each; again to those that have not answered."""
+        each_report = each_report or self.idle
         parameters = [*parameters, *([0.0] * (7 - len(parameters)))]
         self.answers = {}
         for attempt in range(5):
-            for system in set(self.flown) - {system for system, _ in self.answers}:
+            for system in sorted(set(self.armed) - {system for system, _ in self.answers}):
                 self.mav.command_long_send(system, 1, number, attempt, *parameters)
             end = time.monotonic() + 1
             while time.monotonic() < end and len(self.answers) < COUNT:
@@ -84,15 +106,16 @@ class Fleet:
                     each_report(system)
             if len(self.answers) == COUNT:
                 break
-        refused = {system: self.answers.get((system, number)) for system in self.flown}
+        refused = {system: self.answers.get((system, number)) for system in self.armed}
         if any(result != mavlink.MAV_RESULT_ACCEPTED for result in refused.values()):
-            raise SystemExit(f"command {number} was not accepted by all: {refused}")
+            self.fail(f"command {number} was not accepted by all: {refused}")
 
-    def until(self, condition, seconds: float, what: str, each_report=lambda system: None):
+    def until(self, condition, seconds: float, what: str, each_report=None):
+        each_report = each_report or self.idle
         end = self.now + seconds
         while not condition():
             if self.now > end:
-                raise SystemExit(f"{what}: not within {seconds} s")
+                self.fail(f"{what}: not within {seconds} s")
             if system := self.read():
                 each_report(system)
 
@@ -157,8 +180,8 @@ def follow(system: int):
     fleet.set_point(system, *motion(starts[system], phases[system], fleet.now - begin))
 
 
-for system in starts:
-    follow(system)
+asked_from = fleet.now
+fleet.until(lambda: fleet.now > asked_from + 2 * INTERVAL, 5, "set-points before offboard mode", follow)
 fleet.command(mavlink.MAV_CMD_DO_SET_MODE, *OFFBOARD, each_report=follow)
 fleet.until(lambda: all(math.dist(fleet.place(system), wheel(starts[system], 0, 0)) < 0.05 for system in starts), 20, "the beginning", follow)
 begin = fleet.now
@@ -173,8 +196,8 @@ def follow_and_measure(system: int):
 
 
 fleet.until(lambda: fleet.now > begin + TURN + 1, TURN + 2, "the turn", follow_and_measure)
-missed = verdict("farthest from the moving point", 100 * late, 25, "cm")
-missed |= verdict("two vehicles came nearer than 4 m by", max(0.0, 4 - nearest), 0.1, "m")
+missed = verdict("farthest from the moving point", 100 * late, 25, "cm", remedy(fleet.longest_gap))
+missed |= verdict("two vehicles came nearer than 4 m by", max(0.0, 4 - nearest), 0.1, "m", remedy(fleet.longest_gap))
 fleet.command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH)
 fleet.until(lambda: not any(fleet.armed.values()), 60, "landing")
 away = max(math.dist(fleet.place(system)[:2], starts[system]) for system in starts)

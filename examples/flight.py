@@ -5,8 +5,12 @@ Each example flies a vehicle that is already running, `lmpc-sitl` or another one
     cargo run --release -p sitl
     python examples/position_target.py --plot position.png      (in another terminal)
 
-They need `pip install pymavlink matplotlib`. All times are the vehicle's own, so a flight is the same at every `--speed`. Positions are
-north, east, down from the origin, in m. Exit code 0: flown as asked; 1: not.
+They need `pip install pymavlink matplotlib`. All times are the vehicle's own. At a high `--speed` a client cannot keep up with the
+vehicle; start it with `--lockstep always`, and it waits for the set-points:
+
+    cargo run --release -p sitl -- --speed max --lockstep always
+
+Positions are north, east, down from the origin, in m. Exit code 0: flown as asked; 1: not.
 """
 
 import argparse
@@ -26,35 +30,100 @@ TRAJECTORY = 0b100000000000  # position, velocity, acceleration and yaw
 
 OFFBOARD = (1, 6)  # PX4's custom mode: base mode "custom", main mode
 INTERVAL = 0.02  # of telemetry and set-points, s
+LATE = 5 * INTERVAL  # between two reports: too long to steer by
+SILENCE = 10.0  # s of the wall clock without a report, after which the vehicle is gone
 EARTH = 6_378_137.0  # radius, m
+
+
+def connect(address: str):
+    """A pymavlink connection to the vehicle."""
+    try:
+        connection = mavutil.mavlink_connection(address, dialect="common")
+    except (OSError, ValueError, IndexError) as error:
+        raise SystemExit(f"cannot connect to {address}: {error}") from None
+    if address.startswith(("udpout", "tcp")):
+        beat(connection)
+    return connection
+
+
+def beat(connection):
+    connection.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+
+
+def receive(connection, kind=None, timeout: float = SILENCE):
+    """The next message, of a kind if one is given; None if there is none within the time."""
+    try:
+        return connection.recv_match(type=kind, blocking=True, timeout=timeout)
+    except OSError as error:
+        raise SystemExit(f"the connection to the vehicle has failed: {error}") from None
+
+
+def remedy(longest_gap: float) -> str:
+    """Why a flight failed, if the vehicle's time ran ahead of this program, and what to do."""
+    if longest_gap <= LATE:
+        return ""
+    return (f" (the vehicle flew up to {longest_gap:.1f} s between two reports: this program cannot keep up with its speed; start the "
+            "vehicle with --lockstep always, or with a lower --speed)")
 
 
 class Flight:
     def __init__(self, address: str):
-        self.connection = mavutil.mavlink_connection(address, dialect="common")
+        self.connection = connect(address)
         self.mav = self.connection.mav
-        if address.startswith(("udpout", "tcp")):
-            self.beat()
         if self.connection.wait_heartbeat(timeout=5) is None:
             raise SystemExit(f"no vehicle at {address}")
         self.target = (self.connection.target_system, self.connection.target_component)
+        self.latest = {}  # the vehicle's last message of each kind
         self.flown = []  # time in s, position, velocity
         self.asked = []  # time in s, position or None, velocity or None
+        self.longest_gap = 0.0  # between two reports, s
         self.beaten = -math.inf
+        self.spoken = False  # whether a set-point has gone since the last report
+        self.idle()
         self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, 1e6 * INTERVAL)
+        # The first report comes at once, the others at the interval: from the second one on, each is answered.
         self.tick()
+        self.receive("LOCAL_POSITION_NED", 0.5)
+        self.longest_gap = 0.0
 
-    def beat(self):
-        self.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+    def fail(self, reason: str):
+        """Ends the program with one line."""
+        raise SystemExit(reason + remedy(self.longest_gap))
+
+    def receive(self, kind, timeout: float):
+        """The vehicle's next message of a kind, or of one of several; None if there is none within the time. Every message is taken in."""
+        kinds = [kind] if isinstance(kind, str) else kind
+        end = time.monotonic() + timeout
+        while (left := end - time.monotonic()) > 0:
+            message = receive(self.connection, timeout=left)
+            if message is None or message.get_srcSystem() != self.target[0]:
+                continue
+            self.latest[message.get_type()] = message
+            if message.get_type() == "LOCAL_POSITION_NED":
+                at = message.time_boot_ms / 1e3
+                if self.flown and at <= self.now:
+                    continue  # the same again
+                if self.flown:
+                    self.longest_gap = max(self.longest_gap, at - self.now)
+                self.flown.append((at, (message.x, message.y, message.z), (message.vx, message.vy, message.vz)))
+                self.spoken = False
+            if message.get_type() in kinds:
+                return message
+        return None
 
     def tick(self):
-        """Waits for the vehicle's next report of its place."""
-        message = self.connection.recv_match(type="LOCAL_POSITION_NED", blocking=True, timeout=10)
-        if message is None:
-            raise SystemExit("the vehicle has fallen silent")
-        self.flown.append((message.time_boot_ms / 1e3, (message.x, message.y, message.z), (message.vx, message.vy, message.vz)))
+        """Waits for the vehicle's next report of its place. In lock-step the vehicle waits for a set-point first."""
+        end = time.monotonic() + SILENCE
+        while True:
+            if not self.spoken:
+                self.send(self.standing)
+            if self.receive("LOCAL_POSITION_NED", 1):
+                break
+            if time.monotonic() > end:
+                self.fail("the vehicle has fallen silent")
+            self.spoken = False
         if self.now - self.beaten >= 1:
-            self.beat()
+            beat(self.connection)
             self.beaten = self.now
 
     @property
@@ -70,42 +139,64 @@ class Flight:
     def velocity(self):
         return self.flown[-1][2]
 
+    @property
+    def armed(self) -> bool:
+        """As of the last heartbeat; a vehicle that has not been heard may be armed."""
+        heartbeat = self.latest.get("HEARTBEAT")
+        return heartbeat is None or bool(heartbeat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+
     def rests_at(self, goal, within: float = 0.05) -> bool:
         return math.dist(self.position, goal) < within and math.hypot(*self.velocity) < within
 
     def command(self, number: int, *parameters: float):
         parameters = [*parameters, *([0.0] * (7 - len(parameters)))]
+        self.latest.pop("STATUSTEXT", None)
         for attempt in range(5):
             self.mav.command_long_send(*self.target, number, attempt, *parameters)
             end = time.monotonic() + 1
             while (left := end - time.monotonic()) > 0:
-                ack = self.connection.recv_match(type="COMMAND_ACK", blocking=True, timeout=left)
+                ack = self.receive("COMMAND_ACK", left)
                 if ack is not None and ack.command == number:
                     if ack.result != mavlink.MAV_RESULT_ACCEPTED:
-                        text = self.connection.recv_match(type="STATUSTEXT", blocking=True, timeout=0.5)
-                        raise SystemExit(f"command {number} was refused: {text.text if text else ack.result}")
+                        text = self.latest.get("STATUSTEXT") or self.receive("STATUSTEXT", 0.5)
+                        self.fail(f"command {number} was refused: {text.text if text else ack.result}")
                     return
-        raise SystemExit(f"command {number} was not answered")
+        self.fail(f"command {number} was not answered")
 
     def until(self, condition, seconds: float, what: str, each_tick=lambda: None):
         """Flies until a condition holds, doing something with each report."""
         end = self.now + seconds
         while not condition():
             if self.now > end:
-                raise SystemExit(f"{what}: not within {seconds} s; now at {self.position}")
+                self.fail(f"{what}: not within {seconds} s; now at north {self.position[0]:.1f}, east {self.position[1]:.1f}, "
+                          f"down {self.position[2]:.1f} m")
             each_tick()
             self.tick()
 
+    def stand(self):
+        """Waits until the vehicle is known to stand on the ground, where it can be armed."""
+        self.until(lambda: getattr(self.latest.get("EXTENDED_SYS_STATE"), "landed_state", None) == mavlink.MAV_LANDED_STATE_ON_GROUND,
+                   20, "standing on the ground")
+
     def take_off(self):
+        self.stand()
         self.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
         self.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, *[math.nan] * 4)
         self.until(lambda: abs(self.position[2] + 2.5) < 0.1 and abs(self.velocity[2]) < 0.1, 20, "takeoff")
 
     def set_point(self, mask: int, position=(0, 0, 0), velocity=(0, 0, 0), acceleration=(0, 0, 0), yaw: float = 0.0):
-        """Sends SET_POSITION_TARGET_LOCAL_NED; m, m/s, m/s², rad."""
-        self.mav.set_position_target_local_ned_send(
-            0, *self.target, mavlink.MAV_FRAME_LOCAL_NED, mask, *position, *velocity, *acceleration, yaw, 0)
+        """Sends SET_POSITION_TARGET_LOCAL_NED; m, m/s, m/s², rad. It is repeated until there is another one."""
+        self.standing = (mask, *position, *velocity, *acceleration, yaw, 0)
+        self.send(self.standing)
         self.asked.append((self.now, None if mask & 7 else position, None if mask & 56 else velocity))
+
+    def send(self, set_point):
+        self.mav.set_position_target_local_ned_send(0, *self.target, mavlink.MAV_FRAME_LOCAL_NED, *set_point)
+        self.spoken = True
+
+    def idle(self):
+        """From now on nothing is asked for but to stay; modes other than offboard ignore it."""
+        self.standing = (VELOCITY, *[0.0] * 11)
 
     def offboard(self):
         """Enters the mode that follows set-points; one must have been sent just before."""
@@ -128,16 +219,17 @@ class Flight:
         """Answers the vehicle's requests until it has a plan; items are command, four parameters, north and east of the origin in m, height
         above home."""
         self.command(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN)
-        origin = self.connection.messages.get("GPS_GLOBAL_ORIGIN") or self.connection.recv_match(
-            type="GPS_GLOBAL_ORIGIN", blocking=True, timeout=5)
+        origin = self.latest.get("GPS_GLOBAL_ORIGIN") or self.receive("GPS_GLOBAL_ORIGIN", 5)
+        if origin is None:
+            self.fail("the vehicle does not tell its origin")
         self.mav.mission_count_send(*self.target, len(items), kind)
         while True:
-            message = self.connection.recv_match(type=["MISSION_REQUEST_INT", "MISSION_ACK"], blocking=True, timeout=5)
+            message = self.receive(["MISSION_REQUEST_INT", "MISSION_ACK"], 5)
             if message is None:
-                raise SystemExit("the vehicle does not ask for the plan")
+                self.fail("the vehicle does not ask for the plan")
             if message.get_type() == "MISSION_ACK":
                 if message.type != mavlink.MAV_MISSION_ACCEPTED:
-                    raise SystemExit(f"the plan was refused: {mavlink.enums['MAV_MISSION_RESULT'][message.type].name}")
+                    self.fail(f"the plan was refused: {mavlink.enums['MAV_MISSION_RESULT'][message.type].name}")
                 return
             command, parameters, (north, east), height = items[message.seq]
             # Both zero mean "here".
@@ -150,13 +242,24 @@ class Flight:
 
     def clear(self, kind: int = mavlink.MAV_MISSION_TYPE_MISSION):
         self.mav.mission_clear_all_send(*self.target, kind)
-        if self.connection.recv_match(type="MISSION_ACK", blocking=True, timeout=5) is None:
-            raise SystemExit("the vehicle does not clear the plan")
+        if self.receive("MISSION_ACK", 5) is None:
+            self.fail("the vehicle does not clear the plan")
 
     def land(self):
+        self.spoken = False  # whether a set-point has gone since the last report
+        self.idle()
         self.command(mavlink.MAV_CMD_NAV_LAND)
-        armed = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-        self.until(lambda: not self.connection.messages["HEARTBEAT"].base_mode & armed, 60, "landing")
+        self.until(lambda: not self.armed, 60, "landing")
+
+    def most(self, values, what: str) -> float:
+        """The largest of some figures of the flight."""
+        values = list(values)
+        if not values:
+            self.fail(f"{what}: the vehicle has not reported it")
+        return max(values)
+
+    def verdict(self, what: str, value: float, bound: float, unit: str) -> int:
+        return verdict(what, value, bound, unit, remedy(self.longest_gap))
 
     def since(self, start: float):
         """What has been flown since a time."""
@@ -219,7 +322,7 @@ def arguments(description: str, plot: str):
     return parser.parse_args()
 
 
-def verdict(what: str, value: float, bound: float, unit: str) -> int:
-    """Prints a figure beside its bound, and returns the exit code."""
-    print(f"{what}: {value:.2f} {unit}, at most {bound:g} {unit}" + ("" if value <= bound else ": MISSED"))
+def verdict(what: str, value: float, bound: float, unit: str, remedy: str = "") -> int:
+    """Prints a figure beside its bound, with a remedy if it is missed, and returns the exit code."""
+    print(f"{what}: {value:.2f} {unit}, at most {bound:g} {unit}" + ("" if value <= bound else f": MISSED{remedy}"))
     return 0 if value <= bound else 1

@@ -4,7 +4,7 @@ land."""
 import math
 import sys
 
-from flight import Flight, arguments, mavlink, verdict
+from flight import Flight, arguments, mavlink
 
 RADIUS = 2.0  # within which a corner is passed, m
 HEIGHT = 8.0
@@ -36,14 +36,17 @@ def beside(position, start, end) -> float:
 options = arguments(__doc__, "mission.png")
 flight = Flight(options.connect)
 flight.upload(MISSION)
+flight.stand()
 flight.command(mavlink.MAV_CMD_MISSION_START)
+for kind in ("MISSION_CURRENT", "MISSION_ITEM_REACHED"):
+    flight.latest.pop(kind, None)  # of an earlier mission
 
 # The corners with the time at which each was passed.
 passed = []
 
 
 def watch():
-    reached = flight.connection.messages.get("MISSION_ITEM_REACHED")
+    reached = flight.latest.get("MISSION_ITEM_REACHED")
     corner = reached.seq - 3 if reached else -1
     if len(passed) == corner < len(CORNERS):
         north, east, up = CORNERS[corner]
@@ -52,18 +55,22 @@ def watch():
         print(f"corner {corner + 1} after {flight.now - begin:.1f} s")
 
 
+def is_complete() -> bool:
+    current = flight.latest.get("MISSION_CURRENT")
+    return current is not None and current.mission_state == mavlink.MISSION_STATE_COMPLETE
+
+
 begin = flight.now
-flight.until(lambda: flight.connection.messages["MISSION_CURRENT"].mission_state == mavlink.MISSION_STATE_COMPLETE, 120,
-             "mission", watch)
-flight.until(lambda: not flight.connection.messages["HEARTBEAT"].base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED, 20, "landing")
+flight.until(is_complete, 120, "mission", watch)
+flight.until(lambda: not flight.armed, 20, "landing")
 
 nearest = [min(math.dist(position, (north, east, -up)) for _, position, _ in flight.flown) for north, east, up in CORNERS]
-missed = verdict("farthest from a corner", max(nearest), RADIUS, "m")
+missed = flight.verdict("farthest from a corner", max(nearest), RADIUS, "m")
 # Between two corners, clear of both.
 sides = [(position, start, end)
          for (start, end), (left, right) in zip(zip(CORNERS, CORNERS[1:]), zip(passed, passed[1:]))
          for at, position, _ in flight.flown if left + 3 < at < right - 1.5]
-missed |= verdict("beside a leg", 100 * max(beside(*side) for side in sides), 20, "cm")
-missed |= verdict("landed from the origin", 100 * math.hypot(*flight.position[:2]), 20, "cm")
+missed |= flight.verdict("beside a leg", 100 * flight.most((beside(*side) for side in sides), "the way between two corners"), 20, "cm")
+missed |= flight.verdict("landed from the origin", 100 * math.hypot(*flight.position[:2]), 20, "cm")
 flight.plot(options.plot, "mission: around a field", places=True)
 sys.exit(missed)

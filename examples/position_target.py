@@ -3,7 +3,7 @@
 import math
 import sys
 
-from flight import POSITION, Flight, arguments, verdict
+from flight import POSITION, Flight, arguments
 
 GOAL = (5.0, 5.0, -10.0)
 
@@ -14,7 +14,7 @@ begin = flight.now
 flight.go_to(GOAL)
 print(f"arrived after {flight.now - begin:.1f} s")
 flight.stream(3, lambda t: flight.set_point(POSITION, GOAL))
-missed = verdict("distance from the goal", 100 * math.dist(flight.position, GOAL), 1, "cm")
+missed = flight.verdict("distance from the goal", 100 * math.dist(flight.position, GOAL), 1, "cm")
 flight.land()
 flight.plot(options.plot, "position target: 5 m north, 5 m east, 10 m up")
 sys.exit(missed)

@@ -3,7 +3,7 @@
 import math
 import sys
 
-from flight import VELOCITY, Flight, arguments, verdict
+from flight import VELOCITY, Flight, arguments
 
 EAST = math.pi / 2
 LEGS = [((2, 0, 0), 0.0), ((0, 2, 0), 0.0), ((-2, 0, 0), 0.0), ((0, -2, 0), 0.0), ((0, 0, -1), EAST), ((0, 0, 0), EAST)]
@@ -18,7 +18,7 @@ for velocity, yaw in LEGS:
     flight.stream(5, lambda t: flight.set_point(VELOCITY, velocity=velocity, yaw=yaw))
     print("asked for {}, {}, {} m/s, flies {:.2f}, {:.2f}, {:.2f} m/s".format(*velocity, *flight.velocity))
     worst = max(worst, math.dist(flight.velocity, velocity))
-missed = verdict("largest error of velocity at the end of a leg", 100 * worst, 5, "cm/s")
+missed = flight.verdict("largest error of velocity at the end of a leg", 100 * worst, 5, "cm/s")
 flight.land()
 flight.plot(options.plot, "velocity flight")
 sys.exit(missed)

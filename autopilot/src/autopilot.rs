@@ -3,7 +3,7 @@
 
 use quadrotor::{ConfigurationError, SimulationError};
 use vehicle::identity::Identity;
-use vehicle::parameters::{ParameterTable, SPEED_PARAMETER, Speed, Value};
+use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
 use vehicle::{Severity, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
@@ -82,6 +82,14 @@ impl Autopilot {
         self.context.outbox.send(Destination::Everyone, heartbeat::message(&self.context.vehicle));
     }
 
+    /// A message of the table of streams, to one client, beside the regular ones.
+    pub fn report(&mut self, id: u32, to: PeerId) {
+        let stream = self.context.streams.get(id);
+        if let Some(message) = stream.and_then(|stream| stream.message(&self.context.component())) {
+            self.context.outbox.send(Destination::Peer(to), message);
+        }
+    }
+
     /// Lines for the pilot since the last call, with their times, µs.
     pub fn take_texts(&mut self) -> Vec<(u64, Severity, String)> {
         self.context.outbox.take_lines()
@@ -150,12 +158,12 @@ impl Autopilot {
     }
 
     /// All parameters with their values, in the order of the table.
-    pub fn parameters(&self) -> impl Iterator<Item = (&str, Value)> {
+    pub fn parameters(&self) -> impl Iterator<Item = (&'static str, Value)> {
         self.context.parameters.all(&self.context.vehicle)
     }
 
     /// The parameters as the text of a file, if one has changed since the last call.
-    pub fn take_changed_parameters(&mut self) -> Option<String> {
-        self.context.parameters.take_changed(&self.context.vehicle)
+    pub fn take_changed_parameters(&mut self, format: FileFormat) -> Option<String> {
+        self.context.parameters.take_changed(format, &self.context.vehicle)
     }
 }

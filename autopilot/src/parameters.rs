@@ -1,7 +1,7 @@
 //! The parameters of a running vehicle: their table, and what they are read from and written to.
 
 use quadrotor::ConfigurationError;
-use vehicle::parameters::{Change, ParameterTable, ParameterValues, SetError, Speed, Value};
+use vehicle::parameters::{Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Value};
 use vehicle::{Refusal, Vehicle, VehicleSettings};
 
 use crate::codec::parameter_hash;
@@ -73,7 +73,7 @@ impl Parameters {
     }
 
     /// All names with their values, in the order of the table.
-    pub fn all(&self, vehicle: &Vehicle) -> impl Iterator<Item = (&str, Value)> {
+    pub fn all(&self, vehicle: &Vehicle) -> impl Iterator<Item = (&'static str, Value)> {
         self.table.values(self.values(vehicle))
     }
 
@@ -87,15 +87,15 @@ impl Parameters {
         parameter_hash(self.all(vehicle))
     }
 
-    /// Changes a parameter.
+    /// Changes a parameter, by any of its names.
     ///
     /// # Errors
     /// [`SetError`]; nothing has changed then.
-    pub fn set(&mut self, id: &str, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
+    pub fn set(&mut self, name: &str, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
         let mut values = self.values(vehicle);
-        if self.table.set(id, value, &mut values)? != Change::Nothing {
+        if self.table.set(name, value, &mut values)? != Change::Nothing {
             let adopted = vehicle.adopt(&values.configuration, &values.conduct);
-            adopted.map_err(|source| SetError::refused(id, source))?;
+            adopted.map_err(|source| SetError::refused(name, source))?;
             self.speed = values.speed;
         }
         self.changed = true;
@@ -108,7 +108,7 @@ impl Parameters {
     /// [`Refusal`] while armed, or when the closed loop refuses its settings.
     pub fn reset(&mut self, vehicle: &mut Vehicle) -> Result<(), Refusal> {
         if vehicle.is_armed() {
-            return Err(Refusal::later("Parameters are not reset while armed"));
+            return Err(Refusal::later("Parameter reset denied: disarm first"));
         }
         let mut configuration = self.settings.configuration;
         let now = vehicle.simulation().configuration();
@@ -121,10 +121,10 @@ impl Parameters {
     }
 
     /// The parameters as the text of a file, if one has changed since the last call.
-    pub fn take_changed(&mut self, vehicle: &Vehicle) -> Option<String> {
+    pub fn take_changed(&mut self, format: FileFormat, vehicle: &Vehicle) -> Option<String> {
         if !std::mem::take(&mut self.changed) {
             return None;
         }
-        Some(vehicle::parameters::render(&self.table, &self.values(vehicle)))
+        Some(vehicle::parameters::render(format, &self.table, &self.values(vehicle)))
     }
 }

@@ -65,28 +65,99 @@ pub fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMes
         Severity::Warning => MavSeverity::MAV_SEVERITY_WARNING,
         Severity::Info => MavSeverity::MAV_SEVERITY_INFO,
     };
-    // The field is bytes; what is no ASCII would be cut in the middle of a character.
-    let bytes: Vec<u8> =
-        text.chars().map(|letter| if letter.is_ascii() { letter as u8 } else { b'?' }).collect();
-    let long = bytes.len() > CHUNK;
+    let pieces = pieces(text);
     // Zero means that the text is whole.
-    let id = if long {
+    let id = if pieces.len() > 1 {
         *next_id = next_id.wrapping_add(1).max(1);
         *next_id
     } else {
         0
     };
-    let chunk = |(sequence, piece): (usize, &[u8])| {
-        let mut text = [0; CHUNK];
-        for (byte, letter) in text.iter_mut().zip(piece) {
-            *byte = *letter;
-        }
+    let chunk = |(sequence, text): (usize, [u8; CHUNK])| {
         MavMessage::STATUSTEXT(STATUSTEXT_DATA { severity, text: text.into(), id, chunk_seq: sequence as u8 })
     };
-    let mut messages: Vec<_> = bytes.chunks(CHUNK).enumerate().map(chunk).collect();
-    // A piece without a zero says that more follows.
-    if long && bytes.len().is_multiple_of(CHUNK) {
-        messages.push(chunk((messages.len(), &[])));
+    pieces.into_iter().enumerate().map(chunk).collect()
+}
+
+/// A text in pieces that end between words.
+///
+/// A piece that holds a zero is the last one, so the ones before it are filled up with spaces.
+fn pieces(text: &str) -> Vec<[u8; CHUNK]> {
+    // The field is bytes; a character that is not ASCII would be cut in the middle.
+    let bytes: Vec<u8> =
+        text.chars().map(|letter| if letter.is_ascii() { letter as u8 } else { b'?' }).collect();
+    let mut pieces = Vec::new();
+    let mut rest = bytes.as_slice();
+    while rest.len() > CHUNK {
+        let space = rest[..=CHUNK].iter().rposition(|letter| *letter == b' ').filter(|at| *at > 0);
+        // A word that is longer than a piece has to be cut.
+        let (piece, behind) = rest.split_at(space.unwrap_or(CHUNK));
+        pieces.push(padded(piece, b' '));
+        rest = if space.is_some_and(|at| at == CHUNK) {
+            behind
+        } else {
+            behind.strip_prefix(b" ").unwrap_or(behind)
+        };
     }
-    messages
+    let full = rest.len() == CHUNK && !pieces.is_empty();
+    pieces.push(padded(rest, 0));
+    if full {
+        pieces.push([0; CHUNK]);
+    }
+    pieces
+}
+
+fn padded(piece: &[u8], padding: u8) -> [u8; CHUNK] {
+    let mut text = [padding; CHUNK];
+    for (byte, letter) in text.iter_mut().zip(piece) {
+        *byte = *letter;
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::{any, prop_assert, prop_assert_eq, proptest};
+
+    use super::{CHUNK, pieces};
+
+    fn shown(text: &str) -> Vec<String> {
+        let readable = |piece: [u8; CHUNK]| String::from_utf8_lossy(&piece).trim_end_matches('\0').to_owned();
+        pieces(text).into_iter().map(readable).collect()
+    }
+
+    #[test]
+    fn a_text_is_broken_between_words() {
+        assert_eq!(shown("Ready"), ["Ready"]);
+        assert_eq!(shown(&"x".repeat(50)), ["x".repeat(50)]);
+        let text = "Mission rejected: item 12: SET_CAMERA_MODE (530): not supported";
+        let first = format!("{:<50}", "Mission rejected: item 12: SET_CAMERA_MODE (530):");
+        assert_eq!(shown(text), [first, "not supported".to_owned()]);
+    }
+
+    #[test]
+    fn a_word_at_the_end_of_a_piece_does_not_grow_into_the_next() {
+        let text = format!("{} {}", "x".repeat(50), "y");
+        assert_eq!(shown(&text).concat(), text);
+        let text = format!("{} {}", "x".repeat(49), "y");
+        assert_eq!(shown(&text).concat(), text);
+    }
+
+    proptest! {
+        /// A client that joins the pieces reads the same words, and sees where the text ends.
+        #[test]
+        fn nothing_is_lost(text in "[a-z ]{0,200}", padding in any::<bool>()) {
+            let text = if padding { format!("{text}{}", "z".repeat(60)) } else { text };
+            let pieces = pieces(&text);
+            let joined: String = pieces.iter().flatten().filter(|byte| **byte != 0).map(|byte| *byte as char).collect();
+            if !padding {
+                prop_assert_eq!(joined.split_whitespace().collect::<Vec<_>>(), text.split_whitespace().collect::<Vec<_>>());
+            } else {
+                prop_assert_eq!(joined.replace(' ', ""), text.replace(' ', ""));
+            }
+            let (last, before) = pieces.split_last().expect("a piece");
+            prop_assert!(before.iter().all(|piece| !piece.contains(&0)));
+            prop_assert!(last.contains(&0) || before.is_empty());
+        }
+    }
 }

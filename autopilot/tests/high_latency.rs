@@ -42,6 +42,7 @@ impl Bench {
             faults: Vec::new(),
             sensors: SensorSettings::default(),
             plans: Plans::default(),
+            autostart: false,
         };
         let links = [LinkProfile::Ground, LinkProfile::Onboard];
         let autopilot = Autopilot::new(&settings, 1, Speed::Factor(1.0), &links, 0).expect("valid settings");

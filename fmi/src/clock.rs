@@ -43,7 +43,7 @@ impl Clock {
         Ok(Self { start_s, stop_s: stop_s.filter(|stop| stop.is_finite()), communication_point_s: start_s })
     }
 
-    /// The present, s.
+    /// The current time, s.
     pub fn communication_point_s(&self) -> f64 {
         self.communication_point_s
     }

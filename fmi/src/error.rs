@@ -1,4 +1,4 @@
-//! Why a call was not carried out.
+//! Why a call was rejected.
 
 use std::fmt::Display;
 
@@ -6,87 +6,87 @@ use thiserror::Error;
 
 use crate::lifecycle::Phase;
 use crate::model::Model;
-use crate::variables::{Type, Value, ValueReference};
+use crate::variables::{Type, ValueReference};
 
-/// How bad it is; each version of the interface has a status for it.
+/// How serious an error is; each version of the interface maps it to a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Severity {
-    /// The answer is not available.
+    /// The requested information is not available.
     Discard,
-    /// The call was refused, or the run cannot go on.
+    /// The call was rejected, or the run cannot continue.
     Error,
-    /// The instance is lost.
+    /// The instance can only be freed.
     Fatal,
 }
 
-/// Why a call was not carried out. Unless it says otherwise, nothing has changed then.
+/// Why a call was rejected. Unless documented otherwise, a rejected call changes nothing.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum CallError {
-    #[error("must not be called in the state \"{phase}\"")]
+    #[error("not allowed in the state \"{phase}\"")]
     IllegalPhase { phase: Phase },
     #[error("{argument} is NULL")]
     NullPointer { argument: &'static str },
-    #[error("{argument} has {count} elements, more than there is memory for")]
+    #[error("{argument} has {count} elements, which do not fit into memory")]
     TooMany { argument: &'static str, count: usize },
-    #[error("there is no variable with value reference {reference}")]
+    #[error("unknown value reference {reference}")]
     UnknownReference { reference: ValueReference },
-    #[error("{name} (value reference {reference}) is of type {declared}, not {asked}")]
+    #[error("{name} (value reference {reference}) has type {declared}, not {asked}")]
     WrongType { name: &'static str, reference: ValueReference, declared: Type, asked: Type },
-    #[error("there is no String variable; value reference {reference} was given")]
+    #[error("value reference {reference} is not a String: this model has no String variables")]
     NoStrings { reference: ValueReference },
-    #[error("{name} cannot be set: it is {causality}")]
-    NotSettable { name: &'static str, causality: &'static str },
-    #[error("{name} is fixed and cannot be set after initialization mode")]
+    #[error("{name} cannot be set: it is {causality} (read-only)")]
+    ReadOnly { name: &'static str, causality: &'static str },
+    #[error("{name} is fixed: set it before the end of initialization mode")]
     Fixed { name: &'static str },
-    #[error("{name} = {value} is outside [{minimum}, {maximum}]")]
-    OutOfRange { name: &'static str, value: Value, minimum: Value, maximum: Value },
-    #[error("{name} has no derivatives: it is not a continuous Real input")]
+    #[error("{name} = {value}; allowed {allowed}")]
+    OutOfRange { name: &'static str, value: String, allowed: String },
+    #[error("{name} does not accept derivatives: only continuous Real inputs do")]
     NotContinuousInput { name: &'static str },
-    #[error("{name}: derivatives of order {order} are not supported, only 1 to {maximum}")]
+    #[error("{name}: derivative of order {order} is not supported; allowed 1 to {maximum}")]
     DerivativeOrder { name: &'static str, order: i32, maximum: i32 },
-    #[error("{name}: the derivative of order {order} is {value:?}")]
+    #[error("{name}: derivative of order {order} = {value:?}; must be finite")]
     DerivativeNotFinite { name: &'static str, order: i32, value: f64 },
-    #[error("{name} = {value:?} is not a usable time")]
+    #[error("{name} = {value:?}; must be a finite time, at most 285 years after startTime")]
     Time { name: &'static str, value: f64 },
     #[error("stopTime = {stop_s:?} is before startTime = {start_s:?}")]
     StopBeforeStart { start_s: f64, stop_s: f64 },
-    #[error("communicationStepSize = {step_s:?} is not a positive number")]
+    #[error("communicationStepSize = {step_s:?}; must be a positive number")]
     StepSize { step_s: f64 },
-    #[error("currentCommunicationPoint = {given_s:?} is not where the last step ended, {expected_s:?}")]
+    #[error("currentCommunicationPoint = {given_s:?}; expected {expected_s:?}, where the last step ended")]
     CommunicationPoint { given_s: f64, expected_s: f64 },
-    #[error("the step ends at {end_s:?}, past stopTime = {stop_s:?}")]
+    #[error("the step ends at {end_s:?}, after stopTime = {stop_s:?}")]
     PastStop { end_s: f64, stop_s: f64 },
-    #[error("no log category is named {name:?}")]
+    #[error("unknown log category {name:?}; the model description lists them all")]
     UnknownCategory { name: String },
-    /// An answer that this library never has, in the words of the interface.
+    /// Information that this library never provides, in the terms of the interface.
     #[error("{0}")]
     NoAnswer(String),
-    /// A function that this library does not offer, in the words of the interface.
+    /// A function that this library does not implement, in the terms of the interface.
     #[error("{0}")]
     NotOffered(&'static str),
     #[error(transparent)]
     SavedState(#[from] SavedStateError),
-    /// In the words of the model.
+    /// An error of the model.
     #[error("{0}")]
     Model(String),
-    #[error("the {run} cannot go on: {message}")]
+    #[error("the {run} cannot continue: {message}")]
     Step { run: &'static str, message: String },
-    #[error("internal fault, the instance is lost: {message}")]
+    #[error("internal error; the instance can only be freed: {message}")]
     Panic { message: String },
 }
 
 impl CallError {
-    /// Parameters or a state that the model refuses.
+    /// The model rejected parameters or a state.
     pub fn of_model(error: impl Display) -> Self {
         Self::Model(error.to_string())
     }
 
-    /// A run of `M` that cannot go on.
+    /// A run of `M` that cannot continue.
     pub fn of_step<M: Model>(error: M::Error) -> Self {
         Self::Step { run: M::IDENTITY.words.run, message: error.to_string() }
     }
 
-    /// How bad it is.
+    /// Its severity.
     pub fn severity(&self) -> Severity {
         match self {
             Self::Panic { .. } | Self::IllegalPhase { phase: Phase::Fatal } => Severity::Fatal,
@@ -99,24 +99,24 @@ impl CallError {
 /// What is wrong with the bytes of a serialized state.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum SavedStateError {
-    #[error("these {size} bytes are not a saved state: they do not begin with its header")]
+    #[error("not a saved state: {size} bytes without the expected header")]
     NoHeader { size: usize },
-    #[error("the saved state has format {found}, this library reads format {expected}")]
+    #[error("the saved state has format {found}; this library reads format {expected}")]
     Format { found: u32, expected: u32 },
-    #[error("the saved state is of another model or another version of it")]
+    #[error("the saved state belongs to another model or another version of this model")]
     OtherModel,
-    #[error("the saved state has {actual} bytes, {expected} expected")]
+    #[error("the saved state has {actual} bytes; expected {expected}")]
     Length { actual: usize, expected: usize },
-    #[error("the saved state is damaged: its checksum does not match")]
+    #[error("the saved state is corrupt: checksum mismatch")]
     Checksum,
-    #[error("the saved state cannot be decoded")]
+    #[error("the saved state is corrupt: it cannot be decoded")]
     Undecodable,
-    #[error("the saved state contains a number that is not finite")]
+    #[error("the saved state is corrupt: it contains NaN or infinity")]
     NotFinite,
-    #[error("the saved state contradicts itself: {0}")]
-    Contradiction(&'static str),
-    #[error("the saved state contradicts itself: it has no {run}")]
+    #[error("the saved state is inconsistent: {0}")]
+    Inconsistent(&'static str),
+    #[error("the saved state is inconsistent: the {run} is missing")]
     NoRun { run: &'static str },
-    #[error("the saved state contradicts itself: the {run} is at another time")]
+    #[error("the saved state is inconsistent: the time of the {run} differs from the clock")]
     OtherTime { run: &'static str },
 }

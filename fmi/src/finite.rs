@@ -10,10 +10,10 @@ pub(crate) fn is_finite(value: &impl Serialize) -> bool {
     value.serialize(Walk).is_ok()
 }
 
-/// Visits every number and keeps nothing.
+/// A serializer that visits every number and writes nothing.
 struct Walk;
 
-/// The walk met a number that is not finite, or something it does not know.
+/// A number is not finite, or a type is not supported.
 #[derive(Debug)]
 struct NotFinite;
 
@@ -31,7 +31,7 @@ impl ser::Error for NotFinite {
     }
 }
 
-/// Leaves without a floating-point number.
+/// Values without a floating-point number.
 macro_rules! always_finite {
     ($($method:ident($($argument:ty),*);)*) => {
         $(fn $method(self, $(_: $argument),*) -> Result<(), NotFinite> { Ok(()) })*

@@ -1,5 +1,4 @@
-//! What stands between an importer and an instance, for every function: the call is legal now, no panic gets out,
-//! and what goes wrong is logged.
+//! The guard around every call of an instance: it checks that the call is allowed, catches panics and logs errors.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -32,7 +31,7 @@ pub(crate) fn guarded<M: Model>(
     })
 }
 
-/// What `panic!` was given.
+/// The message of a panic.
 pub(crate) fn message_of(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message").to_owned()

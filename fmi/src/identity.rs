@@ -3,10 +3,10 @@
 use crate::model::Model;
 use crate::variables::{Value, variables};
 
-/// 128 bits that follow from the table of variables and the version, so that a description or a saved
-/// state of another build of the model is recognised.
+/// A 128-bit hash of the table of variables and the version, by which a description or a saved state of another build of
+/// the model is recognised.
 ///
-/// FNV-1a: the same on every platform, and nobody has an interest in collisions.
+/// FNV-1a is the same on every platform; resistance to attacks is not needed.
 pub(crate) fn identity<M: Model>() -> u128 {
     let mut hash = Fnv1a::new();
     hash.text(M::IDENTITY.name);
@@ -58,7 +58,7 @@ impl Fnv1a {
         }
     }
 
-    /// With its length, so that neighbours cannot trade letters.
+    /// With its length, so that adjacent texts cannot be confused.
     fn text(&mut self, text: &str) {
         self.bytes(&(text.len() as u64).to_le_bytes());
         self.bytes(text.as_bytes());

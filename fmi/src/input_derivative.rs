@@ -1,4 +1,4 @@
-//! Inputs that move during a step.
+//! Inputs that change during a step.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,11 +21,11 @@ pub(crate) struct InputDerivative {
 
 /// Inputs that continue as polynomials of time from the beginning of a step, within their ranges.
 pub(crate) struct Extrapolated<'a, M: Model> {
-    /// At the beginning of the step.
+    /// Values at the beginning of the step.
     pub inputs: &'a M::Inputs,
-    /// There.
+    /// Derivatives at the beginning of the step.
     pub derivatives: &'a [InputDerivative],
-    /// Its beginning, µs.
+    /// Beginning of the step, µs.
     pub begin_us: u64,
 }
 

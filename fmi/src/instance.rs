@@ -20,7 +20,7 @@ pub(crate) struct Instance<M: Model> {
     pub(super) derivatives: Vec<InputDerivative>,
     /// The run; its parameters are those of `settings`.
     model: Option<Box<M>>,
-    /// Of the run where it is, once they were asked for.
+    /// Outputs at the current time, if they were requested.
     outputs: Option<M::Outputs>,
     last_step_failed: bool,
 }
@@ -40,17 +40,17 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Where it is in its life.
+    /// Its phase.
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// Gives it up after a panic.
+    /// Marks it as unusable after a panic.
     pub fn abandon(&mut self) {
         self.phase = Phase::Fatal;
     }
 
-    /// The present, s.
+    /// The current time, s.
     pub fn time_s(&self) -> f64 {
         self.clock.communication_point_s()
     }
@@ -63,7 +63,7 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), CallError> {
         self.clock = Clock::new(start_s, stop_s)?;
         if tolerance.is_some() {
-            self.logger.warning("the tolerance is ignored: the integration step is fixed");
+            self.logger.warning("tolerance ignored: the integration step is fixed");
         }
         Ok(())
     }
@@ -73,8 +73,8 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Builds the run, which checks the values against one another. When that fails, initialization mode goes on and
-    /// other values can be set.
+    /// Builds the run, which checks that the values are consistent. If it fails, initialization mode continues and other
+    /// values can be set.
     pub fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         let message = self.model()?.initialized();
         self.phase = Phase::StepComplete;
@@ -87,7 +87,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Back to where it was after instantiation; only the logger keeps its setting.
+    /// Returns to the state after instantiation; only the logger keeps its setting.
     pub fn reset(&mut self) -> Result<(), CallError> {
         self.phase = Phase::Instantiated;
         self.clock = Clock::default();
@@ -100,7 +100,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Goes from one communication point to the next. The derivatives of inputs hold for this one step.
+    /// Advances from one communication point to the next. Input derivatives apply to this step only.
     pub fn do_step(&mut self, point_s: f64, step_s: f64) -> Result<(), CallError> {
         let end = self.clock.step(point_s, step_s).inspect_err(|_| self.last_step_failed = true)?;
         self.outputs = None;
@@ -127,7 +127,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Whether the last step was refused or failed.
+    /// Whether the last step was rejected or failed.
     pub fn last_step_failed(&self) -> bool {
         self.last_step_failed
     }
@@ -143,7 +143,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Goes to where the snapshot was taken, in this instance or another.
+    /// Restores a snapshot of this instance or another.
     pub fn restore(&mut self, snapshot: &Snapshot<M>) -> Result<(), CallError> {
         let parameters = &snapshot.settings.parameters;
         match (&snapshot.run, &mut self.model) {
@@ -166,7 +166,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Makes new settings the present ones; all of them or, on an error, none.
+    /// Applies new settings: all of them or, on an error, none.
     pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
         if self.phase == Phase::StepComplete {
             if settings.parameters != self.settings.parameters {
@@ -194,7 +194,7 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// The run that is there, or a new one.
+/// The existing run, or a new one.
 fn built<'a, M: Model>(
     model: &'a mut Option<Box<M>>,
     settings: &SettingsOf<M>,

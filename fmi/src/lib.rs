@@ -2,12 +2,12 @@
 //!
 //! # Map
 //!
-//! A call comes in through [`fmi2`], where `guard` checks the instance and what is legal now; the rest knows neither C
-//! nor the version of the interface. `instance` and `values` are what an instance does, over a [`Model`] and its table
-//! of [`variables`]; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
+//! Calls arrive in [`fmi2`], where `guard` checks the instance and whether the call is allowed; the other modules are
+//! independent of C and of the version of the interface. `instance` and `values` implement an instance of a [`Model`] with
+//! its table of [`variables`]; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
 //! `guard` catches panics, `logger` filters messages, `pointer` checks what C passes.
 //!
-//! There is no mutable global: instances are independent, on as many threads as the importer likes.
+//! There is no mutable global state: instances are independent and can run on any number of threads.
 
 mod clock;
 #[cfg(feature = "description")]

@@ -1,10 +1,10 @@
-//! Where an instance is in its life.
+//! Life cycle of an instance.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Phase of an instance's life; each version of the interface says in its own table what may be called in it.
+/// Phase of an instance's life cycle; each version of the interface has its own table of the calls that are allowed.
 ///
 /// Steps are synchronous and never discarded, so there is no step in progress, canceled or failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -12,13 +12,13 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Phase {
     /// Values are set.
     Instantiated = 1,
-    /// Values are set and looked at together.
+    /// Values are set, read and checked together.
     Initialization = 2,
     /// At a communication point.
     StepComplete = 4,
     /// The importer has ended the run.
     Terminated = 8,
-    /// The run could not go on.
+    /// The run failed.
     Error = 16,
     /// A panic was caught; the instance can only be freed.
     Fatal = 32,

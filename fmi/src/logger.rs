@@ -10,13 +10,13 @@ use crate::model::Words;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Category {
-    /// What happens to the instance.
+    /// Events in the life of the instance.
     Events = 1,
-    /// Requests that are ignored.
+    /// Ignored requests.
     Warning = 2,
-    /// Answers that are not available.
+    /// Information that is not available.
     Discard = 4,
-    /// Refused calls and failed runs.
+    /// Rejected calls and failed runs.
     Error = 8,
     /// Caught panics.
     Fatal = 16,
@@ -43,10 +43,10 @@ impl Category {
     fn description(self, words: &Words) -> &'static str {
         match self {
             Self::Events => words.events,
-            Self::Warning => "Requests that are ignored",
-            Self::Discard => "Answers that are not available",
+            Self::Warning => "Ignored requests",
+            Self::Discard => "Information that is not available",
             Self::Error => words.errors,
-            Self::Fatal => "Internal faults; always logged",
+            Self::Fatal => "Internal errors; always logged",
         }
     }
 }
@@ -61,10 +61,10 @@ pub(crate) fn categories(words: &Words) -> impl Iterator<Item = (String, &'stati
         .map(|(name, description)| (name.to_string_lossy().into_owned(), description))
 }
 
-/// Passes one message on to the importer, as its version of the interface wants it.
+/// Passes one message to the importer in the form of its version of the interface.
 pub(crate) type Sink = Box<dyn Fn(Category, &str)>;
 
-/// What the importer wants to hear, and how it is told.
+/// Which categories the importer wants, and where messages go.
 pub(crate) struct Logger {
     sink: Sink,
     enabled: u8,
@@ -76,7 +76,7 @@ impl Logger {
         Self { sink, enabled: if logging_on { EVERY } else { 0 } }
     }
 
-    /// Selects categories; none named means all of them.
+    /// Selects categories; no names select all of them.
     pub fn select(&mut self, logging_on: bool, names: &[&CStr]) -> Result<(), CallError> {
         let mut enabled = if names.is_empty() { EVERY } else { 0 };
         for name in names {
@@ -86,17 +86,17 @@ impl Logger {
         Ok(())
     }
 
-    /// What happens to the instance.
+    /// Logs an event.
     pub fn event(&self, message: &str) {
         self.log(Category::Events, message);
     }
 
-    /// A request that is ignored.
+    /// Logs an ignored request.
     pub fn warning(&self, message: &str) {
         self.log(Category::Warning, message);
     }
 
-    /// Why a function was not carried out.
+    /// Logs why a call was rejected.
     pub fn error(&self, function: &str, error: &CallError) {
         let category = match error.severity() {
             Severity::Discard => Category::Discard,
@@ -106,7 +106,7 @@ impl Logger {
         self.log(category, &format!("{function}: {error}"));
     }
 
-    /// Why there is no instance.
+    /// Logs why no instance was made.
     pub fn refused(&self, message: &str) {
         self.log(Category::Error, message);
     }

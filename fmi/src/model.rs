@@ -1,4 +1,4 @@
-//! What a model is to an importer.
+//! The model behind the interface.
 
 use std::fmt::{Debug, Display};
 
@@ -12,66 +12,65 @@ pub trait Data: Clone + Debug + PartialEq + Serialize + DeserializeOwned {}
 
 impl<T: Clone + Debug + PartialEq + Serialize + DeserializeOwned> Data for T {}
 
-/// A model: its name, its variables, and how it goes on in time.
+/// A model: its name, its variables and its behaviour over time.
 ///
-/// A value of the type is one run: built from parameters and first inputs, and stepped from time 0. This crate does
-/// everything else that an importer may ask for: it sets and gets variables, saves, restores and resets, and checks the
-/// order of calls.
+/// A value of the type is one run: built from parameters and initial inputs, and stepped from time 0. This crate implements
+/// the rest of the interface: it sets and gets variables, saves, restores and resets, and checks the order of calls.
 pub trait Model: Sized + 'static {
-    /// Names and texts.
+    /// Names and texts of the model.
     const IDENTITY: Identity;
 
-    /// The table of variables, in groups. A variable's value reference is its place in all of them, from 0.
+    /// The table of variables, in groups. A variable's value reference is its index over all groups, from 0.
     const VARIABLES: &'static [&'static [Variable<Self>]];
 
     /// Quantities that the description lists first, in this order; others follow in the order in which variables use them.
     const QUANTITIES: &'static [&'static Quantity] = &[];
 
-    /// What is set before the run; tunable parameters also during it. The default has the start values.
+    /// Parameters: set before the run; tunable ones also during the run. The default has the start values.
     type Parameters: Data + Default;
 
-    /// What comes from outside at communication points. The default has the start values.
+    /// Inputs: set at communication points. The default has the start values.
     type Inputs: Data + Default;
 
-    /// Everything that changes during a run, and nothing that follows from the parameters.
+    /// Everything that changes during a run, without what is computed from the parameters.
     type State: Data;
 
-    /// What can be observed.
+    /// Outputs: can be read at communication points.
     type Outputs;
 
-    /// Why parameters or a state are refused, or a run cannot go on. It is logged as it is displayed.
+    /// Why parameters or a state are rejected, or a run fails. It is logged as it is displayed.
     type Error: Display;
 
     /// A run at time 0.
     ///
     /// # Errors
-    /// When the parameters contradict one another; each alone is within its range.
+    /// When the parameters are inconsistent; each alone is within its range.
     fn new(parameters: &Self::Parameters, inputs: &Self::Inputs) -> Result<Self, Self::Error>;
 
-    /// A run that goes on from a state of a run with the same parameters.
+    /// A run that continues from a state of a run with the same parameters.
     ///
     /// # Errors
     /// As for [`Model::new`], and when no run can have been in this state: saved bytes may come from anywhere.
     fn from_state(parameters: &Self::Parameters, state: &Self::State) -> Result<Self, Self::Error>;
 
-    /// Everything that changes.
+    /// The current state.
     fn state(&self) -> Self::State;
 
-    /// The present, µs since the start of the run.
+    /// The current time, µs since the start of the run.
     fn time_us(&self) -> u64;
 
-    /// Goes on to `time_us`, which is never before [`Model::time_us`] and may be equal to it: steps shorter than a
-    /// microsecond add up. `inputs` gives the inputs at a time in µs; ask it at any time of the step.
+    /// Advances to `time_us`, which is never before [`Model::time_us`] and may be equal to it: steps shorter than a
+    /// microsecond add up. `inputs` returns the inputs at a time in µs; call it for any time within the step.
     ///
     /// # Errors
-    /// When the run cannot go on. The instance is then in the state "error", in which outputs can still be read: they are
+    /// When the run fails. The instance is then in the state "error", in which outputs can still be read: they are
     /// those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
-    /// What can be observed at the present.
+    /// The outputs at the current time.
     fn outputs(&self) -> Self::Outputs;
 
-    /// Takes over new values of tunable parameters during the run; the others are unchanged.
+    /// Applies new values of tunable parameters during the run; the others are unchanged.
     ///
     /// # Errors
     /// As for [`Model::new`]; nothing has changed then.
@@ -80,8 +79,8 @@ pub trait Model: Sized + 'static {
         Ok(())
     }
 
-    /// Goes to a state of a run with the same parameters as this one. A model that is costly to build does not build
-    /// it again.
+    /// Sets a state of a run with the same parameters as this one. A model that is costly to build can override this to
+    /// avoid building it again.
     ///
     /// # Errors
     /// As for [`Model::from_state`]; nothing has changed then.
@@ -103,7 +102,7 @@ pub struct Identity {
     pub name: &'static str,
     /// `modelIdentifier`: the name that the library's file must have, without its extension.
     pub model_identifier: &'static str,
-    /// What it is, for a person.
+    /// Human-readable description.
     pub description: &'static str,
     /// Version of the model; part of the GUID.
     pub version: &'static str,
@@ -113,11 +112,11 @@ pub struct Identity {
     pub generation_tool: &'static str,
     /// `generationDateAndTime`, ending in Z: a fixed one, so that the same sources give the same bytes.
     pub date: &'static str,
-    /// What an importer simulates when it is told nothing else.
+    /// The default experiment of the description.
     pub default_experiment: Experiment,
     /// How saved states begin.
     pub saved_state: SavedStateFormat,
-    /// How the log speaks of the model.
+    /// Terms for log messages about the model.
     pub words: Words,
 }
 
@@ -139,10 +138,10 @@ pub struct SavedStateFormat {
     pub version: u32,
 }
 
-/// How the log and its categories speak of a model.
+/// Terms for log messages and log categories of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
-    /// What a run is: "simulation", "flight", …
+    /// A run: "simulation", "flight", …
     pub run: &'static str,
     /// Logged when a tunable parameter has changed.
     pub retuned: &'static str,
@@ -153,11 +152,11 @@ pub struct Words {
 }
 
 impl Words {
-    /// Words that fit any model.
+    /// Terms for any model.
     pub const GENERAL: Self = Self {
         run: "simulation",
         retuned: "parameters changed",
         events: "Initialization, changed parameters, reset",
-        errors: "Refused calls, and simulations that cannot go on; always logged",
+        errors: "Rejected calls and failed simulations; always logged",
     };
 }

@@ -1,10 +1,10 @@
-//! From the pointers of the importer to references.
+//! Checked conversion of the importer's pointers to references.
 
 use std::ffi::{CStr, c_char, c_void};
 
 use crate::error::CallError;
 
-/// Empties and refuses lengths that no allocation can have.
+/// Handles empty arrays and rejects lengths that no allocation can have.
 fn checked<T>(argument: &'static str, is_null: bool, count: usize) -> Result<(), CallError> {
     if is_null {
         return Err(CallError::NullPointer { argument });
@@ -16,7 +16,7 @@ fn checked<T>(argument: &'static str, is_null: bool, count: usize) -> Result<(),
     Ok(())
 }
 
-/// An array that the importer lends.
+/// An array that the importer passes for reading.
 ///
 /// # Safety
 /// If not NULL, `pointer` must be valid for reads of `count` elements during the call.
@@ -33,7 +33,7 @@ pub(crate) unsafe fn array<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// An array that the importer wants filled.
+/// An array that the importer passes for writing.
 ///
 /// # Safety
 /// If not NULL, `pointer` must be valid for writes of `count` elements during the call, and not alias
@@ -51,7 +51,7 @@ pub(crate) unsafe fn array_mut<'a, T>(
     Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) })
 }
 
-/// One value that the importer lends.
+/// One value that the importer passes for reading.
 ///
 /// # Safety
 /// If not NULL, `pointer` must be valid for reads during the call.
@@ -60,7 +60,7 @@ pub(crate) unsafe fn reference<'a, T>(argument: &'static str, pointer: *const T)
     unsafe { pointer.as_ref() }.ok_or(CallError::NullPointer { argument })
 }
 
-/// One value that the importer wants written.
+/// One value that the importer passes for writing.
 ///
 /// # Safety
 /// If not NULL, `pointer` must be valid for reads and writes during the call, and not alias other
@@ -73,7 +73,7 @@ pub(crate) unsafe fn reference_mut<'a, T>(
     unsafe { pointer.as_mut() }.ok_or(CallError::NullPointer { argument })
 }
 
-/// A string that the importer lends.
+/// A string that the importer passes.
 ///
 /// # Safety
 /// If not NULL, `pointer` must point at a NUL-terminated string that is valid during the call.
@@ -88,7 +88,7 @@ pub(crate) unsafe fn string<'a>(
     Ok(unsafe { CStr::from_ptr(pointer) })
 }
 
-/// Gives `value` into the importer's keeping: in the allocation that `slot` holds already, or in a new one.
+/// Passes ownership of `value` to the importer, in the allocation that `slot` already holds or in a new one.
 ///
 /// # Safety
 /// `slot` must hold NULL or a pointer that this function put there for the same `T`.
@@ -101,7 +101,7 @@ pub(crate) unsafe fn keep<T>(slot: &mut *mut c_void, value: T) {
     }
 }
 
-/// Takes back and frees what [`keep`] gave, and leaves NULL. Freeing NULL does nothing.
+/// Frees what [`keep`] stored, and stores NULL. Freeing NULL does nothing.
 ///
 /// # Safety
 /// As for [`keep`]; `slot` itself may be NULL.

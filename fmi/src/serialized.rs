@@ -97,7 +97,7 @@ mod tests {
         }
     }
 
-    /// Bytes with a header that fits, whatever the payload says.
+    /// Bytes with a valid header and any payload.
     fn forged(snapshot: &Snapshot<Lag>) -> Result<Snapshot<Lag>, CallError> {
         deserialize(&serialize(snapshot).expect("it serializes"))
     }

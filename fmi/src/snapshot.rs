@@ -22,12 +22,12 @@ pub(crate) struct Settings<P, I> {
 /// The settings of a model.
 pub(crate) type SettingsOf<M> = Settings<<M as Model>::Parameters, <M as Model>::Inputs>;
 
-/// Everything that changes in an instance, as plain data. What follows from the parameters is built again where it is
-/// needed; the logger belongs to the instance and stays with it.
+/// Everything that changes in an instance, as plain data. What is computed from the parameters is computed again when it
+/// is needed; the logger stays with the instance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Snapshot<M: Model> {
-    /// Where the instance is in its life.
+    /// Phase of the instance.
     pub phase: Phase,
     /// Its time base.
     pub clock: Clock,
@@ -40,26 +40,25 @@ pub(crate) struct Snapshot<M: Model> {
 }
 
 impl<M: Model> Snapshot<M> {
-    /// Refuses what no instance can have been in. A checksum does not protect against bytes that somebody
-    /// made on purpose.
+    /// Rejects a state that no instance can have been in. A checksum does not protect against forged bytes.
     pub fn check(&self) -> Result<(), CallError> {
         if !is_finite(self) {
             return Err(SavedStateError::NotFinite.into());
         }
-        let contradiction = |what| Err(SavedStateError::Contradiction(what).into());
+        let inconsistent = |what| Err(SavedStateError::Inconsistent(what).into());
         if !self.clock.is_valid() {
-            return contradiction("impossible times");
+            return inconsistent("invalid times");
         }
         self.check_settings()?;
         for derivative in &self.derivatives {
             let is_continuous = continuous::<M>(derivative.reference).is_some();
             if !(1..=MAXIMUM_ORDER).contains(&derivative.order) || !is_continuous {
-                return contradiction("impossible derivatives of inputs");
+                return inconsistent("invalid input derivatives");
             }
         }
         let name = M::IDENTITY.words.run;
         match (self.phase, &self.run) {
-            (Phase::Fatal, _) => contradiction("it is of a lost instance"),
+            (Phase::Fatal, _) => inconsistent("the instance had an internal error"),
             (Phase::Instantiated | Phase::Initialization, None) => Ok(()),
             (_, None) => Err(SavedStateError::NoRun { run: name }.into()),
             (phase, Some(state)) => {
@@ -73,7 +72,7 @@ impl<M: Model> Snapshot<M> {
         }
     }
 
-    /// Refuses parameters and inputs outside their ranges.
+    /// Rejects parameters and inputs that are out of range.
     fn check_settings(&self) -> Result<(), CallError> {
         for (_, variable) in variables::<M>() {
             match &variable.role {

@@ -46,7 +46,7 @@ impl<M: Model> Instance<M> {
                 }
                 Role::Parameter { field, .. } => field.set(&mut settings.parameters, value),
                 Role::Output { .. } | Role::CalculatedParameter { .. } => {
-                    return Err(CallError::NotSettable { name, causality: variable.causality() });
+                    return Err(CallError::ReadOnly { name, causality: variable.causality() });
                 }
             }
         }

@@ -23,7 +23,7 @@ pub(crate) const VELOCITY: Quantity = quantity("Velocity", "Velocity", Some(&MET
 pub(crate) const ACCELERATION: Quantity =
     quantity("Acceleration", "Acceleration", Some(&METRE_PER_SECOND_SQUARED), None, 3.0);
 pub(crate) const JERK: Quantity =
-    quantity("Jerk", "Rate of an acceleration", Some(&METRE_PER_SECOND_CUBED), None, 10.0);
+    quantity("Jerk", "Rate of change of acceleration", Some(&METRE_PER_SECOND_CUBED), None, 10.0);
 pub(crate) const ANGLE: Quantity = quantity("Angle", "Angle", Some(&RADIAN), Some("deg"), 0.3);
 pub(crate) const ANGULAR_VELOCITY: Quantity =
     quantity("AngularVelocity", "Angular velocity", Some(&RADIAN_PER_SECOND), Some("deg/s"), 1.0);
@@ -36,7 +36,7 @@ pub(crate) const ANGULAR_ACCELERATION: Quantity = quantity(
 );
 pub(crate) const ANGULAR_JERK: Quantity = quantity(
     "AngularJerk",
-    "Rate of an angular acceleration",
+    "Rate of change of angular acceleration",
     Some(&RADIAN_PER_SECOND_CUBED),
     Some("deg/s3"),
     1.0,

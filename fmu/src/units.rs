@@ -1,4 +1,7 @@
 //! Units of the variables, by their exponents of SI base units.
+//!
+//! The first display unit is the one that people read: FMPy plots all variables of a unit in it, whatever display unit their
+//! type has. Metres, metres per second and newtons are read as they are.
 
 use std::f64::consts::PI;
 
@@ -17,8 +20,8 @@ const fn unit(
 
 pub(crate) const SECOND: Unit = unit("s", &[("s", "1")], &[("ms", 1e3)]);
 pub(crate) const KILOGRAM: Unit = unit("kg", &[("kg", "1")], &[("g", 1e3)]);
-pub(crate) const METRE: Unit = unit("m", &[("m", "1")], &[("cm", 1e2), ("km", 1e-3)]);
-pub(crate) const METRE_PER_SECOND: Unit = unit("m/s", &[("m", "1"), ("s", "-1")], &[("km/h", 3.6)]);
+pub(crate) const METRE: Unit = unit("m", &[("m", "1")], &[]);
+pub(crate) const METRE_PER_SECOND: Unit = unit("m/s", &[("m", "1"), ("s", "-1")], &[]);
 pub(crate) const METRE_PER_SECOND_SQUARED: Unit = unit("m/s2", &[("m", "1"), ("s", "-2")], &[]);
 pub(crate) const METRE_PER_SECOND_CUBED: Unit = unit("m/s3", &[("m", "1"), ("s", "-3")], &[]);
 pub(crate) const RADIAN: Unit = unit("rad", &[("rad", "1")], &[("deg", DEGREES)]);
@@ -28,7 +31,7 @@ pub(crate) const RADIAN_PER_SECOND_SQUARED: Unit =
     unit("rad/s2", &[("s", "-2"), ("rad", "1")], &[("deg/s2", DEGREES)]);
 pub(crate) const RADIAN_PER_SECOND_CUBED: Unit =
     unit("rad/s3", &[("s", "-3"), ("rad", "1")], &[("deg/s3", DEGREES)]);
-pub(crate) const NEWTON: Unit = unit("N", &[("kg", "1"), ("m", "1"), ("s", "-2")], &[("kN", 1e-3)]);
+pub(crate) const NEWTON: Unit = unit("N", &[("kg", "1"), ("m", "1"), ("s", "-2")], &[]);
 pub(crate) const NEWTON_METRE: Unit = unit("N.m", &[("kg", "1"), ("m", "2"), ("s", "-2")], &[]);
 pub(crate) const KILOGRAM_SQUARE_METRE: Unit = unit("kg.m2", &[("kg", "1"), ("m", "2")], &[]);
 pub(crate) const NEWTON_SECOND_SQUARED: Unit = unit("N.s2", &[("kg", "1"), ("m", "1")], &[]);

@@ -7,20 +7,16 @@ use lmpc::{
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
-/// The figures of a design; matrices row by row, eigenvalues as \[real, imaginary\].
+/// The figures of a design: what `--gain` prints as JSON. Matrices row by row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DesignResult {
     /// Gain on \[Δx_m; y − r\] of the Laguerre MPC.
     pub k_lmpc: Vec<Vec<f64>>,
     /// Gain of the regulator.
     pub k_dlqr: Vec<Vec<f64>>,
-    /// Closed-loop eigenvalues under the first.
-    pub lmpc: Vec<[f64; 2]>,
-    /// And under the second.
-    pub dlqr: Vec<[f64; 2]>,
-    /// Largest distance between an eigenvalue of the first and its partner of the second.
-    pub max_distance: f64,
-    /// Largest magnitude of the eigenvalues under the first.
+    /// Eigenvalues of the closed loop with each gain.
+    pub closed_loop_eigenvalues: ClosedLoopEigenvalues,
+    /// Largest magnitude of the closed-loop eigenvalues with the gain of the Laguerre MPC.
     pub spectral_radius: f64,
     /// Condition number of Ω.
     pub condition_weighted: f64,
@@ -28,10 +24,21 @@ pub struct DesignResult {
     pub condition_unweighted: f64,
 }
 
+/// Closed-loop eigenvalues as \[real, imaginary\], by controller.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClosedLoopEigenvalues {
+    /// With the gain of the Laguerre MPC.
+    pub lmpc: Vec<[f64; 2]>,
+    /// With the gain of the regulator.
+    pub dlqr: Vec<[f64; 2]>,
+    /// Largest distance between an eigenvalue of `lmpc` and its partner in `dlqr`.
+    pub max_distance: f64,
+}
+
 /// Designs a controller on an augmented model.
 ///
 /// # Errors
-/// [`DesignError`] for every violated precondition, a closed loop that is not stable included.
+/// [`DesignError`] for every violated precondition, including an unstable closed loop.
 pub fn design(
     model: &Augmented,
     weights: &Weights,
@@ -47,9 +54,11 @@ pub fn design(
     Ok(DesignResult {
         k_lmpc: rows(design.gain()),
         k_dlqr: rows(design.dlqr().gain()),
-        max_distance: distance(&lmpc, &dlqr),
-        lmpc: pairs(&lmpc),
-        dlqr: pairs(&dlqr),
+        closed_loop_eigenvalues: ClosedLoopEigenvalues {
+            max_distance: distance(&lmpc, &dlqr),
+            lmpc: pairs(&lmpc),
+            dlqr: pairs(&dlqr),
+        },
         spectral_radius: design.spectral_radius(),
         condition_weighted: design.condition_number(),
         condition_unweighted: condition_number(plain.omega()),

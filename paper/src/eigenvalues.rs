@@ -5,7 +5,7 @@ use quadrotor::{Airframe, altitude_model, attitude_model, position_model};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::design::{DesignResult, design};
+use crate::design::{ClosedLoopEigenvalues, DesignResult, design};
 
 /// a of the paper's flights.
 const SCALE: f64 = 0.8187;
@@ -89,7 +89,8 @@ pub fn eigenvalues_and_gains() -> Result<(Vec<EigenvalueResult>, Vec<GainResult>
                 Err(error) => return Err(error),
             };
             let (alpha, a, n_p) = (ALPHA, SCALE, HORIZON);
-            let DesignResult { k_lmpc, k_dlqr, lmpc, dlqr, .. } = design;
+            let DesignResult { k_lmpc, k_dlqr, closed_loop_eigenvalues, .. } = design;
+            let ClosedLoopEigenvalues { lmpc, dlqr, max_distance } = closed_loop_eigenvalues;
             gains.push(GainResult { controller, sample_time, n, a, n_p, alpha, q, r, k_lmpc, k_dlqr });
             eigenvalues.push(EigenvalueResult {
                 controller,
@@ -97,7 +98,7 @@ pub fn eigenvalues_and_gains() -> Result<(Vec<EigenvalueResult>, Vec<GainResult>
                 alpha,
                 lmpc,
                 dlqr,
-                max_distance: design.max_distance,
+                max_distance,
                 spectral_radius: design.spectral_radius,
                 condition_weighted: design.condition_weighted,
                 condition_unweighted: design.condition_unweighted,

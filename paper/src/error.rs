@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,10 @@ pub enum Error {
         /// Why.
         source: std::io::Error,
     },
-    /// A model file is not what it should be.
+    /// Standard output cannot be written.
+    #[error("cannot write the output: {0}")]
+    Output(std::io::Error),
+    /// A model file is invalid.
     #[error("{name}: {reason}")]
     Model {
         /// The file, or the key in it.
@@ -23,8 +26,8 @@ pub enum Error {
         /// What is wrong.
         reason: String,
     },
-    /// The judge of our solver has no answer.
-    #[error("no optimum of the {problem}: {reason}")]
+    /// The reference solver found no solution.
+    #[error("the {problem} cannot be solved: {reason}")]
     Solver {
         /// The step.
         problem: String,
@@ -40,6 +43,6 @@ pub enum Error {
         reason: String,
     },
     /// A controller cannot be designed.
-    #[error("the design is refused: {0}")]
+    #[error("invalid design: {0}")]
     Design(#[from] lmpc::DesignError),
 }

@@ -1,6 +1,7 @@
 //! `cargo xtask paper`.
 
 use std::fs;
+use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -8,19 +9,18 @@ use clap::Parser;
 use paper::{Error, FLIGHTS, ModelFile, Progress, parts, png, report, results, schema};
 use rayon::prelude::*;
 
-/// Computes the paper's tables and figures again, or designs a controller for any model.
+/// Recomputes the paper's tables and figures, or designs a controller for any model.
 #[derive(Parser)]
 #[command(name = "paper", bin_name = "cargo xtask paper")]
 struct Arguments {
-    /// Prints gains, eigenvalues and condition numbers of the model in this TOML file as JSON, and does nothing
-    /// else.
+    /// Prints gains, closed-loop eigenvalues and condition numbers for the model in this TOML file as JSON, and exits.
     #[arg(long, value_name = "MODEL.toml")]
     gain: Option<PathBuf>,
-    /// Prints the JSON Schema of results.json, and does nothing else.
+    /// Prints the JSON Schema of results.json, and exits.
     #[arg(long, conflicts_with = "gain")]
     schema: bool,
-    /// Folder for report.html, results.json and PNG copies of the figures.
-    #[arg(long, value_name = "FOLDER", default_value = "target/paper")]
+    /// Directory for report.html, results.json and PNG copies of the figures.
+    #[arg(long, value_name = "DIR", default_value = "target/paper")]
     out: PathBuf,
 }
 
@@ -28,10 +28,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.gain {
         Some(path) => print_gain(path),
-        None if arguments.schema => {
-            println!("{}", json(&schema()));
-            Ok(())
-        }
+        None if arguments.schema => print(&json(&schema())),
         None => write_results(&arguments.out),
     };
     match outcome {
@@ -46,8 +43,15 @@ fn main() -> ExitCode {
 fn print_gain(path: &Path) -> Result<(), Error> {
     let text = fs::read_to_string(path).map_err(|source| Error::File { path: path.to_owned(), source })?;
     let result = ModelFile::parse(&text)?.design()?;
-    println!("{}", json(&result));
-    Ok(())
+    print(&json(&result))
+}
+
+/// Prints a line. A reader that has closed the pipe, such as `head`, has read enough: that is no error.
+fn print(line: &str) -> Result<(), Error> {
+    match writeln!(stdout(), "{line}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Output(error)),
+        _ => Ok(()),
+    }
 }
 
 fn write_results(out: &Path) -> Result<(), Error> {
@@ -65,8 +69,7 @@ fn write_results(out: &Path) -> Result<(), Error> {
     let write = |name: &str, bytes: &[u8]| {
         let path = out.join(name);
         fs::write(&path, bytes).map_err(|source| Error::File { path: path.clone(), source })?;
-        println!("{}", path.display());
-        Ok(())
+        print(&path.display().to_string())
     };
     fs::create_dir_all(out).map_err(|source| Error::File { path: out.to_owned(), source })?;
     for (name, picture) in &pictures {

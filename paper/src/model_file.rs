@@ -58,7 +58,7 @@ impl ModelFile {
     /// Reads the text of a model file.
     ///
     /// # Errors
-    /// [`Error::Model`] with the line that is not understood.
+    /// [`Error::Model`] with the invalid line.
     pub fn parse(text: &str) -> Result<Self, Error> {
         toml::from_str(text).map_err(|error| Error::Model {
             name: "model file".to_owned(),
@@ -79,7 +79,7 @@ impl ModelFile {
         };
         let weights = Weights::new(&model, q, matrix("r", &self.r)?)?;
         if self.terms.len() != self.scale.len() {
-            let reason = format!("has {} entries, terms has {}", self.scale.len(), self.terms.len());
+            let reason = format!("has {} entries; terms has {}", self.scale.len(), self.terms.len());
             return Err(Error::Model { name: "scale".to_owned(), reason });
         }
         let bases = self
@@ -101,7 +101,7 @@ fn matrix(name: &str, rows: &[Vec<f64>]) -> Result<DMatrix<f64>, Error> {
     let columns = rows.first().map_or(0, Vec::len);
     if let Some(ragged) = rows.iter().position(|row| row.len() != columns) {
         let reason =
-            format!("row {} has {} entries, the first has {columns}", ragged + 1, rows[ragged].len());
+            format!("row {} has {} entries; the first has {columns}", ragged + 1, rows[ragged].len());
         return Err(Error::Model { name: name.to_owned(), reason });
     }
     Ok(DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column]))

@@ -13,7 +13,7 @@ use crate::progress::Progress;
 use crate::robustness::{RobustnessResult, robustness, robustness_parts};
 use crate::tables::{ScaleRow, table2, table3};
 
-/// results.json. Fields are only ever added.
+/// results.json. Fields may be added; existing ones keep their name, unit and meaning.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Results {
     /// Table 2.

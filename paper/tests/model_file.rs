@@ -47,10 +47,10 @@ fn mistakes_in_a_model_file_are_named() {
         ModelFile::parse(&text).and_then(|file| file.design()).unwrap_err().to_string()
     };
     let ragged = refused("[0.0, 1.0]]", "[1.0]]");
-    assert_eq!(ragged, "a: row 2 has 1 entries, the first has 2");
+    assert_eq!(ragged, "a: row 2 has 1 entries; the first has 2");
     assert!(refused("alpha = 1.2", "alfa = 1.2").contains("alfa"));
     assert!(refused("c = [[1.0, 0.0]]", "").contains("missing field `c`"));
     assert!(refused("scale = [0.8187]", "scale = [1.2]").contains("1.2 is outside [0, 1)"));
-    assert!(refused("scale = [0.8187]", "scale = [0.5, 0.5]").contains("scale: has 2 entries, terms has 1"));
+    assert!(refused("scale = [0.8187]", "scale = [0.5, 0.5]").contains("scale: has 2 entries; terms has 1"));
     assert!(refused("r = [[1.0]]", "r = [[-1.0]]").contains("R is not positive definite"));
 }

@@ -118,16 +118,18 @@ mod simulation_error;
 mod simulation_state;
 
 pub use configuration::error::ConfigurationError;
-pub use configuration::parameter::{Access, Choice, Parameter, Unit};
+pub use configuration::parameter::{Access, Choice, Mutability, Parameter};
 pub use configuration::parameters::PARAMETERS;
+pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
     ReferenceSettings, Sensors,
 };
+pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
 pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
-pub use control::control_loop::ControlLoop;
+pub use control::control_loop::{ControlLoop, PreparedDesign};
 pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::Mixer;
@@ -135,8 +137,16 @@ pub use control::rotor_monitor::RotorMonitor;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
+pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::heading::Heading;
+#[cfg(feature = "shaper")]
+pub use guidance::heading_shaper::HeadingShaper;
+#[cfg(feature = "shaper")]
+pub use guidance::motion_profile::{Motion, MotionProfile};
 pub use guidance::position_reference::PositionReference;
+#[cfg(feature = "shaper")]
+pub use guidance::state_to_state::AxisLimits;
 pub use inputs::{InputSignal, Inputs};
 /// How a controller found its last input.
 pub use lmpc::Status as ControllerStatus;

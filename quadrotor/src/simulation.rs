@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::attitude::wrapped;
-use crate::schedule::next_event_us;
+use crate::schedule::next_point_us;
 use crate::sensors::SimulatedSensors;
 use crate::simulation_state::{SimulationState, World};
 use crate::{
@@ -89,14 +89,25 @@ impl Simulation {
         self.world.time_us
     }
 
-    /// Changes tunable parameters during the flight and redesigns the controllers that depend on them. Incremental
-    /// controllers go on from the input that they applied last, without a bump.
+    /// Changes parameters during the flight, those of the airframe included: a payload is dropped by a change of its mass.
+    /// The plant changes now, the control loop at its next sample, at most a millisecond later, as
+    /// [`ControlLoop::hand_over`] tells. Only the controllers that depend on the change are designed anew.
     ///
     /// # Errors
-    /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`Simulation::new`];
-    /// nothing has changed then.
+    /// [`ConfigurationError::Fixed`] when a parameter that describes the start differs ([`Mutability::Start`](crate::Mutability)),
+    /// and those of [`Simulation::new`]; nothing has changed then.
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        self.control.reconfigure(configuration)
+        let prepared = self.control.prepare(configuration)?;
+        let plant = Plant::new(&configuration.airframe, &configuration.environment);
+        let present = &self.configuration().controllers;
+        if plant != self.plant || !present.has_sample_times_of(&configuration.controllers) {
+            // The motion until now was that of the old plant, and led from event to event of the old schedule.
+            self.world.plant = self.plant_at(self.world.time_us);
+            self.world.event_us = self.world.time_us;
+        }
+        self.plant = plant;
+        self.control.hand_over(prepared);
+        Ok(())
     }
 
     /// The law that flies.
@@ -125,7 +136,9 @@ impl Simulation {
             if self.control.next_sample_us() <= self.world.event_us {
                 self.sample(&inputs.at(self.world.event_us))?;
             }
-            let next_us = next_event_us(self.configuration(), self.world.event_us);
+            // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
+            // wherever it is interrupted.
+            let next_us = next_point_us(self.world.event_us).min(self.control.next_sample_us());
             if next_us > time_us {
                 break;
             }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::control_state::ControlState;
 use crate::control::instants::LATEST_US;
-use crate::schedule::next_event_us;
+use crate::schedule::next_point_us;
 use crate::sensors::NoiseState;
 use crate::{
     Configuration, ConfigurationError, Disturbance, Inputs, PlantInputs, PlantState, RigidBody, RotorFault,
@@ -77,12 +77,11 @@ impl SimulationState {
         if time_us > LATEST_US || event_us > time_us {
             return wrong("its last event lies in the future");
         }
-        let next_us = next_event_us(configuration, event_us);
-        if time_us > next_us {
+        let (point_us, sample_us) = (next_point_us(event_us), self.control.next_us());
+        if time_us > event_us && time_us > point_us.min(sample_us) {
             return wrong("its last event is not the last");
         }
-        let sample_us = self.control.next_us();
-        if sample_us < event_us || sample_us > next_us {
+        if sample_us < event_us || sample_us > point_us {
             return wrong("its controllers do not sample when they would");
         }
         if !self.world.plant.is_finite() {

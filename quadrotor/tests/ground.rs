@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use quadrotor::{
-    Airframe, Configuration, Disturbance, Environment, GRAVITY_M_S2, InitialState, Inputs, Plant,
-    PlantInputs, PlantState, RotorLayout, Simulation, Wrench,
+    Airframe, Configuration, ConfigurationError, Disturbance, Environment, GRAVITY_M_S2, InitialState,
+    Inputs, Plant, PlantInputs, PlantState, RotorLayout, Simulation, Wrench,
 };
 
 /// μ of the ground.
@@ -137,4 +137,48 @@ fn a_flight_begins_where_the_vehicle_stood() {
     inputs.armed = true;
     flight.advance_to(80_000_000, &inputs).unwrap();
     assert!((flight.outputs().position_m - inputs.reference.position_m).norm() < 0.01);
+}
+
+fn over_ground(z_m: f64, attitude_rad: [f64; 3]) -> Configuration {
+    let initial = InitialState { position_m: [0.0, 0.0, z_m], attitude_rad, ..InitialState::default() };
+    Configuration { environment: Environment { ground_plane: true }, initial, ..Configuration::default() }
+}
+
+#[test]
+fn a_start_below_the_ground_is_refused_with_the_allowed_range() {
+    for (z_m, attitude_rad) in
+        [(1.0, [0.0; 3]), (0.011, [0.0; 3]), (0.0, [0.0, 0.2, 1.0]), (1e6, [1.0, 0.5, 0.0])]
+    {
+        let error = Simulation::new(&over_ground(z_m, attitude_rad), &Inputs::default()).unwrap_err();
+        let ConfigurationError::BelowGround { z_m: refused_m, greatest_m } = error else { panic!("{error}") };
+        assert_eq!(refused_m, z_m);
+        assert!(Simulation::new(&over_ground(greatest_m, attitude_rad), &Inputs::default()).is_ok());
+        // Without ground there is nothing to start below.
+        let mut free = over_ground(z_m, attitude_rad);
+        free.environment.ground_plane = false;
+        assert!(Simulation::new(&free, &Inputs::default()).is_ok());
+    }
+    let message = Simulation::new(&over_ground(2.0, [0.0; 3]), &Inputs::default()).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "initial.position.z = 2 m is below the ground (z points down); with environment.ground_plane = true and this \
+         initial attitude, allowed up to 0.010 m"
+    );
+}
+
+/// From the greatest allowed z no attitude is thrown up: without thrust nothing can gain height.
+#[test]
+fn an_allowed_start_does_not_throw_the_vehicle_up() {
+    let inputs = Inputs { armed: false, ..Inputs::default() };
+    for [phi, theta] in [[0.0, 0.0], [0.3, 0.0], [0.0, -0.8], [0.5, 0.5], [3.1, 0.2]] {
+        let attitude_rad = [phi, theta, 0.7];
+        let refused = Simulation::new(&over_ground(1e3, attitude_rad), &inputs).unwrap_err();
+        let ConfigurationError::BelowGround { greatest_m, .. } = refused else { panic!("{refused}") };
+        let mut flight = Simulation::new(&over_ground(greatest_m, attitude_rad), &inputs).unwrap();
+        for ms in 1..=2_000 {
+            flight.advance_to(ms * 1_000, &inputs).unwrap();
+            let risen_m = greatest_m - flight.outputs().position_m.z;
+            assert!(risen_m < 0.02, "{attitude_rad:?}: {risen_m} m after {ms} ms");
+        }
+    }
 }

@@ -84,25 +84,50 @@ fn values_out_of_range_are_refused_by_name_value_and_range() {
     let mut configuration = Configuration::default();
     set(&mut configuration, "airframe.mass", -1.0);
     let message = Simulation::new(&configuration, &Inputs::default()).unwrap_err().to_string();
-    assert_eq!(message, "airframe.mass = -1 is outside [0.05, 50]");
+    assert_eq!(message, "airframe.mass = -1 kg; allowed 0.05–50 kg");
 }
 
 #[test]
 fn values_that_contradict_one_another_are_refused() {
-    for (name, value, culprit) in [
-        ("airframe.rotor.speed_min", 460.0, "airframe.rotor.speed_min"),
-        ("airframe.mass", 5.0, "airframe.mass"),
-        ("airframe.rotor.speed_min", 300.0, "the mass in kg that four idle rotors carry"),
-        ("airframe.inertia.x", 0.5, "limits.tilt_acceleration"),
-        ("limits.acceleration.horizontal", 9.0, "limits.acceleration.horizontal"),
-        ("controller.attitude.sample_time", 0.06, "controller.position.sample_time"),
+    for (name, value, expected) in [
+        (
+            "airframe.rotor.speed_min",
+            460.0,
+            "airframe.rotor.speed_min = 460 rad/s must be below 450 rad/s: that is airframe.rotor.speed_max",
+        ),
+        (
+            "airframe.mass",
+            3.0,
+            "3 kg is too heavy: these rotors carry 1.78 kg; raise airframe.rotor.speed_max",
+        ),
+        (
+            "airframe.rotor.speed_min",
+            300.0,
+            "0.7 kg is too light: these rotors carry 1 kg when idle; lower airframe.rotor.speed_min",
+        ),
+        (
+            "airframe.inertia.x",
+            0.5,
+            "limits.tilt_acceleration = 8 rad/s^2 must be at most 3.775 rad/s^2: \
+             the rotors give airframe.inertia half of that in hover",
+        ),
+        (
+            "limits.acceleration.horizontal",
+            9.0,
+            "limits.acceleration.horizontal = 9 m/s^2 must be below 3.691 m/s^2: \
+             the commanded tilt gives no more; raise limits.tilt",
+        ),
+        (
+            "controller.attitude.sample_time",
+            0.06,
+            "controller.position.sample_time = 0.05 s must be at least 0.06 s: \
+             that is controller.attitude.sample_time",
+        ),
     ] {
         let mut configuration = Configuration::default();
         set(&mut configuration, name, value);
-        match Simulation::new(&configuration, &Inputs::default()) {
-            Err(ConfigurationError::Inconsistent { name, .. }) => assert_eq!(name, culprit),
-            other => panic!("{name} = {value}: {other:?}"),
-        }
+        let refused = Simulation::new(&configuration, &Inputs::default()).unwrap_err();
+        assert_eq!(refused.to_string(), expected, "{name} = {value}");
     }
     let mut configuration = Configuration::default();
     set(&mut configuration, "controller.position.prediction_horizon", 3.0);

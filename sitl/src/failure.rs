@@ -1,4 +1,4 @@
-//! Why the program ends otherwise than asked.
+//! Errors that end the program, and their exit codes.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub enum Failure {
         reason: String,
     },
     /// A command line that cannot be read.
-    #[error("{0} (--help tells more)")]
+    #[error("{0} (see --help)")]
     Usage(String),
     /// The closed loop cannot be built.
     #[error(transparent)]
@@ -49,7 +49,7 @@ pub enum Failure {
         /// Why.
         source: io::Error,
     },
-    /// A file whose content is none.
+    /// A file with wrong content.
     #[error("{}: {reason}", path.display())]
     Content {
         /// The file.
@@ -57,19 +57,26 @@ pub enum Failure {
         /// What is wrong with it.
         reason: String,
     },
+    /// Files lack some of what they should hold, a sentence each; the flights ended as asked.
+    #[error("the flight ended as asked, but files are incomplete: {}", .0.join("; "))]
+    Incomplete(Vec<String>),
     /// The replayed flight is another one.
     #[error(
-        "the replayed flight of system {system_id} differs: recorded {recorded:016x}, replayed {replayed:016x}"
+        "the replayed flight of system {system_id} differs from the recorded one by {:.3} s: flight digest {replayed:016x} \
+         instead of {recorded:016x}",
+        *time_us as f64 / 1e6
     )]
     Differs {
         /// The vehicle.
         system_id: u8,
+        /// Simulation time of the comparison, µs.
+        time_us: u64,
         /// Digest in the record.
         recorded: u64,
         /// Digest of the replayed flight.
         replayed: u64,
     },
-    /// The flight left the range of numbers.
+    /// The state of the simulation is no longer finite.
     #[error("the simulation failed: {0}")]
     Simulation(#[from] SimulationError),
     /// The handlers of signals.
@@ -94,7 +101,7 @@ impl Failure {
             Self::Simulation(_) | Self::Signals(_) => 1,
             Self::Value { .. } | Self::Usage(_) | Self::Configuration(_) | Self::Set(_) => 2,
             Self::Link(_) => 3,
-            Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } => 4,
+            Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } | Self::Incomplete(_) => 4,
             Self::Differs { .. } => 5,
         }
     }

@@ -25,6 +25,7 @@ mod ready;
 pub mod record;
 mod run;
 mod session;
+mod signals;
 pub mod signing;
 mod summary;
 mod terminal;

@@ -3,12 +3,16 @@
 use std::io::{Write, stderr};
 use std::process::ExitCode;
 
-use clap::Parser;
-use sitl::configuration::{Arguments, mistake};
+use clap::FromArgMatches;
+use sitl::configuration::{Arguments, environment, help, mistake};
 
 fn main() -> ExitCode {
-    let ended = match Arguments::try_parse() {
-        Ok(arguments) => sitl::run(arguments),
+    let read = help::command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches));
+    let ended = match read {
+        Ok(arguments) => {
+            let names = std::env::vars_os().map(|(name, _)| name);
+            environment::check(names).and_then(|()| sitl::run(arguments))
+        }
         Err(error) if error.use_stderr() => Err(mistake::failure(&error)),
         Err(help) => help.exit(),
     };

@@ -1,10 +1,10 @@
-//! How far simulation time should be.
+//! Simulation time as a function of the wall clock.
 
 use std::time::{Duration, Instant};
 
 use vehicle::parameters::Speed;
 
-/// A delay beyond this is not caught up: a machine that slept does not race afterwards.
+/// A longer delay is not caught up: after a suspend, the simulation does not race.
 const MOST_BEHIND: Duration = Duration::from_millis(250);
 
 /// Simulation time as a function of the wall clock.
@@ -37,7 +37,10 @@ impl Pace {
                 let goal_us = self.time_us + (elapsed_s * factor * 1e6) as u64;
                 let most_us = (MOST_BEHIND.as_secs_f64() * factor * 1e6) as u64;
                 if goal_us > time_us + most_us {
-                    tracing::debug!(behind_us = goal_us - time_us, "too slow: time is not caught up");
+                    tracing::debug!(
+                        behind_us = goal_us - time_us,
+                        "slower than the requested speed: simulation time falls behind"
+                    );
                     *self = Self::new(speed, now, time_us + most_us);
                     return Some(time_us + most_us);
                 }

@@ -1,4 +1,4 @@
-//! The file that tells that clients can connect.
+//! The ready file: it exists when clients can connect.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::files::{Readers, replace};
 use crate::fleet::Fleet;
 use crate::link::Links;
 
-/// Removes what an earlier run has left: nobody shall take it for this one's.
+/// Removes the file of an earlier run, so that nobody takes it for this one's.
 ///
 /// # Errors
 /// [`Failure::File`]
@@ -19,7 +19,7 @@ pub fn forget(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes it at once: a reader never sees half of it.
+/// Writes the file in one step: a reader never sees half of it.
 ///
 /// # Errors
 /// [`Failure::File`]
@@ -42,7 +42,7 @@ pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
     write_content(path, &content)
 }
 
-/// The same for a plant alone.
+/// The same for the simulator of an external autopilot.
 ///
 /// # Errors
 /// [`Failure::File`]
@@ -58,4 +58,5 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
 
 fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {
     replace(path, format!("{content}\n").as_bytes(), Readers::All)
+        .map_err(|source| Failure::write(path, source))
 }

@@ -1,19 +1,20 @@
 //! From arguments to an ended run.
 
-use std::io::{IsTerminal, Write, stdout};
+use std::io::{Write, stdout};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use tracing_subscriber::EnvFilter;
+use vehicle::{Notice, Severity};
 
-use crate::configuration::{Arguments, Settings, file};
+use crate::configuration::{Arguments, Settings, check_replay, file, parameter_list};
 use crate::failure::Failure;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
-use crate::record::replay;
+use crate::record::{RecordEnd, Replayed, replay};
 use crate::session::Session;
+use crate::signals::stop_on_signals;
 use crate::summary::Summary;
-use crate::terminal::{LogLines, banner, hil_banner};
+use crate::terminal::{banner, hil_banner, start_log};
 
 /// Does what the arguments say.
 ///
@@ -21,16 +22,14 @@ use crate::terminal::{LogLines, banner, hil_banner};
 /// [`Failure`] that ends the program.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     let arguments = with_file(arguments)?;
-    log_to_stderr(arguments.log.as_deref())?;
+    start_log(arguments.log.clone().unwrap_or_default().into());
+    if let Some(format) = arguments.list_parameters {
+        say(parameter_list(&Settings::resolve(&arguments)?, format).trim_end());
+        return Ok(());
+    }
     if let Some(path) = &arguments.replay {
-        for flight in replay(path)? {
-            say(&format!(
-                "system {}: replayed {:.3} s, digest {:016x}: the same flight",
-                flight.system_id,
-                flight.time_us as f64 / 1e6,
-                flight.digest
-            ));
-        }
+        check_replay(&arguments)?;
+        replay(path)?.iter().for_each(|replayed| say(&told(replayed)));
         return Ok(());
     }
     let stop = stop_on_signals().map_err(Failure::Signals)?;
@@ -48,16 +47,35 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     for flight in summary.flights {
         let simulated_s = flight.time_us as f64 / 1e6;
         say(&format!(
-            "system {}: flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), digest {:016x}",
+            "system {}: flew {simulated_s:.3} s in {wall_s:.3} s ({:.1} times real time), flight digest {:016x}",
             flight.system_id,
             simulated_s / wall_s.max(1e-9),
             flight.digest
         ));
     }
-    Ok(())
+    if summary.incomplete.is_empty() { Ok(()) } else { Err(Failure::Incomplete(summary.incomplete)) }
 }
 
-/// The plant for an external autopilot.
+/// A line about a replayed flight.
+fn told(replayed: &Replayed) -> String {
+    let Replayed { flight, end, verified_us } = replayed;
+    let end = match end {
+        RecordEnd::Complete => "the same flight".to_owned(),
+        RecordEnd::Limit => {
+            "the same flight as far as it was recorded; the record ends at its size limit".to_owned()
+        }
+        RecordEnd::Cut => {
+            format!("the same flight up to {:.3} s; the record ends early", *verified_us as f64 / 1e6)
+        }
+    };
+    let replayed_s = flight.time_us as f64 / 1e6;
+    format!(
+        "system {}: replayed {replayed_s:.3} s, flight digest {:016x}: {end}",
+        flight.system_id, flight.digest
+    )
+}
+
+/// Simulates the plant for an external autopilot.
 fn simulate(settings: HilSettings, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
     let ready_file = settings.ready_file.as_deref();
     ready_file.map(ready::forget).transpose()?;
@@ -76,37 +94,15 @@ fn with_file(arguments: Arguments) -> Result<Arguments, Failure> {
     }
 }
 
-fn log_to_stderr(filter: Option<&str>) -> Result<(), Failure> {
-    let filter = filter.unwrap_or("info");
-    let filter = EnvFilter::try_new(filter).map_err(|_| Failure::Value {
-        name: "--log".to_owned(),
-        reason: format!(
-            "`{filter}` is no filter: error, warn, info, debug, trace, off, or TARGET=LEVEL between commas"
-        ),
-    })?;
-    let subscriber = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_writer(|| LogLines)
-        .with_target(false)
-        .with_ansi(std::io::stderr().is_terminal());
-    // Somebody who has set one up already keeps it.
-    let _kept = subscriber.try_init();
-    Ok(())
-}
-
-fn stop_on_signals() -> std::io::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // A second one ends the program at once.
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
+/// Logs what the user is told at the start.
+fn log(notes: &[Notice]) {
+    for Notice { severity, text } in notes {
+        match severity {
+            Severity::Info => tracing::info!("{text}"),
+            Severity::Warning => tracing::warn!("{text}"),
+            Severity::Critical | Severity::Error => tracing::error!("{text}"),
+        }
     }
-    Ok(stop)
-}
-
-/// Lines of the log.
-fn log(notes: &[String]) {
-    notes.iter().for_each(|note| tracing::info!("{note}"));
 }
 
 /// A line on the standard output. Whoever has closed it does not want it.

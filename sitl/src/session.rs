@@ -9,10 +9,12 @@ use crate::failure::Failure;
 use crate::fleet::{Clock, Fleet};
 use crate::ready;
 use crate::summary::{Flight, Summary};
-use crate::terminal::StatusLine;
+use crate::terminal::{StatusLine, of_fleet};
 
 /// Longest rest between two looks at the links.
 const REST: Duration = Duration::from_millis(1);
+/// The same while a set-point is expected: a client's answer must not wait for us.
+const SHORT_REST: Duration = Duration::from_micros(20);
 
 /// A fleet with its clocks.
 #[derive(Debug)]
@@ -40,37 +42,20 @@ impl Session {
         &self.fleet
     }
 
-    /// Flies until it is told to stop, or the asked time is over.
+    /// Flies until it is told to stop, or the asked time is over, and ends the files however the flight went.
     ///
     /// # Errors
-    /// [`Failure`] of the simulation or of a file.
+    /// [`Failure`] of the simulation.
     pub fn run(self, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
         let Self { settings, mut fleet } = self;
         let start = Instant::now();
-        let mut clocks: Vec<Clock> = settings
-            .clocks()
-            .into_iter()
-            .map(|members| Clock::new(settings.speed, members, settings.end_us, start))
-            .collect();
-        let mut status = StatusLine::new(start);
-        let several = clocks.len() as u32;
-        while !stop.load(Ordering::Relaxed) && !clocks.iter().all(Clock::is_over) {
-            let now = Instant::now();
-            fleet.receive(now)?;
-            let mut behind = false;
-            for clock in clocks.iter_mut().filter(|clock| !clock.is_over()) {
-                behind |= clock.advance(&mut fleet, now, several)?;
-            }
-            fleet.keep_links_alive(now)?;
-            fleet.keep_logs(now)?;
-            fleet.flush();
-            status.update(now, &fleet);
-            if !behind {
-                std::thread::sleep(REST);
-            }
+        let flown = fly(&settings, &mut fleet, start, stop);
+        let (members, incomplete) = fleet.finish();
+        if let Err(failure) = flown {
+            // The failure is what the program ends with.
+            incomplete.iter().for_each(|lacking| tracing::warn!("{lacking}"));
+            return Err(failure);
         }
-        status.clear();
-        let members = fleet.finish()?;
         let flights = members
             .iter()
             .map(|member| Flight {
@@ -79,6 +64,40 @@ impl Session {
                 digest: member.digest().value(),
             })
             .collect();
-        Ok(Summary { wall: start.elapsed(), flights })
+        Ok(Summary { wall: start.elapsed(), flights, incomplete })
     }
+}
+
+/// Flies until it is told to stop, or the asked time is over.
+fn fly(
+    settings: &Settings,
+    fleet: &mut Fleet,
+    start: Instant,
+    stop: &Arc<AtomicBool>,
+) -> Result<(), Failure> {
+    let mut clocks: Vec<Clock> = settings
+        .clocks()
+        .into_iter()
+        .map(|members| Clock::new(settings.speed, members, settings.end_us, start))
+        .collect();
+    let mut status = StatusLine::new(start);
+    let several = clocks.len() as u32;
+    while !stop.load(Ordering::Relaxed) && !clocks.iter().all(Clock::is_over) {
+        let now = Instant::now();
+        fleet.receive(now);
+        let mut behind = false;
+        for clock in clocks.iter_mut().filter(|clock| !clock.is_over()) {
+            behind |= clock.advance(fleet, now, several)?;
+        }
+        let expected = fleet.keep_in_step(now);
+        fleet.keep_links_alive(now);
+        fleet.keep_logs(now);
+        fleet.flush();
+        status.update(now, fleet.time_us(), || of_fleet(fleet));
+        if !behind {
+            std::thread::sleep(if expected { SHORT_REST } else { REST });
+        }
+    }
+    status.clear();
+    Ok(())
 }

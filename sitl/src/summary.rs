@@ -5,10 +5,12 @@ use std::time::Duration;
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Time of the wall clock.
+    /// Duration by the wall clock.
     pub wall: Duration,
     /// The flight of each vehicle.
     pub flights: Vec<Flight>,
+    /// What is missing from files, a sentence each.
+    pub incomplete: Vec<String>,
 }
 
 /// How the flight of a vehicle ended.

@@ -2,12 +2,14 @@
 
 mod common;
 
-use common::recording::Recording;
+use common::recording::{Record, Recording};
 use common::{Bench, settings};
 use mavlink::dialects::common::{
-    MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    HEARTBEAT_DATA, MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use quadrotor::{Inputs, PositionReference, Simulation};
+use sitl::Failure;
+use sitl::record::RecordEnd;
 use vehicle::Mode;
 use vehicle::identity::Identity;
 
@@ -117,6 +119,114 @@ fn a_record_replays_bit_for_bit() {
     let time = line.split(' ').nth(1).expect("a time");
     let later = line.replacen(time, &(time.parse::<u64>().expect("a time") + 20_000).to_string(), 1);
     record.assert_depends_on(line, &later);
-    // What is no record is refused by its line.
-    assert!(record.changed("frame ", "fame ").expect_err("no record").to_string().contains("line 2"));
+    // What is not an entry is refused by its line.
+    let reason = record.changed("frame ", "fame ").expect_err("no record").to_string();
+    assert!(reason.contains("line 2 is not an entry"), "{reason}");
+}
+
+/// A record of a flight on the ground: a heartbeat every 0.1 s, and the state every second, as the program writes it.
+fn short_record(seconds: u32) -> Record {
+    let mut recording = Recording::of(&settings(Identity::Px4));
+    for millisecond in 0..seconds * 1000 {
+        if millisecond % 100 == 50 {
+            recording.send(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+        }
+        if millisecond % 1000 == 0 {
+            recording.note_state();
+        }
+        recording.step();
+    }
+    recording.finish()
+}
+
+/// Cut anywhere behind its header, by kill -9 or a full disk, a record replays up to its last whole line.
+#[test]
+fn a_cut_record_replays_up_to_its_last_whole_line() {
+    let record = short_record(3);
+    let text = record.text();
+    let header = text.lines().next().expect("a header").len() + 1;
+    for at in (header..text.len()).step_by(97).chain([header, text.len() - 1]) {
+        let replayed = record.replay_text(&text[..at]).unwrap_or_else(|failure| panic!("{at}: {failure}"));
+        let whole: Vec<&str> =
+            text[..at].split_inclusive('\n').filter(|line| line.ends_with('\n')).skip(1).collect();
+        let time_us = |line: &&str| line.split(' ').nth(1).expect("a time").parse::<u64>().expect("a time");
+        let states = whole.iter().filter(|line| line.starts_with("state"));
+        assert_eq!(replayed[0].end, RecordEnd::Cut, "{at}");
+        assert_eq!(replayed[0].flight.time_us, whole.last().map_or(0, time_us), "{at}");
+        assert_eq!(replayed[0].verified_us, states.map(time_us).max().unwrap_or(0), "{at}");
+    }
+    let headless = record.replay_text(&text[..header - 1]).expect_err("half a header").to_string();
+    assert!(headless.contains("line 1, the header"), "{headless}");
+}
+
+/// No change of a single character goes unnoticed, wherever it is; and the place and time are named.
+#[test]
+fn damage_is_refused_by_line_and_time() {
+    let record = short_record(3);
+    let text = record.text();
+    let header = text.find('\n').expect("a header");
+    for at in (header / 2..text.len()).step_by(53) {
+        let mut bytes = text.clone().into_bytes();
+        bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' };
+        let damaged = String::from_utf8(bytes).expect("text");
+        let result = record.replay_text(&damaged);
+        let failure = result.expect_err("damaged").to_string();
+        let line = text[..=at].lines().count();
+        assert!(
+            failure.contains(&format!("line {line}, ")) && failure.contains("is damaged"),
+            "{at}: {failure}"
+        );
+    }
+    // The end is moved hours away.
+    let moved = text.replace("end 3000000", "end 30000000000");
+    let failure = record.replay_text(&moved).expect_err("damaged").to_string();
+    assert!(failure.contains("the entry after 2.950000 s of simulation time, is damaged"), "{failure}");
+    // A line that is lost, moved or doubled.
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    for lines in [
+        [&lines[..5], &lines[6..]].concat(),
+        [&lines[..5], &[lines[6], lines[5]], &lines[7..]].concat(),
+        [&lines[..6], &lines[5..]].concat(),
+    ] {
+        let failure = record.replay_text(&lines.concat()).expect_err("damaged").to_string();
+        assert!(failure.contains("line "), "{failure}");
+    }
+    // Of an older release.
+    let older = text.replace("record 3", "record 2");
+    assert!(record.replay_text(&older).expect_err("older").to_string().contains("format 2"));
+}
+
+/// With right checksums, another state is noticed when it is recorded, not at the end.
+#[test]
+fn a_flight_that_differs_is_noticed_at_the_first_state() {
+    let record = short_record(3);
+    let text = record.text();
+    let state = text.lines().find(|line| line.starts_with("state 2000000")).expect("a state");
+    let digest = state.split(' ').nth(3).expect("a digest");
+    let failure = record.changed(digest, "0123456789abcdef").expect_err("another flight");
+    assert!(matches!(failure, Failure::Differs { time_us: 2_000_000, system_id: 1, .. }), "{failure}");
+}
+
+/// A record that reaches its limit stops with the state of every flight, and replays up to there.
+#[test]
+fn a_full_record_replays_up_to_its_limit() {
+    let vehicle = settings(Identity::Px4);
+    let mut recording = Recording::limited(&vehicle, 20_000);
+    let mut stopped_us = None;
+    for millisecond in 0..20_000_u32 {
+        if millisecond % 20 == 0 {
+            recording.send(place(0.0, 0.0, -1.0, 0.0));
+        }
+        if recording.stop_if_full() {
+            stopped_us = Some(u64::from(millisecond) * 1000);
+        }
+        recording.step();
+    }
+    let stopped_us = stopped_us.expect("it was full");
+    let record = recording.finish();
+    let size = record.text().len();
+    assert!((20_000..20_400).contains(&size), "{size}");
+    let replayed = record.replay_text(&record.text()).expect("the same flight");
+    let [only] = replayed[..] else { panic!("{replayed:?}") };
+    assert_eq!((only.end, only.flight.time_us, only.verified_us), (RecordEnd::Limit, stopped_us, stopped_us));
 }

@@ -21,7 +21,7 @@ fn every_action_as(identity: Identity, cause: Cause) {
         // Until the next heartbeat that comes by itself.
         bench.fly(1.1);
         let (vehicle, texts) = (bench.autopilot.vehicle(), bench.texts());
-        let told = format!("Failsafe: {}", cause.name());
+        let told = cause.name().to_owned();
         let announced = texts.iter().any(|text| text.starts_with(&told));
         assert_eq!(announced, action != Action::None, "{cause:?} {action:?}: {texts:?}");
         match action {
@@ -104,7 +104,7 @@ const ENDS: [(&str, &str); 5] = [
 
 #[test]
 fn the_documentation_draws_what_the_parameters_can_choose() {
-    let page = include_str!("../docs/failsafes.md");
+    let page = include_str!("../../book/src/vehicle/failsafes.md");
     let (_, rest) = page.split_once("```mermaid").expect("a diagram");
     let (diagram, _) = rest.split_once("```").expect("its end");
     let mut drawn: Vec<&str> =

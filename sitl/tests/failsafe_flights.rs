@@ -27,10 +27,10 @@ fn what_flickers_acts_once() {
         bench.fly(0.4);
         assert_eq!(state(&bench), MavState::MAV_STATE_CRITICAL);
     }
-    assert_eq!(count(&bench, "Failsafe: Ground station lost: hold"), 1, "{:?}", bench.texts());
-    assert_eq!(count(&bench, "Failsafe: ground station lost is over"), 0);
+    assert_eq!(count(&bench, "Ground station lost: holding"), 1, "{:?}", bench.texts());
+    assert_eq!(count(&bench, "Failsafe cleared: ground station connected"), 0);
     bench.fly(0.7);
-    assert_eq!(count(&bench, "Failsafe: ground station lost is over"), 1);
+    assert_eq!(count(&bench, "Failsafe cleared: ground station connected"), 1);
     assert_eq!(state(&bench), MavState::MAV_STATE_ACTIVE);
     // A user who flies on is not spared the next time, however soon it comes.
     lose_ground_station(&mut bench);
@@ -54,7 +54,7 @@ fn a_return_on_a_critical_battery_becomes_a_landing_when_it_is_empty() {
     bench.fly_until("empty", 60.0, |bench| bench.mode() == Mode::Land);
     let share = bench.autopilot.vehicle().battery_remaining();
     assert!((share - 0.05).abs() < 1e-4, "{share}");
-    assert_eq!(count(&bench, "Failsafe: Battery empty (5 %): land"), 1, "{:?}", bench.texts());
+    assert_eq!(count(&bench, "Battery empty (5 %): landing"), 1, "{:?}", bench.texts());
     bench.fly(0.1);
     assert_eq!(state(&bench), MavState::MAV_STATE_EMERGENCY);
     bench.fly_until("landed", 90.0, |bench| !bench.autopilot.vehicle().is_armed());
@@ -155,7 +155,7 @@ fn a_meaningless_choice_is_refused_with_those_that_there_are() {
         param_type: MavParamType::MAV_PARAM_TYPE_INT32,
     }));
     let told = bench.texts().pop().expect("a reason");
-    let reason = "Parameter refused: COM_ACT_FAIL_ACT = 1 has no meaning here: 2 Land, 4 Terminate";
+    let reason = "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)";
     assert_eq!(told, reason);
 }
 
@@ -185,7 +185,7 @@ fn without_a_height_it_lands_at_once_and_softly() {
         }
         bench.fly(1.5);
         assert_eq!((bench.mode(), state(&bench)), (Mode::Land, MavState::MAV_STATE_CRITICAL), "{failed}");
-        let told = format!("Failsafe: Position lost ({failed}): land");
+        let told = format!("Position lost ({failed}): landing");
         assert_eq!(count(&bench, &told), 1, "{:?}", bench.texts());
         let mut fastest: f64 = 0.0;
         while bench.autopilot.vehicle().is_armed() {
@@ -215,7 +215,7 @@ fn without_a_gyroscope_it_falls_and_says_so() {
         fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
         assert!(bench.autopilot.vehicle().time_us() < 60_000_000, "still up: {:?}", bench.position());
     }
-    let told = "Failsafe: Position lost (gyroscope failed: no attitude can be held): land";
+    let told = "Position lost (gyroscope failed: cannot hold attitude): landing";
     assert_eq!(count(&bench, told), 1, "{:?}", bench.texts());
     assert!(fastest > 8.0, "{fastest} m/s");
 }

@@ -100,9 +100,8 @@ fn two_lost_rotors_are_a_fall() {
             assert_eq!(inject(&mut bench, MOTOR, OFF, rotor), 0);
         }
         bench.fly(0.7);
-        let falls = |bench: &Bench| {
-            bench.texts().iter().filter(|text| text.ends_with("rotor lost: it falls")).count()
-        };
+        let falls =
+            |bench: &Bench| bench.texts().iter().filter(|text| text.ends_with("rotor lost: falling")).count();
         assert!(bench.texts().iter().any(|text| text == first), "{:?}", bench.texts());
         let all = first == "Rotor 1 lost";
         assert_eq!(falls(&bench), usize::from(all), "{:?}", bench.texts());
@@ -178,7 +177,7 @@ fn faults_come_and_go_by_the_schedule() {
     assert!(remaining(&bench) > 0.99);
     bench.fly(0.002);
     assert_eq!(remaining(&bench), 0.0);
-    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, needs 15 %"]);
+    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, required 15 %"]);
     bench.fly(1.1);
     let voltage = bench.heard.iter().rev().find_map(|message| match message {
         Message::Typed(MavMessage::SYS_STATUS(status)) => {
@@ -198,13 +197,13 @@ fn faults_come_and_go_by_the_schedule() {
 fn what_has_no_meaning_is_refused_with_the_reason() {
     let mut bench = Bench::new(Identity::Px4);
     for (unit, kind, instance, result, reason) in [
-        (5.0, OFF, 0.0, UNSUPPORTED, "no failure unit 5"),
-        (MOTOR, 9.0, 0.0, UNSUPPORTED, "no failure type 9"),
-        (MOTOR, OFF, 5.0, UNSUPPORTED, "no motor 5"),
+        (5.0, OFF, 0.0, UNSUPPORTED, "unknown failure unit 5"),
+        (MOTOR, 9.0, 0.0, UNSUPPORTED, "unknown failure type 9"),
+        (MOTOR, OFF, 5.0, UNSUPPORTED, "unknown motor 5"),
         (MOTOR, 3.0, 1.0, UNSUPPORTED, "a motor cannot be `garbage`"),
         (BATTERY, 6.0, 0.0, UNSUPPORTED, "a battery cannot be `delayed`"),
-        (4.0, OFF, 3.0, UNSUPPORTED, "no instance 3"),
-        (0.5, OFF, 0.0, DENIED, "needs a unit"),
+        (4.0, OFF, 3.0, UNSUPPORTED, "unknown instance 3"),
+        (0.5, OFF, 0.0, DENIED, "requires unit"),
     ] {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
@@ -297,7 +296,7 @@ fn a_parameter_forbids_it() {
     start.conduct.failure_injection = false;
     let mut bench = Bench::of(&start);
     assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
-    assert!(bench.texts().iter().any(|text| text.contains("SYS_FAILURE_EN is 0")), "{:?}", bench.texts());
+    assert!(bench.texts().iter().any(|text| text.contains("set SYS_FAILURE_EN to 1")), "{:?}", bench.texts());
     assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 

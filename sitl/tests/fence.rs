@@ -99,11 +99,7 @@ fn it_stops_in_front_of_the_border() {
     assert!(fastest > 3.0, "{fastest} m/s");
     assert!((26.0..30.0).contains(&farthest), "{farthest} m");
     assert_eq!(bench.mode(), Mode::Hold);
-    assert!(
-        bench.texts().iter().any(|text| text == "Failsafe: Fence breached (outside the fence): hold"),
-        "{:?}",
-        bench.texts()
-    );
+    assert!(bench.texts().iter().any(|text| text == "Fence ahead: holding"), "{:?}", bench.texts());
     assert_eq!(bench.set_mode(Mode::Position), 0);
     bench.stream(5.0, |bench| {
         forward(bench);
@@ -144,7 +140,7 @@ fn what_leads_outside_is_refused_with_the_reason() {
     let fence = [square(&start, 30.0), wall].concat();
     let mut bench = hovering(&start, fence, Vec::new());
     for (north, why) in
-        [(31.0, "Reposition denied: outside the fence"), (6.0, "Reposition denied: in an exclusion zone")]
+        [(31.0, "Reposition rejected: outside the fence"), (6.0, "Reposition rejected: in an exclusion zone")]
     {
         assert_eq!(go_to(&mut bench, north, 0.0), DENIED);
         assert!(bench.texts().iter().any(|text| text == why), "{north}: {:?}", bench.texts());
@@ -164,7 +160,7 @@ fn what_leads_outside_is_refused_with_the_reason() {
     target.x = -40.0;
     bench.heard.clear();
     bench.stream(8.0, |bench| bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone())));
-    let told = "Set-point denied: outside the fence";
+    let told = "Set-point rejected: outside the fence";
     assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
     let [x, y, _] = bench.position();
     assert!((-6.0..-2.0).contains(&x) && y.abs() < 0.1, "{x} {y}");
@@ -253,14 +249,14 @@ fn each_action_is_taken_at_the_border() {
         assert_eq!(status.breach_type, FenceBreach::FENCE_BREACH_BOUNDARY);
         assert!((1000..bench.autopilot.vehicle().time_us() as u32 / 1000).contains(&status.breach_time));
         let texts = bench.texts();
-        let told = texts.into_iter().filter(|text| text.starts_with("Failsafe: Fence"));
+        let told = texts.into_iter().filter(|text| text.starts_with("Fence"));
         let told: Vec<_> = told.take(if fell { 1 } else { usize::MAX }).collect();
         match action {
             Action::None => assert!(told.is_empty(), "{told:?}"),
-            Action::Warn => assert_eq!(told, ["Failsafe: Fence breached (outside the fence)"]),
+            Action::Warn => assert_eq!(told, ["Fence ahead"]),
             _ => {
-                let action = action.name();
-                assert_eq!(told, [format!("Failsafe: Fence breached (outside the fence): {action}")]);
+                let action = action.doing();
+                assert_eq!(told, [format!("Fence ahead: {action}")]);
             }
         }
         match action {
@@ -393,9 +389,9 @@ fn a_mission_that_a_later_fence_forbids_is_not_begun() {
     let mut bench = Bench::of(&start);
     bench.heard = upload(&mut bench, PlanKind::Fence, &square(&start, 30.0));
     assert_eq!(result(&bench.heard), Some(0));
-    let told = "Mission cannot be flown: item 2: outside the fence";
+    let told = "Mission cannot be flown: item 3: outside the fence";
     assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
-    let reason = "Mission denied: item 2: outside the fence";
+    let reason = "Mission rejected: item 3: outside the fence";
     assert_eq!(bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), DENIED);
     assert!(bench.texts().iter().any(|text| text == reason), "{:?}", bench.texts());
     assert_eq!(bench.set_mode(Mode::Mission), DENIED);

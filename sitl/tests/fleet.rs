@@ -85,8 +85,11 @@ fn plans_and_faults_are_of_all_or_of_one() {
         assert_eq!(counts(&Settings::resolve(&arguments).expect("settings")), expected);
     }
     for (line, words) in [
-        (format!("--vehicles 2 --mission 3:{own}"), "there is no system 3, only 1 to 2"),
-        (format!("--mission 3:{own}"), "there is no system 3, only 1"),
+        (
+            format!("--vehicles 2 --mission 3:{own}"),
+            "there is no system 3; the systems of this run are 1 to 2",
+        ),
+        (format!("--mission 3:{own}"), "there is no system 3; the systems of this run are 1"),
         (format!("--mission {all} --mission {own}"), "is a second plan for all"),
         ("--vehicles 2 --fault 3:1:rotor1=off".to_owned(), "--fault: `3:1:rotor1=off`: there is no system 3"),
     ] {
@@ -98,15 +101,25 @@ fn plans_and_faults_are_of_all_or_of_one() {
 #[test]
 fn what_does_not_fit_is_refused_by_its_name() {
     for (line, words) in [
-        ("--vehicles 200 --instance 60", "system 61 on need system 260"),
-        ("--vehicles 2 --system-id 250", "the last is 250"),
-        ("--vehicles 2 --link serial:/dev/null", "leaves no port to vehicle 2"),
-        ("--vehicles 2 --link tcpin:65535", "leaves no port to vehicle 2"),
+        ("--vehicles 200 --instance 60", "system 61 on need system ids up to 260"),
+        ("--vehicles 2 --system-id 250", "the largest is 250"),
+        ("--vehicles 2 --link serial:/dev/null", "leaves no port for vehicle 2"),
+        ("--vehicles 2 --link tcpin:65535", "leaves no port for vehicle 2"),
+        ("--lockstep-period 0.05", "--lockstep-period: needs --lockstep"),
+        ("--lockstep-timeout 9", "--lockstep-timeout: needs --lockstep"),
     ] {
         let error = settings(line).expect_err(line).to_string();
         assert!(error.contains(words), "{error}");
     }
-    for wrong in ["--vehicles 0", "--vehicles 251", "--ports mine", "--clocks none", "--formation star"] {
+    for wrong in [
+        "--lockstep never",
+        "--lockstep --lockstep-period 2",
+        "--vehicles 0",
+        "--vehicles 251",
+        "--ports mine",
+        "--clocks none",
+        "--formation star",
+    ] {
         let words = ["lmpc-sitl"].into_iter().chain(wrong.split_whitespace());
         assert!(Arguments::try_parse_from(words).is_err(), "{wrong}");
     }

@@ -74,7 +74,7 @@ fn a_refused_arming_says_why() {
     assert_eq!(bench.set_mode(Mode::Return), 0);
     assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 1);
     assert!(
-        bench.texts().iter().any(|text| text == "Arming denied: not in Return mode"),
+        bench.texts().iter().any(|text| text == "Arming denied: Return mode is active"),
         "{:?}",
         bench.texts()
     );
@@ -91,9 +91,13 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
         (
             Identity::Px4,
             5.0,
-            "Mode 0x50000 is not available, only Position, Hold, Takeoff, Mission, Return, Land, Offboard",
+            "Mode 0x50000 is not available; available: Position, Hold, Takeoff, Mission, Return, Land, Offboard",
         ),
-        (Identity::ArduPilot, 0.0, "Mode 0 is not available, only Loiter, Guided, Auto, RTL, Land, Brake"),
+        (
+            Identity::ArduPilot,
+            0.0,
+            "Mode 0 is not available; available: Loiter, Guided, Auto, RTL, Land, Brake",
+        ),
     ] {
         let mut bench = Bench::new(identity);
         let mode = [1.0, main, 0.0, 0.0, 0.0, 0.0, 0.0];

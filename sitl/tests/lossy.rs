@@ -74,7 +74,7 @@ fn a_parameter_is_set_and_read_back() {
             param_value: 3.25,
             target_system: 1,
             target_component: 1,
-            param_id: "LIM_SPEED_H".into(),
+            param_id: "LIM_SPEED_HORIZ".into(),
             param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
         });
         let mut confirmed = false;

@@ -11,6 +11,7 @@ use common::plan_client::{count_message, item_message, result, upload};
 use common::recording::Recording;
 use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
 use vehicle::identity::Identity;
+use vehicle::parameters::FileFormat;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command};
 use vehicle::{MissionState, Mode};
 
@@ -38,7 +39,7 @@ fn speeds_change_and_come_back() {
 /// Speeds that hold for a while are none of the parameters: a file that keeps those keeps no mission's.
 #[test]
 fn speeds_of_a_flight_are_not_kept() {
-    let kept = |flight: &mut Flight| flight.bench.autopilot.take_changed_parameters();
+    let kept = |flight: &mut Flight| flight.bench.autopilot.take_changed_parameters(FileFormat::Plain);
     let flown = |flight: &Flight| flight.bench.autopilot.vehicle().simulation().configuration().limits;
     let change = |flight: &mut Flight, kind: f32, speed_m_s: f32| {
         let parameters = [kind, speed_m_s, -1.0, 0.0, 0.0, 0.0, 0.0];
@@ -61,7 +62,7 @@ fn speeds_of_a_flight_are_not_kept() {
         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
     }));
     let text = kept(&mut flight).expect("one has changed");
-    assert!(text.contains("LIM_SPEED_H 8\n") && text.contains("LIM_SPEED_UP 3.5\n"), "{text}");
+    assert!(text.contains("LIM_SPEED_HORIZ 8\n") && text.contains("LIM_SPEED_UP 3.5\n"), "{text}");
     assert_eq!(flown(&flight).speed_horizontal_m_s, 3.0);
     // A command goes before the mission's, and one that cannot be changes nothing.
     assert_eq!(change(&mut flight, 1.0, 4.0), 0);
@@ -190,7 +191,11 @@ fn the_current_item_can_be_set_and_is_told() {
     assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(4.0)), 0);
     assert_eq!(flight.current(), 4);
     assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, seek(5.0)), 2);
-    assert!(flight.bench.texts().iter().any(|text| text.contains("no item 5")), "{:?}", flight.bench.texts());
+    assert!(
+        flight.bench.texts().iter().any(|text| text.contains("item 5 does not exist")),
+        "{:?}",
+        flight.bench.texts()
+    );
     let flight = flight.complete(60.0);
     assert_eq!(flight.order(), [0, 4]);
 }

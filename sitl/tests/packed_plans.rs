@@ -81,12 +81,12 @@ fn what_is_wrong_is_told_and_the_old_plan_stays() {
     let mut partial = good.clone();
     partial[4] = 1;
     for (wrong, reason) in [
-        (packed(0, &foreign), "Mission refused: item 1: command 203 is not supported"),
+        (packed(0, &foreign), "Mission rejected: item 2: DO_DIGICAM_CONTROL (203): not supported"),
         (good[..good.len() - 1].to_vec(), "3 items in 113 bytes"),
         (packed(1, &mission()), "type 1"),
         (b"QGC WPL 110".to_vec(), "begins with 0x4751"),
         (Vec::new(), "begins with 0x0000"),
-        (partial, "only whole plans"),
+        (partial, "only complete plans"),
     ] {
         assert_eq!(write(&mut client, "/@MISSION/mission.dat", &wrong), Err(FAIL), "{reason}");
         let texts = client.bench.texts();

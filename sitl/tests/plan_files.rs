@@ -69,30 +69,50 @@ fn errors_name_the_file_the_place_the_value_and_its_range() {
     let survey = r#""type": "ComplexItem", "complexItemType": "survey", "autoContinue": true, "command": 16"#;
     let simple = r#""type": "SimpleItem", "autoContinue": true, "command": 16"#;
     for (name, text, expected) in [
-        ("a.plan", replaced(PLAN, simple, survey), "item 1: complex item `survey` is not supported"),
-        ("a.plan", replaced(PLAN, "[1.5, 0,", "[-1.5, 0,"), "item 1: hold time -1.5 is outside [0, 86400]"),
-        ("a.plan", replaced(PLAN, "[5, 2,", "[9, 2,"), "item 2: there is no item with doJumpId 9"),
-        ("a.plan", replaced(PLAN, r#""command": 20"#, r#""command": 84"#), "item 3: command 84"),
-        ("a.plan", replaced(PLAN, r#"[1.5, 0, 0, null,"#, "[1.5,"), "item 1: invalid length 4"),
+        ("a.plan", replaced(PLAN, simple, survey), "item 2: complex item `survey` is not supported"),
+        (
+            "a.plan",
+            replaced(PLAN, "[1.5, 0,", "[-1.5, 0,"),
+            "item 2: NAV_WAYPOINT (16): hold time = -1.5; allowed 0 to 86400",
+        ),
+        ("a.plan", replaced(PLAN, "[5, 2,", "[9, 2,"), "item 3: no item has doJumpId 9"),
+        (
+            "a.plan",
+            replaced(PLAN, r#""command": 20"#, r#""command": 84"#),
+            "item 4: NAV_VTOL_TAKEOFF (84): not supported",
+        ),
+        ("a.plan", replaced(PLAN, r#"[1.5, 0, 0, null,"#, "[1.5,"), "item 2: invalid length 4"),
         ("a.plan", replaced(PLAN, r#"Type": "Plan""#, r#"Type": "Parameters""#), "fileType is `Parameters`"),
         (
             "a.plan",
             replaced(PLAN, r#""version": 2, "firm"#, r#""version": 1, "firm"#),
-            "mission version 1 is not 2",
+            "mission version 1 is not supported; expected 2",
         ),
         (
             "a.plan",
             replaced(PLAN, "[47.3978, 8.5457, 20]", "[97, 8, 20]"),
-            "rally point 0: latitude 97 is outside",
+            "rally point 1: NAV_RALLY_POINT (5100): latitude = 97",
         ),
-        ("a.plan", replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"), "fence polygon 0: longitude 190"),
+        (
+            "a.plan",
+            replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"),
+            "fence polygon 1: NAV_FENCE_POLYGON_VERTEX_EXCLUSION (5002): longitude = 190",
+        ),
         ("a.plan", "{".to_owned(), "no .plan: EOF"),
-        ("a.txt", replaced(TEXT, "47.398", "147.398"), "line 5: latitude 147.398 is outside [-90, 90]"),
+        (
+            "a.txt",
+            replaced(TEXT, "47.398", "147.398"),
+            "line 5: NAV_WAYPOINT (16): latitude = 147.398; allowed -90 to 90 degrees",
+        ),
         ("a.txt", replaced(TEXT, "47.398", "north"), "line 5: field 9 `north` is not a number"),
-        ("a.txt", replaced(TEXT, "2\t0\t3", "7\t0\t3"), "line 5: item 7 where 2 was expected"),
-        ("a.txt", replaced(TEXT, "4\t0\t3\t21", "4\t0\t3.5\t21"), "line 7: frame 3.5 is not a whole number"),
-        ("a.txt", replaced(TEXT, "177\t2", "177\t0"), "line 6: item 0 is home"),
-        ("a.txt", replaced(TEXT, "8.5457\t10\t1", "8.5457\t10"), "line 5: 11 fields instead of 12"),
+        ("a.txt", replaced(TEXT, "2\t0\t3", "7\t0\t3"), "line 5: found item 7, expected item 2"),
+        (
+            "a.txt",
+            replaced(TEXT, "4\t0\t3\t21", "4\t0\t3.5\t21"),
+            "line 7: frame = 3.5 must be a whole number",
+        ),
+        ("a.txt", replaced(TEXT, "177\t2", "177\t0"), "line 6: a jump cannot go to item 0, which is home"),
+        ("a.txt", replaced(TEXT, "8.5457\t10\t1", "8.5457\t10"), "line 5: found 11 fields, expected 12"),
         ("a.txt", replaced(TEXT, "WPL 110", "WPL 120"), "neither a .plan"),
     ] {
         let error = read(name, &text, Identity::Px4).expect_err(expected);

@@ -211,39 +211,47 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
     let with = |command: u16, parameters: [f64; 4]| MissionItem { command, parameters, ..good };
     let nan = f64::NAN;
     let cases: Vec<(MissionItem, MavMissionResult, &str)> = vec![
-        (with(84, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "command 84"),
+        (with(84, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "NAV_VTOL_TAKEOFF (84)"),
         (with(60_000, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "command 60000"),
-        (with(5100, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "command 5100"),
+        (with(5100, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "NAV_RALLY_POINT (5100)"),
         (MissionItem { frame: 8, ..good }, MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME, "frame 8"),
         (MissionItem { frame: 200, ..good }, MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME, "frame 200"),
-        (with(16, [-1.0, 0.0, 0.0, nan]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "hold time -1"),
-        (with(16, [0.0, 5e3, 0.0, nan]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "radius 5000"),
-        (with(18, [nan; 4]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "parameter 1 is needed"),
-        (with(115, [0.0, 0.0, 7.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM3, "direction 7"),
-        (with(16, [0.0, 0.0, 0.0, 1e4]), MavMissionResult::MAV_MISSION_INVALID_PARAM4, "yaw 10000"),
+        (with(16, [-1.0, 0.0, 0.0, nan]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "hold time = -1"),
+        (with(16, [0.0, 5e3, 0.0, nan]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "radius = 5000"),
+        (with(18, [nan; 4]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "parameter 1 is required"),
+        (with(115, [0.0, 0.0, 7.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM3, "direction = 7"),
+        (with(16, [0.0, 0.0, 0.0, 1e4]), MavMissionResult::MAV_MISSION_INVALID_PARAM4, "yaw = 10000"),
         (
             MissionItem { position: [91.0, 8.0, 10.0], ..good },
             MavMissionResult::MAV_MISSION_INVALID_PARAM5_X,
-            "latitude 91",
+            "latitude = 91",
         ),
         (
             MissionItem { position: [47.0, 181.0, 10.0], ..good },
             MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y,
-            "longitude 181",
+            "longitude = 181",
         ),
         (waypoint(1.0, -3.0), MavMissionResult::MAV_MISSION_INVALID_PARAM7, "3.0 m below the ground"),
-        (with(177, [9.0, 1.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "no item 9"),
-        (with(178, [1.0, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "speed 0"),
-        (with(93, [-0.5, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "delay -0.5"),
+        (
+            with(177, [9.0, 1.0, 0.0, 0.0]),
+            MavMissionResult::MAV_MISSION_INVALID_PARAM1,
+            "no item has sequence number 9",
+        ),
+        (with(178, [1.0, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "speed = 0"),
+        (with(93, [-0.5, 0.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM1, "delay = -0.5"),
         (with(93, [-1.0; 4]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "needs an hour"),
-        (with(93, [-1.0, 24.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "hour 24"),
-        (with(93, [-1.0, 1.0, 0.5, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM3, "0.5 is not a whole"),
+        (with(93, [-1.0, 24.0, 0.0, 0.0]), MavMissionResult::MAV_MISSION_INVALID_PARAM2, "hour = 24"),
+        (
+            with(93, [-1.0, 1.0, 0.5, 0.0]),
+            MavMissionResult::MAV_MISSION_INVALID_PARAM3,
+            "= 0.5 must be a whole",
+        ),
     ];
     for (wrong, expected, line) in cases {
         let heard = client.upload(PlanKind::Mission, &[good, wrong, good]);
         assert_eq!(result(&heard), Some(expected as u8), "{wrong:?}");
         let text = texts(heard);
-        assert!(text.contains("item 1") && text.contains(line), "{text}");
+        assert!(text.contains("item 2") && text.contains(line), "{text}");
         assert_eq!(client.plan(PlanKind::Mission), old);
         client.bench.fly(1.1);
     }

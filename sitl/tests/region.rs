@@ -113,9 +113,9 @@ fn what_is_none_is_refused_with_the_reason() {
     bench.fly(6.0);
     let (location, older) = (MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, MavCmd::MAV_CMD_DO_SET_ROI);
     for (command, parameters, reason) in [
-        (location, [0.0, 0.0, 0.0, 0.0, 95.0, 8.0, 0.0], "latitude 95 is outside [-90, 90]"),
-        (older, [2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0], "no item 3 among 0"),
-        (older, [4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], "kind 4 is outside [0, 3]"),
+        (location, [0.0, 0.0, 0.0, 0.0, 95.0, 8.0, 0.0], "latitude = 95; allowed -90 to 90 degrees"),
+        (older, [2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0], "no item has sequence number 3; the plan has 0 items"),
+        (older, [4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], "kind = 4; allowed 0 to 3"),
     ] {
         assert_eq!(bench.command(command, parameters), DENIED);
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{:?}", bench.texts());

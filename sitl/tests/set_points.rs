@@ -6,8 +6,8 @@ mod common;
 
 use common::Bench;
 use mavlink::dialects::common::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
-    SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
+    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use vehicle::Mode;
 use vehicle::identity::Identity;
@@ -199,10 +199,10 @@ fn what_means_nothing_is_refused_and_says_so() {
         assert!(bench.is_near([0.0, 0.0, -10.0]));
     };
     let ned = MavFrame::MAV_FRAME_LOCAL_NED;
-    let nothing = "neither position, velocity nor acceleration";
+    let nothing = "it contains no target";
     refused(&local(ned, 0b1101_1111_1111, [1.0; 3], [0.0; 3]), nothing);
     refused(&local(ned, 0b1001_1111_1111, [1.0; 3], [0.0; 3]), nothing);
-    refused(&local(ned, POSITION_ONLY | 1 << 9, [1.0; 3], [0.0; 3]), "forces are not supported");
+    refused(&local(ned, POSITION_ONLY | 1 << 9, [1.0; 3], [0.0; 3]), "force is not supported");
     refused(&local(ned, POSITION_ONLY, [f32::NAN; 3], [0.0; 3]), nothing);
     refused(&local(MavFrame::MAV_FRAME_BODY_FRD, POSITION_ONLY, [1.0; 3], [0.0; 3]), "frame 12");
     refused(&local(MavFrame::MAV_FRAME_BODY_NED, POSITION_ONLY, [1.0; 3], [0.0; 3]), nothing);
@@ -232,11 +232,7 @@ fn a_position_with_a_velocity_runs_on_until_it_is_lost() {
     assert!(reference.position_m.x > 0.8 && bench.mode() == Mode::Offboard, "{reference:?}");
     bench.fly(0.1);
     assert_eq!(bench.mode(), Mode::Hold);
-    assert!(
-        bench.texts().iter().any(|text| text == "Failsafe: Set-points lost: hold"),
-        "{:?}",
-        bench.texts()
-    );
+    assert!(bench.texts().iter().any(|text| text == "Set-points lost: holding"), "{:?}", bench.texts());
     bench.fly(6.0);
     assert!(bench.velocity()[0].abs() < 0.02);
 }
@@ -272,6 +268,54 @@ fn attitude_and_thrust_lean_and_rates_turn() {
     bench.fly(10.0);
     assert_eq!(bench.mode(), Mode::Hold);
     assert!(bench.autopilot.vehicle().outputs().velocity_m_s.norm() < 0.1);
+}
+
+/// Whatever the mass: the parameter and ATTITUDE_TARGET tell the thrust that hovers, and a set-point with it does.
+#[test]
+fn the_thrust_that_hovers_is_told() {
+    for (identity, id, mass_kg) in [
+        (Identity::Px4, "MPC_THR_HOVER", 0.7),
+        (Identity::Px4, "MPC_THR_HOVER", 1.1),
+        (Identity::ArduPilot, "MOT_THST_HOVER", 0.7),
+    ] {
+        let mut settings = common::settings(identity);
+        settings.configuration.airframe.mass_kg = mass_kg;
+        let mut bench = Bench::hovering_with(&settings);
+        bench.fly(5.0);
+        bench.heard.clear();
+        let read = PARAM_REQUEST_READ_DATA {
+            param_index: -1,
+            target_system: 1,
+            target_component: 1,
+            param_id: id.into(),
+        };
+        bench.send(MavMessage::PARAM_REQUEST_READ(read));
+        let hover = bench.parameters().last().expect("answered").param_value;
+        // m g / (4 k₁ ω²), all default values but the mass.
+        let expected = mass_kg * 9.80665 / (4.0 * 2.7e-5 * 450.0 * 450.0);
+        assert!((f64::from(hover) - expected).abs() < 1e-6, "{id} {hover} {expected}");
+        bench.fly(2.0);
+        let told = bench.heard.iter().rev().find_map(|message| match message {
+            autopilot::codec::Message::Typed(MavMessage::ATTITUDE_TARGET(told)) => Some(told.thrust),
+            _ => None,
+        });
+        assert!((told.expect("streamed") - hover).abs() < 1e-4, "{told:?} {hover}");
+
+        let target = MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+            target_system: 1,
+            target_component: 1,
+            type_mask: AttitudeTargetTypemask::from_bits_retain(0b111),
+            q: [1.0, 0.0, 0.0, 0.0],
+            thrust: hover,
+            ..SET_ATTITUDE_TARGET_DATA::default()
+        });
+        bench.send(target.clone());
+        assert_eq!(bench.set_mode(Mode::Offboard), 0);
+        let before = bench.position()[2];
+        bench.stream(5.0, |bench| bench.send(target.clone()));
+        let sunk = bench.position()[2] - before;
+        assert!(sunk.abs() < 0.05, "{id} at {mass_kg} kg: {sunk} m in 5 s");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::process::Command;
 use clap::Parser;
 use sitl::configuration::{Arguments, MemberSettings, Settings};
 use sitl::hil::HilSettings;
+use vehicle::{Notice, Severity};
 
 fn arguments(line: &str) -> Arguments {
     Arguments::try_parse_from(std::iter::once("lmpc-sitl").chain(line.split_whitespace())).expect(line)
@@ -18,10 +19,14 @@ fn drag_n_s_m(own: &MemberSettings) -> [f64; 3] {
     own.vehicle.configuration.airframe.drag_n_s_m
 }
 
-const PROVIDED: &str = "wind acts through drag: AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z set to 0.15 N s/m; \
-     choose others with --set";
-const NO_DRAG: &str =
-    "wind does not push the vehicle, which has no drag: AF_DRAG_X, AF_DRAG_Y, AF_DRAG_Z are 0";
+/// What is said without a warning.
+fn infos(notes: Vec<Notice>) -> Vec<String> {
+    notes.into_iter().filter(|note| note.severity == Severity::Info).map(|note| note.text).collect()
+}
+
+const PROVIDED: &str =
+    "wind needs drag: FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z set to 0.15 N s/m; change it with --set";
+const NO_DRAG: &str = "wind has no effect: FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z are 0";
 
 #[test]
 fn a_drag_that_nobody_has_asked_for_is_said_and_another_is_left_alone() {
@@ -32,20 +37,24 @@ fn a_drag_that_nobody_has_asked_for_is_said_and_another_is_left_alone() {
         path.display().to_string()
     };
     let (draggy, without) = (
-        file("draggy.params", "AF_DRAG_X 0.3\nAF_DRAG_Y 0.3\nAF_DRAG_Z 0.4\n"),
-        file("without.params", "AF_DRAG_X 0\nAF_DRAG_Y 0\nAF_DRAG_Z 0\n"),
+        file("draggy.params", "FRAME_DRAG_X 0.3\nFRAME_DRAG_Y 0.3\nFRAME_DRAG_Z 0.4\n"),
+        file("without.params", "FRAME_DRAG_X 0\nFRAME_DRAG_Y 0\nFRAME_DRAG_Z 0\n"),
     );
-    let of_y_and_z = PROVIDED.replace("AF_DRAG_X, ", "");
-    let usual = "--set AF_DRAG_X=0.15 --set AF_DRAG_Y=0.15 --set AF_DRAG_Z=0.15";
+    let of_y_and_z = PROVIDED.replace("FRAME_DRAG_X, ", "");
+    let usual = "--set FRAME_DRAG_X=0.15 --set FRAME_DRAG_Y=0.15 --set FRAME_DRAG_Z=0.15";
     for (line, drag, expected) in [
         ("--seed 3", [0.0; 3], None),
         ("--wind 0,90 --gusts 0", [0.0; 3], None),
         ("--wind 5", [0.15; 3], Some(PROVIDED)),
-        ("--gusts 1 --set AF_MASS=0.8", [0.15; 3], Some(PROVIDED)),
+        ("--gusts 1 --set FRAME_MASS=0.8", [0.15; 3], Some(PROVIDED)),
         ("--wind 5 --vehicles 3 --autopilot ardupilot", [0.15; 3], Some(PROVIDED)),
-        ("--wind 5 --set AF_DRAG_X=0", [0.0, 0.15, 0.15], Some(of_y_and_z.as_str())),
+        ("--wind 5 --set FRAME_DRAG_X=0", [0.0, 0.15, 0.15], Some(of_y_and_z.as_str())),
         (&format!("--wind 5 {usual}"), [0.15; 3], None),
-        ("--wind 5 --set airframe.drag.x=1 --set airframe.drag.y=1 --set AF_DRAG_Z=2", [1.0, 1.0, 2.0], None),
+        (
+            "--wind 5 --set airframe.drag.x=1 --set airframe.drag.y=1 --set FRAME_DRAG_Z=2",
+            [1.0, 1.0, 2.0],
+            None,
+        ),
         (&format!("--wind 5 --parameters {draggy}"), [0.3, 0.3, 0.4], None),
         (&format!("--wind 5 --parameters {without}"), [0.0; 3], Some(NO_DRAG)),
         (&format!("--gusts 2 --parameters {draggy} {}", usual.replace("0.15", "0")), [0.0; 3], Some(NO_DRAG)),
@@ -53,21 +62,21 @@ fn a_drag_that_nobody_has_asked_for_is_said_and_another_is_left_alone() {
     ] {
         let settings = settings(line);
         assert!(settings.vehicles.iter().all(|own| drag_n_s_m(own) == drag), "{line}");
-        assert_eq!(settings.notes, Vec::from_iter(expected), "{line}");
+        assert_eq!(infos(settings.notes), Vec::from_iter(expected), "{line}");
     }
     let hil = HilSettings::resolve(&arguments("--wind 5"), "0").expect("settings");
-    assert_eq!(hil.notes, [PROVIDED]);
+    assert_eq!(infos(hil.notes), [PROVIDED]);
 }
 
 /// Parameter files of their own may differ.
 #[test]
 fn vehicles_that_differ_are_told_apart() {
     let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("a-2.params"), "AF_DRAG_X 1\nAF_DRAG_Y 1\nAF_DRAG_Z 1\n")
+    std::fs::write(folder.path().join("a-2.params"), "FRAME_DRAG_X 1\nFRAME_DRAG_Y 1\nFRAME_DRAG_Z 1\n")
         .expect("written");
     let line = format!("--vehicles 3 --wind 5 --parameters {}", folder.path().join("a.params").display());
     let expected = [1, 3].map(|system| format!("system {system}: {PROVIDED}"));
-    assert_eq!(settings(&line).notes, expected);
+    assert_eq!(infos(settings(&line).notes), expected);
 }
 
 #[test]

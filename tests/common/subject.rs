@@ -133,7 +133,8 @@ const CLOSED_LOOP: Sample = Sample {
         (&[], &[("environment.ground_plane", false)]),
         (
             &[
-                ("initial.position.z", 0.0),
+                // With this attitude the right foot is 2 mm deep.
+                ("initial.position.z", -0.1003),
                 ("initial.velocity.x", 2.0),
                 ("initial.velocity.y", -1.0),
                 ("initial.attitude.phi", 0.4),

@@ -63,7 +63,7 @@ fn messages_carry_instance_status_and_function(subject: &'static Subject) {
             instance: "instance".into(),
             status: ERROR,
             category: "logStatusError".into(),
-            text: "fmi2DoStep: must not be called in the state \"instantiated\"".into(),
+            text: "fmi2DoStep: not allowed in the state \"instantiated\"".into(),
         }]
     );
     instance.initialize();

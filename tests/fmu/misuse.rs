@@ -66,7 +66,11 @@ fn diverge(subject: &Subject, instance: &mut Instance) {
     instance.initialize();
     assert_eq!(instance.do_step(0.0, 5.0), ERROR);
     let message = instance.log.last();
-    assert!(message.text.contains(&format!("the {} cannot go on", subject.sample.run)), "{}", message.text);
+    assert!(
+        message.text.contains(&format!("the {} cannot continue", subject.sample.run)),
+        "{}",
+        message.text
+    );
 }
 
 /// A function: its name, the states in which it is legal, what it then returns, and a harmless call.

@@ -69,6 +69,33 @@ def test_simulation_with_a_bad_start_value_names_it(unzipped, model_description,
     assert "airframe.mass" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    "start_values, message",
+    [
+        ({"limits.tilt": 45.0}, "limits.tilt = 45.0 rad; allowed 0.05 to 1.2 rad (2.9 to 68.8 deg)"),
+        ({"controller.kind": 4}, "controller.kind = 4; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
+        ({"controller.position.terms": 0}, "controller.position.terms = 0; allowed 1 to "),
+        ({"environment.ground_plane": True, "initial.position.z": 2.0}, "initial.position.z = 2 m is below the ground"),
+        ({"environment.ground_plane": True, "initial.position.z": 2.0}, "allowed up to 0.010 m"),
+    ],
+)
+def test_a_message_names_variable_value_and_allowed_range(unzipped, model_description, capsys, start_values, message):
+    with pytest.raises(FMICallException):
+        simulate_fmu(unzipped, stop_time=1.0, start_values=start_values, model_description=model_description)
+    assert message in capsys.readouterr().out
+
+
+def test_a_flight_from_the_ground_is_not_thrown_up(unzipped, model_description):
+    """Unarmed at the deepest allowed start it settles on the ground."""
+    result = simulate_fmu(
+        unzipped,
+        stop_time=2.0,
+        start_values={"environment.ground_plane": True, "initial.position.z": 0.01, "armed": False},
+        model_description=model_description,
+    )
+    assert -0.001 < result["position.z"].min() and result["position.z"].max() <= 0.01
+
+
 def test_a_tunable_weight_redesigns_the_controller_in_flight(slave):
     flown = slave({"reference.shaping": False})
     flown.fly(0.0, 0.5, 0.01)

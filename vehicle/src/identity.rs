@@ -41,6 +41,11 @@ impl Identity {
         }
     }
 
+    /// The number of the item of a mission at an index, as ground stations show it: from 1, and ArduPilot's from home, which is 0.
+    pub fn item_number(self, index: usize) -> usize {
+        if self.is_ardupilot() { index } else { index + 1 }
+    }
+
     /// Whether clients expect ArduPilot's conventions.
     pub fn is_ardupilot(self) -> bool {
         self == Self::ArduPilot

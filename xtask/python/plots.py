@@ -30,10 +30,15 @@ plt.rcParams.update(
 )
 
 
+def draw_path(flight, result: np.ndarray, folder: Path) -> Path:
+    """Draws the path of a flight and returns the file."""
+    return _save(_path_figure(flight, result), folder / f"{flight.name}-path.png")
+
+
 def draw(flight, result: np.ndarray, limits: dict, folder: Path) -> list[Path]:
     """Draws path, axes and actuators of a flight, and returns the files."""
     return [
-        _save(_path_figure(flight, result), folder / f"{flight.name}-path.png"),
+        draw_path(flight, result, folder),
         _save(_axes_figure(flight, result), folder / f"{flight.name}-axes.png"),
         _save(_actuators_figure(flight, result, limits), folder / f"{flight.name}-actuators.png"),
     ]

@@ -42,11 +42,19 @@ pub fn cargo() -> Command {
 }
 
 /// Metadata of the workspace's own packages.
+///
+/// # Errors
+///
+/// If cargo does not start, fails or gives an answer that cannot be read.
 pub fn metadata_without_dependencies() -> Result<Metadata, Failure> {
     metadata(&["--no-deps"])
 }
 
 /// Metadata of the whole dependency graph on this platform; others would have to be downloaded.
+///
+/// # Errors
+///
+/// If cargo does not start, fails or gives an answer that cannot be read.
 pub fn metadata_with_dependencies() -> Result<Metadata, Failure> {
     metadata(&["--filter-platform", &host()?])
 }

@@ -7,17 +7,38 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 
 /// Reads a file.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     fs::read(path).map_err(failure("read", path))
 }
 
+/// Opens a file for reading.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
+pub fn open(path: &Path) -> Result<fs::File, Failure> {
+    fs::File::open(path).map_err(failure("read", path))
+}
+
 /// Reads a text file.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     fs::read_to_string(path).map_err(failure("read", path))
 }
 
 /// Writes a file and the folders that it lies in. Whoever reads it meanwhile sees the old one or the new
 /// one, never a part.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -30,11 +51,19 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Creates a folder with its parents.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn create_folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(failure("create", path))
 }
 
 /// Removes a folder with all that it holds, if it exists.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn remove_folder(path: &Path) -> Result<(), Failure> {
     match fs::remove_dir_all(path) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => Err(failure("remove", path)(source)),
@@ -43,6 +72,10 @@ pub fn remove_folder(path: &Path) -> Result<(), Failure> {
 }
 
 /// Names of the files in a folder, sorted.
+///
+/// # Errors
+///
+/// If the file or folder cannot be accessed; the error names its path.
 pub fn names_in(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs::read_dir(path).map_err(failure("list", path))?;
     let mut paths = entries

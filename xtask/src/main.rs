@@ -1,33 +1,29 @@
-//! Build tooling, run as `cargo xtask`: bundles the FMU, writes modelDescription.xml, flies the demo and
-//! runs all tests.
+//! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
-mod bundle;
-mod cargo;
 mod demo;
-mod failure;
-mod files;
-mod model_description;
+mod fmu;
+mod library;
 mod paper;
-mod process;
+mod program;
 mod progress;
 mod python;
 mod test;
-mod vehicle;
-mod workspace;
+mod threads;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
+use program::Beside;
 use progress::Progress;
-use workspace::Workspace;
+use xtask::failure::Failure;
+use xtask::workspace::Workspace;
 
 /// Builds, demonstrates and tests the quadrotor FMU.
 ///
-/// Needs a Rust toolchain; `demo` and `test` also need Python 3.10 or newer with venv and pip, in which
-/// they make their own environment under target/venv.
+/// Needs a Rust toolchain. `demo` and `test` also need Python 3.10 or newer with venv and pip, from which
+/// they create their own environment in target/venv.
 #[derive(Parser)]
 #[command(bin_name = "cargo xtask", disable_help_subcommand = true)]
 struct Arguments {
@@ -41,22 +37,22 @@ enum Task {
     ///
     /// The same sources and toolchain give the same bytes.
     Fmu {
-        /// An FMU of the same sources, built on another platform, whose binaries are taken over; may be
-        /// given several times.
+        /// Adds the binaries of an FMU that was built from the same sources on another platform; can be repeated.
         #[arg(long, value_name = "OTHER.fmu")]
         merge: Vec<PathBuf>,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
-    /// A test fails as long as that file is not what the FMU's table of variables gives.
+    /// A test fails if the file differs from what the FMU's table of variables generates.
     ModelDescription,
     /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables and plots to target/demo.
     ///
-    /// Builds both and the Python environment first. Fails when a flight misses its goal.
+    /// Builds both and the Python environment first: about two minutes the first time, seconds later.
+    /// Fails if a flight misses its goal.
     Demo,
-    /// Computes the paper's tables and figures again: target/paper/report.html, results.json and PNG files.
+    /// Recomputes the paper's tables and figures: target/paper/report.html, results.json and PNG files.
     Paper {
-        /// Prints gains, eigenvalues and condition numbers of the discrete model in this file as JSON instead.
+        /// Prints gains, closed-loop eigenvalues and condition numbers for the discrete model in this file as JSON instead.
         #[arg(long, value_name = "MODEL.toml")]
         gain: Option<PathBuf>,
     },
@@ -81,10 +77,10 @@ fn run(task: &Task) -> Result<(), Failure> {
     let workspace = Workspace::find()?;
     let progress = Progress::start();
     match task {
-        Task::Fmu { merge } => bundle::make(&workspace, &progress, merge).map(|_| ()),
-        Task::ModelDescription => model_description::write(&workspace),
+        Task::Fmu { merge } => fmu::make(&workspace, &progress, merge, Beside::Nothing).map(|_| ()),
+        Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
-        Task::Paper { gain } => paper::run(&workspace, gain.as_deref()),
+        Task::Paper { gain } => paper::run(&workspace, &progress, gain.as_deref()),
         Task::Test => test::run_all(&workspace, &progress),
     }
 }
@@ -96,7 +92,9 @@ mod tests {
 
     use clap::CommandFactory;
 
-    use super::{Workspace, files};
+    use xtask::files;
+
+    use super::Workspace;
 
     #[test]
     fn arguments_are_consistent() {

@@ -2,15 +2,17 @@
 
 use std::path::Path;
 
-use crate::cargo::cargo;
-use crate::failure::Failure;
-use crate::process;
-use crate::workspace::Workspace;
+use crate::progress::Progress;
+use xtask::cargo::cargo;
+use xtask::failure::Failure;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// Computes the paper's results in a release build, because it times the controllers; or designs a controller for the model in a file.
-pub fn run(workspace: &Workspace, gain: Option<&Path>) -> Result<(), Failure> {
+pub fn run(workspace: &Workspace, progress: &Progress, gain: Option<&Path>) -> Result<(), Failure> {
+    progress.note("Building the program; the first time takes several minutes");
     let mut command = cargo();
-    command.args(["run", "--quiet", "--release", "--package", "paper", "--"]);
+    command.args(["run", "--release", "--package", "paper", "--"]);
     match gain {
         Some(model) => command.arg("--gain").arg(model),
         None => command.arg("--out").arg(workspace.paper()),

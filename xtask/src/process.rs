@@ -6,11 +6,19 @@ use std::process::{Command, ExitStatus, Output, Stdio};
 use crate::failure::Failure;
 
 /// Runs a program whose output goes to the terminal, and tells how it ended.
+///
+/// # Errors
+///
+/// If the program does not start.
 pub fn status(command: &mut Command) -> Result<ExitStatus, Failure> {
     command.status().map_err(|source| not_started(command, source))
 }
 
 /// Runs a program and collects its standard output; its errors go to the terminal.
+///
+/// # Errors
+///
+/// If the program does not start, or fails.
 pub fn output(command: &mut Command, what: &str) -> Result<Vec<u8>, Failure> {
     let Output { status, stdout, .. } =
         command.stderr(Stdio::inherit()).output().map_err(|source| not_started(command, source))?;

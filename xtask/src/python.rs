@@ -4,95 +4,171 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::failure::Failure;
-use crate::files;
-use crate::process;
 use crate::progress::Progress;
-use crate::workspace::Workspace;
-
-/// Name of the file that a finished environment holds: what it was made from.
-const MADE_FROM: &str = "made-from.txt";
+use xtask::failure::Failure;
+use xtask::files;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// Oldest Python for which the pinned packages exist.
 const OLDEST: (u32, u32) = (3, 10);
 
+/// A list of pinned packages.
+struct Pinned {
+    /// File in xtask/python.
+    file: &'static str,
+    /// Whether the list is complete, so that pip need not look for dependencies.
+    complete: bool,
+}
+
+/// Packages that are installed together, on top of those before them.
+struct Layer {
+    /// What is said while it is installed.
+    what: &'static str,
+    lists: &'static [Pinned],
+    /// Name of the file that an environment with this layer holds: what it was made from.
+    made_from: &'static str,
+}
+
+const LAYERS: [Layer; 2] = [
+    Layer {
+        what: "Installing Python packages (first time; downloads about 45 MB)",
+        lists: &[Pinned { file: "demo.txt", complete: true }],
+        made_from: "made-from.txt",
+    },
+    Layer {
+        what: "Installing the tests' Python packages (first time; downloads about 130 MB)",
+        lists: &[
+            Pinned { file: "requirements.txt", complete: false },
+            Pinned { file: "programs.txt", complete: true },
+        ],
+        made_from: "made-from-tests.txt",
+    },
+];
+
+/// What the environment is for; each includes the one before it.
+#[derive(Clone, Copy)]
+pub enum Packages {
+    /// The demo's flights and plots.
+    Demo,
+    /// Also the tests' oracles and clients.
+    Tests,
+}
+
+/// A Python of this machine that is new enough and can create environments.
+pub struct Interpreter {
+    program: String,
+    version: String,
+}
+
 /// Interpreter of the environment.
 pub struct Python {
-    program: PathBuf,
+    folder: PathBuf,
 }
 
 impl Python {
-    /// A command of this interpreter. It opens no window and leaves no compiled files among the sources.
+    /// A command of this interpreter. It opens no window and keeps compiled files in the environment, away from the sources.
     pub fn command(&self) -> Command {
-        let mut command = Command::new(&self.program);
+        let program = if cfg!(windows) {
+            self.folder.join("Scripts").join("python.exe")
+        } else {
+            self.folder.join("bin").join("python")
+        };
+        let mut command = Command::new(program);
         command
             .env("MPLBACKEND", "Agg")
-            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("PYTHONPYCACHEPREFIX", self.folder.join("compiled"))
             .env("PYTHONUTF8", "1")
+            .env_remove("PYTHONDONTWRITEBYTECODE")
             .env_remove("PYTHONPATH")
             .env_remove("PYTHONHOME");
         command
     }
+
+    /// Installs pinned packages.
+    fn install(&self, list: &Pinned, sources: &Path) -> Result<(), Failure> {
+        let mut install = self.command();
+        // Python compiles what is imported, once; all of the packages would take longer than to download them.
+        install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]);
+        install.args(["--prefer-binary", "--no-compile"]);
+        if list.complete {
+            install.arg("--no-deps");
+        }
+        install.arg("--requirement").arg(sources.join(list.file));
+        if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
+    }
+
+    /// Whether the interpreter still starts; the one it was made from may have been removed.
+    fn works(&self) -> bool {
+        let quiet = self.command().args(["-c", ""]).stdout(Stdio::null()).stderr(Stdio::null()).status();
+        quiet.is_ok_and(|status| status.success())
+    }
 }
 
-/// The environment in target/venv, made anew when the requirements or the interpreter have changed.
-pub fn environment(workspace: &Workspace, progress: &Progress) -> Result<Python, Failure> {
-    let [requirements, programs] =
-        ["requirements.txt", "programs.txt"].map(|name| workspace.python_sources().join(name));
-    let (interpreter, version) = interpreter()?;
-    let made_from = [
-        format!("{interpreter} {version}\n"),
-        files::read_text(&requirements)?,
-        files::read_text(&programs)?,
-    ]
-    .concat();
-
-    let folder = workspace.python_environment();
-    let program = if cfg!(windows) {
-        folder.join("Scripts").join("python.exe")
-    } else {
-        folder.join("bin").join("python")
+/// The environment in target/venv with all that `packages` need. It is created anew when the interpreter or a list that it was made
+/// from has changed; missing packages are added.
+pub fn environment(
+    workspace: &Workspace,
+    progress: &Progress,
+    interpreter: &Interpreter,
+    packages: Packages,
+) -> Result<Python, Failure> {
+    let sources = workspace.python_sources();
+    let layers = match packages {
+        Packages::Demo => &LAYERS[..1],
+        Packages::Tests => &LAYERS[..],
     };
-    let python = Python { program };
-    let marker = folder.join(MADE_FROM);
-    if std::fs::read_to_string(&marker).is_ok_and(|made| made == made_from) && works(&python) {
-        return Ok(python);
+    let mut wanted = Vec::new();
+    let mut text = format!("{} {}\n", interpreter.program, interpreter.version);
+    for layer in &LAYERS {
+        for list in layer.lists {
+            text.push_str(&files::read_text(&sources.join(list.file))?);
+        }
+        wanted.push(text.clone());
     }
-
-    progress.step("Making the Python environment (once; downloads about 175 MB)");
-    files::remove_folder(&folder)?;
-    let mut make = Command::new(&interpreter);
-    make.args(["-m", "venv"]).arg(&folder);
-    if !process::status(&mut make)?.success() {
-        return Err(Failure::NoVenv { program: interpreter });
+    let folder = workspace.python_environment();
+    let python = Python { folder: folder.clone() };
+    let found: Vec<Option<String>> =
+        LAYERS.iter().map(|layer| std::fs::read_to_string(folder.join(layer.made_from)).ok()).collect();
+    let mut installed = up_to_date(&found, &wanted);
+    if installed > 0 && !python.works() {
+        installed = 0;
     }
-    install(&python, &requirements, &[])?;
-    install(&python, &programs, &["--no-deps"])?;
-    // Last: an environment that was interrupted is not taken for a finished one.
-    files::write(&marker, made_from.as_bytes())?;
+    if installed == 0 {
+        progress.timed("Creating the Python environment in target/venv", || create(interpreter, &folder))?;
+    }
+    for (layer, made_from) in layers.iter().zip(&wanted).skip(installed) {
+        progress
+            .timed(layer.what, || layer.lists.iter().try_for_each(|list| python.install(list, &sources)))?;
+        // Last: an environment that was interrupted is not taken for a finished one.
+        files::write(&folder.join(layer.made_from), made_from.as_bytes())?;
+    }
     Ok(python)
 }
 
-/// Installs pinned packages from a file.
-fn install(python: &Python, pinned: &Path, options: &[&str]) -> Result<(), Failure> {
-    let mut install = python.command();
-    install
-        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"])
-        .arg("--prefer-binary")
-        .args(options)
-        .arg("--requirement")
-        .arg(pinned);
-    if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
+/// How many layers of an environment can stay: those that are there, unless one was made from something else than is wanted now, which
+/// cannot be taken out.
+fn up_to_date(found: &[Option<String>], wanted: &[String]) -> usize {
+    let there = found.iter().take_while(|found| found.is_some()).count();
+    let same =
+        found.iter().zip(wanted).all(|(found, wanted)| found.as_ref().is_none_or(|found| found == wanted));
+    if same { there } else { 0 }
 }
 
-/// Whether the interpreter still starts; the one it was made from may have been removed.
-fn works(python: &Python) -> bool {
-    let quiet = python.command().args(["-c", ""]).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    quiet.is_ok_and(|status| status.success())
+/// Creates an empty environment.
+fn create(interpreter: &Interpreter, folder: &Path) -> Result<(), Failure> {
+    files::remove_folder(folder)?;
+    let mut make = Command::new(&interpreter.program);
+    make.args(["-m", "venv"]).arg(folder);
+    if process::status(&mut make)?.success() {
+        Ok(())
+    } else {
+        Err(Failure::NoVenv { program: interpreter.program.clone() })
+    }
 }
 
-/// Name and version of a Python that is new enough and can make environments.
-fn interpreter() -> Result<(String, String), Failure> {
+/// Finds Python, and says what is missing on the machine.
+pub fn interpreter() -> Result<Interpreter, Failure> {
     let named = env::var("PYTHON").ok();
     let candidates: Vec<String> = match &named {
         Some(program) => vec![program.clone()],
@@ -107,7 +183,7 @@ fn interpreter() -> Result<(String, String), Failure> {
         if !imports(&program, "venv, ensurepip") {
             return Err(Failure::NoVenv { program });
         }
-        return Ok((program, version));
+        return Ok(Interpreter { program, version });
     }
     Err(Failure::Missing {
         program: named.unwrap_or_else(|| "python3".to_owned()),
@@ -144,7 +220,20 @@ fn new_enough(version: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::new_enough;
+    use super::{new_enough, up_to_date};
+
+    #[test]
+    fn an_environment_stays_until_a_list_changes() {
+        let wanted = ["demo", "demo tests"].map(str::to_owned);
+        let found =
+            |layers: [Option<&str>; 2]| up_to_date(&layers.map(|layer| layer.map(str::to_owned)), &wanted);
+        assert_eq!(found([None, None]), 0);
+        assert_eq!(found([Some("demo"), None]), 1);
+        assert_eq!(found([Some("demo"), Some("demo tests")]), 2);
+        assert_eq!(found([Some("old"), None]), 0);
+        assert_eq!(found([Some("demo"), Some("demo old")]), 0);
+        assert_eq!(found([None, Some("demo tests")]), 0);
+    }
 
     #[test]
     fn versions_are_compared_as_numbers() {

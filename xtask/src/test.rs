@@ -2,22 +2,28 @@
 
 use std::io::{BufRead, BufReader};
 use std::ops::AddAssign;
+use std::path::Path;
 use std::process::Stdio;
+use std::thread;
 
 use roxmltree::Document;
 
-use crate::bundle;
-use crate::cargo::cargo;
-use crate::failure::Failure;
-use crate::files;
-use crate::process;
+use crate::fmu;
+use crate::program::{self, Beside, VEHICLE};
 use crate::progress::Progress;
-use crate::python;
-use crate::vehicle;
-use crate::workspace::Workspace;
+use crate::python::{self, Packages, Python};
+use crate::threads;
+use xtask::cargo::cargo;
+use xtask::failure::Failure;
+use xtask::files;
+use xtask::process;
+use xtask::workspace::Workspace;
 
 /// Environment variable by which a test knows that the Python tests follow.
 pub const ALL_TESTS: &str = "LMPC_QUADROTOR_ALL_TESTS";
+
+/// Python tests that run at once, per core: most wait for a vehicle most of the time.
+const PYTHON_TESTS_PER_CORE: usize = 2;
 
 /// Tests that ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,35 +44,41 @@ impl AddAssign for Count {
 /// Runs all tests, the Python ones also when Rust ones failed, and prints one line at the end.
 pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
     // First: what is missing on the machine is said before the long build.
-    let python = python::environment(workspace, progress)?;
-    progress.step("Running the Rust tests");
-    let (mut count, rust_passed) = rust_tests(workspace)?;
+    let interpreter = python::interpreter()?;
+    let (python, rust) = thread::scope(|scope| {
+        let python = scope.spawn(|| python::environment(workspace, progress, &interpreter, Packages::Tests));
+        let rust = progress.timed("Running the Rust tests", || rust_tests(workspace));
+        (threads::join(python), rust)
+    });
+    let (python, (mut count, rust_passed)) = (python?, rust?);
 
-    let fmu = bundle::make(workspace, progress, &[])?;
-    let sitl = vehicle::build(workspace, progress)?;
-    progress.step("Running the Python tests");
-    let report = workspace.python_report();
-    let status = process::status(
-        python
-            .command()
-            .args(["-m", "pytest", "-p", "no:cacheprovider"])
-            .arg(workspace.python_tests())
-            .arg(format!("--junitxml={}", report.display()))
-            .current_dir(workspace.root())
-            .env("LMPC_QUADROTOR_FMU", &fmu)
-            .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
-            .env("LMPC_SITL", &sitl),
-    )?;
-    count += python_count(&files::read_text(&report)?)?;
+    let fmu = fmu::make(workspace, progress, &[], Beside::Tests)?;
+    let sitl = progress
+        .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Tests))?;
+    let mut python_passed = true;
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let processes = (PYTHON_TESTS_PER_CORE * cores).to_string();
+    let at_once = ["-m", "not alone", "--numprocesses", &processes, "--dist", "worksteal"];
+    // Those that measure the wall clock have the machine to themselves.
+    let alone = ["-m", "alone"];
+    let runs: [(&str, &[&str]); 2] =
+        [("Running the Python tests", &at_once), ("Running the Python tests that measure time", &alone)];
+    for (what, options) in runs {
+        let (counted, passed) =
+            progress.timed(what, || python_tests(workspace, &python, options, &fmu, &sitl))?;
+        count += counted;
+        python_passed &= passed;
+    }
 
     let mut failed = Vec::new();
     if !rust_passed {
         failed.push("Rust tests");
     }
-    if !status.success() {
+    if !python_passed {
         failed.push("Python tests");
     }
     let Count { passed, failed: count_failed, skipped } = count;
+    progress.print_summary();
     println!("total: {passed} passed, {count_failed} failed, {skipped} skipped");
     if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }
 }
@@ -89,6 +101,30 @@ fn rust_tests(workspace: &Workspace) -> Result<(Count, bool), Failure> {
     }
     let status = child.wait().map_err(|source| process::not_started(&command, source))?;
     Ok((count, status.success()))
+}
+
+/// Runs Python tests with some options of pytest.
+fn python_tests(
+    workspace: &Workspace,
+    python: &Python,
+    options: &[&str],
+    fmu: &Path,
+    sitl: &Path,
+) -> Result<(Count, bool), Failure> {
+    let report = workspace.python_report();
+    let status = process::status(
+        python
+            .command()
+            .args(["-m", "pytest", "-p", "no:cacheprovider"])
+            .args(options)
+            .arg(workspace.python_tests())
+            .arg(format!("--junitxml={}", report.display()))
+            .current_dir(workspace.root())
+            .env("LMPC_QUADROTOR_FMU", fmu)
+            .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
+            .env("LMPC_SITL", sitl),
+    )?;
+    Ok((python_count(&files::read_text(&report)?)?, status.success()))
 }
 
 /// Reads `test result: ok. 3 passed; 0 failed; 1 ignored; …`.

@@ -2,9 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use fmi::Model;
-use fmu::ClosedLoop;
-
 use crate::cargo;
 use crate::failure::Failure;
 
@@ -16,6 +13,10 @@ pub struct Workspace {
 
 impl Workspace {
     /// Asks cargo, which knows of every way to move the target folder.
+    ///
+    /// # Errors
+    ///
+    /// If cargo does not start or does not find the workspace.
     pub fn find() -> Result<Self, Failure> {
         let metadata = cargo::metadata_without_dependencies()?;
         Ok(Self { root: metadata.workspace_root, target: metadata.target_directory })
@@ -48,7 +49,7 @@ impl Workspace {
 
     /// The FMU that is built.
     pub fn fmu(&self) -> PathBuf {
-        self.target.join("fmu").join(format!("{}.fmu", ClosedLoop::IDENTITY.model_identifier))
+        self.target.join("fmu").join("LmpcQuadrotor.fmu")
     }
 
     /// What the demo writes.
@@ -61,9 +62,9 @@ impl Workspace {
         self.target.join("paper")
     }
 
-    /// The MAVLink vehicle that `cargo build` makes.
-    pub fn sitl(&self) -> PathBuf {
-        self.target.join("debug").join(format!("lmpc-sitl{}", std::env::consts::EXE_SUFFIX))
+    /// A program of the workspace that `cargo build` makes.
+    pub fn program(&self, name: &str) -> PathBuf {
+        self.target.join("debug").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
     }
 
     /// The examples that `cargo test` builds.

@@ -6,6 +6,7 @@
 mod attitude_target;
 pub mod checksum;
 mod command;
+mod command_name;
 mod decoder;
 mod encode;
 mod frame;
@@ -21,6 +22,7 @@ mod target;
 
 pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
+pub use command_name::command_name;
 pub use decoder::FrameDecoder;
 pub use frame::{Frame, Signature, Version};
 pub use message::{CommandAck, Message};

@@ -8,7 +8,7 @@ use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
 use super::command::{global_frame, told_frame, told_place};
 use super::{CommandEntry, Outcome, Progress, Service, parameter};
-use crate::codec::Command;
+use crate::codec::{Command, command_name};
 use crate::context::Context;
 use crate::envelope::Origin;
 
@@ -78,7 +78,7 @@ fn change_speed(context: &mut Context, command: &Command) -> Result<(), Refusal>
 /// SPEED_TYPE, and a speed.
 fn use_speed(vehicle: &mut Vehicle, kind: f64, speed_m_s: f64) -> Result<(), Refusal> {
     let change = ChangeSpeed::of(kind, speed_m_s)
-        .ok_or_else(|| Refusal::denied(format!("No speed of type {kind}")))?;
+        .ok_or_else(|| Refusal::denied(format!("Unknown speed type {kind}")))?;
     vehicle.change_speed(&change)
 }
 
@@ -106,7 +106,9 @@ fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     };
     let items = vehicle.plans().get(PlanKind::Mission).items();
     let look = compile::look(&item, items, &vehicle.site()).map_err(|fault| match fault.code {
-        FaultCode::Unsupported => Refusal::Unsupported(fault.reason),
+        FaultCode::Unsupported => {
+            Refusal::Unsupported(format!("{}: {}", command_name(command.number), fault.reason))
+        }
         FaultCode::UnsupportedFrame => Refusal::UnsupportedFrame(fault.reason),
         _ => Refusal::denied(format!("Region of interest: {}", fault.reason)),
     })?;
@@ -120,7 +122,7 @@ fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     match command.parameter(1) {
         1.0 => vehicle.arm(force),
         0.0 => vehicle.disarm(force),
-        other => Err(Refusal::denied(format!("{other} neither arms (1) nor disarms (0)"))),
+        other => Err(Refusal::denied(format!("Invalid value {other}: 1 arms, 0 disarms"))),
     }
 }
 
@@ -130,7 +132,9 @@ fn enable_fence(context: &mut Context, command: &Command) -> Result<(), Refusal>
         0.0 => vehicle.enable_fence(false),
         1.0 => vehicle.enable_fence(true),
         other => {
-            return Err(Refusal::denied(format!("{other} neither enables (1) nor disables (0) the fence")));
+            return Err(Refusal::denied(format!(
+                "Invalid value {other}: 1 enables the fence, 0 disables it"
+            )));
         }
     }
     parameter::tell(context, "FENCE_ENABLE");
@@ -163,7 +167,7 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     // PX4 takes an altitude below the ground for one above home of its parameter.
     const LEAST_M: f64 = 0.5;
     if height_m < LEAST_M {
-        let text = format!("Takeoff altitude {:.1} m is not above home: using the parameter", command.z);
+        let text = format!("Takeoff altitude {:.1} m not above home: using default", command.z);
         context.say(Severity::Warning, &text);
         return context.vehicle.take_off(None);
     }
@@ -175,7 +179,7 @@ fn turn(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
     let angle_rad = command.parameter(1).to_radians();
     if !angle_rad.is_finite() {
-        return Err(Refusal::denied("CONDITION_YAW needs an angle"));
+        return Err(Refusal::denied("CONDITION_YAW requires an angle"));
     }
     let direction = if command.parameter(3) < 0.0 { -1.0 } else { 1.0 };
     let relative = command.parameter(4) == 1.0;
@@ -191,7 +195,7 @@ fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let frame = global_frame(command)?;
     let mut position_m = told_place(command, vehicle)?;
     if !command.z.is_finite() {
-        return Err(Refusal::denied("Home needs an altitude"));
+        return Err(Refusal::denied("DO_SET_HOME requires an altitude"));
     }
     position_m.z = vehicle.site().down_m(frame, command.z);
     let yaw_rad = Some(command.parameter(4).to_radians()).filter(|yaw| yaw.is_finite());
@@ -225,7 +229,7 @@ fn inject_failure(context: &mut Context, command: &Command) -> Result<(), Refusa
     // Nothing may be named instead of every instance.
     let instance = if command.parameter(3).is_nan() { Some(0) } else { command.whole(3) };
     let (Some(unit), Some(kind), Some(instance)) = (command.whole(1), command.whole(2), instance) else {
-        return Err(Refusal::denied("INJECT_FAILURE needs a unit, a failure type and an instance"));
+        return Err(Refusal::denied("INJECT_FAILURE requires unit, type and instance"));
     };
     let fault = Fault::of_numbers(unit, kind, instance)
         .map_err(|error| Refusal::Unsupported(format!("Failure injection: {error}")))?;

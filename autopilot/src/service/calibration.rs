@@ -39,7 +39,7 @@ impl Calibration {
     }
 }
 
-/// Calibrates, one unit at a time.
+/// Calibrates, calibrate one sensor at a time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Calibrations {
     running: Option<Calibration>,
@@ -78,7 +78,7 @@ impl Service for Calibrations {
             if unit == Ok(running.unit) && sender(&running.origin) == sender(origin) {
                 return Ok(Progress::Percent(running.percent()));
             }
-            return Err(Refusal::later("another calibration is under way"));
+            return Err(Refusal::later("another calibration is running"));
         }
         match unit.and_then(|unit| may_begin(&context.vehicle).map(|()| unit)) {
             Ok(unit) => {
@@ -142,7 +142,7 @@ fn unit(command: &Command) -> Result<Option<&'static str>, Refusal> {
     let mut asked = (1..).zip(values).filter(|(_, value)| !value.is_nan() && *value != 0.0);
     let Some((number, value)) = asked.next() else { return Ok(None) };
     if asked.next().is_some() {
-        return Err(Refusal::denied("one unit at a time"));
+        return Err(Refusal::denied("calibrate one sensor at a time"));
     }
     let unit = UNITS.iter().find(|(known, kind, _)| *known == number && *kind == libm::round(value));
     unit.map(|(_, _, unit)| Some(*unit))
@@ -151,12 +151,12 @@ fn unit(command: &Command) -> Result<Option<&'static str>, Refusal> {
 
 fn may_begin(vehicle: &Vehicle) -> Result<(), Refusal> {
     if vehicle.is_armed() {
-        return Err(Refusal::later("armed"));
+        return Err(Refusal::later("vehicle is armed"));
     }
     // The truth: an estimate may still be on its way to it.
     let motion = vehicle.truth();
     if motion.body_rate_rad_s.norm() > STILL_RAD_S || motion.velocity_m_s.norm() > STILL_M_S {
-        return Err(Refusal::later("not standing still"));
+        return Err(Refusal::later("vehicle is moving"));
     }
     Ok(())
 }

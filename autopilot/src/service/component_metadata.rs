@@ -2,8 +2,9 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::common::{COMPONENT_METADATA_DATA, MavMessage};
+use quadrotor::ValueRange;
 use serde_json::{Map, Value as Json, json};
-use vehicle::parameters::Value;
+use vehicle::parameters::{NamedValue, Value};
 
 use super::Service;
 use crate::codec::boot_ms;
@@ -53,7 +54,7 @@ pub fn parameters(values: &Parameters) -> Vec<u8> {
     let parameters: Vec<Json> = entries
         .map(|(entry, initial)| {
             let description = entry.describe();
-            let (minimum, maximum) = description.range;
+            let ValueRange { minimum, maximum, unit } = description.range;
             let mut parameter = Map::new();
             let mut put = |key: &str, value: Json| parameter.insert(key.to_owned(), value);
             put("name", json!(entry.id));
@@ -75,14 +76,21 @@ pub fn parameters(values: &Parameters) -> Vec<u8> {
                     put("max", json!(maximum as i64));
                 }
             }
-            if !description.unit.is_empty() {
-                put("units", json!(description.unit));
+            if !unit.is_empty() {
+                put("units", json!(unit));
             }
-            if description.fixed_in_flight {
-                put("longDesc", json!("Changes only while disarmed on the ground."));
+            if let Some(dotted) = entry.dotted() {
+                put("longDesc", json!(format!("Dotted name: {dotted}.")));
+            }
+            if description.read_only {
+                put("readOnly", json!(true));
+            }
+            if description.needs_restart {
+                put("rebootRequired", json!(true));
             }
             if !description.names.is_empty() {
-                let name = |(value, text): &(i32, String)| json!({ "value": value, "description": text });
+                let name =
+                    |named: &NamedValue| json!({ "value": named.value, "description": named.to_string() });
                 put("values", description.names.iter().map(name).collect());
             }
             Json::Object(parameter)

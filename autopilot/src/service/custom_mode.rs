@@ -51,7 +51,7 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     const CUSTOM_MODE_ENABLED: u32 = 1;
     let (base, main, sub) = (command.whole(1), command.whole(2), command.whole(3).unwrap_or(0));
     let (Some(base), Some(main)) = (base, main) else {
-        return Err(Refusal::denied("DO_SET_MODE needs a mode"));
+        return Err(Refusal::denied("DO_SET_MODE requires a mode"));
     };
     if base & CUSTOM_MODE_ENABLED == 0 {
         return Err(Refusal::Unsupported("Only custom modes are supported".to_owned()));
@@ -61,7 +61,7 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     } else if main <= 0xff && sub <= 0xff {
         main << 16 | sub << 24
     } else {
-        return Err(Refusal::denied(format!("No mode {main}, {sub}")));
+        return Err(Refusal::denied(format!("Unknown mode {main}, {sub}")));
     };
     set_custom_mode(vehicle, custom_mode)
 }
@@ -76,7 +76,7 @@ fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusa
         let number =
             if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
         let there_are = names.join(", ");
-        return Err(Refusal::Unsupported(format!("Mode {number} is not available, only {there_are}")));
+        return Err(Refusal::Unsupported(format!("Mode {number} is not available; available: {there_are}")));
     };
     vehicle.set_mode(mode)
 }

@@ -26,7 +26,7 @@ impl Service for GlobalOrigin {
     }
 
     fn receive(&mut self, context: &mut Context, origin: &Origin, _frame: &Frame) {
-        context.say(Severity::Warning, "The origin is set at the start, by --home");
+        context.say(Severity::Warning, "The origin cannot be changed; start with --home");
         context.outbox.send(Destination::Peer(origin.peer), message(&context.vehicle));
     }
 }

@@ -113,8 +113,8 @@ impl Service for MessageIntervals {
 impl MessageIntervals {
     /// MAV_CMD_SET_MESSAGE_INTERVAL on the sender's link: µs, 0 for the default, −1 for never.
     fn set(&mut self, context: &Context, origin: &Origin, command: &Command) -> Result<(), Refusal> {
-        let number = command.whole(1).ok_or_else(|| Refusal::denied("A message has a number"))?;
-        let unknown = || Refusal::Unsupported(format!("There is no message {number} to be streamed"));
+        let number = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
+        let unknown = || Refusal::Unsupported(format!("Message {number} cannot be streamed"));
         let link = origin.peer.link;
         let stream = context.streams.get(number).filter(|stream| stream.is_regular()).ok_or_else(unknown)?;
         let schedule = self.links.get_mut(link).ok_or_else(unknown)?;
@@ -131,7 +131,7 @@ impl MessageIntervals {
     /// not get.
     fn get(&self, context: &mut Context, origin: &Origin, command: &Command) -> Result<(), Refusal> {
         let Some(Ok(message_id)) = command.whole(1).map(u16::try_from) else {
-            return Err(Refusal::denied("a message has a number up to 65535"));
+            return Err(Refusal::denied("Message number must be from 0 to 65535"));
         };
         let number = u32::from(message_id);
         let interval_us = if context.streams.get(number).is_some_and(Stream::is_regular) {

@@ -36,14 +36,14 @@ impl Service for MessageRequests {
             REQUEST_PROTOCOL_VERSION => (PROTOCOL_VERSION_DATA::ID, 0),
             REQUEST_AUTOPILOT_CAPABILITIES => (AUTOPILOT_VERSION_DATA::ID, 0),
             _ => {
-                let id = command.whole(1).ok_or_else(|| Refusal::denied("a message has a number"))?;
+                let id = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
                 (id, command.whole(2).unwrap_or(0))
             }
         };
         let stream = context.streams.get(id);
         let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
         if messages.is_empty() {
-            return Err(Refusal::Unsupported(format!("there is no message {id}")));
+            return Err(Refusal::Unsupported(format!("Message {id} is not available")));
         }
         for message in messages {
             context.outbox.send(Destination::Peer(origin.peer), message);

@@ -10,14 +10,14 @@ use crate::codec::{Command, Encoding, Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 
-/// Name under which clients ask for the hash, and with which QGroundControl says that its cache is right.
+/// Name under which clients request the hash, and with which QGroundControl confirms its cache.
 const HASH_CHECK: &str = "_HASH_CHECK";
 /// Index of what is not in the list.
 const NO_INDEX: u16 = u16::MAX;
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u16)];
 
-/// Tells parameters and changes them.
+/// Lists, reads and changes parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterProtocol;
 
@@ -52,7 +52,7 @@ impl Service for ParameterProtocol {
     }
 }
 
-/// PARAM_REQUEST_LIST: the hash first, so that a client whose cache is right can say so, then everything.
+/// PARAM_REQUEST_LIST: the hash first, so that a client with a valid cache can stop, then everything.
 fn request_list(context: &mut Context, origin: &Origin) {
     let to = Destination::Peer(origin.peer);
     if !context.identity().is_ardupilot() {
@@ -67,19 +67,15 @@ fn request_list(context: &mut Context, origin: &Origin) {
 fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let to = Destination::Peer(origin.peer);
-    let index = match usize::try_from(payload.i16(0)) {
-        Ok(index) => Some(index),
-        Err(_) => {
-            let name = payload.name(4);
-            if name == HASH_CHECK {
-                send_hash(context, to);
-                return;
-            }
-            context.parameters.table().index_of(&name)
-        }
-    };
-    if let Some(index) = index {
+    if let Ok(index) = usize::try_from(payload.i16(0)) {
         send_value(context, index, to);
+        return;
+    }
+    let name = payload.name(4);
+    if name == HASH_CHECK {
+        send_hash(context, to);
+    } else if let Some(index) = context.parameters.table().index_of(&name) {
+        send_value_as(context, index, &name, to);
     }
 }
 
@@ -94,15 +90,22 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
     let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
     let result = context.parameters.set(&name, value, &mut context.vehicle);
     if let Some(index) = context.parameters.table().index_of(&name) {
-        let to = if result.is_ok() { Destination::Everyone } else { Destination::Peer(origin.peer) };
-        send_value(context, index, to);
+        let listed = context.parameters.table().entries().get(index).is_some_and(|entry| entry.id == name);
+        if result.is_ok() {
+            send_value(context, index, Destination::Everyone);
+        }
+        if result.is_err() || !listed {
+            send_value_as(context, index, &name, Destination::Peer(origin.peer));
+        }
     }
     if let Err(error) = result {
-        context.say(Severity::Warning, &format!("Parameter refused: {error}"));
+        // The field of STATUSTEXT is ASCII.
+        let text = error.to_string().replace("°–", "–").replace('–', " to ").replace('°', " deg");
+        context.say(Severity::Warning, &text);
     }
 }
 
-/// Tells a parameter that something else than PARAM_SET has changed.
+/// Sends a parameter that something else than PARAM_SET has changed.
 pub fn tell(context: &mut Context, id: &str) {
     if let Some(index) = context.parameters.table().index_of(id) {
         send_value(context, index, Destination::Everyone);
@@ -110,13 +113,18 @@ pub fn tell(context: &mut Context, id: &str) {
 }
 
 fn send_value(context: &mut Context, index: usize, to: Destination) {
-    let Some(value) = context.parameters.value(index, &context.vehicle) else { return };
     let Some(entry) = context.parameters.table().entries().get(index) else { return };
+    send_value_as(context, index, entry.id, to);
+}
+
+/// Sends a parameter under the name that a client knows: it takes no other for the answer to its request.
+fn send_value_as(context: &mut Context, index: usize, name: &str, to: Destination) {
+    let Some(value) = context.parameters.value(index, &context.vehicle) else { return };
     let message = PARAM_VALUE_DATA {
         param_value: Encoding::of(context.identity()).encode(value),
         param_count: context.parameters.table().entries().len() as u16,
         param_index: index as u16,
-        param_id: entry.id.as_str().into(),
+        param_id: name.into(),
         param_type: match value {
             Value::Real(_) => MavParamType::MAV_PARAM_TYPE_REAL32,
             Value::Integer(_) => MavParamType::MAV_PARAM_TYPE_INT32,
@@ -143,6 +151,8 @@ fn storage(context: &mut Context, command: &Command) -> Result<(), Refusal> {
         // They are read at the start, and always written when one changes.
         0.0 | 1.0 => Ok(()),
         2.0 => context.parameters.reset(&mut context.vehicle),
-        other => Err(Refusal::denied(format!("Parameter storage has no action {other}"))),
+        other => Err(Refusal::denied(format!(
+            "Parameter storage denied: action {other}; allowed 0 (read), 1 (write), 2 (reset)"
+        ))),
     }
 }

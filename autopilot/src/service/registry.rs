@@ -181,6 +181,7 @@ mod tests {
             faults: Vec::new(),
             sensors: SensorSettings::default(),
             plans: Plans::default(),
+            autostart: false,
         };
         let vehicle = Vehicle::new(&settings).expect("valid settings");
         let parameters = Parameters::new(&settings, &vehicle, 1, Speed::Factor(1.0));

@@ -99,7 +99,7 @@ fn take(context: &mut Context, resolved: Result<SetPoint, Refusal>) {
 /// A set-point in the local frame.
 fn resolve(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<PositionSetPoint, Refusal> {
     if target.type_mask & FORCE_SET != 0 {
-        return Err(Refusal::denied("Set-point refused: forces are not supported"));
+        return Err(Refusal::denied("Set-point rejected: force is not supported"));
     }
     let ardupilot = vehicle.identity().is_ardupilot();
     let mut given = Given::read(target, ardupilot);
@@ -188,7 +188,7 @@ fn local_position(frame: u8, position_m: Vector3<f64>, vehicle: &Vehicle) -> Res
     match frame {
         frame::LOCAL_NED | frame::BODY_NED | frame::BODY_OFFSET_NED => Ok(position_m),
         frame::LOCAL_OFFSET_NED => Ok(position_m + vehicle.outputs().position_m),
-        other => Err(Refusal::denied(format!("Set-point refused: frame {other} is not supported"))),
+        other => Err(Refusal::denied(format!("Set-point rejected: frame {other} is not supported"))),
     }
 }
 
@@ -196,7 +196,7 @@ fn known_global_frame(frame: u8) -> Result<(), Refusal> {
     if is_global(frame) {
         return Ok(());
     }
-    Err(Refusal::denied(format!("Set-point refused: frame {frame} is not global")))
+    Err(Refusal::denied(format!("Set-point rejected: frame {frame} is not global")))
 }
 
 fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {
@@ -229,7 +229,7 @@ fn check(
 ) -> Result<(), Refusal> {
     let any = |axes: &[bool; 3]| axes.contains(&true);
     if !any(&given.position) && !any(&given.velocity) && !any(&given.acceleration) {
-        return Err(Refusal::denied("Set-point refused: neither position, velocity nor acceleration"));
+        return Err(Refusal::denied("Set-point rejected: it contains no target"));
     }
     for (name, axes, values, most) in [
         ("position", &given.position, position, FARTHEST_M),
@@ -261,7 +261,7 @@ fn compose(
     ardupilot: bool,
 ) -> Result<PositionSetPoint, Refusal> {
     if ardupilot && given.nan {
-        return Err(Refusal::denied("Set-point refused: a value is not a number"));
+        return Err(Refusal::denied("Set-point rejected: a value is not a finite number"));
     }
     check(given, [position, velocity, acceleration], yaw_rate_rad_s)?;
     // A trajectory moves; a place with velocities of zero is a place.
@@ -297,7 +297,7 @@ fn compose(
 fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refusal> {
     let ignored = |bit: u8| target.type_mask & bit != 0;
     if ignored(THRUST_IGNORE) || !(0.0..=1.0).contains(&target.thrust) {
-        return Err(Refusal::denied("Attitude refused: it needs a thrust within 0 to 1"));
+        return Err(Refusal::denied("Attitude rejected: thrust must be from 0 to 1"));
     }
     let rate_bits = [ROLL_RATE_IGNORE, PITCH_RATE_IGNORE, YAW_RATE_IGNORE_ATTITUDE];
     let rates =
@@ -310,7 +310,7 @@ fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refu
     }
     let attitude = if ignored(ATTITUDE_IGNORE) {
         if rate_bits.iter().all(|bit| ignored(*bit)) {
-            return Err(Refusal::denied("Attitude refused: neither an attitude nor a rate"));
+            return Err(Refusal::denied("Attitude rejected: it has no attitude and no rate"));
         }
         None
     } else {
@@ -318,7 +318,7 @@ fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refu
         let quaternion = Quaternion::new(w, x, y, z);
         // NaN is in no range.
         if !(0.9..=1.1).contains(&quaternion.norm()) {
-            return Err(Refusal::denied("Attitude refused: its quaternion is not a unit quaternion"));
+            return Err(Refusal::denied("Attitude rejected: quaternion is not normalized"));
         }
         Some(UnitQuaternion::new_normalize(quaternion))
     };

@@ -35,7 +35,7 @@ impl Service for StandardModes {
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
         let mode = command.whole(1).and_then(mode);
         let mode =
-            mode.ok_or_else(|| Refusal::denied(format!("No standard mode {}", command.parameter(1))))?;
+            mode.ok_or_else(|| Refusal::denied(format!("Unknown standard mode {}", command.parameter(1))))?;
         context.vehicle.set_mode(mode)?;
         Ok(Progress::Done)
     }

@@ -52,7 +52,7 @@ fn written<M: Model>() -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-/// What the machinery of this crate can do, with every model.
+/// The capabilities of this crate, the same for every model.
 fn co_simulation(xml: &mut Xml, identity: &Identity) -> io::Result<()> {
     xml.create_element("CoSimulation")
         .with_attributes([

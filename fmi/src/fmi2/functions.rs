@@ -1,4 +1,4 @@
-//! What the 34 functions of an FMI 2.0 co-simulation library do, for any model.
+//! The 34 functions of an FMI 2.0 co-simulation library, for any model.
 //!
 //! [`export_fmi2`](crate::export_fmi2) gives them their C names in the library of one model.
 
@@ -82,7 +82,7 @@ pub unsafe fn free_instance<M: Model>(c: Component) {
 }
 
 functions! {
-    /// Selects what is logged.
+    /// Selects the log categories.
     set_debug_logging(logging_on: Boolean, count: usize, categories: *const String), SET_DEBUG_LOGGING =>
         |instance| {
             let names = array("categories", categories, count)?;
@@ -102,7 +102,7 @@ functions! {
     /// Begins initialization.
     enter_initialization_mode(), ENTER_INITIALIZATION_MODE => Instance::enter_initialization_mode;
 
-    /// Ends initialization: builds the run, which checks the values against one another.
+    /// Ends initialization: builds the run, which checks that the values are consistent.
     exit_initialization_mode(), EXIT_INITIALIZATION_MODE => Instance::exit_initialization_mode;
 
     /// Ends the run.
@@ -167,7 +167,7 @@ functions! {
         Ok(())
     };
 
-    /// Goes to a saved state, of this instance or another.
+    /// Sets a saved state of this instance or another.
     set_state(state: FmuState), SET_STATE =>
         |instance| instance.restore(reference("FMUstate", state.cast::<Snapshot<M>>())?);
 
@@ -184,7 +184,7 @@ functions! {
         Ok(())
     };
 
-    /// Writes a saved state into exactly as many bytes as it has.
+    /// Writes a saved state to a buffer of exactly its size.
     serialize_state(state: FmuState, bytes: *mut Byte, size: usize), SERIALIZE_STATE => |_| {
         let state = reference("FMUstate", state.cast::<Snapshot<M>>())?;
         let bytes = array_mut("serializedState", bytes, size)?;
@@ -222,7 +222,7 @@ functions! {
             "output derivatives are not available (maxOutputDerivativeOrder = 0)",
         )) };
 
-    /// Goes from a communication point to the next.
+    /// Advances from a communication point to the next.
     do_step(point: Real, step: Real, _no_set_state_prior_to_point: Boolean), DO_STEP =>
         |instance| instance.do_step(point, step);
 

@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(checked(&mut instance, &Function::RESET, Instance::reset), Status::Fatal);
         assert_eq!(log.len(), 2);
         assert_eq!((log[0].0, log[0].1.as_str()), (Status::Fatal, "logStatusFatal"));
-        assert_eq!(log[0].2, "fmi2Reset: internal fault, the instance is lost: a defect ##1");
-        assert_eq!(log[1].2, "fmi2Reset: must not be called in the state \"fatal\"");
+        assert_eq!(log[0].2, "fmi2Reset: internal error; the instance can only be freed: a defect ##1");
+        assert_eq!(log[1].2, "fmi2Reset: not allowed in the state \"fatal\"");
     }
 }

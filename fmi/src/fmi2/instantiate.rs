@@ -18,15 +18,15 @@ use crate::model::Model;
 pub(super) enum InstantiationError {
     #[error("instanceName is NULL or empty")]
     NoName,
-    #[error("fmuType = {fmu_type} is not fmi2CoSimulation")]
+    #[error("fmuType = {fmu_type}; only fmi2CoSimulation is supported")]
     NotCoSimulation { fmu_type: c_int },
     #[error("fmuGUID is NULL")]
     NoGuid,
     #[error(
-        "fmuGUID = {given:?} is not that of this library, {expected}: modelDescription.xml is of another build"
+        "fmuGUID = {given:?} does not match the library's {expected}: modelDescription.xml comes from another build"
     )]
     OtherGuid { given: String, expected: String },
-    #[error("internal fault: {0}")]
+    #[error("internal error: {0}")]
     Panic(String),
 }
 

@@ -16,5 +16,5 @@ pub(super) fn step_status<M: Model>(instance: &Instance<M>, kind: StatusKind) ->
 
 /// There is no such status, or it is of another type.
 pub(super) fn no_status(kind: StatusKind) -> CallError {
-    CallError::NoAnswer(format!("no status of kind {kind} is available"))
+    CallError::NoAnswer(format!("status kind {kind} is not available"))
 }

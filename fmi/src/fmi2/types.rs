@@ -33,17 +33,17 @@ pub const CO_SIMULATION: c_int = 1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub enum Status {
-    /// All well.
+    /// Success.
     Ok = 0,
-    /// Something is odd, but the computation goes on.
+    /// A warning; the computation continues.
     Warning = 1,
-    /// The answer is not available.
+    /// The requested information is not available.
     Discard = 2,
-    /// The call was refused, or the run cannot go on.
+    /// The call was rejected, or the run failed.
     Error = 3,
-    /// The instance is lost.
+    /// The instance can only be freed.
     Fatal = 4,
-    /// A step goes on asynchronously. Never returned.
+    /// An asynchronous step is in progress. Never returned.
     Pending = 5,
 }
 
@@ -63,7 +63,7 @@ pub type CallbackLogger = unsafe extern "C" fn(ComponentEnvironment, String, Sta
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct CallbackFunctions {
-    /// Takes log messages.
+    /// Receives log messages.
     pub logger: Option<CallbackLogger>,
     /// Not used: `canNotUseMemoryManagementFunctions`.
     pub allocate_memory: Option<unsafe extern "C" fn(usize, usize) -> *mut c_void>,

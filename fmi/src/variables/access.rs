@@ -17,7 +17,7 @@ pub enum Field<T: 'static> {
         /// Writes it, unchecked.
         set: fn(&mut T, f64),
     },
-    /// A whole number within [minimum, maximum].
+    /// An integer within [minimum, maximum].
     Integer {
         /// Smallest value.
         minimum: i32,
@@ -37,7 +37,7 @@ pub enum Field<T: 'static> {
         /// Writes it.
         set: fn(&mut T, i32),
     },
-    /// A switch.
+    /// A Boolean.
     Boolean {
         /// Reads it.
         get: fn(&T) -> bool,
@@ -71,7 +71,7 @@ pub enum Signal<T: 'static> {
         /// Reads it.
         get: fn(&T) -> i32,
     },
-    /// A switch.
+    /// A Boolean.
     Boolean {
         /// Reads it.
         get: fn(&T) -> bool,
@@ -95,7 +95,7 @@ impl<T> Clone for Signal<T> {
 
 impl<T> Copy for Signal<T> {}
 
-/// Smallest and largest value, as far as they are limited.
+/// Smallest and largest value, if there are any.
 pub(crate) type Range = (Option<Value>, Option<Value>);
 
 impl<T> Field<T> {

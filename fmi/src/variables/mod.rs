@@ -1,6 +1,7 @@
 //! The table of variables: the one source of value references, names, types, ranges, start values and units.
 
 mod access;
+mod allowed;
 mod quantity;
 mod value;
 mod variable;

@@ -5,7 +5,7 @@
 pub struct Quantity {
     /// Name of its simple type.
     pub name: &'static str,
-    /// What it is, for a person.
+    /// Human-readable description.
     pub description: &'static str,
     /// Its unit; `None` if it has none.
     pub unit: Option<&'static Unit>,
@@ -31,7 +31,7 @@ pub struct Unit {
 pub struct Choice {
     /// Name of the enumeration.
     pub name: &'static str,
-    /// What it is, for a person.
+    /// Human-readable description.
     pub description: &'static str,
     /// Name and description of each item.
     pub items: &'static [(&'static str, &'static str)],

@@ -12,7 +12,7 @@ pub type ValueReference = u32;
 pub struct Variable<M: Model> {
     /// Structured name.
     pub name: &'static str,
-    /// What it is, for a person.
+    /// Human-readable description.
     pub description: &'static str,
     /// What the model does with it.
     pub role: Role<M>,
@@ -20,9 +20,9 @@ pub struct Variable<M: Model> {
 
 /// What the model does with a variable.
 pub enum Role<M: Model> {
-    /// Comes from outside at communication points.
+    /// Set by the importer at communication points.
     Input(Field<M::Inputs>),
-    /// Can be observed.
+    /// Read by the importer.
     Output {
         /// The inputs and parameters that its initial value depends on. Each entry stands for all variables whose names
         /// begin with it. The description lists them under `InitialUnknowns`.
@@ -30,14 +30,14 @@ pub enum Role<M: Model> {
         /// Type, range and place.
         signal: Signal<M::Outputs>,
     },
-    /// Is set before the run.
+    /// Set before the run.
     Parameter {
         /// Whether it may change during the run.
         tunable: bool,
         /// Type, range and place.
         field: Field<M::Parameters>,
     },
-    /// A number that follows from parameters.
+    /// A number that is computed from parameters.
     CalculatedParameter {
         /// The parameters that it depends on. Each entry stands for all whose names begin with it.
         depends_on: &'static [&'static str],
@@ -82,7 +82,7 @@ impl<M: Model> Variable<M> {
         Self { name, description, role: Role::Output { initially_depends_on, signal } }
     }
 
-    /// A parameter that stays as it is during the run.
+    /// A parameter that is fixed during the run.
     pub const fn fixed(name: &'static str, description: &'static str, field: Field<M::Parameters>) -> Self {
         Self { name, description, role: Role::Parameter { tunable: false, field } }
     }
@@ -92,7 +92,7 @@ impl<M: Model> Variable<M> {
         Self { name, description, role: Role::Parameter { tunable: true, field } }
     }
 
-    /// A number that follows from parameters, with their names, or beginnings of names.
+    /// A number that is computed from parameters, with their names, or beginnings of names.
     pub const fn calculated(
         name: &'static str,
         description: &'static str,
@@ -123,7 +123,7 @@ impl<M: Model> Variable<M> {
         }
     }
 
-    /// What it is chosen from, if it is an `Enumeration`.
+    /// Its items, if it is an `Enumeration`.
     pub fn choice(&self) -> Option<&Choice> {
         match &self.role {
             Role::Input(field) => field.choice(),
@@ -154,7 +154,7 @@ impl<M: Model> Variable<M> {
         }
     }
 
-    /// Its smallest and largest value, as far as they are limited.
+    /// Its smallest and largest value, if it has them.
     pub fn range(&self) -> (Option<Value>, Option<Value>) {
         match &self.role {
             Role::Input(field) => field.range(),
@@ -182,7 +182,7 @@ impl<M: Model> Variable<M> {
         }
     }
 
-    /// Refuses what is not between its smallest and its largest value; NaN never is.
+    /// Rejects a value below the smallest or above the largest one, and NaN.
     pub(crate) fn check_range(&self, value: Value) -> Result<(), CallError> {
         let number = |value| match value {
             Value::Real(value) => Some(value),
@@ -192,7 +192,8 @@ impl<M: Model> Variable<M> {
         let (Some(minimum), Some(maximum)): Range = self.range() else { return Ok(()) };
         match (number(value), number(minimum), number(maximum)) {
             (Some(given), Some(least), Some(most)) if !(least..=most).contains(&given) => {
-                Err(CallError::OutOfRange { name: self.name, value, minimum, maximum })
+                let (value, allowed) = (self.with_unit(value), self.allowed(minimum, maximum));
+                Err(CallError::OutOfRange { name: self.name, value, allowed })
             }
             _ => Ok(()),
         }

@@ -20,6 +20,6 @@ pub(super) const IDENTITY: Identity = Identity {
         run: "flight",
         retuned: "parameters changed, controllers redesigned",
         events: "Initialization, redesign of the controllers, reset",
-        errors: "Refused calls, and flights that cannot go on; always logged",
+        errors: "Rejected calls and failed flights; always logged",
     },
 };

@@ -1,7 +1,7 @@
 //! The parameters: those of the configuration.
 
 use fmi::variables::{Choice, Field, Role, Variable};
-use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
+use quadrotor::{Access, Configuration, Mutability, PARAMETERS, Parameter};
 
 use super::ClosedLoop;
 use crate::quantities;
@@ -22,7 +22,8 @@ const fn table() -> [Variable<ClosedLoop>; COUNT] {
 }
 
 const fn variable(parameter: &Parameter) -> Variable<ClosedLoop> {
-    let role = Role::Parameter { tunable: parameter.tunable, field: field(parameter) };
+    let tunable = matches!(parameter.mutability, Mutability::Tunable);
+    let role = Role::Parameter { tunable, field: field(parameter) };
     Variable { name: parameter.name, description: parameter.description, role }
 }
 

@@ -7,12 +7,12 @@ use crate::constrained_step::CostResult;
 use crate::results::Results;
 
 pub fn section(page: &mut Page, results: &Results) {
-    page.heading("The claim in numbers: what a few coefficients cost under limits");
+    page.heading("The claim in numbers: the cost of using few coefficients under limits");
     page.paragraph(
         "Steps from rest on one axis of the linear models, with the cascade's default weights and limits: tilt, its \
          increments and speed of the position; acceleration and speed of the altitude; torques of the attitude. The optimum \
          is one quadratic program over the whole step of 1500 samples under all limits at all samples, solved by Clarabel, \
-         an interior-point solver that is not ours. The last problem has both horizontal axes at once, with the tilt \
+         an independent interior-point solver. The last problem has both horizontal axes at once, with the tilt \
          limited jointly; its optimum has 80 free moves per input.",
     );
     page.subheading("Cost above the optimum");
@@ -20,15 +20,15 @@ pub fn section(page: &mut Page, results: &Results) {
     page.paragraph(
         "“α = 1.2” is the paper's recipe with its a = 0.8187; the other LMPC columns have the Riccati solution as terminal \
          weight and the default a of their controller. A value below zero means that the controller exceeded a limit: clipped \
-         DLQR knows nothing of speed limits.",
+         DLQR has no speed limits.",
     );
     page.subheading("Time per sample");
     time_table(page, &results.closed_loop_cost);
     page.paragraph(
         "Median and 99th percentile over the whole step, and the median of those samples at which limits were active, in \
          µs, one core, one run; reading the clock takes about 0.03 µs of each. Where no limit is active, LMPC is one \
-         matrix–vector product and a check of the limits. State-space MPC runs with the same active-set solver of ours; \
-         Clarabel solves the same program from the same set-up with only gradient and bounds exchanged.",
+         matrix–vector product and a check of the limits. State-space MPC uses the same active-set solver as LMPC; \
+         Clarabel solves the same program, set up once, with only gradient and bounds replaced.",
     );
     page.figures(vec![cost_and_time(&results.closed_loop_cost)]);
     page.subheading("The whole trade-off");
@@ -93,7 +93,7 @@ fn excess_table(page: &mut Page, costs: &[CostResult]) {
             == Some(cost)
         {
             let reason = cost.refused.as_deref().unwrap_or_default();
-            page.paragraph(&format!("Refused: {}, {}: {reason}.", cost.problem, cost.controller));
+            page.paragraph(&format!("Rejected: {}, {}: {reason}.", cost.problem, cost.controller));
         }
     }
 }

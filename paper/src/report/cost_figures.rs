@@ -48,7 +48,7 @@ pub fn cost_and_time(costs: &[CostResult]) -> Figure {
         .collect();
     Figure {
         name: "cost-and-time".to_owned(),
-        caption: "Cost against time; lower left is better. Each line goes through growing numbers of unknowns. What is \
+        caption: "Cost against time; lower left is better. Each line connects increasing numbers of unknowns. What is \
                   less than 0.001 % above the optimum is drawn there."
             .to_owned(),
         svg: line_chart("cost-and-time", "Cost against time", 2, [490.0, 300.0], &panels),

@@ -146,7 +146,7 @@ pub fn activity(mission: Mission, flown: &[&FlightResult]) -> Figure {
     }
     let name = format!("activity-{}", key(mission));
     Figure {
-        caption: "Constraint activity during the first 8 s: limits that hold with equality over the horizon, or cut an input off \
+        caption: "Constraint activity during the first 8 s: limits that are active over the horizon, or clip an input \
                   behind the controller; iterations of the solver; status 0 optimal, 1 limits relaxed, 2 out of iterations, \
                   3 held. LMPC's attitude controller and DLQR are cut off behind the controller and need no iterations."
             .to_owned(),

@@ -10,8 +10,8 @@ pub fn section(page: &mut Page, results: &Results) {
     page.heading("Figures 5–7: the flight to (5, 5, 10)");
     page.paragraph(
         "The nonlinear equations (2)–(3) with rotor lag and rotor limits, from rest at the origin to 5 m north, 5 m east, 10 m up \
-         (z = −10 in NED), heading from 0 to 0.5 rad, 20 s. The paper gives no time law; ours is the fifth-order polynomial \
-         over 10 s with feed-forward (“smooth”), and beside it the goal as a step. “N = 5, a = 0.8187, α = 1.2” are the \
+         (z = −10 in NED), heading from 0 to 0.5 rad, 20 s. The paper gives no time law. We use a fifth-order polynomial \
+         over 10 s with feed-forward (“smooth”), and the goal as a step. “N = 5, a = 0.8187, α = 1.2” are the \
          paper's choices for all three controllers; “defaults” has the terminal weight and an a of its own for each controller. \
          State-space MPC and DLQR have the same weights; state-space MPC keeps the regulator's cost as terminal weight.",
     );
@@ -22,9 +22,9 @@ pub fn section(page: &mut Page, results: &Results) {
         page.figures(figures_5_to_7(mission, &flown));
     }
     page.paragraph(
-        "In the smooth flight no limit is ever active and all four controllers are the same to a fraction of a millimetre: there \
-         the paper's claim that LMPC and state-space MPC track alike holds, and DLQR does it with one matrix. Without the \
-         governor the step is hard on the limits: what differs there is how the controllers deal with them.",
+        "In the smooth flight no limit is active, and all four controllers agree to a fraction of a millimetre: the paper's claim \
+         that LMPC and state-space MPC track equally well holds there, and DLQR does the same with one matrix. Without the \
+         governor the step reaches the limits, and the controllers differ in how they handle them.",
     );
     second_section(page, results);
 }
@@ -32,9 +32,9 @@ pub fn section(page: &mut Page, results: &Results) {
 fn second_section(page: &mut Page, results: &Results) {
     page.heading("Figures 8–13: a control horizon of 30 with N = 1 and N = 9, and all N up to 15");
     page.paragraph(
-        "(58) with N<sub>c</sub> = 30 gives a = 0.9672 for N = 1 and a = 0.7408 for N = 9. The paper shows both as if they flew alike. \
-         With its α = 1.2 the design with N = 1 is refused, because its closed loop is not stable; with the Riccati solution as \
-         terminal weight it flies, slowly. Refusals are in the tables.",
+        "(58) with N<sub>c</sub> = 30 gives a = 0.9672 for N = 1 and a = 0.7408 for N = 9. The paper shows similar flights for both. \
+         With its α = 1.2 the design with N = 1 is rejected, because its closed loop is unstable; with the Riccati solution as \
+         terminal weight it flies, slowly. The tables list rejected designs.",
     );
     for mission in Mission::ALL {
         page.subheading(title(mission));
@@ -53,7 +53,7 @@ fn second_section(page: &mut Page, results: &Results) {
 fn title(mission: Mission) -> &'static str {
     match mission {
         Mission::Smooth => "Smooth time law",
-        Mission::Step => "Step, large errors shortened by the governor (the cascade's default)",
+        Mission::Step => "Step with the governor, which limits large errors (the cascade's default)",
         Mission::BareStep => "Step without the governor: the controllers see the whole error",
     }
 }
@@ -102,7 +102,7 @@ fn table(page: &mut Page, flown: &[&FlightResult]) {
 fn row(result: &FlightResult) -> Vec<String> {
     let mut row = vec![result.controller.clone()];
     if let Some(refused) = &result.refused {
-        row.push(format!("refused: {refused}"));
+        row.push(format!("rejected: {refused}"));
         row.extend(std::iter::repeat_n(String::new(), 6));
         return row;
     }

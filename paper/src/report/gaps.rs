@@ -7,14 +7,14 @@ use crate::flights::Mission;
 use crate::results::Results;
 
 pub fn section(page: &mut Page, results: &Results) {
-    page.heading("What the paper does not fix, and our choice");
+    page.heading("What the paper leaves open, and our choice");
     let rows =
         |rows: &[[&str; 3]]| rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect::<Vec<_>>();
     page.text_table(&["what", "our choice", "why"], &rows(&CHOICES));
     page.heading("Deviations and misprints");
     page.text_table(&["where", "printed", "here"], &rows(&MISPRINTS));
     page.heading("Where Laguerre MPC loses");
-    page.paragraph("Numbers of this run.");
+    page.paragraph("Figures from this run.");
     page.text_table(&["what", "number"], &losses(results));
 }
 
@@ -34,7 +34,7 @@ const CHOICES: [[&str; 3]; 11] = [
     [
         "prediction horizon N<sub>p</sub>",
         "100 with α = 1.2; 60 (altitude, attitude) and 150 (position) with the terminal weight",
-        "with α = 1.2 the weight has died out long before; the others cost least on steps under limits",
+        "with α = 1.2 the weight is negligible long before the end; the others cost least on steps under limits",
     ],
     [
         "time law of the flight",
@@ -46,7 +46,7 @@ const CHOICES: [[&str; 3]; 11] = [
         "NED: (5, 5, 10) is z = −10",
         "in (3) gravity enters w with a plus and the thrust with a minus",
     ],
-    ["heading", "from 0 to 0.5 rad", "the paper plots ψ and gives no goal"],
+    ["heading", "from 0 to 0.5 rad", "the paper plots ψ but gives no goal"],
     [
         "rotor constants k₁, k₂",
         "2.7·10⁻⁵ N·s² and 6.0·10⁻⁷ N·m·s²",
@@ -59,14 +59,14 @@ const CHOICES: [[&str; 3]; 11] = [
     ],
     [
         "limits of the controllers",
-        "tilt 0.6 rad (commands 0.36), 2 rad/s; thrust 0.6 to 2 weights; 8 m/s, 4 up, 3 down; torques as the rotors have them",
-        "the paper claims constraints and names none",
+        "tilt 0.6 rad (commands 0.36), 2 rad/s; thrust 0.6 to 2 weights; 8 m/s, 4 up, 3 down; torques as the rotors allow",
+        "the paper mentions constraints but gives no values",
     ],
     ["α in the literal recipe", "λ = 1, weights transformed", "see below"],
     [
         "state-space MPC's horizon and noise covariances",
         "N<sub>p</sub> as LMPC; in flight the regulator's cost as terminal weight and a disturbance estimate",
-        "(34) ends with the horizon: for yaw with N<sub>p</sub> = 60 that loop is not stable",
+        "(34) ends with the horizon: for yaw with N<sub>p</sub> = 60 that loop is unstable",
     ],
 ];
 
@@ -128,12 +128,12 @@ fn losses(results: &Results) -> Vec<Vec<String>> {
     };
     let mut rows = vec![
         ["One coefficient is far too few: cost above the optimum with N = 1".to_owned(), of("LMPC, N = 1,", terminal)],
-        ["Three are not enough".to_owned(), of("LMPC, N = 3,", terminal)],
-        ["With five, the default".to_owned(), of("LMPC, N = 5,", terminal)],
-        ["With seven; on both axes at once more than on each".to_owned(), of("LMPC, N = 7,", terminal)],
+        ["Three coefficients are not enough".to_owned(), of("LMPC, N = 3,", terminal)],
+        ["Five, the default".to_owned(), of("LMPC, N = 5,", terminal)],
+        ["Seven; more on both axes at once than on each alone".to_owned(), of("LMPC, N = 7,", terminal)],
         ["Nine with the same a are not always better than seven".to_owned(), of("LMPC, N = 9,", terminal)],
         ["The paper's α = 1.2 and a = 0.8187 discount the future: N = 5".to_owned(), of("LMPC, N = 5,", "α = 1.2")],
-        ["… which more terms do not heal: N = 9".to_owned(), of("LMPC, N = 9,", "α = 1.2")],
+        ["… and more terms do not help: N = 9".to_owned(), of("LMPC, N = 9,", "α = 1.2")],
         [
             "State-space MPC with 50 moves and the same terminal weight: its worst step is better than that of any N here".to_owned(),
             weighted(50),
@@ -141,8 +141,8 @@ fn losses(results: &Results) -> Vec<Vec<String>> {
         ["… and with 25 moves, for some axes".to_owned(), weighted(25)],
     ];
     rows.push([
-        "Small steps need no MPC: clipped DLQR costs nothing above the optimum while no limit is active, and takes one row of \
-         multiplications; on large ones it leaves the limits of speed, at which a cost below the optimum is no gain"
+        "Small steps need no MPC: clipped DLQR is optimal while no limit is active, and takes one row of multiplications. On large \
+         steps it exceeds the speed limits, so that a cost below the optimum is no gain"
             .to_owned(),
         of("DLQR", "clipped"),
     ]);
@@ -191,7 +191,7 @@ fn flown_losses(results: &Results) -> Vec<[String; 2]> {
     let refused = results.flights.iter().find(|flight| flight.refused.is_some());
     if let Some(refused) = refused {
         let reason = refused.refused.clone().unwrap_or_default();
-        rows.push([format!("Refused: {}", refused.controller), reason]);
+        rows.push([format!("Rejected: {}", refused.controller), reason]);
     }
     let shown: Vec<String> = results
         .robustness

@@ -18,12 +18,12 @@ use crate::results::Results;
 
 /// report.html and its figures.
 pub fn report(results: &Results) -> Page {
-    let mut page = Page::new("The paper, computed again");
+    let mut page = Page::new("The paper, recomputed");
     page.paragraph(
         "M. Chipofya, D. J. Lee, K. T. Chong: <i>Trajectory Tracking and Stabilization of a Quadrotor Using Model \
-         Predictive Control of Laguerre Functions</i>, Abstract and Applied Analysis, 2015. Everything below is computed \
-         by this program in one run; <code>results.json</code> beside this page has the numbers. Times are of this run \
-         on this machine, everything else is the same on every machine.",
+         Predictive Control of Laguerre Functions</i>, Abstract and Applied Analysis, 2015. This program computed everything below in \
+         one run; <code>results.json</code> beside this page has the numbers. Times depend on the machine, everything else is \
+         the same on every machine.",
     );
     published::tables(&mut page, results);
     published::eigenvalues(&mut page, results);

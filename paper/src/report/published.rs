@@ -10,7 +10,7 @@ const FIGURE_TERMS: usize = 5;
 const CONTROLLERS: [&str; 3] = ["altitude", "position", "attitude"];
 
 pub fn tables(page: &mut Page, results: &Results) {
-    page.heading("Tables 2 and 3: the scaling factor that a control horizon asks for");
+    page.heading("Tables 2 and 3: the scaling factor for a control horizon");
     page.paragraph("(58): a ≈ e<sup>−N/N<sub>c</sub></sup>. All printed digits agree.");
     scale_table(page, "Table 2: N = 5", &results.table2);
     scale_table(page, "Table 3: a control horizon of 30", &results.table3);
@@ -51,7 +51,7 @@ pub fn eigenvalues(page: &mut Page, results: &Results) {
     page.figures(vec![sweep_figure(results)]);
     if results.figure4.len() < 3 * 15 {
         page.paragraph(
-            "Missing rows: with so few terms the closed loop is not stable, and the design is refused.",
+            "Missing rows: with so few terms the closed loop is unstable, and the design is rejected.",
         );
     }
     let rows: Vec<Vec<String>> = results
@@ -105,7 +105,7 @@ fn sweep_figure(results: &Results) -> Figure {
     ];
     Figure {
         name: "figure4-sweep".to_owned(),
-        caption: "Figure 4 for N = 1 … 15: LMPC goes to DLQR as N grows; exponential weighting keeps Ω well conditioned."
+        caption: "Figure 4 for N = 1 … 15: LMPC converges to DLQR as N grows; exponential weighting keeps Ω well conditioned."
             .to_owned(),
         svg: line_chart("sweep", "Eigenvalues and conditioning over N", 2, [480.0, 320.0], &panels),
     }

@@ -6,7 +6,7 @@ use crate::figures::{COLOURS, Figure, HeatMap, Line, Panel, heat_maps, line_char
 /// Range of the colours, %.
 const RANGE: [f64; 2] = [0.01, 100.0];
 const UNIT: &str = "cost above the optimum, %, worst step of the axis";
-const EMPTY: &str = "refused: not stable";
+const EMPTY: &str = "rejected: unstable";
 
 fn of<'a>(trade_off: &'a TradeOff, axis: &Axis, grid: &'a str) -> impl Iterator<Item = &'a ExcessCost> {
     let name = axis.name;

@@ -3,38 +3,62 @@
 use lmpc::DesignError;
 use thiserror::Error;
 
+use crate::{Quantity, ValueRange};
+
 /// Why a configuration was refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ConfigurationError {
     /// A value is outside its range.
-    #[error("{name} = {value} is outside [{minimum}, {maximum}]")]
+    #[error("{name} = {}; allowed {range}", range.quantity(*value))]
     OutOfRange {
         /// Public name of the parameter.
         name: &'static str,
         /// Given value.
         value: f64,
-        /// Smallest allowed value.
-        minimum: f64,
-        /// Largest allowed value.
-        maximum: f64,
+        /// Allowed values.
+        range: ValueRange,
+    },
+    /// The rotors cannot carry the vehicle with thrust to spare for control.
+    #[error(
+        "{} kg is too heavy: these rotors carry {} kg; raise airframe.rotor.speed_max",
+        mass_kg,
+        libm::floor(carried_kg * 100.0) / 100.0
+    )]
+    TooHeavy {
+        /// airframe.mass.
+        mass_kg: f64,
+        /// Mass that four fifths of the rotors' thrust carry.
+        carried_kg: f64,
+    },
+    /// The idle rotors already lift the vehicle: it could not descend.
+    #[error(
+        "{} kg is too light: these rotors carry {} kg when idle; lower airframe.rotor.speed_min",
+        mass_kg,
+        libm::ceil(idle_kg * 100.0) / 100.0
+    )]
+    TooLight {
+        /// airframe.mass.
+        mass_kg: f64,
+        /// Mass that the rotors carry at their lowest speed.
+        idle_kg: f64,
     },
     /// Two values do not fit together.
-    #[error("{name} = {value} must be {relation} {other} = {other_value}")]
+    #[error("{name} = {value} must be {relation} {limit}: {reason}")]
     Inconsistent {
         /// Public name of the parameter.
         name: &'static str,
         /// Its value.
-        value: f64,
+        value: Quantity,
         /// "below", "at most", …
         relation: &'static str,
         /// What it is compared with.
-        other: &'static str,
-        /// The other value.
-        other_value: f64,
+        limit: Quantity,
+        /// Where the limit comes from.
+        reason: &'static str,
     },
     /// A controller or the Kalman predictor cannot be designed.
-    #[error("the {part} cannot be designed: {source}")]
+    #[error("cannot design the {part}: {source}")]
     Design {
         /// What, for a person: "altitude controller", "Kalman predictor", …
         part: &'static str,
@@ -47,6 +71,17 @@ pub enum ConfigurationError {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// The flight would start below the ground, which would throw the vehicle up.
+    #[error(
+        "initial.position.z = {z_m} m is below the ground (z points down); with environment.ground_plane = true and this \
+         initial attitude, allowed up to {greatest_m:.3} m"
+    )]
+    BelowGround {
+        /// Initial position down, m.
+        z_m: f64,
+        /// Greatest allowed value, at which the lowest foot touches the ground, m.
+        greatest_m: f64,
+    },
     /// A function that this build was made without.
     #[error("{name} = true needs the cargo feature \"shaper\"")]
     Unavailable {
@@ -55,16 +90,16 @@ pub enum ConfigurationError {
     },
     /// The measurement in which a control loop should take its vehicle over is not finite, or its quaternion is far from a
     /// unit one.
-    #[error("the first measurement is not finite, or has no attitude")]
+    #[error("the first measurement is not finite or has no valid attitude")]
     Measurement,
     /// A saved state that no flight with this configuration can have been in.
-    #[error("the saved state is none of this flight: {reason}")]
+    #[error("the saved state does not belong to this flight: {reason}")]
     State {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// A parameter that is fixed during the flight would change.
-    #[error("{name} is fixed during the flight")]
+    /// A parameter that describes the start of the flight would change.
+    #[error("{name} is fixed for the whole flight: a change takes effect at the next start")]
     Fixed {
         /// Public name of the parameter.
         name: &'static str,

@@ -3,5 +3,7 @@
 pub(crate) mod error;
 pub(crate) mod parameter;
 pub(crate) mod parameters;
+pub(crate) mod quantity;
 pub(crate) mod settings;
+pub(crate) mod unit;
 pub(crate) mod validation;

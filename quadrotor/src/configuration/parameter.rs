@@ -1,45 +1,6 @@
 //! A number or switch of a [`Configuration`], by its public name.
 
-use crate::{Configuration, ConfigurationError};
-
-/// Unit of a parameter or output, SI.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Dimensionless.
-    One,
-    /// kg
-    Kilogram,
-    /// m
-    Metre,
-    /// s
-    Second,
-    /// rad
-    Radian,
-    /// N
-    Newton,
-    /// N·m
-    NewtonMetre,
-    /// m/s
-    MetrePerSecond,
-    /// m/s²
-    MetrePerSecondSquared,
-    /// m/s³
-    MetrePerSecondCubed,
-    /// rad/s
-    RadianPerSecond,
-    /// rad/s²
-    RadianPerSecondSquared,
-    /// rad/s³
-    RadianPerSecondCubed,
-    /// kg·m²
-    KilogramSquareMetre,
-    /// N·s²
-    NewtonSecondSquared,
-    /// N·m·s²
-    NewtonMetreSecondSquared,
-    /// N·s/m
-    NewtonSecondPerMetre,
-}
+use crate::{Configuration, ConfigurationError, Unit, ValueRange};
 
 /// One parameter of a [`Configuration`].
 #[derive(Clone, Copy, Debug)]
@@ -50,10 +11,22 @@ pub struct Parameter {
     pub description: &'static str,
     /// Unit of its value.
     pub unit: Unit,
-    /// Whether it may change during the flight; else it is fixed at the start.
-    pub tunable: bool,
+    /// When a change takes effect.
+    pub mutability: Mutability,
     /// Its type, range and place in the configuration.
     pub access: Access,
+}
+
+/// When a changed value of a parameter takes effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mutability {
+    /// At the next sample: a number that the controllers, the shaper or the sensors read. FMI: tunable.
+    Tunable,
+    /// At the next sample: it changes the structure of the controllers or the vehicle itself, and the flight is handed over
+    /// ([`ControlLoop::hand_over`](crate::ControlLoop::hand_over)). FMI: fixed, because an importer may rely on the structure.
+    Structural,
+    /// At the next start: it describes how a flight begins. FMI: fixed.
+    Start,
 }
 
 /// Type, range and place of a parameter.
@@ -136,11 +109,11 @@ impl Parameter {
             // Only items can be stored.
             Access::Enumeration { .. } | Access::Boolean { .. } => return Ok(()),
         };
-        // NaN is in no range.
-        if (minimum..=maximum).contains(&value) {
+        let range = ValueRange { minimum, maximum, unit: self.unit.symbol() };
+        if range.contains(value) {
             Ok(())
         } else {
-            Err(ConfigurationError::OutOfRange { name: self.name, value, minimum, maximum })
+            Err(ConfigurationError::OutOfRange { name: self.name, value, range })
         }
     }
 }

@@ -2,17 +2,18 @@
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
 use crate::ControllerKind;
-use crate::configuration::parameter::{Access, Choice, Parameter, Unit};
+use crate::configuration::parameter::{Access, Choice, Mutability, Parameter};
+use crate::configuration::unit::Unit;
 use crate::design::capacities::{MOST_MOVES, MOST_TERMS};
 
 /// A real parameter: name, unit, variability, range, place and description.
 macro_rules! real {
-    ($name:literal, $unit:ident, $tunable:ident, $minimum:literal..=$maximum:literal, $($field:tt).+ $([$index:literal])?, $description:literal) => {
+    ($name:literal, $unit:ident, $mutability:ident, $minimum:literal..=$maximum:literal, $($field:tt).+ $([$index:literal])?, $description:literal) => {
         Parameter {
             name: $name,
             description: $description,
             unit: Unit::$unit,
-            tunable: $tunable,
+            mutability: $mutability,
             access: Access::Real {
                 minimum: $minimum,
                 maximum: $maximum,
@@ -29,7 +30,7 @@ macro_rules! integer {
             name: $name,
             description: $description,
             unit: Unit::One,
-            tunable: FIXED,
+            mutability: STRUCTURAL,
             access: Access::Integer {
                 minimum: $minimum,
                 maximum: $maximum as i32,
@@ -41,12 +42,12 @@ macro_rules! integer {
 }
 
 macro_rules! boolean {
-    ($name:literal, $($field:tt).+, $description:literal) => {
+    ($name:literal, $mutability:ident, $($field:tt).+, $description:literal) => {
         Parameter {
             name: $name,
             description: $description,
             unit: Unit::One,
-            tunable: FIXED,
+            mutability: $mutability,
             access: Access::Boolean {
                 get: |configuration| configuration.$($field).+,
                 set: |configuration, value| configuration.$($field).+ = value,
@@ -62,7 +63,7 @@ macro_rules! sample_time {
             name: $name,
             description: $description,
             unit: Unit::Second,
-            tunable: FIXED,
+            mutability: STRUCTURAL,
             access: Access::Real {
                 minimum: 0.001,
                 maximum: 1.0,
@@ -82,52 +83,53 @@ const CONTROLLER_KINDS: [ControllerKind; 3] =
 
 static CONTROLLER_KIND: Choice = Choice {
     name: "ControllerKind",
-    description: "Which controller flies",
+    description: "Controller in use",
     items: &[
         ("lmpc", "Laguerre MPC under limits"),
-        ("ssmpc", "State-space MPC under the same limits, with a Kalman predictor"),
-        ("dlqr", "Linear-quadratic regulator with integral action"),
+        ("ssmpc", "State-space MPC under limits, with a Kalman predictor"),
+        ("dlqr", "Discrete linear-quadratic regulator with integral action"),
     ],
 };
 
-const FIXED: bool = false;
-const TUNABLE: bool = true;
+const TUNABLE: Mutability = Mutability::Tunable;
+const STRUCTURAL: Mutability = Mutability::Structural;
+const START: Mutability = Mutability::Start;
 
 /// All parameters, in the order in which they are documented.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static PARAMETERS: &[Parameter] = &[
-    real!("airframe.mass", Kilogram, FIXED, 0.05..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
-    real!("airframe.arm_length", Metre, FIXED, 0.02..=5.0, airframe.arm_length_m, "Arm length l from the centre of mass to each rotor (Table 1)"),
-    real!("airframe.inertia.x", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[0], "Moment of inertia J_x about the forward axis (Table 1)"),
-    real!("airframe.inertia.y", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[1], "Moment of inertia J_y about the right axis (Table 1)"),
-    real!("airframe.inertia.z", KilogramSquareMetre, FIXED, 1e-6..=100.0, airframe.inertia_kg_m2[2], "Moment of inertia J_z about the down axis (Table 1)"),
-    real!("airframe.rotor.thrust_coefficient", NewtonSecondSquared, FIXED, 1e-9..=0.1, airframe.thrust_coefficient_n_s2, "k1 of (1): thrust of a rotor is k1 times its squared speed"),
-    real!("airframe.rotor.torque_coefficient", NewtonMetreSecondSquared, FIXED, 1e-11..=0.01, airframe.torque_coefficient_n_m_s2, "k2 of (1): drag torque of a rotor is k2 times its squared speed"),
-    real!("airframe.rotor.speed_min", RadianPerSecond, FIXED, 0.0..=5000.0, airframe.rotor_speed_min_rad_s, "Lowest rotor speed while armed"),
-    real!("airframe.rotor.speed_max", RadianPerSecond, FIXED, 1.0..=10000.0, airframe.rotor_speed_max_rad_s, "Highest rotor speed"),
-    real!("airframe.rotor.time_constant", Second, FIXED, 0.002..=1.0, airframe.rotor_time_constant_s, "Time constant of the first-order rotor lag"),
-    real!("airframe.drag.x", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[0], "Linear drag along north"),
-    real!("airframe.drag.y", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[1], "Linear drag along east"),
-    real!("airframe.drag.z", NewtonSecondPerMetre, FIXED, 0.0..=10.0, airframe.drag_n_s_m[2], "Linear drag along down"),
-    boolean!("environment.ground_plane", environment.ground_plane, "Whether there is ground at z = 0"),
-    real!("initial.position.x", Metre, FIXED, -1e6..=1e6, initial.position_m[0], "Initial position north"),
-    real!("initial.position.y", Metre, FIXED, -1e6..=1e6, initial.position_m[1], "Initial position east"),
-    real!("initial.position.z", Metre, FIXED, -1e6..=1e6, initial.position_m[2], "Initial position down"),
-    real!("initial.velocity.x", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[0], "Initial velocity north"),
-    real!("initial.velocity.y", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[1], "Initial velocity east"),
-    real!("initial.velocity.z", MetrePerSecond, FIXED, -100.0..=100.0, initial.velocity_m_s[2], "Initial velocity down"),
-    real!("initial.attitude.phi", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[0], "Initial roll angle"),
-    real!("initial.attitude.theta", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[1], "Initial pitch angle"),
-    real!("initial.attitude.psi", Radian, FIXED, -6.3..=6.3, initial.attitude_rad[2], "Initial heading"),
-    real!("initial.body_rate.p", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[0], "Initial roll rate"),
-    real!("initial.body_rate.q", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[1], "Initial pitch rate"),
-    real!("initial.body_rate.r", RadianPerSecond, FIXED, -50.0..=50.0, initial.body_rate_rad_s[2], "Initial yaw rate"),
-    boolean!("reference.shaping", reference.shaping, "Whether the reference is a goal approached on a jerk-limited profile (true) or a trajectory point that goes straight to the controllers (false)"),
+    real!("airframe.mass", Kilogram, STRUCTURAL, 0.05..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
+    real!("airframe.arm_length", Metre, STRUCTURAL, 0.02..=5.0, airframe.arm_length_m, "Arm length l from the centre of mass to each rotor (Table 1)"),
+    real!("airframe.inertia.x", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[0], "Moment of inertia J_x about the forward axis (Table 1)"),
+    real!("airframe.inertia.y", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[1], "Moment of inertia J_y about the right axis (Table 1)"),
+    real!("airframe.inertia.z", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[2], "Moment of inertia J_z about the down axis (Table 1)"),
+    real!("airframe.rotor.thrust_coefficient", NewtonSecondSquared, STRUCTURAL, 1e-9..=0.1, airframe.thrust_coefficient_n_s2, "k1 of (1): thrust of a rotor is k1 times its squared speed"),
+    real!("airframe.rotor.torque_coefficient", NewtonMetreSecondSquared, STRUCTURAL, 1e-11..=0.01, airframe.torque_coefficient_n_m_s2, "k2 of (1): drag torque of a rotor is k2 times its squared speed"),
+    real!("airframe.rotor.speed_min", RadianPerSecond, STRUCTURAL, 0.0..=5000.0, airframe.rotor_speed_min_rad_s, "Lowest rotor speed while armed"),
+    real!("airframe.rotor.speed_max", RadianPerSecond, STRUCTURAL, 1.0..=10000.0, airframe.rotor_speed_max_rad_s, "Highest rotor speed"),
+    real!("airframe.rotor.time_constant", Second, STRUCTURAL, 0.002..=1.0, airframe.rotor_time_constant_s, "Time constant of the first-order rotor lag"),
+    real!("airframe.drag.x", NewtonSecondPerMetre, STRUCTURAL, 0.0..=10.0, airframe.drag_n_s_m[0], "Linear drag along north"),
+    real!("airframe.drag.y", NewtonSecondPerMetre, STRUCTURAL, 0.0..=10.0, airframe.drag_n_s_m[1], "Linear drag along east"),
+    real!("airframe.drag.z", NewtonSecondPerMetre, STRUCTURAL, 0.0..=10.0, airframe.drag_n_s_m[2], "Linear drag along down"),
+    boolean!("environment.ground_plane", START, environment.ground_plane, "Whether there is a ground plane at z = 0; the flight must then start above it"),
+    real!("initial.position.x", Metre, START, -1e6..=1e6, initial.position_m[0], "Initial position north"),
+    real!("initial.position.y", Metre, START, -1e6..=1e6, initial.position_m[1], "Initial position east"),
+    real!("initial.position.z", Metre, START, -1e6..=1e6, initial.position_m[2], "Initial position down"),
+    real!("initial.velocity.x", MetrePerSecond, START, -100.0..=100.0, initial.velocity_m_s[0], "Initial velocity north"),
+    real!("initial.velocity.y", MetrePerSecond, START, -100.0..=100.0, initial.velocity_m_s[1], "Initial velocity east"),
+    real!("initial.velocity.z", MetrePerSecond, START, -100.0..=100.0, initial.velocity_m_s[2], "Initial velocity down"),
+    real!("initial.attitude.phi", Radian, START, -6.3..=6.3, initial.attitude_rad[0], "Initial roll angle"),
+    real!("initial.attitude.theta", Radian, START, -6.3..=6.3, initial.attitude_rad[1], "Initial pitch angle"),
+    real!("initial.attitude.psi", Radian, START, -6.3..=6.3, initial.attitude_rad[2], "Initial heading"),
+    real!("initial.body_rate.p", RadianPerSecond, START, -50.0..=50.0, initial.body_rate_rad_s[0], "Initial roll rate"),
+    real!("initial.body_rate.q", RadianPerSecond, START, -50.0..=50.0, initial.body_rate_rad_s[1], "Initial pitch rate"),
+    real!("initial.body_rate.r", RadianPerSecond, START, -50.0..=50.0, initial.body_rate_rad_s[2], "Initial yaw rate"),
+    boolean!("reference.shaping", START, reference.shaping, "true: the reference is a goal, approached on a jerk-limited profile; false: it is a trajectory point, passed straight to the controllers"),
     Parameter {
         name: "controller.kind",
-        description: "Which controller flies: all are designed on the same models with the same weights",
+        description: "Controller: 1 = lmpc (Laguerre MPC), 2 = ssmpc (state-space MPC), 3 = dlqr (discrete linear-quadratic regulator), designed on the same models with the same weights",
         unit: Unit::One,
-        tunable: FIXED,
+        mutability: STRUCTURAL,
         access: Access::Enumeration {
             choice: &CONTROLLER_KIND,
             get: |configuration| (1..).zip(CONTROLLER_KINDS).find(|(_, kind)| *kind == configuration.controllers.kind).map_or(1, |(item, _)| item),
@@ -138,25 +140,25 @@ pub static PARAMETERS: &[Parameter] = &[
             },
         },
     },
-    boolean!("controller.governor", controllers.governor, "Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can brake from the speed that it calls for"),
-    real!("controller.mass_factor", One, FIXED, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
+    boolean!("controller.governor", STRUCTURAL, controllers.governor, "Whether a distant set-point is moved closer for the position and altitude controllers, so that the vehicle can brake in time; without it large steps overshoot"),
+    real!("controller.mass_factor", One, STRUCTURAL, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
     integer!("controller.altitude.terms", 1..=MOST_TERMS, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
-    real!("controller.altitude.scale", One, FIXED, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
+    real!("controller.altitude.scale", One, STRUCTURAL, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
     integer!("controller.altitude.prediction_horizon", 1..=1000, controllers.altitude.prediction_horizon, "N_p: prediction horizon of the altitude controller, samples"),
-    integer!("controller.altitude.control_horizon", 1..=MOST_MOVES, controllers.altitude.control_horizon, "N_c: moves of the state-space MPC of the altitude controller"),
-    real!("controller.altitude.alpha", One, FIXED, 1.0..=2.0, controllers.altitude.alpha, "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"),
-    real!("controller.altitude.lambda", One, FIXED, 0.5..=1.0, controllers.altitude.lambda, "lambda: degree of stability of the altitude controller"),
+    integer!("controller.altitude.control_horizon", 1..=MOST_MOVES, controllers.altitude.control_horizon, "N_c: control moves of the altitude controller's state-space MPC"),
+    real!("controller.altitude.alpha", One, STRUCTURAL, 1.0..=2.0, controllers.altitude.alpha, "alpha: exponential data weighting of the altitude controller; 1 selects the Riccati terminal weight"),
+    real!("controller.altitude.lambda", One, STRUCTURAL, 0.5..=1.0, controllers.altitude.lambda, "lambda: degree of stability of the altitude controller"),
     real!("controller.altitude.output_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.output_weight[0], "Q: weight of the altitude error"),
     real!("controller.altitude.rate_weight", One, TUNABLE, 0.0..=1e9, controllers.altitude.rate_weight[0], "Q: weight of the increment of the vertical velocity"),
     real!("controller.altitude.increment_weight", One, TUNABLE, 1e-9..=1e9, controllers.altitude.increment_weight[0], "R: weight of the increment of the vertical acceleration G"),
     sample_time!("controller.position.sample_time", position, "Sample time of the position controller"),
     integer!("controller.position.terms", 1..=MOST_TERMS, controllers.position.terms, "N: Laguerre terms of the position controller, per input"),
-    real!("controller.position.scale", One, FIXED, 0.0..=0.99, controllers.position.scale, "a: Laguerre scaling factor of the position controller"),
+    real!("controller.position.scale", One, STRUCTURAL, 0.0..=0.99, controllers.position.scale, "a: Laguerre scaling factor of the position controller"),
     integer!("controller.position.prediction_horizon", 1..=1000, controllers.position.prediction_horizon, "N_p: prediction horizon of the position controller, samples"),
-    integer!("controller.position.control_horizon", 1..=MOST_MOVES, controllers.position.control_horizon, "N_c: moves of the state-space MPC of the position controller, per input"),
-    real!("controller.position.alpha", One, FIXED, 1.0..=2.0, controllers.position.alpha, "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"),
-    real!("controller.position.lambda", One, FIXED, 0.5..=1.0, controllers.position.lambda, "lambda: degree of stability of the position controller"),
+    integer!("controller.position.control_horizon", 1..=MOST_MOVES, controllers.position.control_horizon, "N_c: control moves of the position controller's state-space MPC, per input"),
+    real!("controller.position.alpha", One, STRUCTURAL, 1.0..=2.0, controllers.position.alpha, "alpha: exponential data weighting of the position controller; 1 selects the Riccati terminal weight"),
+    real!("controller.position.lambda", One, STRUCTURAL, 0.5..=1.0, controllers.position.lambda, "lambda: degree of stability of the position controller"),
     real!("controller.position.output_weight.x", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[0], "Q: weight of the error north"),
     real!("controller.position.output_weight.y", One, TUNABLE, 1e-9..=1e9, controllers.position.output_weight[1], "Q: weight of the error east"),
     real!("controller.position.rate_weight.x", One, TUNABLE, 0.0..=1e9, controllers.position.rate_weight[0], "Q: weight of the increment of the velocity north"),
@@ -165,11 +167,11 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("controller.position.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[1], "R: weight of the increment of the roll command, which moves east"),
     sample_time!("controller.attitude.sample_time", attitude, "Sample time of the attitude controller"),
     integer!("controller.attitude.terms", 1..=MOST_TERMS, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
-    real!("controller.attitude.scale", One, FIXED, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
+    real!("controller.attitude.scale", One, STRUCTURAL, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
     integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller, samples"),
-    integer!("controller.attitude.control_horizon", 1..=MOST_MOVES, controllers.attitude.control_horizon, "N_c: moves of the state-space MPC of the attitude controller, per input"),
-    real!("controller.attitude.alpha", One, FIXED, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
-    real!("controller.attitude.lambda", One, FIXED, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
+    integer!("controller.attitude.control_horizon", 1..=MOST_MOVES, controllers.attitude.control_horizon, "N_c: control moves of the attitude controller's state-space MPC, per input"),
+    real!("controller.attitude.alpha", One, STRUCTURAL, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
+    real!("controller.attitude.lambda", One, STRUCTURAL, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
     real!("controller.attitude.output_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[0], "Q: weight of the roll error"),
     real!("controller.attitude.output_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[1], "Q: weight of the pitch error"),
     real!("controller.attitude.output_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[2], "Q: weight of the heading error"),
@@ -179,11 +181,11 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque"),
     real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque"),
     real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque"),
-    real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; commands stay within 0.6 of it, the rest is for overshoot when torques saturate"),
+    real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; commands stay within 60 % of it, the rest is a margin for overshoot when torques saturate"),
     real!("limits.tilt_rate", RadianPerSecond, TUNABLE, 0.05..=20.0, limits.tilt_rate_rad_s, "Largest rate of the tilt command"),
     real!("limits.tilt_acceleration", RadianPerSecondSquared, TUNABLE, 0.1..=500.0, limits.tilt_acceleration_rad_s2, "Largest angular acceleration of the tilt command"),
-    real!("limits.thrust.min", One, TUNABLE, 0.0..=0.95, limits.thrust_min, "Smallest thrust that the altitude controller asks for, as a multiple of the weight"),
-    real!("limits.thrust.max", One, TUNABLE, 1.05..=10.0, limits.thrust_max, "Largest thrust that the altitude controller asks for, as a multiple of the weight; never more than four fifths of what the rotors can do"),
+    real!("limits.thrust.min", One, TUNABLE, 0.0..=0.95, limits.thrust_min, "Smallest thrust command of the altitude controller, as a multiple of the weight"),
+    real!("limits.thrust.max", One, TUNABLE, 1.05..=10.0, limits.thrust_max, "Largest thrust command of the altitude controller, as a multiple of the weight; never more than 80 % of the largest thrust of the rotors"),
     real!("limits.speed.horizontal", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_horizontal_m_s, "Largest horizontal speed of shaped references, and towards distant goals without shaping"),
     real!("limits.speed.up", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_up_m_s, "Largest climb rate of shaped references, and towards distant goals without shaping"),
     real!("limits.speed.down", MetrePerSecond, TUNABLE, 0.1..=50.0, limits.speed_down_m_s, "Largest sink rate of shaped references, and towards distant goals without shaping"),
@@ -194,10 +196,10 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("limits.yaw_rate", RadianPerSecond, TUNABLE, 0.01..=10.0, limits.yaw_rate_rad_s, "Largest rate of the heading reference, with and without shaping"),
     real!("limits.yaw_acceleration", RadianPerSecondSquared, TUNABLE, 0.01..=50.0, limits.yaw_acceleration_rad_s2, "Largest angular acceleration of the shaped heading reference"),
     real!("limits.yaw_jerk", RadianPerSecondCubed, TUNABLE, 0.01..=500.0, limits.yaw_jerk_rad_s3, "Largest angular jerk of the shaped heading reference"),
-    boolean!("sensor.output_feedback", sensors.output_feedback, "Whether position and attitude only are measured and a Kalman predictor estimates the rest (true), or the whole state is measured (false)"),
-    real!("sensor.position_noise", Metre, TUNABLE, 0.0..=10.0, sensors.position_noise_m, "Standard deviation of the measured position, per axis"),
-    real!("sensor.velocity_noise", MetrePerSecond, TUNABLE, 0.0..=10.0, sensors.velocity_noise_m_s, "Standard deviation of the measured velocity, per axis"),
-    real!("sensor.attitude_noise", Radian, TUNABLE, 0.0..=0.5, sensors.attitude_noise_rad, "Standard deviation of the measured attitude, per body axis"),
-    real!("sensor.body_rate_noise", RadianPerSecond, TUNABLE, 0.0..=10.0, sensors.body_rate_noise_rad_s, "Standard deviation of the measured body rates"),
-    integer!("sensor.seed", 0..=2147483647, sensors.seed, "Selects the sequence of measurement noise"),
+    boolean!("sensor.output_feedback", STRUCTURAL, sensors.output_feedback, "true: only position and attitude are measured, and a Kalman predictor estimates the rest; false: the whole state is measured"),
+    real!("sensor.position_noise", Metre, TUNABLE, 0.0..=10.0, sensors.position_noise_m, "Standard deviation of the position noise, per axis"),
+    real!("sensor.velocity_noise", MetrePerSecond, TUNABLE, 0.0..=10.0, sensors.velocity_noise_m_s, "Standard deviation of the velocity noise, per axis"),
+    real!("sensor.attitude_noise", Radian, TUNABLE, 0.0..=0.5, sensors.attitude_noise_rad, "Standard deviation of the attitude noise, per body axis"),
+    real!("sensor.body_rate_noise", RadianPerSecond, TUNABLE, 0.0..=10.0, sensors.body_rate_noise_rad_s, "Standard deviation of the body rate noise, per axis"),
+    integer!("sensor.seed", 0..=2147483647, sensors.seed, "Seed of the measurement noise"),
 ];

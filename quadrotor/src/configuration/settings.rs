@@ -189,6 +189,15 @@ impl Default for Controllers {
     }
 }
 
+impl Controllers {
+    /// Whether all controllers sample as often as others.
+    pub(crate) fn has_sample_times_of(&self, other: &Self) -> bool {
+        self.position.sample_time_us == other.position.sample_time_us
+            && self.altitude.sample_time_us == other.altitude.sample_time_us
+            && self.attitude.sample_time_us == other.attitude.sample_time_us
+    }
+}
+
 impl<const P: usize> ControllerSettings<P> {
     /// The same settings for another number of inputs.
     pub fn with_weights<const R: usize>(

@@ -1,7 +1,11 @@
 //! Checks on a configuration: every range, then what must fit together.
 
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
-use crate::{Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, PARAMETERS, Parameter};
+use crate::plant::ground::greatest_start_z_m;
+use crate::{
+    Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS, Parameter,
+    Quantity,
+};
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
@@ -13,26 +17,35 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     let airframe = &configuration.airframe;
     let limits = &configuration.limits;
     let (weakest, strongest) = airframe.thrust_range_n();
-    below(
-        ("airframe.rotor.speed_min", airframe.rotor_speed_min_rad_s),
-        ("airframe.rotor.speed_max", airframe.rotor_speed_max_rad_s),
-    )?;
+    let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
+    if slowest >= fastest {
+        return Err(ConfigurationError::Inconsistent {
+            name: "airframe.rotor.speed_min",
+            value: Quantity { value: slowest, unit: "rad/s" },
+            relation: "below",
+            limit: Quantity { value: fastest, unit: "rad/s" },
+            reason: "that is airframe.rotor.speed_max",
+        });
+    }
+    let mass_kg = airframe.mass_kg;
     let carried_kg = USABLE_THRUST_SHARE * strongest / GRAVITY_M_S2;
-    below(
-        ("airframe.mass", airframe.mass_kg),
-        ("the mass in kg that four fifths of the rotors' thrust carry", carried_kg),
-    )?;
-    below(
-        ("the mass in kg that four idle rotors carry", weakest / GRAVITY_M_S2),
-        ("airframe.mass", airframe.mass_kg),
-    )?;
-    below(
-        ("limits.acceleration.horizontal", limits.acceleration_horizontal_m_s2),
-        (
-            "the acceleration at the commanded tilt",
-            GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad),
-        ),
-    )?;
+    if mass_kg >= carried_kg {
+        return Err(ConfigurationError::TooHeavy { mass_kg, carried_kg });
+    }
+    let idle_kg = weakest / GRAVITY_M_S2;
+    if mass_kg <= idle_kg {
+        return Err(ConfigurationError::TooLight { mass_kg, idle_kg });
+    }
+    let leaning_m_s2 = GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad);
+    if limits.acceleration_horizontal_m_s2 >= leaning_m_s2 {
+        return Err(ConfigurationError::Inconsistent {
+            name: "limits.acceleration.horizontal",
+            value: Quantity { value: limits.acceleration_horizontal_m_s2, unit: "m/s^2" },
+            relation: "below",
+            limit: rounded_down(leaning_m_s2, "m/s^2"),
+            reason: "the commanded tilt gives no more; raise limits.tilt",
+        });
+    }
     // The roll and pitch torques in hover must be able to follow the tilt commands, at half their pace at least.
     let [jx, jy, _] = airframe.inertia_kg_m2;
     let [roll_n_m, pitch_n_m, _] = Mixer::new(airframe)?.largest_torques_n_m(airframe.weight_n() / 4.0);
@@ -41,13 +54,24 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     if limits.tilt_acceleration_rad_s2 > followed {
         return Err(ConfigurationError::Inconsistent {
             name: "limits.tilt_acceleration",
-            value: limits.tilt_acceleration_rad_s2,
+            value: Quantity { value: limits.tilt_acceleration_rad_s2, unit: "rad/s^2" },
             relation: "at most",
-            other: "twice the angular acceleration that the rotors give airframe.inertia in hover",
-            other_value: followed,
+            limit: rounded_down(followed, "rad/s^2"),
+            reason: "the rotors give airframe.inertia half of that in hover",
         });
     }
+    validate_start(configuration)?;
     validate_sample_times(&configuration.controllers)
+}
+
+/// A flight over ground starts above it, in the attitude that it starts with.
+fn validate_start(configuration: &Configuration) -> Result<(), ConfigurationError> {
+    if !configuration.environment.ground_plane {
+        return Ok(());
+    }
+    let [_, _, z_m] = configuration.initial.position_m;
+    let greatest_m = greatest_start_z_m(&configuration.airframe, &configuration.initial);
+    if z_m <= greatest_m { Ok(()) } else { Err(ConfigurationError::BelowGround { z_m, greatest_m }) }
 }
 
 /// The attitude controller is the inner one: it is the fastest.
@@ -60,39 +84,31 @@ fn validate_sample_times(controllers: &Controllers) -> Result<(), ConfigurationE
         if outer < inner {
             return Err(ConfigurationError::Inconsistent {
                 name,
-                value: outer,
+                value: Quantity { value: outer, unit: "s" },
                 relation: "at least",
-                other: "controller.attitude.sample_time",
-                other_value: inner,
+                limit: Quantity { value: inner, unit: "s" },
+                reason: "that is controller.attitude.sample_time",
             });
         }
     }
     Ok(())
 }
 
-/// Parameters that are fixed must not differ between the two.
-pub(crate) fn only_tunables_differ(
-    old: &Configuration,
-    new: &Configuration,
-) -> Result<(), ConfigurationError> {
+/// A limit with four significant digits that is allowed itself, or nearly.
+fn rounded_down(value: f64, unit: &'static str) -> Quantity {
+    let scale = libm::pow(10.0, 3.0 - libm::floor(libm::log10(value)));
+    Quantity { value: libm::floor(value * scale) / scale, unit }
+}
+
+/// What describes the start of a flight must not differ between two configurations of it.
+pub(crate) fn same_start(old: &Configuration, new: &Configuration) -> Result<(), ConfigurationError> {
     if old.airframe.layout != new.airframe.layout {
         return Err(ConfigurationError::Fixed { name: "airframe.layout" });
     }
-    for Parameter { name, tunable, access, .. } in PARAMETERS {
-        if !tunable && !access.same(old, new) {
+    for Parameter { name, mutability, access, .. } in PARAMETERS {
+        if *mutability == Mutability::Start && !access.same(old, new) {
             return Err(ConfigurationError::Fixed { name });
         }
     }
     Ok(())
-}
-
-fn below(
-    (name, value): (&'static str, f64),
-    (other, other_value): (&'static str, f64),
-) -> Result<(), ConfigurationError> {
-    if value < other_value {
-        Ok(())
-    } else {
-        Err(ConfigurationError::Inconsistent { name, value, relation: "below", other, other_value })
-    }
 }

@@ -43,7 +43,7 @@ impl AltitudeController {
         let limits = &configuration.limits;
         let period_s = configuration.controllers.altitude.sample_time_s();
         let measured = Vector2::new(seen.position_m.x, seen.velocity_m_s.x);
-        let [explained] = reference.increments_since(&self.reference, period_s).map(Vector2::from);
+        let [explained] = reference.increments_since(&self.reference).map(Vector2::from);
         let mut error = seen.position_m - reference.position;
         if configuration.controllers.governor {
             let governor = Governor {
@@ -72,5 +72,10 @@ impl AltitudeController {
         let applied = Vector1::new(wanted.x.clamp(range.0, range.1));
         self.controller.apply(&applied);
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
+    }
+
+    /// Expresses the acceleration that was applied last in other terms.
+    pub(crate) fn translate(&mut self, term: impl Fn(&Vector1<f64>) -> Vector1<f64>) {
+        self.controller.apply(&term(&self.controller.applied()));
     }
 }

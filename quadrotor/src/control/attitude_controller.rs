@@ -8,6 +8,7 @@ use crate::attitude::{attitude_error, turned};
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, proportional_rate};
 use crate::design::capacities::ATTITUDE_MANY;
+use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration, Limits};
 
 /// Share of the torque-limited angular acceleration that braking a large rotation counts on.
@@ -54,9 +55,9 @@ struct ReferenceRotation {
 }
 
 impl ReferenceRotation {
-    fn go_on(&mut self, rate_rad_s: &Vector3<f64>, sample_time_s: f64) {
-        let acceleration = (rate_rad_s - self.rate_rad_s) / sample_time_s;
-        let share = (sample_time_s / SMOOTHING_S).min(1.0);
+    fn go_on(&mut self, rate_rad_s: &Vector3<f64>, interval_s: f64) {
+        let acceleration = (rate_rad_s - self.rate_rad_s) / interval_s;
+        let share = (interval_s / SMOOTHING_S).min(1.0);
         self.acceleration_rad_s2 += (acceleration - self.acceleration_rad_s2) * share;
         self.rate_rad_s = *rate_rad_s;
     }
@@ -79,8 +80,8 @@ impl AttitudeController {
 
     /// One sample: torques in FRD, N·m, without the gyroscopic ones, and how they were found, from attitude,
     /// body rates, rad/s, and the estimated disturbing torque, N·m, and from the references, the rate in the
-    /// axes of the reference. `bounds` are those of the rotors' thrusts. Report what the rotors were asked for
-    /// in the end with [`AttitudeController::apply`].
+    /// axes of the reference. `bounds` are those of the rotors' thrusts, `interval_s` the time since the last sample.
+    /// Report what the rotors were asked for in the end with [`AttitudeController::apply`].
     pub(crate) fn step(
         &mut self,
         configuration: &Configuration,
@@ -88,6 +89,7 @@ impl AttitudeController {
         seen: &VehicleRotation,
         (reference, reference_rate_rad_s): (&UnitQuaternion<f64>, &Vector3<f64>),
         bounds: &[f64],
+        interval_s: f64,
     ) -> (Vector3<f64>, ControllerActivity) {
         let attitude = &seen.attitude;
         self.turn_with_the_body(attitude);
@@ -95,7 +97,7 @@ impl AttitudeController {
         let whole = attitude_error(reference, attitude);
         let error_rad = governed(design, &configuration.limits, &whole);
         let rate_error_rad_s = seen.body_rate_rad_s - to_body * reference_rate_rad_s;
-        self.reference.go_on(reference_rate_rad_s, configuration.controllers.attitude.sample_time_s());
+        self.reference.go_on(reference_rate_rad_s, interval_s);
         let law = &design.attitude;
         // A step of the reference's rate is motion of the error, which moves an incremental law at once.
         let input_reference = if law.is_incremental() {
@@ -134,6 +136,24 @@ impl AttitudeController {
         self.error_rad = turn * self.error_rad;
         self.rate_error_rad_s = turn * self.rate_error_rad_s;
         self.attitude = *attitude;
+    }
+
+    /// Goes on under another law of the same torque. An incremental law has the torque that its reference needs in its
+    /// feedback, the others beside it.
+    pub(crate) fn hand_over(&mut self, before: &CascadeDesign, after: &LoopDesign) {
+        let is_incremental = after.cascade.attitude.is_incremental();
+        if before.attitude.is_incremental() == is_incremental {
+            return;
+        }
+        let input_reference = if is_incremental {
+            Vector3::zeros()
+        } else {
+            // In the axes of the reference, which differ from the body's by the small error.
+            self.reference.acceleration_rad_s2.component_mul(&after.configuration.believed_inertia_kg_m2())
+        };
+        self.controller =
+            ControllerState::new(self.controller.measured(), self.controller.applied(), input_reference);
+        self.integral_n_m = Vector3::zeros();
     }
 
     /// Reports the torques, N·m, that the rotors were asked for.

@@ -7,13 +7,13 @@ use crate::attitude::{tilt_angles, turned};
 use crate::control::activity::Activity;
 use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
+use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
-use crate::design::controller_limits::{
-    COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE, attitude_bounds, largest_tilt,
-};
+use crate::design::controller_limits::{COMMANDED_TILT_SHARE, attitude_bounds, largest_tilt, thrust_range_n};
+use crate::design::loop_design::LoopDesign;
+use crate::guidance::heading::Heading;
 use crate::guidance::ramp::Ramp;
-use crate::guidance::reference_guidance::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{
@@ -36,6 +36,22 @@ pub struct Cascade {
     vertical: Ramp<1>,
     tilt_reference_rad: [f64; 2],
     activity: Activity,
+    sampled: LatestSamples,
+}
+
+/// When each controller sampled last, µs; `None` since it took over.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+struct LatestSamples {
+    position_us: Option<u64>,
+    altitude_us: Option<u64>,
+    attitude_us: Option<u64>,
+}
+
+/// Time since the latest sample, s, and notes the present one. The first one counts as a whole sample time.
+fn interval_s(latest_us: &mut Option<u64>, time_us: u64, period_us: u64) -> f64 {
+    let since_us = latest_us.replace(time_us);
+    let elapsed_us = since_us.map_or(period_us, |since_us| time_us.saturating_sub(since_us));
+    elapsed_us as f64 / 1e6
 }
 
 impl Cascade {
@@ -49,6 +65,7 @@ impl Cascade {
             vertical: Ramp::still(time_us),
             tilt_reference_rad: [0.0; 2],
             activity: Activity::default(),
+            sampled: LatestSamples::default(),
         }
     }
 
@@ -62,11 +79,22 @@ impl Cascade {
         self.tilt_reference_rad
     }
 
+    /// Goes on from the commands of one design under another one, without a step of thrust or torques.
+    pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
+        if let Some(belief) =
+            MassBelief::changed(&before.configuration.controllers, &after.configuration.controllers)
+        {
+            self.horizontal = self.horizontal.map(|acceleration| belief.horizontal(acceleration));
+            self.vertical = self.vertical.map(|acceleration| belief.vertical(acceleration));
+            self.position.translate(|acceleration| belief.horizontal(acceleration));
+            self.altitude.translate(|acceleration| belief.vertical(acceleration));
+        }
+        self.attitude.hand_over(&before.cascade, after);
+    }
+
     /// The acceleration that is commanded at `time_us`, NED, m/s².
-    pub(crate) fn acceleration_m_s2(&self, configuration: &Configuration, time_us: u64) -> Vector3<f64> {
-        let controllers = &configuration.controllers;
-        let horizontal = self.horizontal.at(time_us, controllers.position.sample_time_us);
-        let vertical = self.vertical.at(time_us, controllers.altitude.sample_time_us);
+    pub(crate) fn acceleration_m_s2(&self, time_us: u64) -> Vector3<f64> {
+        let (horizontal, vertical) = (self.horizontal.at(time_us), self.vertical.at(time_us));
         Vector3::new(horizontal.x, horizontal.y, vertical.x)
     }
 
@@ -80,13 +108,14 @@ impl Cascade {
         time_us: u64,
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
-        let vertical = self.vertical.at(time_us, configuration.controllers.altitude.sample_time_us).x;
+        let vertical = self.vertical.at(time_us).x;
         let reference = &setpoint.reference;
         let motion = ReferenceMotion {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
             acceleration_ahead: setpoint.acceleration_ahead_m_s2.xy(),
+            interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
         };
         let limits = &configuration.limits;
         let before = self.horizontal;
@@ -124,6 +153,7 @@ impl Cascade {
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
             acceleration_ahead: axis(&setpoint.acceleration_ahead_m_s2),
+            interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
         let (to, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
@@ -142,21 +172,17 @@ impl Cascade {
     ) -> [f64; 4] {
         let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
-        let controllers = &configuration.controllers;
-        let (position_us, altitude_us) =
-            (controllers.position.sample_time_us, controllers.altitude.sample_time_us);
-        let now = (self.horizontal.at(time_us, position_us), self.vertical.at(time_us, altitude_us).x);
+        let now = (self.horizontal.at(time_us), self.vertical.at(time_us).x);
         let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, now);
         self.tilt_reference_rad = tilt;
         let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
         let next_us = time_us + period_us;
-        let ahead =
-            (self.horizontal.ahead(next_us, position_us), self.vertical.ahead(next_us, altitude_us).x);
+        let ahead = (self.horizontal.ahead(next_us), self.vertical.ahead(next_us).x);
         let (_, next) = attitude_reference(configuration, next_yaw_rad, ahead);
         let rate = turned(&reference, &next) / period_s;
 
         let thrust_n = thrust(configuration, now.1, upright(&seen.body));
-        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n)
+        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n, time_us)
     }
 
     /// A sample of the attitude controller alone, for an attitude and a thrust from outside.
@@ -166,11 +192,12 @@ impl Cascade {
         design: &CascadeDesign,
         seen: &Observation,
         target: &AttitudeTarget,
+        time_us: u64,
     ) -> [f64; 4] {
         let (phi, theta, _) = target.attitude.euler_angles();
         self.tilt_reference_rad = [phi, theta];
         let reference = (&target.attitude, &target.body_rate_rad_s);
-        self.command_rotors(configuration, design, seen, reference, target.thrust_n)
+        self.command_rotors(configuration, design, seen, reference, target.thrust_n, time_us)
     }
 
     /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N.
@@ -181,7 +208,9 @@ impl Cascade {
         seen: &Observation,
         reference: (&UnitQuaternion<f64>, &Vector3<f64>),
         thrust_n: f64,
+        time_us: u64,
     ) -> [f64; 4] {
+        let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
         let body = &seen.body;
         let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
@@ -191,6 +220,7 @@ impl Cascade {
             &seen.rotation(),
             reference,
             &attitude_bounds(&configuration.airframe, &design.mixer, thrust_n, &gyroscopic),
+            interval_s(&mut self.sampled.attitude_us, time_us, period_us),
         );
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
@@ -229,15 +259,6 @@ fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vecto
     let limit = libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0);
     let norm = wanted.norm();
     if norm > limit { wanted * (limit / norm) } else { wanted }
-}
-
-/// Smallest and largest thrust to ask for, N.
-fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
-    let limits = &configuration.limits;
-    let weight = configuration.airframe.weight_n();
-    let (weakest, strongest) = configuration.airframe.thrust_range_n();
-    let least = (limits.thrust_min * weight).max(weakest);
-    (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

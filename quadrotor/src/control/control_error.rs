@@ -15,13 +15,13 @@ pub enum ControlError {
         time_us: u64,
     },
     /// A measurement is not finite, or its quaternion is far from a unit one.
-    #[error("the measurement at {time_us} µs is not finite, or has no attitude")]
+    #[error("the measurement at {time_us} µs is not finite or has no valid attitude")]
     Measurement {
         /// When.
         time_us: u64,
     },
     /// There is no such rotor to be lost.
-    #[error("lost_rotor = {rotor} is outside [0, 3]")]
+    #[error("lost_rotor = {rotor}; allowed 0–3")]
     NoSuchRotor {
         /// Index asked for.
         rotor: usize,

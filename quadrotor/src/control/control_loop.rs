@@ -35,6 +35,12 @@ pub struct ControlLoop {
     state: ControlState,
 }
 
+/// Controllers for another configuration of a flight, ready to take over: see [`ControlLoop::prepare`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreparedDesign {
+    design: LoopDesign,
+}
+
 impl ControlLoop {
     /// A loop that takes over a vehicle at `time_us`.
     ///
@@ -89,14 +95,37 @@ impl ControlLoop {
         Ok(())
     }
 
-    /// Changes tunable parameters during the flight and redesigns the controllers that depend on them. Incremental
-    /// controllers go on from the input that they applied last, without a bump.
+    /// Designs the controllers for another configuration beside the running ones, which go on. Hand the result over with
+    /// [`ControlLoop::hand_over`]. A design takes milliseconds: a program that controls in real time can prepare it in
+    /// another thread, on a clone of the loop.
     ///
     /// # Errors
-    /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`ControlLoop::new`]; nothing has changed
-    /// then.
+    /// [`ConfigurationError::Fixed`] when a parameter that describes the start differs ([`Mutability::Start`](crate::Mutability)),
+    /// and those of [`ControlLoop::new`].
+    pub fn prepare(&self, configuration: &Configuration) -> Result<PreparedDesign, ConfigurationError> {
+        Ok(PreparedDesign { design: self.design.changed(configuration)? })
+    }
+
+    /// Goes on under a prepared design from its next sample on. It neither designs nor allocates.
+    ///
+    /// What is known of the flight stays: the reference, the estimated motion, the disturbances that were found and the
+    /// input that was applied last, so that the new controllers go on from the thrust and the torques of the old ones. A
+    /// controller whose sample time changes keeps the instant at which it would have sampled next, and the new sample
+    /// time counts from there, in both directions: a shorter one takes effect before that instant.
+    pub fn hand_over(&mut self, prepared: PreparedDesign) {
+        self.state.hand_over(&self.design, &prepared.design);
+        self.design = prepared.design;
+    }
+
+    /// Changes parameters during the flight: [`ControlLoop::prepare`], then [`ControlLoop::hand_over`]. Only the
+    /// controllers that depend on them are designed anew.
+    ///
+    /// # Errors
+    /// Those of [`ControlLoop::prepare`]; nothing has changed then.
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        self.design.reconfigure(configuration)
+        let prepared = self.prepare(configuration)?;
+        self.hand_over(prepared);
+        Ok(())
     }
 
     /// Whether it can fly without this rotor.

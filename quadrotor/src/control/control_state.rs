@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::control::cascade::Cascade;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::{Command, Estimator};
-use crate::control::instants::{LATEST_US, is_instant, next_instant_us, ticks};
+use crate::control::instants::{Clocks, LATEST_US, Phases};
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
-    Activity, Configuration, ConfigurationError, ControlError, ControllerKind, Measurement,
-    PositionReference, RigidBody,
+    Activity, Configuration, ConfigurationError, ControlError, Controllers, Measurement, PositionReference,
+    RigidBody,
 };
 
 /// Everything that changes in a control loop, and all there is of it to save and restore.
@@ -20,6 +20,7 @@ use crate::{
 pub struct ControlState {
     /// The next instant at which it samples, µs.
     next_us: u64,
+    phases: Phases,
     armed: bool,
     /// The law that flew last.
     law: ControlLaw,
@@ -58,9 +59,10 @@ impl ControlState {
         if !(start.is_possible() && first.is_possible()) {
             return Err(ConfigurationError::Measurement);
         }
-        let at_once = is_instant(&configuration.controllers, time_us);
+        let phases = Phases::default();
         Ok(Self {
-            next_us: if at_once { time_us } else { next_instant_us(&configuration.controllers, time_us) },
+            next_us: phases.clocks(&configuration.controllers).first_instant_us(time_us),
+            phases,
             armed: inputs.armed,
             law: inputs.target.law(),
             engage: false,
@@ -73,12 +75,37 @@ impl ControlState {
 
     /// Whether a loop can have been in this state: saved states may come from anywhere.
     pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        if self.next_us > LATEST_US || !is_instant(&configuration.controllers, self.next_us) {
+        let controllers = &configuration.controllers;
+        if self.next_us > LATEST_US
+            || !self.phases.fit(controllers)
+            || !self.clocks(controllers).is_instant(self.next_us)
+        {
             return Err(ConfigurationError::State {
                 reason: "its controllers do not sample when they would",
             });
         }
         Ok(())
+    }
+
+    fn clocks(&self, controllers: &Controllers) -> Clocks {
+        self.phases.clocks(controllers)
+    }
+
+    /// Goes on from one design under another one: with the estimates, the disturbances that were found, and the commands.
+    /// The change takes effect at the next instant.
+    pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
+        let controllers = &after.configuration.controllers;
+        if self.armed {
+            self.cascade.hand_over(before, after);
+            self.estimator.hand_over(before, after);
+        }
+        // Nothing is under way on the ground that a phase would be kept for.
+        self.phases = if self.armed {
+            self.phases.for_sample_times(&before.configuration.controllers, controllers, self.next_us)
+        } else {
+            Phases::default()
+        };
+        self.next_us = self.clocks(controllers).first_instant_us(self.next_us);
     }
 
     /// The next instant at which it samples, µs.
@@ -138,7 +165,7 @@ impl ControlState {
         if next.armed {
             next.control(design, &inputs.target, instruments, time_us)?;
         }
-        next.next_us = next_instant_us(&design.configuration.controllers, time_us);
+        next.next_us = self.clocks(&design.configuration.controllers).next_instant_us(time_us);
         *self = next;
         Ok(())
     }
@@ -181,11 +208,11 @@ impl ControlState {
         time_us: u64,
     ) -> Result<(), ControlError> {
         let configuration = &design.configuration;
-        let controllers = &configuration.controllers;
+        let clocks = self.clocks(&configuration.controllers);
         let due = Due {
-            position: ticks(time_us, controllers.position.sample_time_us),
-            altitude: ticks(time_us, controllers.altitude.sample_time_us),
-            attitude: ticks(time_us, controllers.attitude.sample_time_us),
+            position: clocks.position.ticks(time_us),
+            altitude: clocks.altitude.ticks(time_us),
+            attitude: clocks.attitude.ticks(time_us),
         };
         if !(due.position || due.altitude || due.attitude) {
             return Ok(());
@@ -197,8 +224,13 @@ impl ControlState {
             // Only the attitude controller's clock counts for the other laws.
             _ if !due.attitude => return Ok(()),
             Target::Attitude(target) => {
-                self.rotor_command_rad_s =
-                    self.cascade.sample_attitude_target(configuration, &design.cascade, &seen, target);
+                self.rotor_command_rad_s = self.cascade.sample_attitude_target(
+                    configuration,
+                    &design.cascade,
+                    &seen,
+                    target,
+                    time_us,
+                );
             }
             Target::WithoutRotor { lost, reference } => {
                 let law = design.rotor_loss.of(*lost)?;
@@ -244,17 +276,14 @@ impl ControlState {
         }
     }
 
-    /// Takes the estimate on to the next sample of the attitude controller, if somebody asks for it.
+    /// Takes the estimate on to the next sample of the attitude controller. It runs beside controllers that do not ask for
+    /// it, too, so that those which do can take over in flight.
     fn predict(&mut self, design: &LoopDesign, seen: &Observation, time_us: u64) {
         let configuration = &design.configuration;
-        let controllers = &configuration.controllers;
-        if !configuration.sensors.output_feedback && controllers.kind == ControllerKind::Dlqr {
-            return;
-        }
         let acceleration_m_s2 =
-            (self.law == ControlLaw::Cascade).then(|| self.cascade.acceleration_m_s2(configuration, time_us));
+            (self.law == ControlLaw::Cascade).then(|| self.cascade.acceleration_m_s2(time_us));
         let command = Command { acceleration_m_s2, rotor_speed_rad_s: self.rotor_command_rad_s };
-        let times = (time_us, controllers.attitude.sample_time_us);
+        let times = (time_us, configuration.controllers.attitude.sample_time_us);
         self.estimator.predict(configuration, &design.cascade.estimator, &seen.measured, &command, times);
     }
 }

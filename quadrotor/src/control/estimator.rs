@@ -4,7 +4,9 @@ use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::turned;
+use crate::control::mass_belief::MassBelief;
 use crate::design::estimator_design::EstimatorDesign;
+use crate::design::loop_design::LoopDesign;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// Time over which the vehicle's falling short of its commands is averaged, s.
@@ -82,6 +84,19 @@ impl Estimator {
         self.disturbance_rad_s2
     }
 
+    /// Goes on under another design, for an unchanged vehicle: a thrust that is believed to accelerate more, or less, leaves the
+    /// less, or more, to the disturbance.
+    pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
+        let (configuration, controllers) = (&before.configuration, &after.configuration.controllers);
+        let Some(belief) = MassBelief::changed(&configuration.controllers, controllers) else { return };
+        let thrust_n = wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n;
+        let thrust = self.body.rotation() * Vector3::z() * (thrust_n / configuration.believed_mass_kg());
+        self.disturbance_m_s2 -= belief.growth_under(&thrust);
+        self.disturbance_rad_s2 = belief.difference(&self.disturbance_rad_s2);
+        self.shortfall_m_s2 = belief.difference(&self.shortfall_m_s2);
+        self.answer_z_m_s2 = belief.vertical(&Vector1::new(self.answer_z_m_s2)).x;
+    }
+
     /// On to the next sample: from what was measured at this one and what is commanded until then.
     pub(crate) fn predict(
         &mut self,
@@ -91,6 +106,8 @@ impl Estimator {
         command: &Command,
         (time_us, period_us): (u64, u64),
     ) {
+        // A sample time that has changed moves the sample away from the time that was predicted for.
+        self.body = self.body_at(time_us);
         let believed = configuration.controllers.mass_factor;
         let airframe = &configuration.airframe;
         let before = self.rotor_speed_rad_s;

@@ -1,5 +1,7 @@
 //! When a control loop samples.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Controllers;
 
 /// From one look at the inputs to the next, µs: arming, for one, does not wait for a controller's sample.
@@ -8,29 +10,144 @@ const INPUT_PERIOD_US: u64 = 1_000;
 /// The latest time that a saved state may have, µs: nine thousand years, so that what is added to it does not overflow.
 pub(crate) const LATEST_US: u64 = u64::MAX / 64;
 
-/// Whether a clock of `period_us` ticks at `time_us`.
-pub(crate) fn ticks(time_us: u64, period_us: u64) -> bool {
-    time_us.is_multiple_of(period_us)
+/// Instants at `phase_us`, and every `period_us` from there on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Clock {
+    period_us: u64,
+    /// Below the period.
+    phase_us: u64,
 }
 
-/// Whether the loop samples at `time_us`.
-pub(crate) fn is_instant(controllers: &Controllers, time_us: u64) -> bool {
-    periods_us(controllers).into_iter().any(|period_us| ticks(time_us, period_us))
+impl Clock {
+    /// Whether it ticks at `time_us`.
+    pub(crate) fn ticks(&self, time_us: u64) -> bool {
+        time_us >= self.phase_us && (time_us - self.phase_us).is_multiple_of(self.period_us)
+    }
+
+    /// Its first tick after `time_us`.
+    fn next_us(&self, time_us: u64) -> u64 {
+        match time_us.checked_sub(self.phase_us) {
+            Some(since_us) => self.phase_us + (since_us / self.period_us + 1) * self.period_us,
+            None => self.phase_us,
+        }
+    }
+
+    /// Its first tick at `time_us` or later.
+    fn first_us(&self, time_us: u64) -> u64 {
+        if self.ticks(time_us) { time_us } else { self.next_us(time_us) }
+    }
+
+    /// The phase of a clock of another period that ticks when this one ticks first, at `time_us` or later.
+    fn phase_for(&self, period_us: u64, time_us: u64) -> u64 {
+        if period_us == self.period_us { self.phase_us } else { self.first_us(time_us) % period_us }
+    }
 }
 
-/// The first instant after `time_us`.
-pub(crate) fn next_instant_us(controllers: &Controllers, time_us: u64) -> u64 {
-    periods_us(controllers)
-        .into_iter()
-        .map(|period_us| (time_us / period_us + 1) * period_us)
-        .fold(u64::MAX, u64::min)
+/// Phases of the three controllers' clocks, µs: zero until a sample time changes in flight.
+///
+/// A controller whose sample time changes keeps the instant at which it would have sampled next, for which its command and the
+/// estimate are meant. The new sample time counts from there, in both directions: a shorter one takes effect before that
+/// instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Phases {
+    position_us: u64,
+    altitude_us: u64,
+    attitude_us: u64,
 }
 
-fn periods_us(controllers: &Controllers) -> [u64; 4] {
-    [
-        INPUT_PERIOD_US,
-        controllers.position.sample_time_us,
-        controllers.altitude.sample_time_us,
-        controllers.attitude.sample_time_us,
-    ]
+/// The instants of a control loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Clocks {
+    pub(crate) position: Clock,
+    pub(crate) altitude: Clock,
+    pub(crate) attitude: Clock,
+}
+
+impl Phases {
+    /// Whether each phase lies within its sample time.
+    pub(crate) fn fit(&self, controllers: &Controllers) -> bool {
+        self.position_us < controllers.position.sample_time_us
+            && self.altitude_us < controllers.altitude.sample_time_us
+            && self.attitude_us < controllers.attitude.sample_time_us
+    }
+
+    /// The clocks of these sample times.
+    pub(crate) fn clocks(&self, controllers: &Controllers) -> Clocks {
+        Clocks {
+            position: Clock { period_us: controllers.position.sample_time_us, phase_us: self.position_us },
+            altitude: Clock { period_us: controllers.altitude.sample_time_us, phase_us: self.altitude_us },
+            attitude: Clock { period_us: controllers.attitude.sample_time_us, phase_us: self.attitude_us },
+        }
+    }
+
+    /// Phases for other sample times, from `time_us` on.
+    pub(crate) fn for_sample_times(&self, before: &Controllers, after: &Controllers, time_us: u64) -> Self {
+        let clocks = self.clocks(before);
+        Self {
+            position_us: clocks.position.phase_for(after.position.sample_time_us, time_us),
+            altitude_us: clocks.altitude.phase_for(after.altitude.sample_time_us, time_us),
+            attitude_us: clocks.attitude.phase_for(after.attitude.sample_time_us, time_us),
+        }
+    }
+}
+
+impl Clocks {
+    fn all(&self) -> [Clock; 4] {
+        let inputs = Clock { period_us: INPUT_PERIOD_US, phase_us: 0 };
+        [inputs, self.position, self.altitude, self.attitude]
+    }
+
+    /// Whether the loop samples at `time_us`.
+    pub(crate) fn is_instant(&self, time_us: u64) -> bool {
+        self.all().iter().any(|clock| clock.ticks(time_us))
+    }
+
+    /// The first instant after `time_us`.
+    pub(crate) fn next_instant_us(&self, time_us: u64) -> u64 {
+        self.all().iter().map(|clock| clock.next_us(time_us)).fold(u64::MAX, u64::min)
+    }
+
+    /// The first instant at `time_us` or later.
+    pub(crate) fn first_instant_us(&self, time_us: u64) -> u64 {
+        self.all().iter().map(|clock| clock.first_us(time_us)).fold(u64::MAX, u64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Phases;
+    use crate::Controllers;
+
+    fn with_attitude(sample_time_us: u64) -> Controllers {
+        let mut controllers = Controllers::default();
+        controllers.attitude.sample_time_us = sample_time_us;
+        controllers
+    }
+
+    fn instants(phases: &Phases, controllers: &Controllers, from_us: u64, to_us: u64) -> [u64; 2] {
+        let mut ticks =
+            (from_us..to_us).filter(|time_us| phases.clocks(controllers).attitude.ticks(*time_us));
+        [ticks.next().unwrap_or(0), ticks.next().unwrap_or(0)]
+    }
+
+    /// At 1.003 s the attitude controller was to sample next at 1.010 s.
+    #[test]
+    fn another_sample_time_counts_from_the_next_planned_instant() {
+        let before = Controllers::default();
+        let start = Phases::default();
+        for (sample_time_us, expected) in [
+            (10_000, [1_010_000, 1_020_000]),
+            (14_000, [1_010_000, 1_024_000]),
+            // Shorter: at once, so that it meets the planned instant.
+            (3_000, [1_004_000, 1_007_000]),
+        ] {
+            let after = with_attitude(sample_time_us);
+            let phases = start.for_sample_times(&before, &after, 1_003_000);
+            assert!(phases.fit(&after));
+            assert_eq!(instants(&phases, &after, 1_003_000, 1_100_000), expected, "{sample_time_us} µs");
+            // And back again, from an instant at which it samples.
+            let back = phases.for_sample_times(&after, &before, expected[1]);
+            assert_eq!(instants(&back, &before, expected[1], 1_100_000)[0], expected[1]);
+        }
+    }
 }

@@ -50,7 +50,7 @@ impl PositionController {
         let limits = &configuration.limits;
         let period_s = configuration.controllers.position.sample_time_s();
         let measured = interleaved(&seen.position_m, &seen.velocity_m_s);
-        let [x, y] = reference.increments_since(&self.reference, period_s);
+        let [x, y] = reference.increments_since(&self.reference);
         let explained = Vector4::new(x[0], x[1], y[0], y[1]);
         let mut error = seen.position_m - reference.position;
         if configuration.controllers.governor {
@@ -79,6 +79,12 @@ impl PositionController {
         let applied = limited(wanted);
         self.controller.apply(&tilt_of(&applied));
         (applied, ControllerActivity::of(&step, &wanted, &applied))
+    }
+
+    /// Expresses the acceleration that was applied last in other terms.
+    pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
+        let applied = acceleration_of(&self.controller.applied());
+        self.controller.apply(&tilt_of(&term(&applied)));
     }
 }
 

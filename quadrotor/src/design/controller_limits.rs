@@ -10,7 +10,7 @@ use crate::design::capacities::{
     ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
 };
 use crate::design::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
-use crate::{Airframe, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
+use crate::{Airframe, Configuration, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -137,4 +137,13 @@ pub(crate) fn attitude_bounds(
 /// The largest tilt as |a|/g when the thrust axis may lean by `tilt_rad` under the vertical acceleration G.
 pub(crate) fn largest_tilt(tilt_rad: f64, vertical_m_s2: f64) -> f64 {
     libm::tan(tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0) / GRAVITY_M_S2
+}
+
+/// Smallest and largest thrust that the altitude controller asks for, N.
+pub(crate) fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
+    let limits = &configuration.limits;
+    let weight = configuration.airframe.weight_n();
+    let (weakest, strongest) = configuration.airframe.thrust_range_n();
+    let least = (limits.thrust_min * weight).max(weakest);
+    (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
 }

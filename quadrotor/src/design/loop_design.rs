@@ -1,6 +1,6 @@
 //! Everything that a control loop computes before it flies.
 
-use crate::configuration::validation::only_tunables_differ;
+use crate::configuration::validation::same_start;
 use crate::design::cascade_design::CascadeDesign;
 use crate::design::rotor_loss_design::RotorLossDesign;
 use crate::{Configuration, ConfigurationError};
@@ -26,15 +26,19 @@ impl LoopDesign {
         })
     }
 
-    /// Takes in changed tunable parameters.
+    /// The design for another configuration of the same flight. What does not depend on the change is taken over from this one.
     ///
     /// # Errors
-    /// [`ConfigurationError::Fixed`] when another parameter differs, and those of [`CascadeDesign::new`]; nothing has
-    /// changed then.
-    pub(crate) fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        only_tunables_differ(&self.configuration, configuration)?;
-        self.cascade.redesign(&self.configuration, configuration)?;
-        self.configuration = *configuration;
-        Ok(())
+    /// [`ConfigurationError::Fixed`] when a parameter of the start differs, and those of [`CascadeDesign::new`].
+    pub(crate) fn changed(&self, configuration: &Configuration) -> Result<Self, ConfigurationError> {
+        same_start(&self.configuration, configuration)?;
+        let mut cascade = self.cascade.clone();
+        cascade.redesign(&self.configuration, configuration)?;
+        let rotor_loss = if RotorLossDesign::is_same(&self.configuration, configuration) {
+            self.rotor_loss.clone()
+        } else {
+            RotorLossDesign::new(configuration)
+        };
+        Ok(Self { configuration: *configuration, cascade, rotor_loss })
     }
 }

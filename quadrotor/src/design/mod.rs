@@ -9,3 +9,4 @@ pub(crate) mod linear_models;
 pub(crate) mod loop_design;
 pub(crate) mod reduced_attitude;
 pub(crate) mod rotor_loss_design;
+pub(crate) mod side_force;

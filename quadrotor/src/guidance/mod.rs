@@ -1,6 +1,9 @@
 //! From what the vehicle is asked for to the set-points that the controllers track.
 
 pub(crate) mod attitude_target;
+pub(crate) mod heading;
+#[cfg(feature = "shaper")]
+pub(crate) mod heading_shaper;
 #[cfg(feature = "shaper")]
 pub(crate) mod motion_profile;
 pub(crate) mod position_reference;
@@ -10,3 +13,5 @@ pub(crate) mod reference_motion;
 pub(crate) mod setpoint;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
+#[cfg(feature = "shaper")]
+pub(crate) mod state_to_state;

@@ -59,6 +59,33 @@ impl MotionProfile {
         }
     }
 
+    /// When the last piece begins, s: from then on the velocity stays as it is.
+    pub fn duration_s(&self) -> f64 {
+        self.last().0
+    }
+
+    /// The motion at the beginning of the last piece.
+    pub fn end(&self) -> Motion {
+        self.last().1
+    }
+
+    /// The lowest velocity on the way.
+    pub fn lowest_velocity(&self) -> f64 {
+        let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);
+        let within = used.iter().zip(used.iter().skip(1)).flat_map(|((start_s, motion), (end_s, _))| {
+            let duration_s = end_s - start_s;
+            // Where the acceleration passes zero.
+            let turn_s = -motion.acceleration / motion.jerk;
+            let turns = (turn_s > 0.0 && turn_s < duration_s).then(|| motion.after(turn_s).velocity);
+            [Some(motion.velocity), turns].into_iter().flatten()
+        });
+        within.fold(self.end().velocity, f64::min)
+    }
+
+    fn last(&self) -> &(f64, Motion) {
+        self.pieces.get(..self.count).and_then(<[_]>::last).unwrap_or(&self.pieces[0])
+    }
+
     /// The motion at `time_s` ≥ 0 after the start.
     pub fn at(&self, time_s: f64) -> Motion {
         let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);

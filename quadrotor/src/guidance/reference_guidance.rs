@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
+use crate::guidance::heading::Heading;
 use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
 use crate::guidance::shaper::Shaper;
@@ -28,15 +29,6 @@ pub struct Direct {
     jerk_m_s3: Vector3<f64>,
     time_us: u64,
     yaw_time_us: u64,
-}
-
-/// Heading ψ, rad, and its rate, rad/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heading {
-    /// ψ, rad.
-    pub yaw_rad: f64,
-    /// Its rate, rad/s.
-    pub yaw_rate_rad_s: f64,
 }
 
 #[cfg_attr(not(feature = "shaper"), allow(unused_variables, irrefutable_let_patterns))]
@@ -95,8 +87,7 @@ impl Guidance {
         if let Self::Direct(direct) = self {
             direct.sample_yaw(reference, limits, time_us);
         }
-        let PositionReference { yaw_rad, yaw_rate_rad_s, .. } = self.reference(time_us);
-        Heading { yaw_rad, yaw_rate_rad_s }
+        Heading::of(&self.reference(time_us))
     }
 
     /// What is tracked at `time_us`.

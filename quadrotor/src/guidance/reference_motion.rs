@@ -14,12 +14,14 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub acceleration: SVector<f64, AXES>,
     /// Acceleration when the command takes effect.
     pub acceleration_ahead: SVector<f64, AXES>,
+    /// Time since the previous sample, s.
+    pub interval_s: f64,
 }
 
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero = SVector::zeros();
-        Self { position: zero, velocity: zero, acceleration: zero, acceleration_ahead: zero }
+        Self { position: zero, velocity: zero, acceleration: zero, acceleration_ahead: zero, interval_s: 0.0 }
     }
 }
 
@@ -29,8 +31,8 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
     ///
     /// Hermite's rule, exact for constant jerk:
     /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
-    pub fn increments_since(&self, previous: &Self, sample_time_s: f64) -> [[f64; 2]; AXES] {
-        let t = sample_time_s;
+    pub fn increments_since(&self, previous: &Self) -> [[f64; 2]; AXES] {
+        let t = self.interval_s;
         core::array::from_fn(|axis| {
             let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
             let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);

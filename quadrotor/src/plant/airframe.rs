@@ -73,6 +73,11 @@ impl Airframe {
         libm::sqrt(self.weight_n() / (4.0 * self.thrust_coefficient_n_s2))
     }
 
+    /// Thrust in hover as a share of the largest thrust of the four rotors.
+    pub fn hover_thrust_share(&self) -> f64 {
+        self.weight_n() / self.thrust_range_n().1
+    }
+
     /// Smallest and largest thrust that the four rotors make together, N.
     pub fn thrust_range_n(&self) -> (f64, f64) {
         let thrust = |speed: f64| 4.0 * self.thrust_coefficient_n_s2 * speed * speed;

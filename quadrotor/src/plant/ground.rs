@@ -2,8 +2,9 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::plant::plant_state::PlantState;
 use crate::plant::rigid_body::{External, RigidBody};
-use crate::{Airframe, GRAVITY_M_S2};
+use crate::{Airframe, GRAVITY_M_S2, InitialState};
 
 /// Natural frequency of the vehicle on its four feet, rad/s: it rests 4 mm deep, and the integration
 /// step of 1 ms resolves the contact fifty times over.
@@ -14,6 +15,9 @@ const CONTACT_DAMPING_RATIO: f64 = 1.0;
 const FRICTION_COEFFICIENT: f64 = 0.7;
 /// Slip speed at which friction is fully developed, m/s; it keeps the equations smooth.
 const FRICTION_SLIP_M_S: f64 = 0.1;
+/// Deepest that a foot may start, m. A level vehicle at rest settles from here without leaving the ground, whatever its
+/// mass; from 3 cm on the contact would throw it up.
+const DEEPEST_START_M: f64 = 0.01;
 
 /// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one in place of each rotor, level with the
 /// centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
@@ -53,6 +57,15 @@ pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) ->
     let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
     let load_n: f64 = normals.iter().sum();
     normals.iter().all(|normal| *normal > 0.0) && demand_n <= FRICTION_COEFFICIENT * load_n
+}
+
+/// The greatest z, NED, m, from which a flight can start above the ground with this initial attitude: there the lowest foot
+/// touches the ground. In whole millimetres, so that what a message prints is allowed.
+pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) -> f64 {
+    let rotation = PlantState::at_rest(initial).body.rotation();
+    let lowest_foot_m =
+        feet(airframe).iter().map(|foot| (rotation * foot).z).fold(f64::NEG_INFINITY, f64::max);
+    libm::floor(1e3 * (DEEPEST_START_M - lowest_foot_m)) / 1e3
 }
 
 /// Whether no foot can touch the ground in any attitude.

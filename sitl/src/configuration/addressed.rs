@@ -1,5 +1,6 @@
 //! What is told for one vehicle of several: `ID:` in front of it names its system.
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -23,12 +24,34 @@ fn split(text: &str) -> Option<(u8, &str)> {
     id.parse().ok().map(|id| (id, rest)).filter(|_| !rest.is_empty())
 }
 
-impl FromStr for Addressed<PathBuf> {
-    type Err = String;
+impl Addressed<PathBuf> {
+    /// A path, with a system's id in front if it is for one system. Any path is one: it need not be text.
+    pub fn of_path(given: OsString) -> Self {
+        match given.to_str().map(split) {
+            Some(Some((id, file))) => Self { system_id: Some(id), value: file.into() },
+            Some(None) => Self { system_id: None, value: given.into() },
+            None => Self::of_bytes(given),
+        }
+    }
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (system_id, file) = split(text).map_or((None, text), |(id, file)| (Some(id), file));
-        Ok(Self { system_id, value: file.into() })
+    /// The same for a path that is not UTF-8.
+    #[cfg(unix)]
+    fn of_bytes(given: OsString) -> Self {
+        use std::os::unix::ffi::{OsStrExt, OsStringExt};
+        let bytes = given.as_bytes();
+        let end = bytes.iter().position(|byte| *byte == b':');
+        let own = end.and_then(|end| Some((bytes.get(..end)?, bytes.get(end + 1..)?)));
+        let own =
+            own.and_then(|(id, file)| Some((std::str::from_utf8(id).ok()?.parse().ok()?, file.to_vec())));
+        match own.filter(|(_, file)| !file.is_empty()) {
+            Some((id, file)) => Self { system_id: Some(id), value: OsString::from_vec(file).into() },
+            None => Self { system_id: None, value: given.into() },
+        }
+    }
+
+    #[cfg(not(unix))]
+    fn of_bytes(given: OsString) -> Self {
+        Self { system_id: None, value: given.into() }
     }
 }
 
@@ -57,7 +80,7 @@ impl<T> Addressed<T> {
             [first, .., last] => format!("{first} to {last}"),
             other => other.iter().map(u8::to_string).collect(),
         };
-        let reason = format!("`{id}:{value}`: there is no system {id}, only {there}");
+        let reason = format!("`{id}:{value}`: there is no system {id}; the systems of this run are {there}");
         Err(Failure::Value { name: name.to_owned(), reason })
     }
 }
@@ -68,6 +91,24 @@ mod tests {
 
     use super::{Addressed, ScheduledFault};
 
+    #[cfg(unix)]
+    #[test]
+    fn a_path_need_not_be_text() {
+        use std::ffi::OsString;
+        use std::os::unix::ffi::OsStringExt;
+        for (given, system_id, file) in [
+            (&b"h\xf6he.plan"[..], None, &b"h\xf6he.plan"[..]),
+            (b"3:h\xf6he", Some(3), b"h\xf6he"),
+            (b"x:\xff", None, b"x:\xff"),
+        ] {
+            let value = OsString::from_vec(file.to_vec()).into();
+            assert_eq!(
+                Addressed::of_path(OsString::from_vec(given.to_vec())),
+                Addressed { system_id, value }
+            );
+        }
+    }
+
     #[test]
     fn ids_are_told_from_drives_and_seconds() {
         for (text, system_id, file) in [
@@ -76,7 +117,10 @@ mod tests {
             ("C:flight.plan", None, "C:flight.plan"),
             ("300:flight.plan", None, "300:flight.plan"),
         ] {
-            assert_eq!(text.parse(), Ok(Addressed::<PathBuf> { system_id, value: file.into() }));
+            assert_eq!(
+                Addressed::of_path(text.into()),
+                Addressed::<PathBuf> { system_id, value: file.into() }
+            );
         }
         for (text, system_id, fault) in [
             ("12:rotor1=weak:0.5", None, "12:rotor1=weak:0.5"),

@@ -12,7 +12,7 @@ pub enum Conventions {
     /// ArduPilot's autopilot id, copter modes, parameter encoding (cast), and takeoff altitude above home
     #[value(name = "ardupilot")]
     ArduPilot,
-    /// No autopilot's id; the rest as PX4. QGroundControl offers no guided action then
+    /// Autopilot id "generic", the rest as PX4; QGroundControl then offers no guided actions
     Generic,
 }
 

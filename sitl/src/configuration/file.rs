@@ -6,6 +6,8 @@ use std::path::Path;
 use clap::{Arg, Command, CommandFactory, FromArgMatches};
 use toml::{Spanned, Value};
 
+use super::suggestion::nearest;
+use super::text_file::read_text;
 use super::{Arguments, mistake};
 use crate::failure::Failure;
 
@@ -14,8 +16,7 @@ use crate::failure::Failure;
 /// # Errors
 /// [`Failure::File`], or [`Failure::Content`] with the line that is wrong.
 pub fn read(path: &Path) -> Result<Arguments, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
-    parse(&text).map_err(|reason| Failure::Content { path: path.to_owned(), reason })
+    parse(&read_text(path)?).map_err(|reason| Failure::Content { path: path.to_owned(), reason })
 }
 
 fn parse(text: &str) -> Result<Arguments, String> {
@@ -40,7 +41,12 @@ fn parse(text: &str) -> Result<Arguments, String> {
 /// The arguments with one setting.
 fn setting(command: &mut Command, name: &str, value: &Value) -> Result<Arguments, String> {
     if !is_setting(command, name) {
-        return Err(format!("there is no setting `{name}`; they have the names of the flags in --help"));
+        let settings =
+            command.get_arguments().filter_map(Arg::get_long).filter(|flag| is_setting(command, flag));
+        return Err(match nearest(name, settings) {
+            Some(meant) => format!("unknown setting `{name}`; did you mean `{meant}`?"),
+            None => format!("unknown setting `{name}`; settings have the names of the flags, see --help"),
+        });
     }
     let several = match value {
         Value::Array(several) => several.as_slice(),
@@ -50,7 +56,12 @@ fn setting(command: &mut Command, name: &str, value: &Value) -> Result<Arguments
         let value = match value {
             Value::String(text) => text.clone(),
             Value::Integer(_) | Value::Float(_) | Value::Boolean(_) => value.to_string(),
-            other => return Err(format!("a {} is no value of a setting", other.type_str())),
+            other => {
+                return Err(format!(
+                    "a setting is a string, a number, true or false, or an array of them, not a {}",
+                    other.type_str()
+                ));
+            }
         };
         Ok(format!("--{name}={value}"))
     };
@@ -60,9 +71,10 @@ fn setting(command: &mut Command, name: &str, value: &Value) -> Result<Arguments
     matches.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| mistake::reason(&error))
 }
 
-/// Whether there is such a flag, and a file may have it.
+/// Whether it is a flag that a file may set.
 fn is_setting(command: &Command, name: &str) -> bool {
-    name != "config" && command.get_arguments().any(|argument| argument.get_long() == Some(name))
+    !["config", "help", "version"].contains(&name)
+        && command.get_arguments().any(|argument| argument.get_long() == Some(name))
 }
 
 #[cfg(test)]
@@ -72,7 +84,7 @@ mod tests {
 
     #[test]
     fn numbers_and_lists_read_as_a_person_writes_them() {
-        let text = "speed = 5\nwind = \"4,270\"\ngusts = 1.5\nlink = \"tcpin:5760\"\nset = [\"AF_MASS=1\", \"AF_DRAG_X=0.1\"]\n\
+        let text = "speed = 5\nwind = \"4,270\"\ngusts = 1.5\nlink = \"tcpin:5760\"\nset = [\"FRAME_MASS=1\", \"FRAME_DRAG_X=0.1\"]\n\
                     kalman = true\nseed = 7\nlog-dir = \"logs\"\n";
         let read = parse(text).expect("a file");
         let expected = Arguments {
@@ -80,7 +92,7 @@ mod tests {
             wind: Some("4,270".parse().expect("wind")),
             gusts: Some(1.5),
             link: Some(vec!["tcpin:5760".parse().expect("a link")]),
-            set: Some(vec!["AF_MASS=1".to_owned(), "AF_DRAG_X=0.1".to_owned()]),
+            set: Some(vec!["FRAME_MASS=1".to_owned(), "FRAME_DRAG_X=0.1".to_owned()]),
             kalman: Some(true),
             seed: Some(7),
             log_dir: Some("logs".into()),
@@ -94,17 +106,20 @@ mod tests {
     #[test]
     fn a_wrong_setting_is_named_with_its_line_value_and_range() {
         for (text, expected) in [
-            ("\nsystem-id = 0", "line 2, `system-id = 0`: `0` is no whole number within 1 to 250"),
-            ("vehicles = 0", "line 1, `vehicles = 0`: `0` is no whole number within 1 to 250"),
-            ("instance = 300", "line 1, `instance = 300`: `300` is no whole number within 0 to 200"),
-            ("gusts = 99", "line 1, `gusts = 99`: `99` is no number within 0 to 10"),
-            ("duration = nan", "line 1, `duration = nan`: `nan` is no number within 0 to 1000000000"),
-            ("log-count = 0.5", "`0.5` is no whole number within 1 to 10000"),
-            ("ports = \"mine\"", "line 1, `ports = \"mine\"`: `mine` is none of own, shared"),
-            ("speeed = 1", "line 1, `speeed = 1`: there is no setting `speeed`"),
-            ("config = \"other.toml\"", "there is no setting `config`"),
-            ("[airframe]\nmass = 1", "line 1, `[airframe]`: there is no setting `airframe`"),
-            ("speed = { x = 1 }", "a table is no value of a setting"),
+            ("\nsystem-id = 0", "line 2, `system-id = 0`: `0` is not a whole number from 1 to 250"),
+            ("vehicles = 0", "line 1, `vehicles = 0`: `0` is not a whole number from 1 to 250"),
+            ("instance = 300", "line 1, `instance = 300`: `300` is not a whole number from 0 to 200"),
+            ("gusts = 99", "line 1, `gusts = 99`: `99` is not a number from 0 to 10"),
+            ("duration = nan", "line 1, `duration = nan`: `nan` is not a number from 0 to 1000000000"),
+            ("log-count = 0.5", "`0.5` is not a whole number from 1 to 10000"),
+            ("ports = \"mine\"", "line 1, `ports = \"mine\"`: must be own or shared, not `mine`"),
+            ("speeed = 1", "line 1, `speeed = 1`: unknown setting `speeed`; did you mean `speed`?"),
+            ("config = \"other.toml\"", "unknown setting `config`"),
+            (
+                "[airframe]\nmass = 1",
+                "line 1, `[airframe]`: unknown setting `airframe`; settings have the names of the flags",
+            ),
+            ("speed = { x = 1 }", "or an array of them, not a table"),
             ("speed = [1, 2]", "--speed"),
             ("speed = = 3", "line 1, `speed = = 3`: "),
             ("a\n", "line 1, `a`: "),

@@ -60,7 +60,7 @@ impl FromStr for Formation {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
-                "`{text}` is no formation: line, grid or circle[,SPACING] with {LEAST_SPACING_M} to \
+                "invalid formation `{text}`; use line, grid or circle, optionally with ,SPACING: {LEAST_SPACING_M} to \
                  {MOST_SPACING_M} m between neighbours"
             )
         };

@@ -20,31 +20,34 @@ impl HilSettings {
             ("ports", arguments.ports.is_some()),
             ("formation", arguments.formation.is_some()),
             ("clocks", arguments.clocks.is_some()),
+            ("lockstep", arguments.lockstep.is_some()),
             ("link", arguments.link.is_some()),
             ("record", arguments.record.is_some()),
+            ("record-size", arguments.record_size.is_some()),
             ("tlog", arguments.tlog.is_some()),
             ("sensors", arguments.sensors.is_some()),
             ("noise", arguments.noise.is_some()),
             ("kalman", arguments.kalman.is_some()),
             ("fault", arguments.fault.is_some()),
             ("mission", arguments.mission.is_some()),
+            ("autostart", arguments.autostart.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
         ] {
             if given {
                 return Err(wrong(
                     name,
-                    "does not go with --hil: only the plant is ours then, the autopilot is another program"
+                    "does not go with --hil, which only simulates the plant for another program's autopilot"
                         .into(),
                 ));
             }
         }
         let speed = arguments.speed.unwrap_or(Speed::Factor(1.0));
         if speed == Speed::Paused {
-            return Err(wrong("speed", "0 does not go with --hil: nobody could end the pause".into()));
+            return Err(wrong("speed", "0 does not go with --hil: nothing could end the pause".into()));
         }
         let link = format!("tcpin:{address}").parse::<LinkSpecification>();
         let Ok(Endpoint::TcpIn { host, port }) = link.map(|link| link.endpoint) else {
-            return Err(wrong("hil", format!("`{address}` is not [HOST:]PORT")));
+            return Err(wrong("hil", format!("invalid address `{address}`; use [HOST:]PORT")));
         };
         let (vehicle, note) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
         Ok(Self {

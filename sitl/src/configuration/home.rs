@@ -28,8 +28,8 @@ impl FromStr for HomePosition {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
-                "`{text}` is no place: LAT,LON,ALT[,HEADING] in degrees and metres, latitude within 85, longitude \
-                 within 180, altitude within -1000 to 10000, heading within 360"
+                "invalid place `{text}`; use LAT,LON,ALT[,HEADING]: latitude -85 to 85 and longitude -180 to 180 degrees, \
+                 altitude -1000 to 10000 m, heading -360 to 360 degrees"
             )
         };
         let numbers = numbers(text).ok_or_else(wrong)?;

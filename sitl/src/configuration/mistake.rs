@@ -20,7 +20,7 @@ pub fn reason(error: &clap::Error) -> String {
         return source.to_string();
     }
     if let (Some(given), Some(allowed)) = (text(error, ContextKind::InvalidValue), choices(error)) {
-        return format!("`{given}` is none of {allowed}");
+        return format!("must be {allowed}, not `{given}`");
     }
     // The rest is said in lines of which those about the whole usage help nobody.
     let rendered = error.render().to_string();
@@ -43,9 +43,17 @@ fn choices(error: &clap::Error) -> Option<String> {
     let given = text(error, ContextKind::InvalidValue).filter(|given| !given.is_empty());
     match error.get(ContextKind::ValidValue) {
         Some(ContextValue::Strings(choices)) if given.is_some() && !choices.is_empty() => {
-            Some(choices.join(", "))
+            Some(alternatives(choices))
         }
         _ => None,
+    }
+}
+
+/// `a, b or c`
+fn alternatives(choices: &[String]) -> String {
+    match choices {
+        [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        other => other.concat(),
     }
 }
 
@@ -58,8 +66,9 @@ fn text(error: &clap::Error, kind: ContextKind) -> Option<&str> {
 
 /// A flag as its user knows it: what is not on the command line came from the environment.
 fn where_set(flag: &str) -> String {
-    let on_command_line = std::env::args().any(|argument| {
-        argument.strip_prefix(flag).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+    let on_command_line = std::env::args_os().any(|argument| {
+        let rest = argument.as_encoded_bytes().strip_prefix(flag.as_bytes());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(b"="))
     });
     if on_command_line {
         return flag.to_owned();

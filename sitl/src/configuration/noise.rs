@@ -56,8 +56,8 @@ impl FromStr for MeasurementNoise {
                 Ok(Self { position_m, velocity_m_s, attitude_rad, body_rate_rad_s })
             }
             _ => Err(format!(
-                "`{text}` is no noise: motion-capture, rtk-gps, or POSITION,VELOCITY,ATTITUDE,BODY_RATE in m, m/s, rad \
-                 and rad/s, none negative, at most 10,10,0.5,10"
+                "invalid noise `{text}`; use motion-capture, rtk-gps or POSITION,VELOCITY,ATTITUDE,BODY_RATE: from 0,0,0,0 to \
+                 10,10,0.5,10 in m, m/s, rad and rad/s"
             )),
         }
     }

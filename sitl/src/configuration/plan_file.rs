@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use autopilot::codec::command_name;
 use vehicle::plan::{Plans, Site, file};
 
+use super::text_file::read_text;
 use crate::failure::Failure;
 
 /// Reads the plans of a file for a vehicle at a site.
@@ -11,6 +13,7 @@ use crate::failure::Failure;
 /// # Errors
 /// [`Failure::File`], or [`Failure::Content`] that names the line or the item, the value and its range.
 pub fn read_plans(path: &Path, site: &Site) -> Result<Plans, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?;
-    file::parse(&text, site).map_err(|reason| Failure::Content { path: path.to_owned(), reason })
+    let text = read_text(path)?;
+    file::parse(&text, site)
+        .map_err(|fault| Failure::Content { path: path.to_owned(), reason: fault.described(command_name) })
 }

@@ -1,9 +1,9 @@
-//! How numbers of the command line are read, and within which ranges.
+//! Parsers of numbers on the command line, and their ranges.
 
 use core::fmt::Display;
 use core::str::FromStr;
 
-/// A parser of whole numbers from `least` to `most`, which its refusal names.
+/// A parser of whole numbers from `least` to `most`; the error names the range.
 pub fn whole<T>(least: T, most: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
@@ -11,9 +11,14 @@ where
     within("whole number", least, most)
 }
 
-/// A parser of numbers from `least` to `most`, which its refusal names.
+/// A parser of numbers from `least` to `most`; the error names the range.
 pub fn number(least: f64, most: f64) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
     within("number", least, most)
+}
+
+/// A parser of any whole number that is not negative.
+pub fn non_negative(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("must be a non-negative integer, not `{text}`"))
 }
 
 /// Finite numbers between commas; `None` if one of them is not.
@@ -34,6 +39,6 @@ where
         // NaN is in no range.
         value
             .filter(|value| (&least..=&most).contains(&value))
-            .ok_or_else(|| format!("`{text}` is no {what} within {least} to {most}"))
+            .ok_or_else(|| format!("`{text}` is not a {what} from {least} to {most}"))
     }
 }

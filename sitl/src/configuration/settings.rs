@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use nalgebra::Vector3;
 use quadrotor::Configuration;
@@ -11,14 +12,18 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, VehicleSettings};
+use vehicle::{Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
-use super::{Arguments, Clocks, Ports, read_plans, wind_drag};
+use super::{Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
+use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
+
+/// Size that a record may get unless told otherwise, MB: a client's set-points at 50 Hz for more than a day.
+const RECORD_MEGABYTES: f64 = 1000.0;
 
 /// What the program does.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +36,12 @@ pub struct Settings {
     pub clocks: Clocks,
     /// Pace.
     pub speed: Speed,
+    /// Whether and how simulation time waits for set-points.
+    pub lockstep: Option<LockstepSettings>,
     /// Record to be written.
     pub record: Option<PathBuf>,
+    /// Size that the record may get, bytes.
+    pub record_most_bytes: u64,
     /// Traffic log.
     pub tlog: Option<PathBuf>,
     /// Flight logs, and sizes and numbers of files of the traffic log.
@@ -41,12 +50,12 @@ pub struct Settings {
     pub ftp_root: Option<(PathBuf, bool)>,
     /// Key to sign with.
     pub signing_key: Option<PathBuf>,
-    /// File that tells that clients can connect.
+    /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
-    /// What the user is to be told at the start, a line each.
-    pub notes: Vec<String>,
+    /// What the user is told at the start.
+    pub notes: Vec<Notice>,
 }
 
 /// One vehicle of them.
@@ -79,18 +88,22 @@ impl Settings {
                 parameters.map(|path| if count > 1 { of_system(path, system_id) } else { path.to_owned() });
             let (vehicle, note) = vehicle(arguments, number, count, parameters.as_deref())?;
             let hub = if shared { 0 } else { number };
-            Ok((MemberSettings { system_id, vehicle, hub, parameters }, note))
+            let warning = wind_hold::warning(&vehicle.configuration, &vehicle.wind);
+            let own = MemberSettings { system_id, vehicle, hub, parameters };
+            Ok((own, note.into_iter().chain(warning).collect()))
         };
         let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
         let hubs = if shared { 1 } else { count };
         Ok(Self {
-            notes: notes(&vehicles, vehicle_notes),
+            notes: lockstep_note(arguments).into_iter().chain(notes(&vehicles, vehicle_notes)).collect(),
             vehicles,
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
+            lockstep: lockstep(arguments)?,
             record: arguments.record.clone(),
+            record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
             logs: log_settings(arguments)?,
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
@@ -120,14 +133,46 @@ impl Settings {
     }
 }
 
+/// Whether and how simulation time waits for set-points.
+fn lockstep(arguments: &Arguments) -> Result<Option<LockstepSettings>, Failure> {
+    const PERIOD_S: f64 = 0.02;
+    const TIMEOUT_S: f64 = 5.0;
+    let Some(phase) = arguments.lockstep else {
+        for (name, given) in [
+            ("--lockstep-period", arguments.lockstep_period),
+            ("--lockstep-timeout", arguments.lockstep_timeout),
+        ] {
+            if given.is_some() {
+                let reason = "needs --lockstep".to_owned();
+                return Err(Failure::Value { name: name.to_owned(), reason });
+            }
+        }
+        return Ok(None);
+    };
+    let ticks = (arguments.lockstep_period.unwrap_or(PERIOD_S) * 1e6 / TICK_US as f64).round() as u64;
+    let timeout = Duration::from_secs_f64(arguments.lockstep_timeout.unwrap_or(TIMEOUT_S));
+    Ok(Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout }))
+}
+
+/// A vehicle that does not move must not look broken.
+fn lockstep_note(arguments: &Arguments) -> Option<Notice> {
+    let waits = arguments.lockstep == Some(LockstepPhase::Always);
+    let text = || "lock-step: simulation time starts with the first set-point".to_owned();
+    waits.then(|| Notice { severity: Severity::Info, text: text() })
+}
+
 /// Notes about vehicles: one for all that have the same, else each with the system that it is about.
-fn notes(vehicles: &[MemberSettings], notes: Vec<Option<String>>) -> Vec<String> {
+fn notes(vehicles: &[MemberSettings], notes: Vec<Vec<Notice>>) -> Vec<Notice> {
     let same = notes.windows(2).all(|pair| pair.first() == pair.last());
     if same {
-        return notes.into_iter().flatten().take(1).collect();
+        return notes.into_iter().next().unwrap_or_default();
     }
     let of_each = vehicles.iter().zip(notes);
-    of_each.filter_map(|(own, note)| Some(format!("system {}: {}", own.system_id, note?))).collect()
+    let named = |(own, notes): (&MemberSettings, Vec<Notice>)| {
+        let name = |note: Notice| Notice { text: format!("system {}: {}", own.system_id, note.text), ..note };
+        notes.into_iter().map(name).collect::<Vec<_>>()
+    };
+    of_each.flat_map(named).collect()
 }
 
 /// End, µs of simulation time.
@@ -149,8 +194,9 @@ fn system_ids(arguments: &Arguments) -> Result<Vec<u8>, Failure> {
     let first = u16::from(first_system_id(arguments));
     let last = (first + count).saturating_sub(1);
     if last > LAST {
-        let reason =
-            format!("{count} vehicles from system {first} on need system {last}; the last is {LAST}");
+        let reason = format!(
+            "{count} vehicles from system {first} on need system ids up to {last}; the largest is {LAST}"
+        );
         return Err(Failure::Value { name: "--vehicles".to_owned(), reason });
     }
     Ok((first..=last).filter_map(|id| u8::try_from(id).ok()).collect())
@@ -164,7 +210,7 @@ fn hub(arguments: &Arguments, instance: u16, number: usize) -> Result<Vec<LinkSp
     let counted = |link: &LinkSpecification| {
         link.of_vehicle(number).ok_or_else(|| Failure::Value {
             name: "--link".to_owned(),
-            reason: format!("`{link}` leaves no port to vehicle {}: try --ports shared", number + 1),
+            reason: format!("`{link}` leaves no port for vehicle {}; use --ports shared", number + 1),
         })
     };
     links.iter().map(counted).collect()
@@ -187,7 +233,7 @@ pub(super) fn vehicle(
     number: usize,
     count: usize,
     parameters: Option<&Path>,
-) -> Result<(VehicleSettings, Option<String>), Failure> {
+) -> Result<(VehicleSettings, Option<Notice>), Failure> {
     let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
     let identity: Identity = arguments.autopilot.unwrap_or_default().into();
     let home = arguments.home.unwrap_or_default();
@@ -211,6 +257,7 @@ pub(super) fn vehicle(
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
         plans: Plans::default(),
+        autostart: arguments.autostart.unwrap_or(false),
     };
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
@@ -239,7 +286,7 @@ fn named_parameters(arguments: &Arguments, number: usize) -> Result<Vec<String>,
         named.push(format!("sensor.output_feedback={}", u8::from(kalman)));
     }
     if !named.is_empty() && arguments.sensors.unwrap_or_default() != SensorModel::Ideal {
-        let reason = "realistic sensors have noise and an estimator of their own".to_owned();
+        let reason = "not with --sensors realistic, which has noise and an estimator of its own".to_owned();
         return Err(Failure::Value { name: "--noise, --kalman".to_owned(), reason });
     }
     if arguments.seed.is_some() {
@@ -259,7 +306,7 @@ fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
     const MEGABYTES: f64 = 100.0;
     const COUNT: u32 = 100;
     if arguments.ftp_write == Some(true) && arguments.ftp_root.is_none() {
-        let reason = "there is no --ftp-root to write to".to_owned();
+        let reason = "needs --ftp-root".to_owned();
         return Err(Failure::Value { name: "--ftp-write".to_owned(), reason });
     }
     Ok(LogSettings {
@@ -279,11 +326,16 @@ fn mission_of(arguments: &Arguments, system_id: u8) -> Option<&Path> {
 /// Refuses plans and faults of systems that there are not, and a second plan for the same.
 fn check_addresses(arguments: &Arguments, systems: &[u8]) -> Result<(), Failure> {
     let mut planned = Vec::new();
+    if arguments.autostart == Some(true) && arguments.mission.iter().flatten().next().is_none() {
+        let reason = "no mission to start; add --mission FILE".to_owned();
+        return Err(Failure::Value { name: "--autostart".to_owned(), reason });
+    }
     for file in arguments.mission.iter().flatten() {
         file.check("--mission", file.value.display(), systems)?;
         if planned.contains(&file.system_id) {
             let whose = file.system_id.map_or("all".to_owned(), |id| format!("system {id}"));
-            let reason = format!("`{}` is a second plan for {whose}", file.value.display());
+            let reason =
+                format!("`{}` is a second plan for {whose}; give one plan each", file.value.display());
             return Err(Failure::Value { name: "--mission".to_owned(), reason });
         }
         planned.push(file.system_id);
@@ -299,7 +351,7 @@ fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, F
     match faults.iter().find(|scheduled| ideal && scheduled.fault.needs_readings()) {
         None => Ok(faults),
         Some(scheduled) => {
-            let reason = format!("`{scheduled}` needs --sensors realistic: ideal ones only fall silent");
+            let reason = format!("`{scheduled}` needs --sensors realistic; ideal sensors can only be `off`");
             Err(Failure::Value { name: "--fault".to_owned(), reason })
         }
     }

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use vehicle::VehicleSettings;
-use vehicle::parameters::{ParameterTable, ParameterValues, Speed, identifier, parse};
+use vehicle::parameters::{Entry, ParameterTable, ParameterValues, SPEED_PARAMETER, SetError, Speed, parse};
 
+use super::text_file::read_text;
 use crate::failure::Failure;
 
-/// Sets the parameters of the file, then those that are named as `NAME=VALUE`, and returns the identifiers of all of them.
+/// Sets the parameters of the file, then those that are named as `NAME=VALUE`, and returns the MAVLink names of all of them.
 ///
 /// # Errors
 /// [`Failure`] of a file that cannot be used, or of the first value with which the vehicle cannot fly.
@@ -15,11 +16,9 @@ pub(super) fn set_parameters(
     settings: &mut VehicleSettings,
     file: Option<&Path>,
     named: &[String],
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<&'static str>, Failure> {
     let text = match file {
-        Some(path) if path.exists() => {
-            Some((path, std::fs::read_to_string(path).map_err(|source| Failure::read(path, source))?))
-        }
+        Some(path) if path.exists() => Some((path, read_text(path)?)),
         // It will be written when a parameter changes: better now than in flight is said that it cannot be.
         Some(path)
             if path.parent().is_some_and(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) =>
@@ -44,21 +43,43 @@ pub(super) fn set_parameters(
     if let Some((path, text)) = &text {
         let in_file = parse(text, &table, &mut values)
             .map_err(|source| Failure::Parameters { path: (*path).to_owned(), source })?;
-        set.extend(in_file.into_iter().map(str::to_owned));
+        set.extend(in_file);
     }
     for setting in named {
-        let wrong = || Failure::Value {
-            name: "--set".to_owned(),
-            reason: format!("`{setting}` is not NAME=VALUE with a number"),
-        };
-        let (name, value) = setting.split_once('=').ok_or_else(wrong)?;
-        let value: f64 = value.trim().parse().map_err(|_| wrong())?;
+        let (name, value) =
+            setting.split_once('=').ok_or_else(|| wrong(format!("expected NAME=VALUE, got `{setting}`")))?;
         let name = name.trim();
-        let id = if name.contains('.') { identifier(name) } else { name.to_owned() };
-        table.set_checked(&id, value, &mut values)?;
-        set.push(id);
+        let entry = table.require(name).map_err(unknown)?;
+        if let Some(flag) = own_flag(entry) {
+            return Err(wrong(format!("{name} has a flag of its own: {flag}")));
+        }
+        table.set_checked(name, table.number(name, value)?, &mut values)?;
+        set.push(entry.id);
     }
     settings.conduct = values.conduct;
     settings.configuration = values.configuration;
     Ok(set)
+}
+
+fn wrong(reason: String) -> Failure {
+    Failure::Value { name: "--set".to_owned(), reason }
+}
+
+/// The flag of a parameter that belongs to a run, not to the vehicle.
+fn own_flag(entry: &Entry) -> Option<&'static str> {
+    match entry.id {
+        SPEED_PARAMETER => Some("--speed"),
+        "MAV_SYS_ID" | "SYSID_THISMAV" => Some("--system-id"),
+        _ => None,
+    }
+}
+
+/// Where nothing similar is known, the list helps.
+fn unknown(error: SetError) -> Failure {
+    match error {
+        SetError::Unknown { similar: None, .. } => {
+            wrong(format!("{error}; --list-parameters shows them all"))
+        }
+        other => Failure::Set(other),
+    }
 }

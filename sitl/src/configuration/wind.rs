@@ -17,7 +17,8 @@ impl FromStr for WindFrom {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no wind: SPEED[,FROM] in m/s, 0 to 30, and degrees within 360");
+        let wrong =
+            || format!("invalid wind `{text}`; use SPEED[,FROM]: 0 to 30 m/s, from -360 to 360 degrees");
         let numbers = numbers(text).ok_or_else(wrong)?;
         let (speed_m_s, from_deg) = match *numbers.as_slice() {
             [speed] => (speed, 0.0),

@@ -1,13 +1,13 @@
 //! The drag that the wind acts through.
 
 use quadrotor::Configuration;
-use vehicle::parameters::identifier;
+use vehicle::{Notice, Severity};
 
 /// Linear drag of an airframe in a wind, unless the user chooses another, N·s/m: 0.7 kg with an open frame drifts with
 /// 10 m/s of wind at a lean of 12°.
 const DRAG_N_S_M: f64 = 0.15;
-/// The parameters, in the order of the axes.
-const NAMES: [&str; 3] = ["airframe.drag.x", "airframe.drag.y", "airframe.drag.z"];
+/// MAVLink names of the parameters, in the order of the axes.
+const NAMES: [&str; 3] = ["FRAME_DRAG_X", "FRAME_DRAG_Y", "FRAME_DRAG_Z"];
 
 /// Gives an airframe without drag one that a wind can push. The user's parameters come on top.
 pub(super) fn provide(configuration: &mut Configuration) {
@@ -18,16 +18,16 @@ pub(super) fn provide(configuration: &mut Configuration) {
 }
 
 /// What the user needs to know about the drag in a wind: which of it was provided, or that there is none. `chosen` are the
-/// identifiers of the parameters that the user has set.
-pub(super) fn note(configuration: &Configuration, chosen: &[String]) -> Option<String> {
-    let ids = NAMES.map(identifier);
-    let provided: Vec<&str> = ids.iter().filter(|id| !chosen.contains(id)).map(String::as_str).collect();
+/// MAVLink names of the parameters that the user has set.
+pub(super) fn note(configuration: &Configuration, chosen: &[&str]) -> Option<Notice> {
+    let info = |text| Notice { severity: Severity::Info, text };
+    let provided: Vec<&str> = NAMES.into_iter().filter(|name| !chosen.contains(name)).collect();
     if !provided.is_empty() {
-        return Some(format!(
-            "wind acts through drag: {} set to {DRAG_N_S_M} N s/m; choose others with --set",
-            provided.join(", ")
-        ));
+        let names = provided.join(", ");
+        return Some(info(format!(
+            "wind needs drag: {names} set to {DRAG_N_S_M} N s/m; change it with --set"
+        )));
     }
     let none = configuration.airframe.drag_n_s_m == [0.0; 3];
-    none.then(|| format!("wind does not push the vehicle, which has no drag: {} are 0", ids.join(", ")))
+    none.then(|| info(format!("wind has no effect: {} are 0", NAMES.join(", "))))
 }

@@ -1,10 +1,7 @@
-//! A file of ours with another content.
+//! Replacing the content of a file at once.
 
-use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-
-use crate::failure::Failure;
 
 /// Who may read a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,31 +12,68 @@ pub enum Readers {
     Owner,
 }
 
-/// Writes a file beside the old one and puts it in its place: a reader never sees half of it, and a crash in between leaves the
-/// old one.
+/// Writes a new file beside the old one and renames it: a reader never sees half of it, and a failure or crash leaves the old one.
+/// The new file's temporary name is unique, so that two processes never write the same one.
 ///
 /// # Errors
-/// [`Failure::File`]
-pub fn replace(path: &Path, content: &[u8], readers: Readers) -> Result<(), Failure> {
-    write(path, content, readers).map_err(|source| Failure::write(path, source))
+/// The error of the file system; the old file is unchanged.
+pub fn replace(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> {
+    let path = resolved(path);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut prefix = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?.to_owned();
+    prefix.push(".");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".new");
+    #[cfg(unix)]
+    let mode = {
+        use std::os::unix::fs::PermissionsExt;
+        // The user's mask comes on top.
+        std::fs::Permissions::from_mode(if readers == Readers::Owner { 0o600 } else { 0o666 })
+    };
+    #[cfg(unix)]
+    builder.permissions(mode);
+    let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    file.write_all(content)?;
+    file.persist(&path).map_err(|error| error.error)?;
+    Ok(())
 }
 
-fn write(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> {
-    let mut beside = path.to_owned().into_os_string();
-    beside.push(".new");
-    let beside = PathBuf::from(beside);
-    // What a crash has left behind may have another mode.
-    match std::fs::remove_file(&beside) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
+/// The file itself where a path is a link to one.
+pub(super) fn resolved(path: &Path) -> PathBuf {
+    std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Readers, replace};
+
+    #[test]
+    fn a_file_is_replaced_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.params");
+        replace(&path, b"one", Readers::All).expect("written");
+        replace(&path, b"two", Readers::All).expect("written");
+        assert_eq!(std::fs::read(&path).expect("there"), b"two");
+        assert!(replace(&folder.path().join("no/such"), b"", Readers::All).is_err());
+        assert!(replace(folder.path(), b"", Readers::All).is_err(), "a folder is no file");
+        let names: Vec<_> = std::fs::read_dir(folder.path()).expect("a folder").collect();
+        assert_eq!(names.len(), 1, "{names:?}");
     }
-    let mut options = OpenOptions::new();
-    options.write(true).create_new(true);
+
     #[cfg(unix)]
-    if readers == Readers::Owner {
-        use std::os::unix::fs::OpenOptionsExt;
-        options.mode(0o600);
+    #[test]
+    fn a_link_stays_a_link_and_modes_are_as_asked() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().expect("a folder");
+        let (path, link) = (folder.path().join("a"), folder.path().join("link"));
+        std::fs::write(&path, "old").expect("written");
+        std::os::unix::fs::symlink(&path, &link).expect("a link");
+        for (readers, most) in [(Readers::All, 0o666), (Readers::Owner, 0o600)] {
+            replace(&link, b"new", readers).expect("written");
+            assert!(link.is_symlink());
+            let mode = path.metadata().expect("there").permissions().mode() & 0o777;
+            assert_eq!((mode & !most, mode & 0o600), (0, 0o600), "{mode:o}");
+        }
+        assert_eq!(std::fs::read(&path).expect("there"), b"new");
     }
-    options.open(&beside)?.write_all(content)?;
-    std::fs::rename(&beside, path)
 }

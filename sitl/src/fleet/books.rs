@@ -7,8 +7,9 @@ use autopilot::codec::Frame;
 use super::Member;
 use crate::configuration::Settings;
 use crate::failure::Failure;
+use crate::files::{Notice, WRITE_PERIOD};
 use crate::link::Received;
-use crate::record::{Header, Participant, Recorder, TrafficLog};
+use crate::record::{Digest, Header, Participant, Recorder, TrafficLog};
 
 /// Record and log, if they are asked for.
 #[derive(Debug)]
@@ -16,6 +17,7 @@ pub struct Books {
     recorder: Option<Recorder>,
     traffic: Option<TrafficLog>,
     unix_start_us: u64,
+    written: Instant,
 }
 
 impl Books {
@@ -27,53 +29,74 @@ impl Books {
     ) -> Result<Self, Failure> {
         let header = Header::new(settings.speed, participants).started_at(unix_start_us);
         let recorder = match &settings.record {
-            Some(path) => Some(Recorder::create(path, &header)?),
+            Some(path) => Some(Recorder::create(path, &header, settings.record_most_bytes)?),
             None => None,
         };
         let traffic = match &settings.tlog {
             Some(path) => Some(TrafficLog::create(path, settings.logs.most_bytes, settings.logs.most_files)?),
             None => None,
         };
-        Ok(Self { recorder, traffic, unix_start_us })
+        Ok(Self { recorder, traffic, unix_start_us, written: Instant::now() })
     }
 
     /// A frame is on a link.
-    pub fn traffic(&mut self, time_us: u64, frame: &Frame) -> Result<(), Failure> {
-        match &mut self.traffic {
-            Some(traffic) => traffic.frame(self.unix_start_us + time_us, frame),
-            None => Ok(()),
+    pub fn traffic(&mut self, time_us: u64, frame: &Frame) {
+        if let Some(traffic) = &mut self.traffic {
+            traffic.frame(self.unix_start_us + time_us, frame);
         }
     }
 
     /// A member takes a frame in.
-    pub fn received(&mut self, member: usize, time_us: u64, received: &Received) -> Result<(), Failure> {
-        match &mut self.recorder {
-            Some(recorder) => recorder.frame(member, time_us, &received.origin, &received.frame),
-            None => Ok(()),
+    pub fn received(&mut self, member: usize, time_us: u64, received: &Received) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.frame(member, time_us, &received.origin, &received.frame);
         }
     }
 
     /// A member hears a ground station, or no more.
-    pub fn ground_station(&mut self, member: usize, time_us: u64, heard: bool) -> Result<(), Failure> {
-        match &mut self.recorder {
-            Some(recorder) => recorder.ground_station(member, time_us, heard),
-            None => Ok(()),
+    pub fn ground_station(&mut self, member: usize, time_us: u64, heard: bool) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.ground_station(member, time_us, heard);
         }
     }
 
-    /// What was written reaches the disk, however slow simulation time is.
-    pub fn keep_up(&mut self, now: Instant) -> Result<(), Failure> {
-        self.traffic.as_mut().map_or(Ok(()), |traffic| traffic.keep_up(now))
+    /// Stops a record that has reached its size limit, before anything more is recorded.
+    pub fn keep_size(&mut self, members: &[Member]) {
+        if let Some(recorder) = self.recorder.as_mut().filter(|recorder| recorder.is_full()) {
+            recorder.stop(flights(members));
+        }
     }
 
-    /// Ends the files.
-    pub fn finish(self, members: &[Member]) -> Result<(), Failure> {
-        if let Some(mut recorder) = self.recorder {
-            for (number, member) in members.iter().enumerate() {
-                recorder.end(number, member.time_us(), member.digest())?;
+    /// Writes what waits, each second of the wall clock. Returns what to announce.
+    pub fn keep_up(&mut self, members: &[Member], now: Instant) -> Vec<Notice> {
+        let mut notices = Vec::new();
+        if now.saturating_duration_since(self.written) < WRITE_PERIOD {
+            return notices;
+        }
+        self.written = now;
+        if let Some(recorder) = &mut self.recorder {
+            for (number, time_us, digest) in flights(members) {
+                recorder.state(number, time_us, digest);
             }
-            recorder.finish()?;
+            notices.extend(recorder.flush());
         }
-        self.traffic.map_or(Ok(()), TrafficLog::finish)
+        notices.extend(self.traffic.as_mut().and_then(TrafficLog::flush));
+        notices
     }
+
+    /// Ends the files. Returns what is missing from them, a sentence each.
+    pub fn finish(self, members: &[Member]) -> Vec<String> {
+        let record = self.recorder.and_then(|mut recorder| {
+            for (number, time_us, digest) in flights(members) {
+                recorder.end(number, time_us, digest);
+            }
+            recorder.finish()
+        });
+        record.into_iter().chain(self.traffic.and_then(TrafficLog::finish)).collect()
+    }
+}
+
+/// Number, time and digest of each.
+fn flights(members: &[Member]) -> impl Iterator<Item = (usize, u64, Digest)> {
+    members.iter().enumerate().map(|(number, member)| (number, member.time_us(), member.digest()))
 }

@@ -13,7 +13,7 @@ use crate::pace::Pace;
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);
 
-/// Simulation time of some vehicles: they tick in lock-step, and share its speed.
+/// Simulation time of some vehicles: they tick together, and share its speed.
 #[derive(Debug)]
 pub struct Clock {
     pace: Pace,
@@ -38,29 +38,29 @@ impl Clock {
     /// behind after that.
     ///
     /// # Errors
-    /// [`Failure`] of the simulation or of a file.
+    /// [`Failure`] of the simulation.
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> Result<bool, Failure> {
-        self.agree_on_speed(fleet, now)?;
+        self.agree_on_speed(fleet, now);
+        let limit_us = fleet.limit_us(self.members.clone());
         match self.pace.goal_us(self.speed, now, self.time_us) {
-            None => self.fly_for(fleet, BURST / clocks.max(1)),
-            Some(goal_us) => self.fly_to(fleet, goal_us, 4 * BURST / clocks.max(1)),
+            None => self.fly_for(fleet, limit_us, BURST / clocks.max(1)),
+            Some(goal_us) => self.fly_to(fleet, goal_us.min(limit_us), 4 * BURST / clocks.max(1)),
         }
     }
 
     /// A new speed of one vehicle is that of all, and told by all.
-    fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
+    fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) {
         let speeds = self.members.clone().filter_map(|number| fleet.members().get(number));
         let mut news = speeds.map(|member| member.autopilot().speed()).filter(|speed| *speed != self.speed);
-        let Some(speed) = news.next() else { return Ok(()) };
+        let Some(speed) = news.next() else { return };
         self.speed = speed;
         for number in self.members.clone() {
             let Some(member) = fleet.member_mut(number) else { continue };
             if member.autopilot.speed() != speed {
                 member.autopilot.set_speed(speed);
-                fleet.send(number, now)?;
+                fleet.send(number, now);
             }
         }
-        Ok(())
     }
 
     fn tick(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
@@ -82,12 +82,15 @@ impl Clock {
         Ok(false)
     }
 
-    /// As fast as possible.
-    fn fly_for(&mut self, fleet: &mut Fleet, longest: Duration) -> Result<bool, Failure> {
+    /// As fast as possible, but no further than a limit.
+    fn fly_for(&mut self, fleet: &mut Fleet, limit_us: u64, longest: Duration) -> Result<bool, Failure> {
         let start = Instant::now();
         while start.elapsed() < longest && !self.is_over() {
             // Asking the clock costs more than a tick.
             for _ in 0..16 {
+                if self.time_us + TICK_US > limit_us {
+                    return Ok(false);
+                }
                 if self.is_over() {
                     break;
                 }

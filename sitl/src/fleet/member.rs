@@ -1,16 +1,19 @@
 //! One vehicle among those of a run.
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
+use vehicle::Mode;
 use vehicle::parameters::Speed;
 
+use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
+use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
-use crate::files::{Disk, Readers, replace};
+use crate::files::Disk;
 use crate::flight_log::FlightLog;
 use crate::record::{Digest, Participant};
+use crate::terminal::set_simulation_time;
 
 /// A client must hear a heartbeat this often, however slow simulation time is.
 const HEARTBEAT: Duration = Duration::from_millis(1_100);
@@ -26,10 +29,11 @@ pub struct Member {
     pub(super) autopilot: Autopilot,
     pub(super) hub: usize,
     pub(super) last_heartbeat: Instant,
+    pub(super) lockstep: Option<Lockstep>,
     /// When a ground station was heard last, and what the vehicle knows of it.
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
-    parameters: Option<PathBuf>,
+    parameters: Option<ParameterFile>,
     log: Option<FlightLog>,
     started: Instant,
     log_messages: u64,
@@ -41,7 +45,7 @@ impl Member {
         participant: &Participant,
         speed: Speed,
         hub: usize,
-        parameters: Option<PathBuf>,
+        parameters: Option<ParameterFile>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
         let Participant { system_id, links, vehicle } = participant;
@@ -49,6 +53,7 @@ impl Member {
             autopilot: Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
             hub,
             last_heartbeat: Instant::now(),
+            lockstep: None,
             ground_station: None,
             digest: Digest::default(),
             parameters,
@@ -63,6 +68,23 @@ impl Member {
         self.autopilot.share(Box::new(files));
         self.log = log;
         self
+    }
+
+    /// Lets its simulation time wait for set-points.
+    pub(super) fn keep_step(mut self, settings: Option<LockstepSettings>) -> Self {
+        self.lockstep = settings.map(Lockstep::new);
+        self
+    }
+
+    /// What lock-step goes by.
+    pub(super) fn circumstances(&self) -> Circumstances {
+        let vehicle = self.autopilot.vehicle();
+        Circumstances {
+            time_us: vehicle.time_us(),
+            armed: vehicle.is_armed(),
+            offboard: vehicle.mode() == Mode::Offboard,
+            paused: self.autopilot.speed() == Speed::Paused,
+        }
     }
 
     /// The vehicle with its services.
@@ -87,6 +109,7 @@ impl Member {
 
     /// One tick on.
     pub(super) fn tick(&mut self, now: Instant) -> Result<(), Failure> {
+        set_simulation_time(self.time_us());
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
         if let Some(log) = &mut self.log {
@@ -124,23 +147,29 @@ impl Member {
         news.min(MOST_LOG_MESSAGES)
     }
 
-    /// Ends its log.
-    pub(super) fn finish_log(&mut self) {
+    /// Ends its files. Returns what is missing from them, a sentence each.
+    pub(super) fn finish(&mut self) -> Vec<String> {
+        let mut lacking = Vec::new();
         if let Some(log) = &mut self.log {
             log.finish(&mut self.autopilot);
+            lacking.append(&mut log.take_lacking());
         }
+        lacking.extend(self.parameters.as_mut().and_then(ParameterFile::finish));
+        lacking
     }
 
     /// Whether its links would look dead, because simulation time is slow.
     pub(super) fn is_silent(&self, now: Instant) -> bool {
-        let slow = !matches!(self.autopilot.speed(), Speed::Max);
+        let slow = self.lockstep.is_some() || !matches!(self.autopilot.speed(), Speed::Max);
         slow && now.saturating_duration_since(self.last_heartbeat) > HEARTBEAT
     }
 
     /// Writes its parameters into their file, if one has changed.
-    pub(super) fn save_parameters(&mut self) -> Result<(), Failure> {
-        let Some(path) = &self.parameters else { return Ok(()) };
-        let Some(text) = self.autopilot.take_changed_parameters() else { return Ok(()) };
-        replace(path, text.as_bytes(), Readers::All)
+    pub(super) fn save_parameters(&mut self, now: Instant) {
+        let Some(file) = &mut self.parameters else { return };
+        let changed = self.autopilot.take_changed_parameters(file.format());
+        if let Some((severity, text)) = file.save(changed, now) {
+            self.autopilot.announce(severity, &text);
+        }
     }
 }

@@ -6,15 +6,17 @@
 //!               or each its own  digest      or each its own
 //! ```
 //!
-//! Vehicles do not see one another: the flight of each depends on nothing but its own messages and their simulation
-//! times, whoever flies beside it.
+//! Vehicles do not interact: the flight of each depends only on its own messages and their simulation times.
 
 mod books;
 mod clock;
+mod lockstep;
 mod member;
+mod parameter_file;
 mod roster;
 mod signing_keeper;
 
 pub use clock::Clock;
+pub use lockstep::{LockstepPhase, LockstepSettings};
 pub use member::Member;
 pub use roster::Fleet;

@@ -1,4 +1,4 @@
-//! Signing at the edge: the wall clock, the files, and what is said about it.
+//! Signing at the edge: the wall clock, the key files and the announcements.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -6,10 +6,11 @@ use std::time::{Duration, Instant};
 use vehicle::Severity;
 
 use crate::failure::Failure;
+use crate::files::{Notice, Upkeep, WRITE_PERIOD};
 use crate::link::{Links, SigningSetup};
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
 
-/// Refused frames are told this often.
+/// Rejected frames are announced this often.
 const TOLD: Duration = Duration::from_secs(5);
 
 /// What is to be said, and whether another key is used from now on.
@@ -21,10 +22,21 @@ pub struct Said {
     pub new_key: bool,
 }
 
+/// The files of a key.
+#[derive(Debug)]
+struct Files {
+    key_file: KeyFile,
+    timestamps: Upkeep,
+    key: Upkeep,
+    /// Whether the key in use is another than that of the file.
+    new_key: bool,
+    tried: Option<Instant>,
+}
+
 /// Keeps the state of signing up to date, on the disk, too.
 #[derive(Debug)]
 pub struct SigningKeeper {
-    file: Option<KeyFile>,
+    files: Option<Files>,
     start: Instant,
     start_timestamp: u64,
     told: Counts,
@@ -38,37 +50,38 @@ impl SigningKeeper {
     /// As [`KeyFile::open`].
     pub fn new(path: Option<&Path>, hub: usize, unix_us: u64, links: &mut Links) -> Result<Self, Failure> {
         let start_timestamp = timestamp(unix_us);
-        let file = match path.map(|path| KeyFile::open(path, hub)).transpose()? {
-            Some((file, key, kept)) => {
+        let files = match path {
+            Some(path) => {
+                let (key_file, key, kept) = KeyFile::open(path, hub)?;
                 links.sign_with(Signing::new(key, kept));
-                Some(file)
+                Some(Files {
+                    timestamps: Upkeep::new("Signing timestamps", key_file.timestamps()),
+                    key: Upkeep::new("Signing key", path),
+                    key_file,
+                    new_key: false,
+                    tried: None,
+                })
             }
             None => None,
         };
         links.signing().advance(start_timestamp);
-        Ok(Self { file, start: Instant::now(), start_timestamp, told: Counts::default(), told_at: None })
+        Ok(Self { files, start: Instant::now(), start_timestamp, told: Counts::default(), told_at: None })
     }
 
-    /// Keeps what has changed, before it takes effect, and returns what is to be said.
-    ///
-    /// # Errors
-    /// [`Failure::File`]
-    pub fn update(&mut self, links: &mut Links, now: Instant) -> Result<Said, Failure> {
+    /// Keeps what has changed, before it takes effect, and returns what is to be said. What cannot be written is tried again each
+    /// second; meanwhile signing goes on, and only a restart could forget which frames have come.
+    pub fn update(&mut self, links: &mut Links, now: Instant) -> Said {
         let since_start = now.saturating_duration_since(self.start).as_micros() as u64;
         links.signing().advance(self.start_timestamp + since_start / 10);
         let setups = links.take_setups();
         let new_key = setups.iter().any(|setup| !matches!(setup, SigningSetup::Refused(..)));
-        if let Some(file) = &self.file {
-            if let Some(kept) = links.signing().take_unkept() {
-                file.keep(&kept)?;
-            }
-            if new_key {
-                file.keep_key(links.signing().key())?;
-            }
-        }
         let mut lines: Vec<_> = setups.iter().map(|setup| (Severity::Warning, setup.to_string())).collect();
+        if let Some(files) = &mut self.files {
+            files.new_key |= new_key;
+            lines.extend(files.keep(links.signing(), now));
+        }
         lines.extend(self.refused(links.signing().counts(), now));
-        Ok(Said { lines, new_key })
+        Said { lines, new_key }
     }
 
     /// A line about refused frames, if there are more than were told, and it is time.
@@ -78,21 +91,58 @@ impl SigningKeeper {
             return None;
         }
         (self.told, self.told_at) = (counts, Some(now));
-        Some((Severity::Warning, format!("Signing: refused so far {counts}")))
+        Some((Severity::Warning, format!("Signing: rejected so far: {counts}")))
     }
 
-    /// Keeps the state at an end that was asked for.
-    ///
-    /// # Errors
-    /// [`Failure::File`]
-    pub fn finish(&self, links: &mut Links) -> Result<(), Failure> {
+    /// Keeps the state at an end that was asked for. Returns what is missing from the files, a sentence each.
+    pub fn finish(&mut self, links: &mut Links) -> Vec<String> {
         let counts = links.signing().counts();
         if counts != self.told {
-            tracing::warn!("Signing: refused in all {counts}");
+            tracing::warn!("Signing: rejected in total: {counts}");
         }
-        match &self.file {
-            Some(file) => file.keep(&links.signing().at_end()),
-            None => Ok(()),
+        self.files.as_mut().map_or_else(Vec::new, |files| files.finish(links.signing()))
+    }
+}
+
+impl Files {
+    /// Keeps what has changed. Returns what to announce.
+    fn keep(&mut self, signing: &mut Signing, now: Instant) -> Vec<Notice> {
+        let failing = self.timestamps.is_failing() || self.key.is_failing();
+        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
+        if failing && early {
+            return Vec::new();
         }
+        self.tried = Some(now);
+        let mut notices = Vec::new();
+        if let Some(kept) = signing.take_unkept() {
+            let result = self.key_file.keep(&kept);
+            if result.is_err() {
+                signing.keep_again();
+            }
+            notices.extend(self.timestamps.judge(result));
+        }
+        notices.extend(self.keep_key(signing));
+        notices
+    }
+
+    fn keep_key(&mut self, signing: &Signing) -> Option<Notice> {
+        if !self.new_key {
+            return None;
+        }
+        let result = self.key_file.keep_key(signing.key());
+        self.new_key = result.is_err();
+        self.key.judge(result)
+    }
+
+    fn finish(&mut self, signing: &Signing) -> Vec<String> {
+        let _told_below = self.timestamps.judge(self.key_file.keep(&signing.at_end()));
+        let _told_below = self.keep_key(signing);
+        let timestamps = self.timestamps.is_failing().then(|| {
+            self.timestamps.lacks(
+                "lacks the latest timestamps, so that frames of this run could be replayed to the next",
+            )
+        });
+        let key = self.new_key.then(|| self.key.lacks("lacks the key that was set by SETUP_SIGNING"));
+        timestamps.into_iter().chain(key).collect()
     }
 }

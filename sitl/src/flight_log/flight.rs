@@ -1,12 +1,10 @@
 //! The log of the present flight: begins, samples, ends.
 
 use std::fs::File;
-use std::io;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use autopilot::Autopilot;
 use autopilot::service::version;
-use vehicle::Severity;
 use vehicle::parameters::Value;
 
 use super::log_file::LogFile;
@@ -14,11 +12,12 @@ use super::row::Row;
 use super::settings::{LogSettings, LogStart};
 use super::topics::{GRID_US, LogSource, TOPICS};
 use super::ulog::{self, Definitions};
-use crate::files::LogFolder;
+use crate::files::{LogFolder, Notice, Upkeep, WRITE_PERIOD};
 
-/// How often data reach the disk, in simulation time, µs, and by the wall clock.
+/// How often data reach the disk in simulation time, µs; by the wall clock it is at least each [`WRITE_PERIOD`].
 const FLUSH_US: u64 = 1_000_000;
-const FLUSH: Duration = Duration::from_secs(1);
+/// What pilots call it.
+const NAME: &str = "Flight log";
 /// A flight's log goes on for this long after it, µs.
 const AFTERMATH_US: u64 = 1_000_000;
 
@@ -33,8 +32,7 @@ struct Current {
     last: Vec<Row>,
     flushed_us: u64,
     flushed: Instant,
-    /// Whether the disk took everything the last time.
-    sound: bool,
+    upkeep: Upkeep,
 }
 
 /// Writes logs.
@@ -47,24 +45,42 @@ pub struct FlightLog {
     /// Until when the log of a flight that is over goes on, µs.
     until_us: Option<u64>,
     messages: Vec<u8>,
+    /// Whether the disk takes new logs.
+    folder_upkeep: Upkeep,
+    /// When a log that could not begin is tried again, µs.
+    retry_us: Option<u64>,
+    /// What is missing from the logs, a sentence each.
+    lacking: Vec<String>,
 }
 
 impl FlightLog {
     /// Logs into a folder.
     pub fn new(folder: LogFolder, settings: LogSettings) -> Self {
-        Self { folder, settings, current: None, wanted: false, until_us: None, messages: Vec::new() }
+        Self {
+            folder_upkeep: Upkeep::new(NAME, folder.path()),
+            folder,
+            settings,
+            current: None,
+            wanted: false,
+            until_us: None,
+            messages: Vec::new(),
+            retry_us: None,
+            lacking: Vec::new(),
+        }
     }
 
     /// Takes a tick of the vehicle in.
     pub fn tick(&mut self, autopilot: &mut Autopilot, now: Instant) {
         let (time_us, armed) = (autopilot.vehicle().time_us(), autopilot.vehicle().is_armed());
         let wanted = armed || self.settings.start == LogStart::Boot;
-        if wanted && !self.wanted {
+        let again = self.retry_us.is_some_and(|retry_us| time_us >= retry_us);
+        if wanted && (!self.wanted || again) {
             self.finish(autopilot);
             self.begin(autopilot, now);
         }
         if self.wanted && !wanted {
             self.until_us = Some(time_us + AFTERMATH_US);
+            self.retry_us = None;
         }
         self.until_us = self.until_us.filter(|_| !wanted);
         // Arming and disarming are on it, whatever comes next.
@@ -89,19 +105,29 @@ impl FlightLog {
     /// Flushes if the wall clock says so: simulation time may be slow.
     pub fn keep_up(&mut self, autopilot: &mut Autopilot, now: Instant) {
         let since = |current: &Current| now.saturating_duration_since(current.flushed);
-        if self.current.as_ref().is_some_and(|current| since(current) >= FLUSH) {
+        if self.current.as_ref().is_some_and(|current| since(current) >= WRITE_PERIOD) {
             self.flush(autopilot, now);
         }
     }
 
     /// Ends the log, if there is one.
     pub fn finish(&mut self, autopilot: &mut Autopilot) {
-        self.until_us = None;
+        (self.until_us, self.retry_us) = (None, None);
         let Some(mut current) = self.current.take() else { return };
-        if let Err(error) = current.file.flush(autopilot.vehicle().time_us()) {
-            tracing::warn!("the log {} is not complete: {error}", current.name);
+        let time_us = autopilot.vehicle().time_us();
+        announce(autopilot, current.upkeep.judge(current.file.flush(time_us)));
+        let dropped_s = current.file.dropped_us(time_us) as f64 / 1e6;
+        if dropped_s > 0.0 {
+            self.lacking.push(current.upkeep.lacks(&format!("lacks {dropped_s:.1} s of data")));
+        } else if current.upkeep.is_failing() {
+            self.lacking.push(current.upkeep.lacks("ends early"));
         }
         self.folder.finish(&current.name);
+    }
+
+    /// What is missing from the logs that are over, a sentence each.
+    pub fn take_lacking(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.lacking)
     }
 
     fn begin(&mut self, autopilot: &mut Autopilot, now: Instant) {
@@ -109,14 +135,23 @@ impl FlightLog {
             Ok((name, file)) => {
                 tracing::info!("logging to {}", self.folder.path().join(&name).display());
                 let parameters = parameters(autopilot);
-                let file = LogFile::new(file, definitions(autopilot, &parameters));
+                let file = LogFile::new(file, &definitions(autopilot, &parameters));
                 let (last, time_us) = (vec![Row::default(); TOPICS.len()], autopilot.vehicle().time_us());
-                let sound = true;
+                let upkeep = Upkeep::new(NAME, &self.folder.path().join(&name));
                 self.current =
-                    Some(Current { name, file, parameters, last, flushed_us: time_us, flushed: now, sound });
+                    Some(Current { name, file, parameters, last, flushed_us: time_us, flushed: now, upkeep });
+                announce(autopilot, self.folder_upkeep.judge(Ok(())));
                 self.flush(autopilot, now);
             }
-            Err(error) => autopilot.announce(Severity::Warning, &format!("No log: {}", reason(&error))),
+            Err(error) => {
+                if !self.folder_upkeep.is_failing() {
+                    let time_s = autopilot.vehicle().time_us() as f64 / 1e6;
+                    let lacks = format!("lacks data from {time_s:.1} s on");
+                    announce(autopilot, self.folder_upkeep.judge(Err(error)));
+                    self.lacking.push(self.folder_upkeep.lacks(&lacks));
+                }
+                self.retry_us = Some(autopilot.vehicle().time_us() + FLUSH_US);
+            }
         }
     }
 
@@ -166,23 +201,16 @@ impl FlightLog {
         let entries = autopilot.parameter_table().entries();
         for ((entry, value), logged) in entries.iter().zip(&present).zip(&current.parameters) {
             if value != logged {
-                ulog::parameter(&mut self.messages, &entry.id, *value);
+                ulog::parameter(&mut self.messages, entry.id, *value);
             }
         }
         current.parameters = present;
         current.file.append(time_us, &self.messages);
         (current.flushed_us, current.flushed) = (time_us, now);
-        let result = current.file.flush(time_us);
-        let (was_sound, full) = (current.sound, current.file.bytes() >= self.settings.most_bytes);
-        current.sound = result.is_ok();
-        match result {
-            Err(error) if was_sound => {
-                autopilot.announce(Severity::Error, &format!("Logging interrupted: {}", reason(&error)));
-            }
-            Ok(()) if !was_sound => autopilot.announce(Severity::Info, "Logging goes on"),
-            _ => {}
-        }
-        if full {
+        let full = current.file.bytes() >= self.settings.most_bytes;
+        announce(autopilot, current.upkeep.judge(current.file.flush(time_us)));
+        // A disk that takes no more data takes no new file, either.
+        if full && !current.upkeep.is_failing() {
             let until_us = self.until_us;
             self.finish(autopilot);
             self.begin(autopilot, now);
@@ -191,10 +219,10 @@ impl FlightLog {
     }
 }
 
-/// Without the number that systems append.
-fn reason(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or_default().to_owned()
+fn announce(autopilot: &mut Autopilot, notice: Option<Notice>) {
+    if let Some((severity, text)) = notice {
+        autopilot.announce(severity, &text);
+    }
 }
 
 fn parameters(autopilot: &Autopilot) -> Vec<Value> {
@@ -216,7 +244,7 @@ fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
         definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));
     }
     for (entry, value) in autopilot.parameter_table().entries().iter().zip(parameters) {
-        definitions.parameter(&entry.id, *value);
+        definitions.parameter(entry.id, *value);
     }
     definitions.finish()
 }

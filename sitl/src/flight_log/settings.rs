@@ -20,7 +20,7 @@ impl FromStr for LogStart {
         match text {
             "arm" => Ok(Self::Arm),
             "boot" => Ok(Self::Boot),
-            _ => Err(format!("`{text}` is no beginning of a log: `arm` or `boot`")),
+            _ => Err(format!("must be `arm` or `boot`, not `{text}`")),
         }
     }
 }

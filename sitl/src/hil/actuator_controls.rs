@@ -2,16 +2,16 @@
 
 use autopilot::codec::Frame;
 
-/// What an autopilot wants of the motors.
+/// Motor commands of an autopilot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorControls {
-    /// The autopilot's time, µs: that of the sensors that they answer. Zero if it tells none.
+    /// Time of the HIL_SENSOR that they answer, µs; zero if unknown.
     pub time_us: u64,
-    /// Whether it waits for sensors as we wait for controls.
+    /// Whether the autopilot runs in lock-step.
     pub lockstep: bool,
     /// Whether the motors may turn.
     pub armed: bool,
-    /// Motors 1 to 4, 0 to 1. What is no number counts as 0.
+    /// Motors 1 to 4, 0 to 1; values that are not finite count as 0.
     pub motors: [f64; 4],
 }
 

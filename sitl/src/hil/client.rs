@@ -10,7 +10,7 @@ use crate::link::is_nothing_yet;
 
 /// Component of a simulator, as Gazebo's has it.
 const COMPONENT: u8 = 200;
-/// An autopilot that takes nothing for so long is gone.
+/// An autopilot that reads nothing for this long is disconnected.
 const STUCK: Duration = Duration::from_secs(2);
 /// Bytes of one look.
 const MOST_READ: usize = 1 << 16;
@@ -29,7 +29,7 @@ pub struct Client {
 }
 
 impl Client {
-    /// Takes a connection over.
+    /// A client on an accepted connection.
     pub fn new(stream: TcpStream, system: u8) -> std::io::Result<Self> {
         stream.set_nodelay(true)?;
         stream.set_write_timeout(Some(STUCK))?;
@@ -50,7 +50,7 @@ impl Client {
         self.stream.write_all(&bytes).map_err(|_| Gone)
     }
 
-    /// Frames that have come, or come within a while; without a while those that are there.
+    /// Received frames; with `wait`, blocks up to that long for the first.
     pub fn receive(&mut self, wait: Option<Duration>) -> Result<Vec<Frame>, Gone> {
         self.stream.set_nonblocking(wait.is_none()).map_err(|_| Gone)?;
         if wait.is_some() {
@@ -77,7 +77,7 @@ impl Client {
         Ok(frames)
     }
 
-    /// Bytes so far that were no frame.
+    /// Bytes so far that were not part of a frame.
     pub fn rejected_bytes(&self) -> u64 {
         self.decoder.rejected_bytes()
     }

@@ -1,4 +1,4 @@
-//! What the autopilot is told.
+//! Messages to the autopilot.
 
 use autopilot::codec::floats;
 use mavlink::dialects::common::{

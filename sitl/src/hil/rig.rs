@@ -45,7 +45,7 @@ impl Rig {
     /// A rig on the ground at the origin.
     ///
     /// # Errors
-    /// [`ConfigurationError`] when the vehicle is none.
+    /// [`ConfigurationError`] if the vehicle cannot fly.
     pub fn new(settings: &VehicleSettings, mount: Mount) -> Result<Self, ConfigurationError> {
         let mut configuration = settings.configuration;
         configuration.environment.ground_plane = true;

@@ -1,13 +1,13 @@
-//! What the simulator is told.
+//! Settings of the simulator.
 
 use std::path::PathBuf;
 
-use vehicle::VehicleSettings;
 use vehicle::parameters::Speed;
+use vehicle::{Notice, VehicleSettings};
 
 use super::Mount;
 
-/// What the simulator of an external autopilot does.
+/// Settings of the simulator of an external autopilot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HilSettings {
     /// Address to listen on.
@@ -22,10 +22,10 @@ pub struct HilSettings {
     pub system_id: u8,
     /// Pace.
     pub speed: Speed,
-    /// File that tells that the autopilot can connect.
+    /// File to write when the autopilot can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
-    /// What the user is to be told at the start, a line each.
-    pub notes: Vec<String>,
+    /// What the user is told at the start.
+    pub notes: Vec<Notice>,
 }

@@ -17,12 +17,13 @@ use crate::failure::Failure;
 use crate::link::{LinkError, resolve};
 use crate::pace::Pace;
 use crate::summary::{Flight, Summary};
+use crate::terminal::{Segment, StatusLine, of_autopilot, set_simulation_time};
 
 /// Between two looks for a connection, and longest rest of the pace.
 const REST: Duration = Duration::from_millis(1);
 /// Between two looks whether to stop while controls are awaited.
 const LOOK: Duration = Duration::from_millis(20);
-/// Controls that do not come for so long are done without, a step at a time: an autopilot may have missed one.
+/// After this long without controls, the simulation continues by one step: the autopilot may have missed a message.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A listening simulator.
@@ -35,11 +36,13 @@ pub struct Simulator {
 /// One autopilot's flight.
 struct Flown<'a> {
     settings: &'a HilSettings,
+    status: &'a mut StatusLine,
     rig: Rig,
     client: Client,
     /// Time of the last controls that were taken.
     answered_us: Option<u64>,
     lockstep: bool,
+    armed: bool,
     /// Controls that were late or came twice.
     stale: u64,
     /// Steps without controls that should have come.
@@ -76,23 +79,31 @@ impl Simulator {
     /// [`Failure`] of the simulation.
     pub fn run(self, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
         let start = Instant::now();
+        let mut status = StatusLine::new(start);
         let mut flights = Vec::new();
         while !stop.load(Ordering::Relaxed) {
             let Ok((stream, address)) = self.listener.accept() else {
+                status.update(Instant::now(), 0, || vec![Segment::new(0, "waiting for an autopilot")]);
                 std::thread::sleep(REST);
                 continue;
             };
             tracing::info!("autopilot connected from {address}");
-            let flight = self.serve(stream, stop)?;
+            let flight = self.serve(stream, stop, &mut status)?;
             flights.push(flight);
             if self.settings.end_us.is_some_and(|end_us| flight.time_us >= end_us) {
                 break;
             }
         }
-        Ok(Summary { wall: start.elapsed(), flights })
+        status.clear();
+        Ok(Summary { wall: start.elapsed(), flights, incomplete: Vec::new() })
     }
 
-    fn serve(&self, stream: TcpStream, stop: &Arc<AtomicBool>) -> Result<Flight, Failure> {
+    fn serve(
+        &self,
+        stream: TcpStream,
+        stop: &Arc<AtomicBool>,
+        status: &mut StatusLine,
+    ) -> Result<Flight, Failure> {
         let rig = Rig::new(&self.settings.vehicle, self.settings.mount)?;
         let system_id = self.settings.system_id;
         let Ok(client) = Client::new(stream, system_id) else {
@@ -100,10 +111,12 @@ impl Simulator {
         };
         let mut flown = Flown {
             settings: &self.settings,
+            status,
             rig,
             client,
             answered_us: None,
             lockstep: false,
+            armed: false,
             stale: 0,
             missed: 0,
         };
@@ -114,7 +127,7 @@ impl Simulator {
             missed_controls = flown.missed,
             rejected_bytes = flown.client.rejected_bytes(),
             "{} after {:.3} s",
-            if ended.is_err() { "autopilot disconnected" } else { "ended" },
+            if ended.is_err() { "autopilot disconnected" } else { "simulation ended" },
             time_us as f64 / 1e6,
         );
         Ok(Flight { system_id, time_us, digest: flown.rig.digest().value() })
@@ -133,6 +146,8 @@ impl Flown<'_> {
             let now = Instant::now();
             let goal_us = pace.goal_us(self.speed(), now, self.rig.time_us());
             let ahead = goal_us.is_some_and(|goal_us| self.rig.time_us() + STEP_US > goal_us);
+            set_simulation_time(self.rig.time_us());
+            self.show(now);
             if ahead {
                 std::thread::sleep(REST);
             } else {
@@ -153,6 +168,17 @@ impl Flown<'_> {
         Ok(Ok(()))
     }
 
+    /// Shows the state on the status line, if it is time to.
+    fn show(&mut self, now: Instant) {
+        let state = match (self.answered_us, self.armed) {
+            (None, _) => "autopilot starting",
+            (Some(_), false) => "disarmed",
+            (Some(_), true) => "armed",
+        };
+        let position_m = self.rig.plant().body.position_m;
+        self.status.update(now, self.rig.time_us(), || of_autopilot(state, &position_m));
+    }
+
     /// An autopilot that has not answered yet is starting, by the wall clock as much as by ours.
     fn speed(&self) -> Speed {
         match self.settings.speed {
@@ -169,8 +195,8 @@ impl Flown<'_> {
             if start.elapsed() > PATIENCE {
                 if self.missed == 0 {
                     tracing::warn!(
-                        "no controls for {PATIENCE:?} at {} us: going on without",
-                        self.rig.time_us()
+                        "no HIL_ACTUATOR_CONTROLS for {PATIENCE:?} after {:.3} s: continuing without",
+                        self.rig.time_us() as f64 / 1e6
                     );
                 }
                 self.missed += 1;
@@ -180,7 +206,7 @@ impl Flown<'_> {
         Ok(())
     }
 
-    /// Takes in what has come. Whether controls were among it that are new.
+    /// Handles received messages; returns whether new controls were among them.
     fn take(&mut self, wait: Option<Duration>) -> Result<bool, Gone> {
         let mut answered = false;
         for frame in self.client.receive(wait)? {
@@ -201,10 +227,13 @@ impl Flown<'_> {
         }
         if self.answered_us.is_none() {
             let how = if controls.lockstep { "in lock-step" } else { "at its own pace" };
-            tracing::info!("first controls at {} us, {how}", self.rig.time_us());
+            tracing::info!(
+                "first HIL_ACTUATOR_CONTROLS after {:.3} s, {how}",
+                self.rig.time_us() as f64 / 1e6
+            );
         }
         self.answered_us = Some(controls.time_us.max(newest_us));
-        self.lockstep = controls.lockstep;
+        (self.lockstep, self.armed) = (controls.lockstep, controls.armed);
         self.rig.control(controls);
         true
     }

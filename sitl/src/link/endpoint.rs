@@ -1,4 +1,4 @@
-//! What a link is, as a person writes it.
+//! Links as people write them: `udpout:127.0.0.1:14550`.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -7,9 +7,9 @@ use std::str::FromStr;
 use autopilot::envelope::LinkProfile;
 use serde::{Deserialize, Serialize};
 
-/// Nothing is reachable from outside unless it is asked for.
+/// Links bind to and send to loopback unless another address is given.
 const LOCAL: &str = "127.0.0.1";
-/// Of a serial link that names none.
+/// Default speed of a serial link.
 const BAUD: u32 = 57_600;
 
 /// Kind and address of a link.
@@ -47,13 +47,13 @@ pub enum Endpoint {
     },
 }
 
-/// A link: where, and what for.
+/// A link: its address and its purpose.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct LinkSpecification {
-    /// Where.
+    /// Address.
     pub endpoint: Endpoint,
-    /// What for.
+    /// Purpose: telemetry for a ground station or a companion computer.
     pub profile: LinkProfile,
 }
 
@@ -95,44 +95,80 @@ impl FromStr for LinkSpecification {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || {
-            format!(
-                "`{text}` is no link: udpout:HOST:PORT[@LOCALPORT], udpin:[HOST:]PORT, tcpin:[HOST:]PORT or \
-                 serial:PATH[:BAUD], each with `,onboard` for faster telemetry; PORT is within 0 to 65535"
-            )
-        };
-        let (address, profile) = match text.rsplit_once(',') {
-            Some((address, "onboard")) => (address, LinkProfile::Onboard),
-            Some((address, "ground")) => (address, LinkProfile::Ground),
-            Some(_) => return Err(wrong()),
-            None => (text, LinkProfile::Ground),
-        };
-        let (kind, rest) = address.split_once(':').ok_or_else(wrong)?;
-        let endpoint = match kind {
-            "udpout" => {
-                let (remote, local) = rest.split_once('@').unwrap_or((rest, "0"));
-                let (host, port) = host_and_port(remote).ok_or_else(wrong)?;
-                let local_port = local.parse().map_err(|_| wrong())?;
-                Endpoint::UdpOut { host, port, local_port }
-            }
-            "udpin" => {
-                let (host, port) = host_and_port(rest).ok_or_else(wrong)?;
-                Endpoint::UdpIn { host, port }
-            }
-            "tcpin" => {
-                let (host, port) = host_and_port(rest).ok_or_else(wrong)?;
-                Endpoint::TcpIn { host, port }
-            }
-            "serial" if !rest.is_empty() => {
-                let (path, baud) = path_and_baud(rest).ok_or_else(|| {
-                    format!("`{text}` is no link: serial:PATH[:BAUD] with a whole number above 0 for BAUD")
-                })?;
-                Endpoint::Serial { path: path.into(), baud }
-            }
-            _ => return Err(wrong()),
-        };
-        Ok(Self { endpoint, profile })
+        read(text).ok_or_else(|| refusal(text))
     }
+}
+
+/// A link as it is written.
+fn read(text: &str) -> Option<LinkSpecification> {
+    let (address, profile) = match text.rsplit_once(',') {
+        Some((address, "onboard")) => (address, LinkProfile::Onboard),
+        Some((address, "ground")) => (address, LinkProfile::Ground),
+        Some(_) => return None,
+        None => (text, LinkProfile::Ground),
+    };
+    let (kind, rest) = address.split_once(':')?;
+    let endpoint = match kind {
+        "udpout" => {
+            let (remote, local) = rest.split_once('@').unwrap_or((rest, "0"));
+            let (host, port) = host_and_port(remote)?;
+            let local_port = local.parse().ok()?;
+            Endpoint::UdpOut { host, port, local_port }
+        }
+        "udpin" => {
+            let (host, port) = host_and_port(rest)?;
+            Endpoint::UdpIn { host, port }
+        }
+        "tcpin" => {
+            let (host, port) = host_and_port(rest)?;
+            Endpoint::TcpIn { host, port }
+        }
+        "serial" if !rest.is_empty() => {
+            let (path, baud) = path_and_baud(rest)?;
+            Endpoint::Serial { path: path.into(), baud }
+        }
+        _ => return None,
+    };
+    Some(LinkSpecification { endpoint, profile })
+}
+
+/// Why a text is not a link: what was probably meant, or what is allowed.
+fn refusal(text: &str) -> String {
+    if text.starts_with("serial:") {
+        return format!(
+            "invalid link `{text}`; use serial:PATH[:BAUD] with a positive integer as BAUD, such as \
+             serial:/dev/ttyACM0:57600"
+        );
+    }
+    match meant(text) {
+        Some(link) => format!("invalid link `{text}`; did you mean `{link}`?"),
+        None => format!(
+            "invalid link `{text}`; use udpout:HOST:PORT[@LOCALPORT], udpin:[HOST:]PORT, tcpin:[HOST:]PORT or \
+             serial:PATH[:BAUD], with a PORT from 0 to 65535; append `,onboard` for faster telemetry"
+        ),
+    }
+}
+
+/// The link that was probably meant: other programs write `udp:` and `tcp:`, with slashes, or the address alone.
+fn meant(text: &str) -> Option<String> {
+    let (kind, rest) = match text.split_once(':') {
+        _ if text.starts_with('/') => ("tty", text),
+        split => split.unwrap_or(("", text)),
+    };
+    let rest = if kind.is_empty() { rest } else { rest.trim_start_matches("//").trim_start_matches(':') };
+    let named: &[&str] = match kind.to_ascii_lowercase().as_str() {
+        // An address to send to has a host.
+        "" | "udp" if rest.contains(':') => &["udpout"],
+        "" | "udp" | "udpin" | "udp_in" | "upd" | "updin" | "udpi" => &["udpin"],
+        "udpout" | "udp_out" | "udpo" | "udpbcast" | "updout" => &["udpout"],
+        "tcp" | "tcpin" | "tcp_in" | "tcpserver" | "tcpout" => &["tcpin"],
+        "tty" | "uart" | "ser" => &["serial"],
+        _ => &[],
+    };
+    // Without a kind the text before the first colon is a host.
+    let whole = ["udpout"].into_iter().map(|kind| format!("{kind}:{text}")).filter(|_| named.is_empty());
+    let candidates = named.iter().map(|kind| format!("{kind}:{rest}")).chain(whole);
+    candidates.into_iter().find(|link| link != text && read(link).is_some())
 }
 
 /// A colon within the name of a device, as in /dev/serial/by-path/pci-0000:00:14.0, is followed by more of its path.
@@ -149,7 +185,7 @@ fn path_and_baud(text: &str) -> Option<(&str, u32)> {
 fn host_and_port(text: &str) -> Option<(String, u16)> {
     let (host, port) = text.rsplit_once(':').unwrap_or((LOCAL, text));
     let host = host.trim_start_matches('[').trim_end_matches(']');
-    Some((host.to_owned(), port.parse().ok()?)).filter(|(host, _)| !host.is_empty())
+    Some((host.to_owned(), port.parse().ok()?)).filter(|(host, _)| !host.is_empty() && !host.contains('/'))
 }
 
 impl fmt::Display for Endpoint {
@@ -207,6 +243,24 @@ mod tests {
             ["", "udp", "udpin:", "tcpin:x", "udpout:h:1@x", "serial:", "tcpin:5760,fast", "udpin:70000"]
         {
             assert!(wrong.parse::<LinkSpecification>().is_err(), "{wrong}");
+        }
+        for (wrong, right) in [
+            ("udp:14550", "udpin:14550"),
+            ("udp:127.0.0.1:14550", "udpout:127.0.0.1:14550"),
+            ("udp://:14540", "udpin:14540"),
+            ("udpin://0.0.0.0:14540,onboard", "udpin:0.0.0.0:14540,onboard"),
+            ("tcp:127.0.0.1:5760", "tcpin:127.0.0.1:5760"),
+            ("14550", "udpin:14550"),
+            ("127.0.0.1:14550", "udpout:127.0.0.1:14550"),
+            ("/dev/ttyACM0:57600", "serial:/dev/ttyACM0:57600"),
+        ] {
+            let error = wrong.parse::<LinkSpecification>().expect_err(wrong);
+            assert_eq!(error, format!("invalid link `{wrong}`; did you mean `{right}`?"));
+            assert!(right.parse::<LinkSpecification>().is_ok());
+        }
+        for wrong in ["carrier-pigeon", "udpin:70000", "tcpin:5760,fast"] {
+            let error = wrong.parse::<LinkSpecification>().expect_err(wrong);
+            assert!(error.contains("use udpout:HOST:PORT[@LOCALPORT], udpin:[HOST:]PORT"), "{error}");
         }
         for wrong in ["serial:/dev/ttyS0:abc", "serial:/dev/ttyS0:", "serial:/dev/ttyS0:0", "serial::9600"] {
             let error = wrong.parse::<LinkSpecification>().expect_err(wrong);

@@ -1,8 +1,8 @@
-//! Why a link cannot be opened.
+//! Errors of opening a link.
 
 use std::io;
 
-/// One line that says what is wrong and what to do about it.
+/// A link that cannot be opened, with the reason and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// A socket.
@@ -25,8 +25,8 @@ pub enum LinkError {
         /// Why.
         source: io::Error,
     },
-    /// A name that stands for no address.
-    #[error("`{host}` in the link `{link}` is no address of a host")]
+    /// A host name without an address.
+    #[error("cannot resolve host {host} in the link `{link}`")]
     Host {
         /// The name.
         host: String,
@@ -37,7 +37,9 @@ pub enum LinkError {
 
 fn hint(error: &io::Error) -> &'static str {
     match error.kind() {
-        io::ErrorKind::AddrInUse => " (is another vehicle running? --instance moves the default ports)",
+        io::ErrorKind::AddrInUse => {
+            " (is another vehicle running? choose another port, or --instance N for other default ports)"
+        }
         _ => "",
     }
 }

@@ -80,7 +80,7 @@ impl Links {
         std::mem::take(&mut self.setups)
     }
 
-    /// For a person: where each link is.
+    /// Each link's address, for people.
     pub fn descriptions(&self) -> Vec<String> {
         self.links.iter().map(|link| link.transport.description()).collect()
     }
@@ -90,12 +90,12 @@ impl Links {
         self.links.iter().map(|link| link.transport.address()).collect()
     }
 
-    /// Peers that have spoken.
+    /// Number of peers that have sent something.
     pub fn active_peers(&self) -> usize {
         self.links.iter().flat_map(|link| link.peers.values()).filter(|peer| peer.has_spoken()).count()
     }
 
-    /// Everything that has come and is accepted, already forwarded to the peers that it is for.
+    /// Frames that were received and accepted; they are already forwarded to the peers they are for.
     pub fn receive(&mut self, now: Instant) -> Vec<Received> {
         let mut received = self.poll(now);
         received.retain(|received| self.is_accepted(received, now));

@@ -1,4 +1,4 @@
-//! Links: transports, their peers, and what goes between them.
+//! Links: transports, their peers, and forwarding between them.
 
 mod echo;
 mod endpoint;

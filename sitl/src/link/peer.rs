@@ -1,4 +1,4 @@
-//! What is known of a peer.
+//! A peer: its stream of frames, protocol version and systems.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ const OLD_FRAMES: u8 = 3;
 /// Systems behind one peer that are remembered.
 const MOST_SEEN: usize = 64;
 
-/// A frame that is not complete after so long a silence is none: the longest one takes 50 ms on a slow serial line.
+/// An incomplete frame is given up after this long a silence: the longest one takes 50 ms on a slow serial line.
 const SILENCE: Duration = Duration::from_millis(200);
 
 /// A peer.
@@ -28,19 +28,19 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Frames that bytes from it complete.
+    /// Frames that received bytes complete.
     pub fn frames(&mut self, bytes: &[u8], datagram: bool, now: Instant) -> Vec<Frame> {
         self.last_bytes = Some(now);
         if datagram { self.decoder.datagram(bytes) } else { self.decoder.push(bytes) }
     }
 
-    /// Frames behind something that has begun like a frame and never ended.
+    /// Frames after the start of a frame that never ended.
     pub fn overdue(&mut self, now: Instant) -> Vec<Frame> {
         let silent = self.last_bytes.is_some_and(|last| now.saturating_duration_since(last) > SILENCE);
         if silent && self.decoder.waiting_bytes() > 0 { self.decoder.give_up() } else { Vec::new() }
     }
 
-    /// Learns from a frame of it.
+    /// Learns version and sender from a frame.
     pub fn learn(&mut self, frame: &Frame) {
         self.old_frames = match frame.version() {
             Version::One => self.old_frames.saturating_add(1),
@@ -52,17 +52,17 @@ impl Peer {
         }
     }
 
-    /// The version to speak to it.
+    /// The protocol version to send.
     pub fn version(&self) -> Version {
         if self.old_frames >= OLD_FRAMES { Version::One } else { Version::Two }
     }
 
-    /// Whether a system is behind it; zero is any.
+    /// Whether a system has sent through this peer; zero means any.
     pub fn leads_to(&self, system: u8) -> bool {
         system == 0 || self.seen.iter().any(|(seen, _)| *seen == system)
     }
 
-    /// Whether anything has come from it.
+    /// Whether anything was received from it.
     pub fn has_spoken(&self) -> bool {
         !self.seen.is_empty()
     }

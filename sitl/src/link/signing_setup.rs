@@ -49,7 +49,7 @@ impl std::fmt::Display for SigningSetup {
                 write!(formatter, "Signing: key removed by {system}/{component}")
             }
             Self::Refused(system, component) => {
-                write!(formatter, "Signing: key of {system}/{component} refused: link is not local")
+                write!(formatter, "Signing: key from {system}/{component} refused: link is not local")
             }
         }
     }

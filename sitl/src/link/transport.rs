@@ -1,32 +1,32 @@
-//! What carries bytes.
+//! Transports: they carry bytes to and from peers.
 
 use std::time::Instant;
 
-/// What a transport has noticed.
+/// An event on a transport.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A peer is there.
+    /// A new peer.
     Opened(u64),
     /// Bytes from a peer.
     Bytes(u64, Vec<u8>),
-    /// A peer is gone.
+    /// A peer has gone.
     Closed(u64),
 }
 
-/// Carries bytes to and from peers, which it numbers; never waits.
+/// Carries bytes to and from peers, which it numbers; never blocks.
 pub trait Transport: std::fmt::Debug {
-    /// What has happened since the last call.
+    /// Events since the last call.
     fn poll(&mut self, now: Instant) -> Vec<Event>;
 
-    /// Sends a whole frame to a peer. A peer that cannot take it loses it.
+    /// Sends a whole frame to a peer. If the peer's buffer is full, the frame is lost.
     fn send(&mut self, peer: u64, bytes: &[u8]);
 
-    /// Whether a peer takes more than the telemetry without losing it.
+    /// Whether a peer has room for more than the telemetry.
     fn has_room(&self, _peer: u64) -> bool {
         true
     }
 
-    /// Sends what is waiting.
+    /// Sends what is buffered.
     fn flush(&mut self) {}
 
     /// Whether frames are whole datagrams.
@@ -35,14 +35,14 @@ pub trait Transport: std::fmt::Debug {
     /// Whether a peer is on this machine, or at the other end of a cable.
     fn is_local(&self, peer: u64) -> bool;
 
-    /// Where it really is, for a person.
+    /// The actual address, for people.
     fn description(&self) -> String;
 
-    /// Where it really is, as a client connects to it.
+    /// The actual address, as clients connect to it.
     fn address(&self) -> String;
 }
 
-/// Numbers that are never used again.
+/// Numbers that are never reused.
 #[derive(Clone, Debug, Default)]
 pub struct Numbers(u64);
 
@@ -53,7 +53,7 @@ impl Numbers {
     }
 }
 
-/// Whether an error only means "not now".
+/// Whether an error only means that nothing is there yet.
 pub fn is_nothing_yet(error: &std::io::Error) -> bool {
     matches!(error.kind(), std::io::ErrorKind::WouldBlock | std::io::ErrorKind::Interrupted)
 }

@@ -1,59 +1,230 @@
 //! Flying a record again.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use vehicle::TICK_US;
 
-use super::{Digest, Entry, Header, Participant, read};
+use super::{Digest, Entry, Event, Header, Reader};
 use crate::failure::Failure;
 use crate::summary::Flight;
+use crate::terminal::set_simulation_time;
 
-/// Flies every vehicle of a record again, each alone and as fast as possible, and compares the flights. Returns them:
-/// their digests are the recorded ones.
-///
-/// # Errors
-/// [`Failure::Differs`] when one differs; [`Failure`] when the file is no record.
-pub fn replay(path: &Path) -> Result<Vec<Flight>, Failure> {
-    let (header, entries) = read(path)?;
-    let wrong = |reason: String| Failure::Content { path: path.to_owned(), reason };
-    let mut flights: Vec<Vec<Entry>> = header.vehicles.iter().map(|_| Vec::new()).collect();
-    for entry in entries {
-        let number = entry.vehicle();
-        let flight = flights.get_mut(number).ok_or_else(|| wrong(format!("there is no vehicle {number}")))?;
-        flight.push(entry);
-    }
-    let each = header.vehicles.iter().zip(flights);
-    each.map(|(participant, entries)| {
-        let no_end = || wrong(format!("the flight of system {} has no end", participant.system_id));
-        fly(participant, &header, entries)?.ok_or_else(no_end)
-    })
-    .collect()
+/// How often the progress is told.
+const TOLD: Duration = Duration::from_secs(2);
+/// Ticks between two looks at the wall clock.
+const TICKS: u32 = 1000;
+
+/// How the record of a flight ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum RecordEnd {
+    /// With the flight.
+    Complete,
+    /// At the size limit of the record.
+    Limit,
+    /// Before the flight: the program was killed, or its disk was full.
+    #[default]
+    Cut,
 }
 
-/// One vehicle's flight; `None` if its end is missing.
-fn fly(participant: &Participant, header: &Header, entries: Vec<Entry>) -> Result<Option<Flight>, Failure> {
-    let Participant { system_id, links, vehicle } = participant;
-    let system_id = *system_id;
-    let mut autopilot = Autopilot::new(vehicle, system_id, header.speed, links, header.unix_start_us)?;
-    let mut digest = Digest::default();
-    for entry in entries {
-        while autopilot.vehicle().time_us() + TICK_US <= entry.time_us() {
-            autopilot.tick()?;
-            digest.update(autopilot.vehicle());
-            drop(autopilot.take_outgoing());
-        }
-        match entry {
-            Entry::Frame { origin, frame, .. } => autopilot.receive(&origin, &frame),
-            Entry::GroundStation { heard, .. } => autopilot.hear_ground_station(heard),
-            Entry::End { digest: recorded, time_us, .. } => {
-                let replayed = digest.value();
-                if replayed != recorded {
-                    return Err(Failure::Differs { system_id, recorded, replayed });
-                }
-                return Ok(Some(Flight { system_id, time_us, digest: replayed }));
-            }
+/// A flight that was flown again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replayed {
+    /// The flight as far as it is recorded; its digest is the recorded one.
+    pub flight: Flight,
+    /// How its record ends.
+    pub end: RecordEnd,
+    /// Until when the digests were compared, µs.
+    pub verified_us: u64,
+}
+
+/// Flies every vehicle of a record again, as fast as possible, and compares the flights as far as they are recorded. The whole
+/// record is checked first.
+///
+/// # Errors
+/// [`Failure::Differs`] at the first digest that differs; [`Failure`] when the file cannot be read, is not a record or is damaged.
+pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
+    let survey = Survey::of(path)?;
+    let mut reader = Reader::open(path)?;
+    let header = reader.header().clone();
+    let mut flown = header
+        .vehicles
+        .iter()
+        .map(|participant| {
+            let (system_id, links) = (participant.system_id, &participant.links);
+            let autopilot =
+                Autopilot::new(&participant.vehicle, system_id, header.speed, links, header.unix_start_us)?;
+            Ok(Flown { system_id, autopilot, digest: Digest::default(), end: RecordEnd::Cut, verified_us: 0 })
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    survey.announce(path, &header);
+    let mut progress = Progress::new(survey.simulated_us());
+    // Somebody may still be writing the file.
+    for entry in reader.by_ref().take(survey.entries) {
+        let entry = entry?;
+        if let Some(flown) = flown.get_mut(entry.vehicle) {
+            flown.fly_to(entry.time_us, &mut progress)?;
+            flown.take(entry)?;
         }
     }
-    Ok(None)
+    Ok(flown.into_iter().map(Flown::finish).collect())
+}
+
+/// What a record holds.
+#[derive(Debug)]
+struct Survey {
+    entries: usize,
+    /// Time of the last entry of each vehicle, µs, and whether its flight is over.
+    last: Vec<(u64, bool)>,
+}
+
+impl Survey {
+    /// Reads all of it.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        let mut reader = Reader::open(path)?;
+        let mut survey = Self { entries: 0, last: vec![(0, false); reader.header().vehicles.len()] };
+        while let Some(entry) = reader.next() {
+            let entry = entry?;
+            let Some((last_us, over)) = survey.last.get_mut(entry.vehicle) else { continue };
+            if *over || entry.time_us < *last_us {
+                let reason = format!("line {} comes after a later entry of its vehicle", reader.line());
+                return Err(Failure::Content { path: path.to_owned(), reason });
+            }
+            *last_us = entry.time_us;
+            *over = matches!(entry.event, Event::End(_) | Event::Limit(_));
+            survey.entries += 1;
+        }
+        Ok(survey)
+    }
+
+    /// Simulation time of all vehicles, µs.
+    fn simulated_us(&self) -> u64 {
+        self.last.iter().map(|(last_us, _)| last_us).fold(0, |sum, last_us| sum.saturating_add(*last_us))
+    }
+
+    fn announce(&self, path: &Path, header: &Header) {
+        let longest_us = self.last.iter().map(|(last_us, _)| *last_us).max().unwrap_or(0);
+        tracing::info!(
+            "replaying {}: {}, {:.3} s, recorded by lmpc-sitl {}",
+            path.display(),
+            match self.last.len() {
+                1 => "1 vehicle".to_owned(),
+                many => format!("{many} vehicles"),
+            },
+            longest_us as f64 / 1e6,
+            header.program,
+        );
+        if self.last.iter().any(|(_, over)| !over) {
+            tracing::warn!(
+                "the record was cut in line {}: the program was killed, or its disk was full; replaying what there is",
+                self.entries + 2
+            );
+        }
+    }
+}
+
+/// How far a replay has come.
+#[derive(Debug)]
+struct Progress {
+    all_us: u64,
+    done_us: u64,
+    told: Instant,
+}
+
+impl Progress {
+    fn new(all_us: u64) -> Self {
+        Self { all_us, done_us: 0, told: Instant::now() }
+    }
+
+    /// So much more simulation time, µs. Returns what to tell, if it is time.
+    fn add(&mut self, time_us: u64, now: Instant) -> Option<String> {
+        self.done_us += time_us;
+        if now.saturating_duration_since(self.told) < TOLD {
+            return None;
+        }
+        self.told = now;
+        let percent = 100.0 * self.done_us as f64 / self.all_us.max(1) as f64;
+        let [done_s, all_s] = [self.done_us, self.all_us].map(|time_us| time_us as f64 / 1e6);
+        Some(format!("replayed {done_s:.1} of {all_s:.1} s ({percent:.0} %)"))
+    }
+}
+
+/// A vehicle that is flown again.
+#[derive(Debug)]
+struct Flown {
+    system_id: u8,
+    autopilot: Autopilot,
+    digest: Digest,
+    end: RecordEnd,
+    verified_us: u64,
+}
+
+impl Flown {
+    fn fly_to(&mut self, time_us: u64, progress: &mut Progress) -> Result<(), Failure> {
+        while self.autopilot.vehicle().time_us() + TICK_US <= time_us {
+            let begin_us = self.autopilot.vehicle().time_us();
+            for _ in 0..TICKS {
+                if self.autopilot.vehicle().time_us() + TICK_US > time_us {
+                    break;
+                }
+                set_simulation_time(self.autopilot.vehicle().time_us());
+                self.autopilot.tick()?;
+                self.digest.update(self.autopilot.vehicle());
+                drop(self.autopilot.take_outgoing());
+            }
+            let flown_us = self.autopilot.vehicle().time_us() - begin_us;
+            if let Some(line) = progress.add(flown_us, Instant::now()) {
+                tracing::info!("{line}");
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, entry: Entry) -> Result<(), Failure> {
+        match entry.event {
+            Event::Frame(origin, frame) => self.autopilot.receive(&origin, &frame),
+            Event::GroundStation(heard) => self.autopilot.hear_ground_station(heard),
+            Event::State(digest) => self.compare(entry.time_us, digest)?,
+            Event::End(digest) => {
+                self.compare(entry.time_us, digest)?;
+                self.end = RecordEnd::Complete;
+            }
+            Event::Limit(digest) => {
+                self.compare(entry.time_us, digest)?;
+                self.end = RecordEnd::Limit;
+            }
+        }
+        Ok(())
+    }
+
+    fn compare(&mut self, time_us: u64, recorded: u64) -> Result<(), Failure> {
+        let (system_id, replayed) = (self.system_id, self.digest.value());
+        if replayed != recorded {
+            return Err(Failure::Differs { system_id, time_us, recorded, replayed });
+        }
+        self.verified_us = time_us;
+        Ok(())
+    }
+
+    fn finish(self) -> Replayed {
+        let time_us = self.autopilot.vehicle().time_us();
+        let flight = Flight { system_id: self.system_id, time_us, digest: self.digest.value() };
+        Replayed { flight, end: self.end, verified_us: self.verified_us }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Duration, Instant, Progress};
+
+    #[test]
+    fn progress_is_told_every_two_seconds_of_the_wall_clock() {
+        let mut progress = Progress::new(40_000_000);
+        let start = Instant::now();
+        let after = |ms| start + Duration::from_millis(ms);
+        assert_eq!(progress.add(1_000_000, after(1000)), None);
+        assert_eq!(progress.add(9_000_000, after(2500)).as_deref(), Some("replayed 10.0 of 40.0 s (25 %)"));
+        assert_eq!(progress.add(1_000_000, after(3000)), None);
+    }
 }

@@ -1,83 +1,68 @@
 //! `.tlog`: each frame behind its time, as ground stations write them.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use autopilot::codec::Frame;
 
 use crate::failure::Failure;
-
-/// How often it reaches the disk, µs of its own time, and by the wall clock.
-const FLUSH_US: u64 = 1_000_000;
-const FLUSH: Duration = Duration::from_secs(1);
+use crate::files::{FileLock, Notice, Spool, Upkeep};
 
 /// A log of all traffic. When its file is full it becomes `NAME.1.tlog`, `NAME.2.tlog` and so on, and a new one begins;
 /// of these the oldest are removed.
 #[derive(Debug)]
 pub struct TrafficLog {
     path: PathBuf,
-    file: BufWriter<File>,
-    bytes: u64,
+    spool: Spool<File>,
+    upkeep: Upkeep,
     most_bytes: u64,
     most_files: usize,
     full: u64,
-    flushed_us: u64,
-    flushed: Option<Instant>,
+    /// Why the next file could not be begun: the present one goes on until the next flush.
+    stuck: Option<io::Error>,
+    /// Frames that there was no room for.
+    lost: u64,
+    _lock: Option<FileLock>,
 }
 
 impl TrafficLog {
     /// Begins a log: its file, how large that may get, and how many there may be.
     ///
     /// # Errors
-    /// [`Failure::File`]
+    /// [`Failure::File`], or [`Failure::Content`] when another process writes the file.
     pub fn create(path: &Path, most_bytes: u64, most_files: usize) -> Result<Self, Failure> {
+        let lock = FileLock::claim(path)?;
         let file = File::create(path).map_err(|source| Failure::write(path, source))?;
         Ok(Self {
             path: path.to_owned(),
-            file: BufWriter::new(file),
-            bytes: 0,
+            spool: Spool::new(file),
+            upkeep: Upkeep::new("Traffic log", path),
             most_bytes,
             most_files,
             full: 0,
-            flushed_us: 0,
-            flushed: None,
+            stuck: None,
+            lost: 0,
+            _lock: lock,
         })
     }
 
     /// Logs a frame: microseconds since 1970, most significant byte first, then the frame.
-    ///
-    /// # Errors
-    /// [`Failure::File`]
-    pub fn frame(&mut self, unix_us: u64, frame: &Frame) -> Result<(), Failure> {
-        let stamp = unix_us.to_be_bytes();
-        let length = (stamp.len() + frame.bytes().len()) as u64;
-        if self.bytes > 0 && self.bytes + length > self.most_bytes {
-            self.rotate()?;
+    pub fn frame(&mut self, unix_us: u64, frame: &Frame) {
+        let entry = [&unix_us.to_be_bytes(), frame.bytes()].concat();
+        let full = self.spool.bytes() > 0 && self.spool.bytes() + entry.len() as u64 > self.most_bytes;
+        if full && self.stuck.is_none() && !self.upkeep.is_failing() {
+            self.stuck = self.rotate().err();
         }
-        self.bytes += length;
-        let due = unix_us >= self.flushed_us + FLUSH_US;
-        let written = self
-            .file
-            .write_all(&stamp)
-            .and_then(|()| self.file.write_all(frame.bytes()))
-            .and_then(|()| if due { self.file.flush() } else { Ok(()) });
-        self.flushed_us = if due { unix_us } else { self.flushed_us };
-        written.map_err(|source| Failure::write(&self.path, source))
+        if !self.spool.append(&entry) {
+            self.lost += 1;
+        }
     }
 
-    /// Flushes if the wall clock says so: simulation time may be slow.
-    ///
-    /// # Errors
-    /// [`Failure::File`]
-    pub fn keep_up(&mut self, now: Instant) -> Result<(), Failure> {
-        let flushed = *self.flushed.get_or_insert(now);
-        if now.saturating_duration_since(flushed) < FLUSH {
-            return Ok(());
-        }
-        self.flushed = Some(now);
-        self.file.flush().map_err(|source| Failure::write(&self.path, source))
+    /// Writes what waits. Returns what to announce.
+    pub fn flush(&mut self) -> Option<Notice> {
+        let written = self.spool.flush();
+        self.upkeep.judge(self.stuck.take().map_or(written, Err))
     }
 
     /// Name of the file that was the `number`th to be full.
@@ -87,26 +72,25 @@ impl TrafficLog {
         self.path.with_extension(format!("{number}.{extension}").trim_end_matches('.'))
     }
 
-    fn rotate(&mut self) -> Result<(), Failure> {
+    fn rotate(&mut self) -> io::Result<()> {
+        self.spool.flush()?;
+        std::fs::rename(&self.path, self.numbered(self.full + 1))?;
         self.full += 1;
-        let surplus = self.full.checked_sub(self.most_files as u64);
-        let renamed = self.file.flush().and_then(|()| std::fs::rename(&self.path, self.numbered(self.full)));
-        let begun = renamed.and_then(|()| File::create(&self.path));
-        self.file = BufWriter::new(begun.map_err(|source| Failure::write(&self.path, source))?);
-        self.bytes = 0;
-        if let Some(number) = surplus {
+        self.spool = Spool::new(File::create(&self.path)?);
+        if let Some(number) = self.full.checked_sub(self.most_files as u64) {
             // The first is number 1, and one file is being written. Somebody else may have removed it.
             let _gone = std::fs::remove_file(self.numbered(number + 1));
         }
         Ok(())
     }
 
-    /// Ends the log.
-    ///
-    /// # Errors
-    /// [`Failure::File`]
-    pub fn finish(mut self) -> Result<(), Failure> {
-        self.file.flush().map_err(|source| Failure::write(&self.path, source))
+    /// Ends the log. Returns what is missing from it, if anything is.
+    pub fn finish(mut self) -> Option<String> {
+        let _told_below = self.flush();
+        match self.lost {
+            0 => self.upkeep.is_failing().then(|| self.upkeep.lacks("ends early")),
+            lost => Some(self.upkeep.lacks(&format!("lacks {lost} messages"))),
+        }
     }
 }
 
@@ -126,9 +110,9 @@ mod tests {
         let length = 8 + frame(0).bytes().len();
         let mut log = TrafficLog::create(&path, 10 * length as u64 + 3, 3).expect("a file");
         for number in 0..55 {
-            log.frame(u64::from(number), &frame(number)).expect("written");
+            log.frame(u64::from(number), &frame(number));
         }
-        log.finish().expect("written");
+        assert_eq!(log.finish(), None);
         let mut names: Vec<_> = std::fs::read_dir(folder.path())
             .expect("a folder")
             .map(|entry| entry.expect("one").file_name())

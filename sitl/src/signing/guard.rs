@@ -32,7 +32,7 @@ pub enum Refusal {
     #[error("late")]
     Late,
     /// There is no room for its stream, or behind its timestamp.
-    #[error("beyond what can be remembered")]
+    #[error("beyond capacity")]
     NoRoom,
 }
 
@@ -92,6 +92,8 @@ pub struct Signing {
     key: Option<SecretKey>,
     /// The present, or the latest that was accepted if that is later.
     clock: u64,
+    /// The latest that was accepted. Those of the streams lie ahead of it after a crash.
+    heard: u64,
     sent: u64,
     sent_kept: u64,
     streams: BTreeMap<Stream, Seen>,
@@ -106,6 +108,7 @@ impl Signing {
         Self {
             key,
             clock: kept.heard,
+            heard: kept.heard,
             sent: kept.sent,
             sent_kept: kept.sent,
             streams: kept.streams.into_iter().map(|(stream, last)| (stream, seen(last))).collect(),
@@ -182,6 +185,7 @@ impl Signing {
         };
         self.streams.insert(stream, Seen { last: timestamp, kept });
         self.clock = self.clock.max(timestamp);
+        self.heard = self.heard.max(timestamp);
         Ok(())
     }
 
@@ -210,6 +214,11 @@ impl Signing {
         std::mem::take(&mut self.unkept).then(|| self.kept(self.sent_kept, |seen| seen.kept))
     }
 
+    /// What was taken to be kept could not be: it is to be taken again.
+    pub fn keep_again(&mut self) {
+        self.unkept = true;
+    }
+
     /// What is to be kept at an end that was asked for: no more than what was used.
     pub fn at_end(&self) -> Kept {
         self.kept(self.sent, |seen| seen.last)
@@ -217,7 +226,6 @@ impl Signing {
 
     fn kept(&self, sent: u64, of: impl Fn(&Seen) -> u64) -> Kept {
         let streams = self.streams.iter().map(|(stream, seen)| (*stream, of(seen))).collect();
-        let heard = self.streams.values().map(|seen| seen.last).max().unwrap_or(0);
-        Kept { sent, heard, streams }
+        Kept { sent, heard: self.heard, streams }
     }
 }

@@ -23,17 +23,20 @@ impl KeyFile {
     /// like, so that each hub has streams of its own. An empty file has no key yet: SETUP_SIGNING brings it.
     ///
     /// # Errors
-    /// [`Failure::File`], or [`Failure::Content`] if others may read it or it is no key.
+    /// [`Failure::File`], or [`Failure::Content`] if others may read it or it is not a key.
     pub fn open(path: &Path, hub: usize) -> Result<(Self, Option<SecretKey>, Kept), Failure> {
         let wrong = |path: &Path, reason: String| Failure::Content { path: path.to_owned(), reason };
         let (content, mode) = read(path).map_err(|source| Failure::read(path, source))?;
         if let Some(mode) = mode.filter(|mode| *mode != 0o600) {
-            let reason = format!("its mode is {mode:04o}, and must be 0600: others must not read the key");
+            let reason = format!(
+                "the mode is {mode:04o}; it must be 0600, so that nobody else can read the key: chmod 600 {}",
+                path.display()
+            );
             return Err(wrong(path, reason));
         }
         let key = SecretKey::read(&content);
         if key.is_none() && !content.trim_ascii().is_empty() {
-            let reason = "is no key: 64 hexadecimal digits or 32 bytes, not all zero; an empty file waits for SETUP_SIGNING";
+            let reason = "not a signing key; the file must have 64 hexadecimal digits or 32 bytes, not all zero (an empty file waits for SETUP_SIGNING)";
             return Err(wrong(path, reason.to_owned()));
         }
         let mut beside = path.to_owned().into_os_string();
@@ -43,7 +46,7 @@ impl KeyFile {
             Ok(text) => Kept::parse(&text).map_err(|line| {
                 wrong(
                     &file.timestamps,
-                    format!("line {line} is no timestamp; without the file, old frames could come again"),
+                    format!("line {line} is not a timestamp; restore the file: without it, recorded messages could be replayed"),
                 )
             })?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Kept::default(),
@@ -52,19 +55,24 @@ impl KeyFile {
         Ok((file, key, kept))
     }
 
+    /// Where the timestamps are.
+    pub fn timestamps(&self) -> &Path {
+        &self.timestamps
+    }
+
     /// Keeps timestamps.
     ///
     /// # Errors
-    /// [`Failure::File`]
-    pub fn keep(&self, kept: &Kept) -> Result<(), Failure> {
+    /// The error of the file system; the old ones are still there.
+    pub fn keep(&self, kept: &Kept) -> std::io::Result<()> {
         replace(&self.timestamps, kept.render().as_bytes(), Readers::Owner)
     }
 
     /// Keeps another key, or none.
     ///
     /// # Errors
-    /// [`Failure::File`]
-    pub fn keep_key(&self, key: Option<&SecretKey>) -> Result<(), Failure> {
+    /// The error of the file system; the old one is still there.
+    pub fn keep_key(&self, key: Option<&SecretKey>) -> std::io::Result<()> {
         let digits = key.map(SecretKey::to_digits).unwrap_or_default();
         replace(&self.path, digits.as_bytes(), Readers::Owner)
     }

@@ -1,4 +1,4 @@
-//! Signing of MAVLink 2: who does not know the key is not heard.
+//! Signing of MAVLink 2: messages without a valid signature are ignored.
 //!
 //! ```text
 //!  key file (0600) ──► SecretKey ─┐

@@ -33,6 +33,7 @@ pub fn settings(identity: Identity) -> VehicleSettings {
         faults: Vec::new(),
         sensors: SensorSettings::default(),
         plans: vehicle::plan::Plans::default(),
+        autostart: false,
     }
 }
 
@@ -141,7 +142,8 @@ impl Bench {
                 _ => texts.push((text.id, piece.to_owned())),
             }
         }
-        texts.into_iter().map(|(_, text)| text).collect()
+        // Pieces that are not the last one are filled up with spaces.
+        texts.into_iter().map(|(_, text)| text.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
     }
 
     pub fn parameters(&self) -> Vec<PARAM_VALUE_DATA> {

@@ -2,7 +2,7 @@
 
 use autopilot::codec::Message;
 use autopilot::envelope::LinkProfile;
-use sitl::record::{Digest, Header, Participant, Recorder, replay};
+use sitl::record::{Digest, Header, Participant, RecordEnd, Recorder, Replayed, replay};
 use sitl::{Failure, Flight};
 use tempfile::TempDir;
 use vehicle::VehicleSettings;
@@ -33,13 +33,22 @@ impl Recording {
         Self::started_at(settings, 0, 77)
     }
 
+    /// A record with a limit of its size, bytes.
+    pub fn limited(settings: &VehicleSettings, most_bytes: u64) -> Self {
+        Self::create(settings, 0, 77, most_bytes)
+    }
+
     /// A record that tells a time of the start, µs since 1970, and the time at which it was started.
     pub fn started_at(settings: &VehicleSettings, told_us: u64, start_us: u64) -> Self {
+        Self::create(settings, told_us, start_us, u64::MAX)
+    }
+
+    fn create(settings: &VehicleSettings, told_us: u64, start_us: u64, most_bytes: u64) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let links = vec![LinkProfile::Ground];
         let participant = Participant { system_id: 1, links, vehicle: settings.clone() };
         let header = Header::new(Speed::Factor(1.0), vec![participant]).started_at(told_us);
-        let recorder = Recorder::create(&folder.path().join(NAME), &header).expect("a file");
+        let recorder = Recorder::create(&folder.path().join(NAME), &header, most_bytes).expect("a file");
         let bench = Bench::started_at(settings, start_us);
         Self { bench, folder, recorder, digest: Digest::default() }
     }
@@ -47,7 +56,7 @@ impl Recording {
     pub fn send(&mut self, message: impl Into<Message>) {
         let frame = self.bench.frame(message);
         let time_us = self.bench.autopilot.vehicle().time_us();
-        self.recorder.frame(0, time_us, &Bench::origin(), &frame).expect("written");
+        self.recorder.frame(0, time_us, &Bench::origin(), &frame);
         self.bench.receive(&frame);
     }
 
@@ -57,10 +66,25 @@ impl Recording {
         self.digest.update(self.bench.autopilot.vehicle());
     }
 
+    /// The digest so far goes into the record.
+    pub fn note_state(&mut self) {
+        self.recorder.state(0, self.bench.autopilot.vehicle().time_us(), self.digest);
+    }
+
+    /// Stops the record if it is full.
+    pub fn stop_if_full(&mut self) -> bool {
+        let full = self.recorder.is_full();
+        if full {
+            let time_us = self.bench.autopilot.vehicle().time_us();
+            self.recorder.stop(std::iter::once((0, time_us, self.digest)));
+        }
+        full
+    }
+
     pub fn finish(mut self) -> Record {
         let time_us = self.bench.autopilot.vehicle().time_us();
-        self.recorder.end(0, time_us, self.digest).expect("written");
-        self.recorder.finish().expect("written");
+        self.recorder.end(0, time_us, self.digest);
+        assert_eq!(self.recorder.finish(), None);
         let flight = Flight { system_id: 1, time_us, digest: self.digest.value() };
         Record { folder: self.folder, flight }
     }
@@ -73,16 +97,23 @@ impl Record {
 
     /// Fails unless the replayed flight is the recorded one, bit for bit.
     pub fn assert_same(&self) {
-        assert_eq!(replay(&self.folder.path().join(NAME)).expect("the same flight"), [self.flight]);
+        let replayed = replay(&self.folder.path().join(NAME)).expect("the same flight");
+        let verified_us = self.flight.time_us;
+        assert_eq!(replayed, [Replayed { flight: self.flight, end: RecordEnd::Complete, verified_us }]);
     }
 
-    /// Replays the record with one text in it replaced by another.
-    pub fn changed(&self, from: &str, to: &str) -> Result<Vec<Flight>, Failure> {
+    /// Replays another text in place of the record.
+    pub fn replay_text(&self, text: &str) -> Result<Vec<Replayed>, Failure> {
+        let path = self.folder.path().join("changed.record");
+        std::fs::write(&path, text).expect("written");
+        replay(&path)
+    }
+
+    /// Replays the record with one text in it replaced by another, and its checksums made right.
+    pub fn changed(&self, from: &str, to: &str) -> Result<Vec<Replayed>, Failure> {
         let text = self.text();
         assert!(text.contains(from), "the record has no `{from}`");
-        let path = self.folder.path().join("changed.record");
-        std::fs::write(&path, text.replacen(from, to, 1)).expect("written");
-        replay(&path)
+        self.replay_text(&sealed(&text.replacen(from, to, 1)))
     }
 
     /// Fails unless such a change makes another flight.
@@ -90,4 +121,16 @@ impl Record {
         let replayed = self.changed(from, to);
         assert!(matches!(replayed, Err(Failure::Differs { .. })), "{from}: {replayed:?}");
     }
+}
+
+/// A record with right checksums: each line ends with the CRC-32 of all bytes before it.
+pub fn sealed(text: &str) -> String {
+    let mut sealed = String::new();
+    for line in text.lines() {
+        let content = line.rsplit_once(' ').map_or(line, |(content, _)| content);
+        sealed.push_str(&format!("{content} "));
+        let checksum = crc32fast::hash(sealed.as_bytes());
+        sealed.push_str(&format!("{checksum:08x}\n"));
+    }
+    sealed
 }

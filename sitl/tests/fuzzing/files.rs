@@ -6,9 +6,9 @@ use autopilot::Autopilot;
 use autopilot::codec::{Message, Version};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
-use sitl::record::{self, Digest, Header, Recorder};
+use sitl::record::{Digest, Header, Reader, Recorder};
 use sitl::signing::{Kept, SecretKey};
-use vehicle::parameters::{ParameterTable, ParameterValues, Speed, render};
+use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, render};
 
 use super::bytes::Bytes;
 
@@ -38,7 +38,7 @@ const WAYPOINTS: &str = include_str!("../corpus/mission.waypoints");
 const TIMESTAMPS: &str =
     "lmpc-sitl signing timestamps 1\nsent 7\nheard 19\nstream 0 255 190 5\nstream 3 1 1 19\n";
 const CONFIGURATION: &str = "# a vehicle\nautopilot = \"ardupilot\"\nhome = \"-35.363262,149.165237,584,353\"\nspeed = \"5\"\nwind = \"4,270\"\ngusts = 1.5\n\
-    seed = 7\nvehicles = 3\nformation = \"circle,6\"\nset = [\"AF_MASS=0.8\"]\nfault = [\"12.5:rotor1=off\"]\nnoise = \"rtk-gps\"\nkalman = true\nduration = 9.0\n";
+    seed = 7\nvehicles = 3\nformation = \"circle,6\"\nset = [\"FRAME_MASS=0.8\"]\nfault = [\"12.5:rotor1=off\"]\nnoise = \"rtk-gps\"\nkalman = true\nduration = 9.0\n";
 
 /// Reads one file of each kind. Panics if a reader does, or if what it has accepted does not fly. Returns how many there were.
 pub fn changed(seed: u64) -> u64 {
@@ -54,8 +54,10 @@ pub fn changed(seed: u64) -> u64 {
         let mission = Some(vec![Addressed { system_id: None, value: mission }]);
         fly(&Arguments { mission, ..Arguments::default() });
     }
-    let parameters = write("a.params", edited(&mut bytes, &parameters()));
-    fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
+    for (name, format) in [("a.parm", FileFormat::Plain), ("a.params", FileFormat::QGroundControl)] {
+        let parameters = write(name, edited(&mut bytes, &parameters(format)));
+        fly(&Arguments { parameters: Some(parameters), ..Arguments::default() });
+    }
     let configuration = write("a.toml", edited(&mut bytes, CONFIGURATION));
     if let Ok(arguments) = sitl::configuration::file::read(&configuration) {
         fly(&arguments);
@@ -63,9 +65,16 @@ pub fn changed(seed: u64) -> u64 {
     let path = folder.path().join("a.lmpc");
     recorded(&path);
     let text = std::fs::read_to_string(&path).expect("a record");
-    std::fs::write(&path, edited(&mut bytes, &text)).expect("written");
-    if let Ok((header, _entries)) = record::read(&path) {
-        for participant in header.vehicles {
+    // With the checksums of somebody who knows how they are made, and without.
+    let mut text = edited(&mut bytes, &text);
+    if bytes.below(4) > 0 {
+        text = sealed(&text);
+    }
+    std::fs::write(&path, text).expect("written");
+    if let Ok(mut reader) = Reader::open(&path) {
+        let entries = reader.by_ref().take_while(Result::is_ok).count();
+        assert!(entries < 100, "{entries} entries of a short record");
+        for participant in &reader.header().vehicles {
             let _refused = Autopilot::new(
                 &participant.vehicle,
                 participant.system_id,
@@ -79,7 +88,7 @@ pub fn changed(seed: u64) -> u64 {
         assert_eq!(Kept::parse(&kept.render()), Ok(kept));
     }
     let _key = SecretKey::read(edited(&mut bytes, &"5a".repeat(32)).as_bytes());
-    7
+    8
 }
 
 /// What is refused says why in one line; what is not flies.
@@ -104,12 +113,12 @@ fn fly(arguments: &Arguments) {
 }
 
 /// The parameters as the vehicle writes them.
-fn parameters() -> String {
+fn parameters(format: FileFormat) -> String {
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
     let vehicle = &settings.vehicles[0].vehicle;
     let table = ParameterTable::new(vehicle.identity);
     let (configuration, conduct) = (vehicle.configuration, vehicle.conduct);
-    render(&table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
+    render(format, &table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
 }
 
 /// A short record.
@@ -117,16 +126,28 @@ fn recorded(path: &Path) {
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
     let mut recorder =
-        Recorder::create(path, &Header::new(Speed::Max, settings.participants())).expect("a file");
+        Recorder::create(path, &Header::new(Speed::Max, settings.participants()), u64::MAX).expect("a file");
     let message = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
     let frame = autopilot::codec::Frame::encode(&message, Version::Two, 0, (255, 190)).expect("a frame");
     let origin = Origin { peer: PeerId { link: 0, number: 0 }, system: 255, component: 190 };
     for time_us in [0, 1_000, 250_000] {
-        recorder.frame(0, time_us, &origin, &frame).expect("written");
+        recorder.frame(0, time_us, &origin, &frame);
     }
-    recorder.ground_station(0, 300_000, true).expect("written");
-    recorder.end(0, 400_000, Digest::default()).expect("written");
-    recorder.finish().expect("written");
+    recorder.ground_station(0, 300_000, true);
+    recorder.end(0, 400_000, Digest::default());
+    assert_eq!(recorder.finish(), None);
+}
+
+/// A record with right checksums: each line ends with the CRC-32 of all bytes before it.
+fn sealed(text: &str) -> String {
+    let mut sealed = String::new();
+    for line in text.lines() {
+        let content = line.rsplit_once(' ').map_or(line, |(content, _)| content);
+        sealed.push_str(&format!("{content} "));
+        let checksum = crc32fast::hash(sealed.as_bytes());
+        sealed.push_str(&format!("{checksum:08x}\n"));
+    }
+    sealed
 }
 
 /// A text after some edits, still UTF-8.

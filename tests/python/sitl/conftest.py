@@ -30,13 +30,13 @@ def program() -> Path:
 class Vehicle:
     """A running program."""
 
-    def __init__(self, program: Path, folder: Path, *arguments: str):
+    def __init__(self, program: Path, folder: Path, *arguments: str, cwd: Path | None = None):
         folder.mkdir(exist_ok=True)
         ready = folder / "ready.json"
         self.log = (folder / "output.txt").open("wb")
         self.started = time.monotonic()
         self.process = subprocess.Popen(
-            [program, "--ready-file", ready, *arguments], stdout=self.log, stderr=subprocess.STDOUT,
+            [program, "--ready-file", ready, *arguments], stdout=self.log, stderr=subprocess.STDOUT, cwd=cwd,
             env={name: value for name, value in os.environ.items() if not name.startswith("LMPC_SITL_")},
         )
         self.folder = folder
@@ -68,9 +68,9 @@ def start(program, tmp_path):
     """Starts vehicles; `links` are specifications as --link takes them."""
     running = []
 
-    def make(*arguments: str, links=("udpin:0",)) -> Vehicle:
+    def make(*arguments: str, links=("udpin:0",), cwd: Path | None = None) -> Vehicle:
         options = [option for link in links for option in ("--link", link)]
-        running.append(Vehicle(program, tmp_path / f"vehicle{len(running)}", *options, *arguments))
+        running.append(Vehicle(program, tmp_path / f"vehicle{len(running)}", *options, *arguments, cwd=cwd))
         return running[-1]
 
     yield make

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import records
 from client import PX4_OFFBOARD, mavlink
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -80,7 +81,7 @@ def fly_by_pymavlink(start, connect, record: Path, trajectory) -> dict:
 def recorded_set_points(record: Path) -> list[dict]:
     parser = mavlink.MAVLink(None)
     set_points = []
-    for line in record.read_text().splitlines():
+    for line in records.entries(record):
         if not line.startswith("frame "):
             continue
         _, time_us, *_, content = line.split(" ")

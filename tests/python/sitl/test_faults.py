@@ -82,7 +82,7 @@ def test_faults_of_the_command_line(start, connect):
 
 
 def test_wrong_faults_end_the_program_with_the_reason(program):
-    for fault, reason in (("1:rotor9=off", "no unit `rotor9`"), ("1:gps=weak", "cannot be `weak`"), ("gps=off", "SECONDS:UNIT=KIND"),
+    for fault, reason in (("1:rotor9=off", "unknown unit `rotor9`"), ("1:gps=weak", "cannot be `weak`"), ("gps=off", "SECONDS:UNIT=KIND"),
                           ("1:gps=wrong", "needs --sensors realistic")):
         ended = subprocess.run([program, "--fault", fault], capture_output=True, text=True, timeout=10)
         assert ended.returncode == 2 and reason in ended.stderr and "--fault" in ended.stderr, ended

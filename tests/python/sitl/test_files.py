@@ -145,6 +145,7 @@ def test_component_metadata(start, connect, fly, tmp_path):  # noqa: F811
         assert parameter["shortDesc"] and parameter["min"] < parameter["max"], name
     assert described["MIS_TAKEOFF_ALT"]["units"] == "m" and described["MIS_TAKEOFF_ALT"]["default"] == 2.5
     assert {value["description"] for value in described["COM_OBL_RC_ACT"]["values"]} >= {"Return", "Land"}
+    assert [name for name, parameter in described.items() if parameter.get("rebootRequired")] == ["MAV_SYS_ID"]
     # It is the same after a change: ground stations keep it.
     client.set_parameter("MIS_TAKEOFF_ALT", 3.5)
     assert get(entry["uri"]) == content

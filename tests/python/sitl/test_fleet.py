@@ -9,8 +9,10 @@ import time
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.telemetry import Telemetry
+import pytest
 from pymavlink.dialects.v20 import common as mavlink
 
+import records
 from client import PX4_OFFBOARD
 
 
@@ -149,6 +151,7 @@ def elapsed(client, seconds):
     return {system: (end[system].time_boot_ms - begin[system].time_boot_ms) / 1e3 / (time.monotonic() - wall) for system in end}
 
 
+@pytest.mark.alone
 def test_clocks_are_one_or_each_their_own(start, connect):
     for clocks, factors in (("shared", (5, 5)), ("separate", (2, 5))):
         client = connect(start("--vehicles", "2", "--ports", "shared", "--clocks", clocks, "--speed", "2"))
@@ -187,8 +190,8 @@ def test_a_record_holds_all_vehicles(start, connect, program, tmp_path):
     assert "MIS_TAKEOFF_ALT 3.5\n" in (tmp_path / "fleet-3.params").read_text()
 
     # What one vehicle was told is left out: its flight is another, and is named.
-    lines = record.read_text().splitlines()
+    lines = records.entries(record)
     told = next(line for line in lines if line.startswith("frame") and line.split()[2] == "2" and "9001" in line.split()[-1])
-    record.write_text("\n".join(line for line in lines if line != told) + "\n")
+    records.write(record, [line for line in lines if line != told])
     result = subprocess.run([program, "--replay", record], capture_output=True, text=True, timeout=60)
     assert result.returncode == 5 and "system 3 differs" in result.stderr, result

@@ -48,7 +48,7 @@ def test_flights_read_by_pyulog(start, connect, program, tmp_path):
     client.take_off()
     client.go(lambda: client.position((3, 2, -4)))
     client.stream(lambda: client.position((3, 2, -4)), near((3, 2, -4), 0.3, 0.3))
-    client.set_parameter("LIM_SPEED_H", 4.5)
+    client.set_parameter("LIM_SPEED_HORIZ", 4.5)
     client.land()
     client.arm()
     client.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
@@ -61,7 +61,7 @@ def test_flights_read_by_pyulog(start, connect, program, tmp_path):
     # Without it Flight Review looks for the receiver's places under the names of before.
     assert log.msg_info_dict["ver_data_format"] >= 2
     assert log.initial_parameters["MIS_TAKEOFF_ALT"] == 2.5 and isinstance(log.initial_parameters["COM_OBL_RC_ACT"], int)
-    assert ("LIM_SPEED_H", pytest.approx(4.5)) in [(name, value) for _, name, value in log.changed_parameters]
+    assert ("LIM_SPEED_HORIZ", pytest.approx(4.5)) in [(name, value) for _, name, value in log.changed_parameters]
     said = [message.message for message in log.logged_messages]
     assert {"Armed", "Takeoff height reached", "Disarmed after landing"} <= set(said), said
     data = topics(log)

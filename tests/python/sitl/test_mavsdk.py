@@ -104,10 +104,14 @@ def test_parameters(fly):
     every = param.get_all_params()
     every = every[1] if isinstance(every, tuple) else every
     names = {one.name for one in [*every.int_params, *every.float_params]}
-    assert {"MIS_TAKEOFF_ALT", "COM_OBL_RC_ACT", "LIM_SPEED_H", "C_POS_R_THE", "AF_MASS"} <= names
-    param.set_param_float("LIM_SPEED_H", 5.0)
-    value = param.get_param_float("LIM_SPEED_H")
+    assert {"MIS_TAKEOFF_ALT", "COM_OBL_RC_ACT", "LIM_SPEED_HORIZ", "POS_R_PITCH", "FRAME_MASS"} <= names
+    param.set_param_float("LIM_SPEED_HORIZ", 5.0)
+    value = param.get_param_float("LIM_SPEED_HORIZ")
     assert (value[1] if isinstance(value, tuple) else value) == pytest.approx(5.0)
+    # Former names are still answered.
+    param.set_param_float("LIM_SPEED_H", 6.0)
+    value = param.get_param_float("LIM_SPEED_H")
+    assert (value[1] if isinstance(value, tuple) else value) == pytest.approx(6.0)
     param.set_param_int("COM_OBL_RC_ACT", 4)
     value = param.get_param_int("COM_OBL_RC_ACT")
     assert (value[1] if isinstance(value, tuple) else value) == 4

@@ -65,7 +65,7 @@ def test_pymavlink_uploads_and_flies(start, connect, integer):
     assert abs(back[1].x / 1e7 - north(20)) < (1e-7 if integer else 1e-5) and back[2].z == 8.0
     unknown = [*FLIGHT[:2], (31234, RELATIVE, (0, 0, 0, 0), 0, 0, 0)]
     assert upload(client, unknown, integer=integer) == mavlink.MAV_MISSION_UNSUPPORTED
-    assert "item 2: command 31234" in client.wait("STATUSTEXT", lambda text: "refused" in text.text).text
+    assert "item 3: command 31234" in client.wait("STATUSTEXT", lambda text: "rejected" in text.text).text
     client.command(mavlink.MAV_CMD_MISSION_START)
     for number in range(4):
         client.wait("MISSION_ITEM_REACHED", lambda item: item.seq == number, 40)

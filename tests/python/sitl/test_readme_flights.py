@@ -1,47 +1,117 @@
-"""The README's code that flies the MAVLink vehicle runs as it is printed, but for the port."""
+"""What README and book print for the MAVLink vehicle works as it is printed, but for ports that are free ones here."""
 
+import itertools
 import re
+import socket
 import subprocess
 import sys
-from pathlib import Path
 
+import documents
 import pytest
 
 from test_mavsdk import free_port
 
-README = (Path(__file__).resolve().parents[3] / "README.md").read_text(encoding="utf-8")
+FLIGHTS = [block for block in documents.of("python") if re.search(r"^(from|import) (pymavlink|mavsdk)\b", block.text, re.MULTILINE)]
 
 
-def block(language: str, word: str) -> str:
-    """The block of code in which a word stands."""
-    (code,) = (code for code in re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL) if word in code)
-    return code
+def group_of(flight) -> tuple:
+    """The command that a reader has typed before: its arguments, and where it stands."""
+    commands = [(block, arguments) for block in documents.of("sh") if block.file == flight.file and block.line < flight.line
+                for arguments in block.commands]
+    assert commands, f"{flight}: no command before it starts a vehicle"
+    block, arguments = commands[-1]
+    return str(block), tuple(arguments)
 
 
-@pytest.mark.parametrize("library, says", [("from pymavlink", "5.0 5.0 10.0"), ("from mavsdk", "landed")])
-def test_python_code_of_the_readme(start, library, says):
-    code, port = block("python", library), free_port()
-    assert "14540" in code
-    start("--speed", "4", links=(f"udpout:127.0.0.1:{port},onboard",))
-    done = subprocess.run([sys.executable, "-c", code.replace("14540", str(port))], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 0, done.stderr
-    last = done.stdout.splitlines()[-1]
-    numbers = re.findall(r"-?[\d.]+", last)
-    assert (" ".join(str(round(float(number), 1)) for number in numbers) or last) == says
+GROUPS = {group: tuple(flights) for group, flights in itertools.groupby(FLIGHTS, group_of)}
 
 
-def test_configuration_file_of_the_readme(start, connect, tmp_path):
-    text = block("toml", "--config")
-    settings = dict(re.findall(r'^(\w+) = "?(.*?)"?(?: *#.*)?$', text, re.MULTILINE))
-    # Ports of a test are free ones; files go where they may.
-    text = text.replace(settings["link"], '["udpin:0"]')
-    for file in (settings["parameters"], settings["record"]):
-        text = text.replace(file, str(tmp_path / file))
-    file = tmp_path / "vehicle.toml"
-    file.write_text(text)
-    client = connect(start("--config", str(file), links=()))
-    assert client.wait("HEARTBEAT").autopilot == 3
-    place = client.wait("GLOBAL_POSITION_INT")
-    latitude, longitude = (float(number) for number in settings["home"].split(",")[:2])
-    assert abs(place.lat / 1e7 - latitude) < 1e-6 and abs(place.lon / 1e7 - longitude) < 1e-6
-    assert client.parameter("SIM_SPEEDUP").param_value == float(settings["speed"])
+class Stand:
+    """A vehicle started as it is printed, on free ports that take the place of those printed."""
+
+    def __init__(self, start, arguments):
+        self.ports = {}
+        links = () if "--link" in arguments else (f"udpout:127.0.0.1:{self.port('14550')}", f"udpout:127.0.0.1:{self.port('14540')},onboard")
+        self.vehicle = start(*(re.sub(r"(?<=:)\d{4,5}\b", self.port, word) for word in arguments), links=links)
+
+    def port(self, printed) -> str:
+        number = printed if isinstance(printed, str) else printed[0]
+        return self.ports.setdefault(number, str(free_port()))
+
+    def fly(self, block):
+        code = re.sub(r"(?<=:)\d{4,5}\b", self.port, block.text)
+        assert code != block.text, f"{block} names no port"
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=90)
+        assert done.returncode == 0, f"{block}: {done.stdout}{done.stderr}"
+        documents.check_output(block, done.stdout)
+
+
+def test_there_are_flights_with_both_libraries():
+    for library in ("from pymavlink", "from mavsdk"):
+        assert any(library in block.text for block in FLIGHTS if block.file == "README.md"), library
+
+
+@pytest.mark.parametrize("block", FLIGHTS, ids=str)
+def test_each_block_alone(start, block):
+    Stand(start, group_of(block)[1]).fly(block)
+
+
+@pytest.mark.parametrize("backwards", [False, True], ids=["in order", "backwards"])
+@pytest.mark.parametrize("group", GROUPS, ids=lambda group: group[0])
+def test_all_blocks_on_one_vehicle(start, group, backwards):
+    stand = Stand(start, group[1])
+    flights = GROUPS[group]
+    for block in reversed(flights) if backwards else flights:
+        stand.fly(block)
+
+
+def test_the_mavsdk_block_flies_a_vehicle_that_another_program_has_left_in_the_air(start, connect):
+    (block,) = (block for block in FLIGHTS if block.file == "README.md" and "from mavsdk" in block.text)
+    port = free_port()
+    vehicle = start("--speed", "4", links=("udpin:0", f"udpout:127.0.0.1:{port},onboard"))
+    connect(vehicle).take_off()
+    code = block.text.replace("14540", str(port))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=90)
+    assert done.returncode == 0 and done.stdout.splitlines()[-1] == "landed", done.stdout + done.stderr
+
+
+def is_free(port: int) -> bool:
+    with socket.socket() as tcp, socket.socket(type=socket.SOCK_DGRAM) as udp:
+        try:
+            tcp.bind(("127.0.0.1", port))
+            udp.bind(("127.0.0.1", port))
+        except OSError:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("block", documents.of("toml", "--config"), ids=str)
+def test_configuration_file(start, connect, tmp_path, block):
+    """As it is printed, but for ports that somebody else has."""
+    text = re.sub(r'(?<=in:)\d{4,5}(?=[",])', lambda port: port[0] if is_free(int(port[0])) else str(free_port()), block.text)
+    (tmp_path / "vehicle.toml").write_text(text)
+    settings = dict(re.findall(r'^([\w-]+) = "?(.*?)"?(?: *#.*)?$', text, re.MULTILINE))
+    vehicle = start("--config", "vehicle.toml", links=(), cwd=tmp_path)
+    listening = next(link for link in re.findall(r'"([^"]+)"', settings["link"]) if link.startswith(("tcpin", "udpin")))
+    number = re.findall(r'"([^"]+)"', settings["link"]).index(listening)
+    client = connect(vehicle, link=number, kind="tcp" if listening.startswith("tcpin") else "udpout")
+    assert client.wait("HEARTBEAT").autopilot == {"ardupilot": 3, "px4": 12, "generic": 0}[settings.get("autopilot", "px4")]
+    if "home" in settings:
+        place = client.wait("GLOBAL_POSITION_INT")
+        latitude, longitude = (float(number) for number in settings["home"].split(",")[:2])
+        assert abs(place.lat / 1e7 - latitude) < 1e-6 and abs(place.lon / 1e7 - longitude) < 1e-6
+    if "speed" in settings and settings["speed"] != "max":
+        assert client.parameter("SIM_SPEEDUP").param_value == float(settings["speed"])
+
+
+def test_there_is_a_configuration_file():
+    assert documents.of("toml", "--config")
+
+
+@pytest.mark.parametrize("block, arguments", [(block, arguments) for block in documents.of("sh") for arguments in block.commands],
+                         ids=lambda value: str(value) if isinstance(value, documents.Block) else " ".join(value) or "-")
+def test_printed_commands_are_accepted(program, tmp_path, block, arguments):
+    """All flags are read before the configuration file, which is not there."""
+    config = [] if any(word.startswith("--config") for word in arguments) else ["--config", "missing.toml"]
+    done = subprocess.run([program, *arguments, *config], cwd=tmp_path, capture_output=True, text=True, timeout=20)
+    assert done.returncode == (0 if {"--help", "-h", "--version"} & set(arguments) else 4), f"{block}: {done.stderr}"

@@ -3,6 +3,7 @@
 import struct
 import time
 
+from pymavlink import mavparm
 from pymavlink.dialects.v20 import common as mavlink
 
 
@@ -28,28 +29,36 @@ def test_parameters(start, connect, tmp_path):
 
     # A weight of a controller, in flight; the hash follows, the vehicle does not move.
     client.take_off()
-    assert client.set_parameter("C_POS_R_THE", 900.0).param_value == 900.0
+    assert client.set_parameter("POS_R_PITCH", 900.0).param_value == 900.0
     assert client.parameter("_HASH_CHECK").param_value != before
     place = client.wait("LOCAL_POSITION_NED")
     assert abs(place.x) < 0.02 and abs(place.z + 2.5) < 0.1
 
-    # Refused, with the reason: out of range, and fixed while armed.
+    # A part of the vehicle, and a kind of controllers: it goes on from the thrust that it had.
+    assert abs(client.set_parameter("FRAME_MASS", 0.8).param_value - 0.8) < 1e-6
+    place = client.wait("LOCAL_POSITION_NED")
+    assert abs(place.x) < 0.02 and abs(place.z + 2.5) < 0.1
+
+    # Refused, with the reason: out of range, and fixed from the start.
     assert client.set_parameter("LIM_TILT", 9.0).param_value < 1.0
-    client.wait("STATUSTEXT", lambda text: "outside" in text.text)
-    assert client.set_parameter("AF_MASS", 0.8).param_value != 0.8
-    client.wait("STATUSTEXT", lambda text: "fixed while armed" in text.text)
+    client.wait("STATUSTEXT", lambda text: "allowed 0.05 to 1.2 rad" in text.text)
+    field = struct.unpack("<f", struct.pack("<i", 9))[0]
+    client.set_parameter("MAV_SYS_ID", field, mavlink.MAV_PARAM_TYPE_INT32)
+    client.wait("STATUSTEXT", lambda text: "MAV_SYS_ID is read-only" in text.text)
     # Integers travel as bytes.
     field = struct.unpack("<f", struct.pack("<i", 4))[0]
     answer = client.set_parameter("COM_OBL_RC_ACT", field, mavlink.MAV_PARAM_TYPE_INT32)
     assert struct.pack("<f", answer.param_value) == struct.pack("<i", 4)
     client.land()
-    assert abs(client.set_parameter("AF_MASS", 0.8).param_value - 0.8) < 1e-6
 
     # They are kept, and there again after the next start.
-    assert "C_POS_R_THE 900" in file.read_text() and "COM_OBL_RC_ACT 4" in file.read_text()
+    assert "POS_R_PITCH 900" in file.read_text() and "COM_OBL_RC_ACT 4" in file.read_text()
+    # MAVProxy's own reader takes the file.
+    kept = mavparm.MAVParmDict()
+    assert kept.load(str(file)) and kept["POS_R_PITCH"] == 900.0
     again = connect(start("--parameters", str(file)))
-    assert again.parameter("C_POS_R_THE").param_value == 900.0
-    assert abs(again.parameter("AF_MASS").param_value - 0.8) < 1e-6
+    assert again.parameter("POS_R_PITCH").param_value == 900.0
+    assert abs(again.parameter("FRAME_MASS").param_value - 0.8) < 1e-6
 
 
 def test_identity_and_modes(start, connect):

@@ -32,7 +32,7 @@ def hears(client, seconds=1.0):
 
 
 def refused(client, word):
-    return client.wait("STATUSTEXT", lambda text: "refused so far" in text.text and word in text.text, 15)
+    return client.wait("STATUSTEXT", lambda text: "rejected so far" in text.text and word in text.text, 15)
 
 
 def test_a_key_file_that_others_can_read_is_refused(program, tmp_path):

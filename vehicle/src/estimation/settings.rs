@@ -31,7 +31,7 @@ impl FromStr for SensorModel {
         match text {
             "ideal" => Ok(Self::Ideal),
             "realistic" => Ok(Self::Realistic),
-            _ => Err(format!("`{text}` is no kind of sensors: ideal or realistic")),
+            _ => Err(format!("must be ideal or realistic, not `{text}`")),
         }
     }
 }

@@ -69,11 +69,11 @@ impl Fault {
     pub fn of_numbers(unit: u32, kind: u32, instance: u32) -> Result<Self, Meaningless> {
         let name = usize::try_from(kind).ok().and_then(|kind| KINDS.get(kind)).copied();
         let Some(name) = name else {
-            return Err(Meaningless(format!("no failure type {kind}: 0 to 7")));
+            return Err(Meaningless(format!("unknown failure type {kind}; use 0 to 7")));
         };
         if unit == unit::MOTOR {
             let Some(rotors) = Rotors::numbered(instance) else {
-                return Err(Meaningless(format!("no motor {instance}: 1 to 4, 0 for all")));
+                return Err(Meaningless(format!("unknown motor {instance}; use 1 to 4, or 0 for all")));
             };
             let name = if matches!(name, "wrong" | "slow") { "weak" } else { name };
             return Ok(Self::Rotors(rotors, among("motor", name, &ROTOR_FAULTS)?));
@@ -82,10 +82,10 @@ impl Fault {
         if sensor.is_none() && unit != unit::BATTERY {
             let known =
                 "0 gyroscope, 1 accelerometer, 2 magnetometer, 3 barometer, 4 GPS, 100 battery, 101 motor";
-            return Err(Meaningless(format!("no failure unit {unit}: {known}")));
+            return Err(Meaningless(format!("unknown failure unit {unit}; use {known}")));
         }
         if instance > 1 {
-            return Err(Meaningless(format!("no instance {instance} of that unit: there is one")));
+            return Err(Meaningless(format!("unknown instance {instance}; the unit has only one")));
         }
         match sensor {
             Some(sensor) => Ok(Self::Sensor(sensor, sensor_fault(sensor, name)?)),
@@ -145,7 +145,7 @@ impl FromStr for Fault {
         let Some(rotors) = rotors.filter(|_| unit != "rotor0") else {
             let sensors = Sensor::ALL.map(Sensor::name).join(", ");
             return Err(Meaningless(format!(
-                "no unit `{unit}`: {sensors}, battery, rotor1 to rotor4, rotors"
+                "unknown unit `{unit}`; use {sensors}, battery, rotor1 to rotor4, rotors"
             )));
         };
         let fault = match kind.strip_prefix("weak:") {
@@ -160,7 +160,7 @@ fn weak(share: &str) -> Result<RotorFault, Meaningless> {
     let fault = share.parse().ok().map(|share| RotorFault::Weak { share });
     fault
         .filter(|fault| fault.is_valid())
-        .ok_or_else(|| Meaningless(format!("a weak rotor makes 0 to 1 of its thrust, not `{share}`")))
+        .ok_or_else(|| Meaningless(format!("the share of a weak rotor's thrust is 0 to 1, not `{share}`")))
 }
 
 fn sensor_fault(sensor: Sensor, name: &str) -> Result<Option<SensorFault>, Meaningless> {
@@ -172,7 +172,7 @@ fn among<T: Copy>(unit: &str, name: &str, faults: &[(&str, Option<T>)]) -> Resul
     let found = faults.iter().find(|(known, _)| *known == name);
     found.map(|(_, fault)| *fault).ok_or_else(|| {
         let known: Vec<_> = faults.iter().map(|(known, _)| *known).collect();
-        Meaningless(format!("a {unit} cannot be `{name}`: {}", known.join(", ")))
+        Meaningless(format!("a {unit} cannot be `{name}`; use {}", known.join(", ")))
     })
 }
 
@@ -214,11 +214,11 @@ mod tests {
     fn what_there_is_not_is_refused_with_what_there_is() {
         for (text, reason) in [
             ("gps", "`gps` is not UNIT=KIND"),
-            ("rotor5=off", "no unit `rotor5`: gyroscope"),
-            ("rotor0=off", "no unit `rotor0`: gyroscope"),
-            ("rotor1=garbage", "a rotor1 cannot be `garbage`: ok, off, stuck, weak"),
-            ("rotor1=weak:1.5", "0 to 1 of its thrust, not `1.5`"),
-            ("rotor1=weak:nan", "0 to 1 of its thrust, not `nan`"),
+            ("rotor5=off", "unknown unit `rotor5`; use gyroscope"),
+            ("rotor0=off", "unknown unit `rotor0`; use gyroscope"),
+            ("rotor1=garbage", "a rotor1 cannot be `garbage`; use ok, off, stuck, weak"),
+            ("rotor1=weak:1.5", "thrust is 0 to 1, not `1.5`"),
+            ("rotor1=weak:nan", "thrust is 0 to 1, not `nan`"),
             ("battery=slow", "ok, off, stuck, wrong"),
         ] {
             let error = text.parse::<Fault>().expect_err(text).to_string();

@@ -29,7 +29,7 @@ impl FromStr for ScheduledFault {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no fault: SECONDS:UNIT=KIND, at 0 to {LATEST_S} s");
+        let wrong = || format!("invalid fault `{text}`; use SECONDS:UNIT=KIND with 0 to {LATEST_S} seconds");
         let (time, fault) = text.split_once(':').ok_or_else(wrong)?;
         let time_s: f64 = time.trim().parse().map_err(|_| wrong())?;
         // NaN is not within.
@@ -37,7 +37,7 @@ impl FromStr for ScheduledFault {
             return Err(wrong());
         }
         let fault =
-            fault.trim().parse::<Fault>().map_err(|error| format!("`{text}` is no fault: {error}"))?;
+            fault.trim().parse::<Fault>().map_err(|error| format!("invalid fault `{text}`: {error}"))?;
         Ok(Self { time_us: (time_s * 1e6).round() as u64, fault })
     }
 }
@@ -57,7 +57,7 @@ mod tests {
     fn what_is_none_is_refused() {
         for text in ["", "gps=off", "x:gps=off", "-1:gps=off", "nan:gps=off", "1e12:gps=off", "1:gps=hot"] {
             let error = text.parse::<ScheduledFault>().expect_err(text);
-            assert!(error.contains("is no fault"), "{error}");
+            assert!(error.contains("invalid fault"), "{error}");
         }
     }
 }

@@ -10,7 +10,7 @@ pub struct Polygon {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolygonFault {
     /// Fewer than three.
-    #[error("{0} corners, needs at least 3")]
+    #[error("a polygon needs at least 3 corners, not {0}")]
     TooFew(usize),
     /// Two sides cross or touch; sides are numbered by their first corners.
     #[error("sides {0} and {1} cross")]

@@ -1,9 +1,9 @@
 //! What a parameter means, for a person.
 
-use quadrotor::{Access, Unit};
+use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
-use super::Entry;
 use super::entry::Source;
+use super::{ConductParameter, Entry, NamedValue};
 use crate::vehicle::Conduct;
 
 /// A parameter in words.
@@ -11,57 +11,59 @@ use crate::vehicle::Conduct;
 pub struct Description {
     /// What it is.
     pub text: String,
-    /// Unit; empty for a number without one.
-    pub unit: &'static str,
-    /// Smallest and largest value.
-    pub range: (f64, f64),
+    /// Smallest and largest value with their unit.
+    pub range: ValueRange,
+    /// Whether only whole numbers are allowed.
+    pub whole: bool,
     /// Values that have names, if only those are allowed.
-    pub names: Vec<(i32, String)>,
+    pub names: Vec<NamedValue>,
     /// What it belongs to.
     pub group: &'static str,
-    /// Whether it only changes on the ground.
-    pub fixed_in_flight: bool,
+    /// Whether a change takes effect at the next start only.
+    pub needs_restart: bool,
+    /// Whether it is only told: it follows from others, or from the start.
+    pub read_only: bool,
 }
 
 /// Text and unit of the vehicle's own parameters, by PX4's identifiers. ArduPilot's units are others: see [`ardupilot_unit`].
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 const CONDUCT: &[(&str, &str, &str)] = &[
-    ("MIS_TAKEOFF_ALT", "Height above home of a takeoff that names none", "m"),
-    ("COM_OF_LOSS_T", "Set-points are lost after this time without one", "s"),
-    ("COM_OBL_RC_ACT", "What is done when set-points are lost", ""),
-    ("RTL_RETURN_ALT", "Height above home of the way home", "m"),
-    ("RTL_MIN_DIST", "Nearer to home than this a return lands without climbing", "m"),
-    ("MPC_LAND_SPEED", "Sink rate near the ground", "m/s"),
-    ("COM_DISARM_LAND", "Disarms this long after touch-down; negative: never", "s"),
-    ("COM_DISARM_PRFLT", "Disarms this long after arming without a takeoff; negative: never", "s"),
-    ("MPC_VEL_MANUAL", "Horizontal speed of a full stick", "m/s"),
-    ("MPC_Z_V_MAN_UP", "Climb rate of a full stick", "m/s"),
-    ("MPC_Z_V_MAN_DN", "Sink rate of a full stick", "m/s"),
-    ("COM_RC_LOSS_T", "Sticks are lost after this time without them", "s"),
-    ("BAT1_CAPACITY", "Charge of the full battery", "mAh"),
-    ("NAV_ACC_RAD", "Waypoints that name no acceptance radius are passed within this one", "m"),
-    ("SYS_FAILURE_EN", "Whether failures may be injected by command", ""),
-    ("COM_DL_LOSS_T", "The ground station is lost after this time without its heartbeat", "s"),
-    ("NAV_DLL_ACT", "What is done when the ground station is lost", ""),
-    ("BAT_LOW_THR", "Remaining share at which the battery is low", "norm"),
-    ("BAT_CRIT_THR", "Remaining share at which the battery is critical", "norm"),
-    ("BAT_EMERGEN_THR", "Remaining share at which the battery is all but empty", "norm"),
-    ("COM_LOW_BAT_ACT", "What is done when the battery is critical", ""),
-    ("GF_ACTION", "What is done at the fence", ""),
-    ("GF_PREDICT", "Whether it acts at the fence as soon as it could not stop before it", ""),
-    ("GF_MAX_HOR_DIST", "Radius of the fence about home; 0: none", "m"),
-    ("GF_MAX_VER_DIST", "Height of the fence above home; 0: none", "m"),
-    ("COM_WIND_MAX", "Wind that is too high to fly in; negative: none is", "m/s"),
-    ("COM_WIND_MAX_ACT", "What is done in too high a wind", ""),
-    ("COM_POSCTL_NAVL", "What is done when the position estimate is lost", ""),
-    ("COM_ACT_FAIL_ACT", "What is done when a rotor fails", ""),
-    ("FENCE_ENABLE", "Whether the fence is looked at", ""),
-    ("FENCE_TYPE", "What of the fence: 1 the greatest height, 2 the greatest distance, 4 zones; added up", ""),
-    ("FENCE_ACTION", "What is done at the fence", ""),
-    ("FS_GCS_ENABLE", "What is done when the ground station is lost", ""),
-    ("BATT_FS_LOW_ACT", "What is done when the battery is low", ""),
-    ("BATT_FS_CRT_ACT", "What is done when the battery is critical; all but empty it lands at the latest, unless this is 0", ""),
-    ("COM_ARM_BAT_MIN", "Least remaining share of the battery to arm with", "norm"),
+    ("MIS_TAKEOFF_ALT", "Height above home of a takeoff without an altitude of its own", "m"),
+    ("COM_OF_LOSS_T", "Time without set-points after which they count as lost", "s"),
+    ("COM_OBL_RC_ACT", "Action when set-points are lost", ""),
+    ("RTL_RETURN_ALT", "Height above home at which the vehicle returns", "m"),
+    ("RTL_MIN_DIST", "Distance from home within which a return lands without climbing first", "m"),
+    ("MPC_LAND_SPEED", "Descent rate near the ground", "m/s"),
+    ("COM_DISARM_LAND", "Delay from touch-down to automatic disarming; negative disables it", "s"),
+    ("COM_DISARM_PRFLT", "Delay from arming without a takeoff to automatic disarming; negative disables it", "s"),
+    ("MPC_VEL_MANUAL", "Horizontal speed at full stick deflection", "m/s"),
+    ("MPC_Z_V_MAN_UP", "Climb rate at full stick deflection", "m/s"),
+    ("MPC_Z_V_MAN_DN", "Descent rate at full stick deflection", "m/s"),
+    ("COM_RC_LOSS_T", "Time without stick inputs after which they count as lost", "s"),
+    ("BAT1_CAPACITY", "Capacity of the battery", "mAh"),
+    ("NAV_ACC_RAD", "Acceptance radius of waypoints without one of their own", "m"),
+    ("SYS_FAILURE_EN", "Allow failure injection by command", ""),
+    ("COM_DL_LOSS_T", "Time without heartbeats after which the ground station counts as lost", "s"),
+    ("NAV_DLL_ACT", "Action when the ground station is lost", ""),
+    ("BAT_LOW_THR", "Remaining charge at which the battery is low", "norm"),
+    ("BAT_CRIT_THR", "Remaining charge at which the battery is critical", "norm"),
+    ("BAT_EMERGEN_THR", "Remaining charge at which the battery is almost empty", "norm"),
+    ("COM_LOW_BAT_ACT", "Action when the battery is critical; 3 returns, then lands when the battery is almost empty", ""),
+    ("GF_ACTION", "Action at the fence", ""),
+    ("GF_PREDICT", "Act as soon as the vehicle could no longer stop before the fence", ""),
+    ("GF_MAX_HOR_DIST", "Radius of the fence around home; 0 disables it", "m"),
+    ("GF_MAX_VER_DIST", "Height of the fence above home; 0 disables it", "m"),
+    ("COM_WIND_MAX", "Wind speed that is too high to fly in; negative disables the check", "m/s"),
+    ("COM_WIND_MAX_ACT", "Action when the wind is too high", ""),
+    ("COM_POSCTL_NAVL", "Action when the position estimate is lost", ""),
+    ("COM_ACT_FAIL_ACT", "Action when a rotor fails", ""),
+    ("FENCE_ENABLE", "Enable the fence", ""),
+    ("FENCE_TYPE", "Enabled parts of the fence, added up: 1 maximum height, 2 maximum distance, 4 zones", ""),
+    ("FENCE_ACTION", "Action at the fence", ""),
+    ("FS_GCS_ENABLE", "Action when the ground station is lost", ""),
+    ("BATT_FS_LOW_ACT", "Action when the battery is low", ""),
+    ("BATT_FS_CRT_ACT", "Action when the battery is critical; when almost empty the vehicle lands at the latest, unless this is 0", ""),
+    ("COM_ARM_BAT_MIN", "Smallest remaining charge with which the vehicle arms", "norm"),
 ];
 
 /// Names of values of the vehicle's own parameters.
@@ -71,7 +73,7 @@ const NAMES: &[(&str, &[(i32, &str)])] = &[
     ("SYS_FAILURE_EN", &[(0, "Off"), (1, "On")]),
     ("GF_PREDICT", &[(0, "Beyond the fence only"), (1, "Ahead of it")]),
     ("NAV_DLL_ACT", &[(0, "Nothing"), (1, "Hold"), (2, "Return"), (3, "Land"), (5, "Terminate")]),
-    ("COM_LOW_BAT_ACT", &[(0, "Warn"), (2, "Land"), (3, "Return when critical, land when all but empty")]),
+    ("COM_LOW_BAT_ACT", &[(0, "Warn"), (2, "Land"), (3, "Return, then land")]),
     ("GF_ACTION", &[(0, "Nothing"), (1, "Warn"), (2, "Hold"), (3, "Return"), (4, "Terminate"), (5, "Land")]),
     ("FENCE_ENABLE", &[(0, "Off"), (1, "On")]),
     ("FENCE_ACTION", &[(0, "Report only"), (1, "Return"), (2, "Land"), (4, "Brake")]),
@@ -83,67 +85,127 @@ const NAMES: &[(&str, &[(i32, &str)])] = &[
     ("COM_ACT_FAIL_ACT", &[(0, "Warn"), (1, "Hold"), (2, "Land"), (3, "Return"), (4, "Terminate")]),
 ];
 
+/// PX4's unit of shares of a whole, which says nothing to a person.
+const SHARE: &str = "norm";
+
+impl Description {
+    /// The values that it can have: `0.05–1.2 rad (3°–69°)`, `whole numbers 1–8`, `1 (lmpc), 2 (ssmpc), 3 (dlqr)`.
+    pub fn allowed(&self) -> String {
+        if !self.names.is_empty() {
+            let names = self.names.iter().map(|named| format!("{} ({})", named.value, named.name));
+            return names.collect::<Vec<_>>().join(", ");
+        }
+        let range = self.shown_range();
+        if self.whole { format!("whole numbers {range}") } else { range.to_string() }
+    }
+
+    /// A value with its unit.
+    pub fn shown(&self, value: f64) -> String {
+        self.shown_range().quantity(value).to_string()
+    }
+
+    fn shown_range(&self) -> ValueRange {
+        ValueRange { unit: if self.range.unit == SHARE { "" } else { self.range.unit }, ..self.range }
+    }
+}
+
 impl Entry {
     /// What it means.
     pub fn describe(&self) -> Description {
         match self.source {
-            Source::Loop(parameter) => {
-                let (range, names) = match &parameter.access {
-                    Access::Real { minimum, maximum, .. } => ((*minimum, *maximum), Vec::new()),
-                    Access::Integer { minimum, maximum, .. } => {
-                        ((f64::from(*minimum), f64::from(*maximum)), Vec::new())
-                    }
-                    Access::Enumeration { choice, .. } => {
-                        let items = (1..).zip(choice.items.iter());
-                        let names = items.map(|(value, (name, text))| (value, format!("{name}: {text}")));
-                        ((1.0, choice.items.len() as f64), names.collect())
-                    }
-                    Access::Boolean { .. } => ((0.0, 1.0), vec![(0, "Off".to_owned()), (1, "On".to_owned())]),
-                };
-                Description {
-                    text: parameter.description.to_owned(),
-                    unit: symbol(parameter.unit),
-                    range,
-                    names,
-                    group: group(parameter.name),
-                    fixed_in_flight: !parameter.tunable,
-                }
-            }
-            Source::Conduct(parameter, scale) => {
-                let known = CONDUCT.iter().find(|(id, ..)| *id == parameter.id);
-                let (_, text, unit) = known.copied().unwrap_or((parameter.id, parameter.id, ""));
-                let names = NAMES.iter().find(|(id, _)| *id == parameter.id);
-                let names = names.map_or(&[][..], |(_, names)| names).iter();
-                // What the parameter refuses is not offered.
-                let takes = |value: i32| (parameter.set)(&mut Conduct::new(false), f64::from(value));
-                let names = names.filter(|(value, _)| takes(*value));
-                Description {
-                    text: text.to_owned(),
-                    unit: if scale == 1.0 { unit } else { ardupilot_unit(unit) },
-                    range: (parameter.minimum * scale, parameter.maximum * scale),
-                    names: names.map(|(value, name)| (*value, (*name).to_owned())).collect(),
-                    group: "Vehicle",
-                    fixed_in_flight: false,
-                }
-            }
+            Source::Loop(parameter) => describe_loop(parameter),
+            Source::Conduct(parameter, scale) => describe_conduct(parameter, scale),
             Source::SystemId => Description {
                 text: "MAVLink system id; set at the start".to_owned(),
-                unit: "",
-                range: (1.0, 250.0),
+                range: ValueRange { minimum: 1.0, maximum: 250.0, unit: "" },
+                whole: true,
                 names: Vec::new(),
                 group: "MAVLink",
-                fixed_in_flight: true,
+                needs_restart: true,
+                read_only: true,
+            },
+            Source::HoverThrust => Description {
+                text: "Thrust in hover as a share of the largest thrust, as attitude set-points take it; calculated from mass \
+                       and rotors (read-only)"
+                    .to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: 1.0, unit: "norm" },
+                whole: false,
+                names: Vec::new(),
+                group: "Airframe",
+                needs_restart: false,
+                read_only: true,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
-                unit: "",
-                range: (-1.0, 1000.0),
+                range: ValueRange { minimum: -1.0, maximum: 1000.0, unit: "" },
+                whole: false,
                 names: Vec::new(),
                 group: "Simulation",
-                fixed_in_flight: false,
+                needs_restart: false,
+                read_only: false,
             },
         }
     }
+
+    /// The values that it can have, for a person.
+    pub fn allowed(&self) -> String {
+        match self.source {
+            Source::Speed => "0 (paused), 0.01–1000, -1 (as fast as possible)".to_owned(),
+            _ => self.describe().allowed(),
+        }
+    }
+}
+
+fn describe_loop(parameter: &Parameter) -> Description {
+    let (minimum, maximum, names) = match &parameter.access {
+        Access::Real { minimum, maximum, .. } => (*minimum, *maximum, Vec::new()),
+        Access::Integer { minimum, maximum, .. } => (f64::from(*minimum), f64::from(*maximum), Vec::new()),
+        Access::Enumeration { choice, .. } => {
+            let items = (1..).zip(choice.items.iter());
+            let names = items.map(|(value, (name, text))| NamedValue { value, name, meaning: Some(text) });
+            (1.0, choice.items.len() as f64, names.collect())
+        }
+        Access::Boolean { .. } => (0.0, 1.0, SWITCH.map(|(value, name)| plain(value, name)).to_vec()),
+    };
+    Description {
+        text: parameter.description.to_owned(),
+        range: ValueRange { minimum, maximum, unit: parameter.unit.symbol() },
+        whole: !matches!(parameter.access, Access::Real { .. }),
+        names,
+        group: group(parameter.name),
+        needs_restart: parameter.mutability == Mutability::Start,
+        read_only: false,
+    }
+}
+
+fn describe_conduct(parameter: &ConductParameter, scale: f64) -> Description {
+    let known = CONDUCT.iter().find(|(id, ..)| *id == parameter.id);
+    let (_, text, unit) = known.copied().unwrap_or((parameter.id, parameter.id, ""));
+    let names = NAMES.iter().find(|(id, _)| *id == parameter.id);
+    let names = names.map_or(&[][..], |(_, names)| names).iter();
+    // What the parameter refuses is not offered.
+    let takes = |value: i32| (parameter.set)(&mut Conduct::new(false), f64::from(value));
+    let names = names.filter(|(value, _)| takes(*value));
+    Description {
+        text: text.to_owned(),
+        range: ValueRange {
+            minimum: parameter.minimum * scale,
+            maximum: parameter.maximum * scale,
+            unit: if scale == 1.0 { unit } else { ardupilot_unit(unit) },
+        },
+        whole: parameter.integer,
+        names: names.map(|(value, name)| plain(*value, name)).collect(),
+        group: "Vehicle",
+        needs_restart: false,
+        read_only: false,
+    }
+}
+
+/// Names of the values of a switch.
+const SWITCH: [(i32, &str); 2] = [(0, "Off"), (1, "On")];
+
+fn plain(value: i32, name: &'static str) -> NamedValue {
+    NamedValue { value, name, meaning: None }
 }
 
 /// ArduPilot counts metres in hundredths.
@@ -158,33 +220,10 @@ fn ardupilot_unit(unit: &'static str) -> &'static str {
 fn group(name: &str) -> &'static str {
     match name.split('.').next() {
         Some("airframe") => "Airframe",
-        Some("controller" | "controllers") => "Controllers",
-        Some("estimator") => "Estimator",
+        Some("controller") => "Controllers",
         Some("limits") => "Limits",
-        Some("sensor" | "sensors") => "Sensors",
+        Some("sensor") => "Sensors",
         _ => "Closed loop",
-    }
-}
-
-fn symbol(unit: Unit) -> &'static str {
-    match unit {
-        Unit::One => "",
-        Unit::Kilogram => "kg",
-        Unit::Metre => "m",
-        Unit::Second => "s",
-        Unit::Radian => "rad",
-        Unit::Newton => "N",
-        Unit::NewtonMetre => "Nm",
-        Unit::MetrePerSecond => "m/s",
-        Unit::MetrePerSecondSquared => "m/s^2",
-        Unit::MetrePerSecondCubed => "m/s^3",
-        Unit::RadianPerSecond => "rad/s",
-        Unit::RadianPerSecondSquared => "rad/s^2",
-        Unit::RadianPerSecondCubed => "rad/s^3",
-        Unit::KilogramSquareMetre => "kg m^2",
-        Unit::NewtonSecondSquared => "N s^2",
-        Unit::NewtonMetreSecondSquared => "Nm s^2",
-        Unit::NewtonSecondPerMetre => "N s/m",
     }
 }
 
@@ -204,12 +243,11 @@ mod tests {
                     "{}: no text",
                     entry.id
                 );
-                assert!(description.range.0 < description.range.1, "{}", entry.id);
+                assert!(description.range.minimum < description.range.maximum, "{}", entry.id);
             }
         }
         let table = ParameterTable::new(Identity::ArduPilot);
-        let altitude = table.index_of("RTL_ALT").and_then(|index| table.entries().get(index)).expect("there");
-        let description = altitude.describe();
-        assert_eq!((description.unit, description.range), ("cm", (100.0, 100_000.0)));
+        let range = table.find("RTL_ALT").expect("there").describe().range;
+        assert_eq!((range.unit, range.minimum, range.maximum), ("cm", 100.0, 100_000.0));
     }
 }

@@ -3,6 +3,7 @@
 use quadrotor::Parameter;
 
 use super::loop_access::read;
+use super::loop_names::LoopName;
 use super::{ConductParameter, ParameterValues, Value};
 
 /// Where a parameter lives.
@@ -10,26 +11,53 @@ use super::{ConductParameter, ParameterValues, Value};
 pub(super) enum Source {
     /// In the closed loop.
     Loop(&'static Parameter),
-    /// In the vehicle's behaviour; the factor is from our unit to that of the identifier.
+    /// In the vehicle's behaviour; the factor converts our unit to that of the name.
     Conduct(&'static ConductParameter, f64),
-    /// System id: fixed at the start.
+    /// System id: set at the start.
     SystemId,
     /// Pace of simulation time.
     Speed,
+    /// Thrust in hover as a share of the largest, calculated from the airframe.
+    HoverThrust,
 }
 
-/// A parameter with its identifier.
-#[derive(Clone, Debug)]
+/// A parameter with its names.
+#[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// At most 16 characters.
-    pub id: String,
+    /// MAVLink name, at most 16 characters.
+    pub id: &'static str,
+    /// Earlier MAVLink name, accepted wherever a name is, and never listed.
+    pub former: Option<&'static str>,
     pub(super) source: Source,
 }
 
 impl Entry {
-    /// Whether a parameter file keeps it.
+    /// A parameter of the closed loop.
+    pub(super) fn of_loop(name: &LoopName, parameter: &'static Parameter) -> Self {
+        Self { id: name.id, former: name.former, source: Source::Loop(parameter) }
+    }
+
+    /// A parameter that has always had its name.
+    pub(super) fn new(id: &'static str, source: Source) -> Self {
+        Self { id, former: None, source }
+    }
+
+    /// Public name in the closed loop, such as `airframe.mass`; `None` for the vehicle's own parameters.
+    pub fn dotted(&self) -> Option<&'static str> {
+        match self.source {
+            Source::Loop(parameter) => Some(parameter.name),
+            _ => None,
+        }
+    }
+
+    /// Whether parameter files hold it.
     pub fn is_kept(&self) -> bool {
         matches!(self.source, Source::Loop(_) | Source::Conduct(..))
+    }
+
+    /// Whether a name means this parameter: its MAVLink name, the former or the dotted one.
+    pub(super) fn has_name(&self, name: &str) -> bool {
+        self.id == name || self.former == Some(name) || self.dotted() == Some(name)
     }
 
     /// Present value.
@@ -46,6 +74,7 @@ impl Entry {
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
+            Source::HoverThrust => Value::Real(values.configuration.airframe.hover_thrust_share() as f32),
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use quadrotor::{Access, Configuration, Parameter};
 
-use super::{SetError, Value};
+use super::Value;
+use super::value::within;
 
 /// Present value.
 pub fn read(parameter: &Parameter, configuration: &Configuration) -> Value {
@@ -13,42 +14,18 @@ pub fn read(parameter: &Parameter, configuration: &Configuration) -> Value {
     }
 }
 
-/// Writes a number into a configuration as the parameter's type.
-pub fn write(id: &str, parameter: &Parameter, value: f64, into: &mut Configuration) -> Result<(), SetError> {
-    let range = |minimum: f64, maximum: f64| {
-        if (minimum..=maximum).contains(&value) {
-            Ok(())
-        } else {
-            Err(SetError::OutOfRange { id: id.to_owned(), value, minimum, maximum })
-        }
-    };
-    let whole = || {
-        if value.fract() == 0.0 {
-            Ok(())
-        } else {
-            Err(SetError::Meaningless { id: id.to_owned(), value, meanings: "whole numbers".to_owned() })
-        }
-    };
+/// Writes a number into a configuration as the parameter's type. `None` if the parameter cannot have it; nothing has changed
+/// then.
+pub fn write(parameter: &Parameter, value: f64, into: &mut Configuration) -> Option<()> {
+    let whole =
+        |minimum: f64, maximum: f64| within(minimum, maximum, value).filter(|value| value.fract() == 0.0);
     match parameter.access {
-        Access::Real { minimum, maximum, set, .. } => {
-            range(minimum, maximum)?;
-            set(into, value);
-        }
+        Access::Real { minimum, maximum, set, .. } => set(into, within(minimum, maximum, value)?),
         Access::Integer { minimum, maximum, set, .. } => {
-            range(f64::from(minimum), f64::from(maximum))?;
-            whole()?;
-            set(into, value as i32);
+            set(into, whole(f64::from(minimum), f64::from(maximum))? as i32);
         }
-        Access::Enumeration { choice, set, .. } => {
-            range(1.0, choice.items.len() as f64)?;
-            whole()?;
-            set(into, value as i32);
-        }
-        Access::Boolean { set, .. } => {
-            range(0.0, 1.0)?;
-            whole()?;
-            set(into, value == 1.0);
-        }
+        Access::Enumeration { choice, set, .. } => set(into, whole(1.0, choice.items.len() as f64)? as i32),
+        Access::Boolean { set, .. } => set(into, whole(0.0, 1.0)? == 1.0),
     }
-    Ok(())
+    Some(())
 }

@@ -1,4 +1,4 @@
-//! Parameters by MAVLink identifiers: those of the closed loop and the vehicle's own.
+//! Parameters by MAVLink names: those of the closed loop and the vehicle's own.
 //!
 //! A [`ParameterTable`] reads and writes [`ParameterValues`], which are plain data. Whether a running vehicle takes changed
 //! values is its own matter: [`Vehicle::adopt`](crate::Vehicle::adopt).
@@ -8,20 +8,24 @@ mod conduct_parameters;
 mod description;
 mod entry;
 mod file;
-mod identifier;
 mod loop_access;
+mod loop_names;
+mod named_value;
 mod set_error;
 mod speed;
+mod suggestion;
 mod table;
 mod value;
+mod value_text;
 mod values;
 
 pub use ardupilot_parameters::ARDUPILOT_PARAMETERS;
 pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
 pub use description::Description;
 pub use entry::Entry;
-pub use file::{ParameterFileError, parse, render};
-pub use identifier::identifier;
+pub use file::{FileFormat, ParameterFileError, parse, render};
+pub use loop_names::{LOOP_NAMES, LoopName, loop_name};
+pub use named_value::NamedValue;
 pub use set_error::SetError;
 pub use speed::Speed;
 pub use table::{Change, ParameterTable, SPEED_PARAMETER};

@@ -2,45 +2,38 @@
 
 use quadrotor::ConfigurationError;
 
-/// Why a parameter was not changed. Nothing has changed then.
+/// Why a parameter was not changed. Nothing has changed then. Names are those that were asked for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SetError {
     /// There is none of this name.
-    #[error("there is no parameter {0}")]
-    Unknown(String),
-    /// The value is no number that it can have.
-    #[error("{id} = {value} is outside [{minimum}, {maximum}]")]
-    OutOfRange {
-        /// Identifier.
-        id: String,
-        /// Given value.
-        value: f64,
-        /// Smallest allowed value.
-        minimum: f64,
-        /// Largest allowed value.
-        maximum: f64,
+    #[error("unknown parameter {name}{}", similar.map(|known| format!("; did you mean {known}?")).unwrap_or_default())]
+    Unknown {
+        /// Name asked for.
+        name: String,
+        /// The one that may be meant.
+        similar: Option<&'static str>,
     },
-    /// The value is none of those that mean something.
-    #[error("{id} = {value} has no meaning here: {meanings}")]
-    Meaningless {
-        /// Identifier.
-        id: String,
-        /// Given value.
-        value: f64,
-        /// Those that mean something, in words.
-        meanings: String,
+    /// It cannot have this value.
+    #[error("{name} = {value}; allowed {allowed}")]
+    NotAllowed {
+        /// Name asked for.
+        name: String,
+        /// Given value with its unit.
+        value: String,
+        /// Values that it can have, for a person.
+        allowed: String,
     },
-    /// It is fixed since the start.
-    #[error("{0} is set by the command line")]
+    /// It is set at the start.
+    #[error("{0} is read-only: restart with --system-id")]
     ReadOnly(String),
-    /// It can only change while the vehicle is disarmed on the ground.
-    #[error("{0} is fixed while armed")]
-    Armed(String),
-    /// The closed loop refuses it.
-    #[error("{id}: {source}")]
+    /// It follows from other parameters.
+    #[error("{0} is calculated from mass and rotors (read-only); set those instead")]
+    Calculated(String),
+    /// The closed loop cannot fly with it.
+    #[error("{name}: {source}")]
     Refused {
-        /// Identifier.
-        id: String,
+        /// Name asked for.
+        name: String,
         /// Why.
         source: Box<ConfigurationError>,
     },
@@ -48,10 +41,7 @@ pub enum SetError {
 
 impl SetError {
     /// The closed loop refuses the value of a parameter.
-    pub fn refused(id: &str, source: ConfigurationError) -> Self {
-        match source {
-            ConfigurationError::Fixed { .. } => Self::Armed(id.to_owned()),
-            source => Self::Refused { id: id.to_owned(), source: Box::new(source) },
-        }
+    pub fn refused(name: &str, source: ConfigurationError) -> Self {
+        Self::Refused { name: name.to_owned(), source: Box::new(source) }
     }
 }

@@ -1,19 +1,18 @@
 //! All parameters in their order: reading and writing them.
 
-use quadrotor::{PARAMETERS, Parameter};
+use quadrotor::PARAMETERS;
 
 use super::ardupilot_parameters::{ARDUPILOT_PARAMETERS, REPLACED};
 use super::entry::{Entry, Source};
-use super::identifier::identifier;
 use super::loop_access::write;
+use super::loop_names::loop_name;
+use super::suggestion::suggestion;
+use super::value::within;
 use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
 use crate::identity::Identity;
 use crate::vehicle::Conduct;
 
-/// Dotted names that describe the start of a flight, not the vehicle: they are set by the command line.
-const NOT_THE_VEHICLE: [&str; 3] = ["initial.", "environment.", "reference."];
-
-/// Identifier of the pace of simulation time.
+/// Name of the pace of simulation time.
 pub const SPEED_PARAMETER: &str = "SIM_SPEEDUP";
 
 /// What a parameter that was set belongs to.
@@ -39,25 +38,24 @@ impl ParameterTable {
     /// The table in the terms of an identity.
     pub fn new(identity: Identity) -> Self {
         let ardupilot = identity.is_ardupilot();
-        let described =
-            |parameter: &&Parameter| !NOT_THE_VEHICLE.iter().any(|prefix| parameter.name.starts_with(prefix));
         let of_loop = PARAMETERS
             .iter()
-            .filter(described)
-            .map(|parameter| Entry { id: identifier(parameter.name), source: Source::Loop(parameter) });
+            .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
         let replaced = |parameter: &&ConductParameter| !ardupilot || !REPLACED.contains(&parameter.id);
         let own = if ardupilot { ARDUPILOT_PARAMETERS } else { &[] };
         let of_conduct = CONDUCT_PARAMETERS.iter().filter(replaced).chain(own).map(|parameter| {
             let (id, scale) = parameter.ardupilot.filter(|_| ardupilot).unwrap_or((parameter.id, 1.0));
-            Entry { id: id.to_owned(), source: Source::Conduct(parameter, scale) }
+            Entry::new(id, Source::Conduct(parameter, scale))
         });
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
+        let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
         let others = [
-            Entry { id: system.to_owned(), source: Source::SystemId },
-            Entry { id: SPEED_PARAMETER.to_owned(), source: Source::Speed },
+            Entry::new(hover, Source::HoverThrust),
+            Entry::new(system, Source::SystemId),
+            Entry::new(SPEED_PARAMETER, Source::Speed),
         ];
         let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).collect();
-        entries.sort_by(|one, other| one.id.cmp(&other.id));
+        entries.sort_by_key(|entry| entry.id);
         Self { entries }
     }
 
@@ -66,9 +64,25 @@ impl ParameterTable {
         &self.entries
     }
 
-    /// Position of an identifier.
-    pub fn index_of(&self, id: &str) -> Option<usize> {
-        self.entries.binary_search_by(|entry| entry.id.as_str().cmp(id)).ok()
+    /// Position of a parameter by its MAVLink name, its former one or its dotted one.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        let present = self.entries.binary_search_by(|entry| entry.id.cmp(name)).ok();
+        present.or_else(|| self.entries.iter().position(|entry| entry.has_name(name)))
+    }
+
+    /// A parameter by any of its names.
+    pub fn find(&self, name: &str) -> Option<&Entry> {
+        self.entries.get(self.index_of(name)?)
+    }
+
+    /// A parameter by any of its names.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] with the name that may be meant.
+    pub fn require(&self, name: &str) -> Result<&Entry, SetError> {
+        let unknown =
+            || SetError::Unknown { name: name.to_owned(), similar: suggestion(name, &self.entries) };
+        self.find(name).ok_or_else(unknown)
     }
 
     /// Value of the parameter at a position.
@@ -77,18 +91,17 @@ impl ParameterTable {
     }
 
     /// All parameters with their values, in order.
-    pub fn values(&self, values: ParameterValues) -> impl Iterator<Item = (&str, Value)> {
-        self.entries.iter().map(move |entry| (entry.id.as_str(), entry.value(&values)))
+    pub fn values(&self, values: ParameterValues) -> impl Iterator<Item = (&'static str, Value)> {
+        self.entries.iter().map(move |entry| (entry.id, entry.value(&values)))
     }
 
-    /// Writes a parameter into the values, after a check of its own range. Whether all of them fit together is for
-    /// [`ParameterValues::check`] to say, or for the vehicle that takes them over.
+    /// Writes a parameter, by any of its names, into the values, after a check of its own range. Whether all of them fit
+    /// together is for [`ParameterValues::check`] to say, or for the vehicle that takes them over.
     ///
     /// # Errors
     /// [`SetError`]; nothing has changed then.
-    pub fn set(&self, id: &str, value: f64, values: &mut ParameterValues) -> Result<Change, SetError> {
-        let entry = self.index_of(id).and_then(|index| self.entries.get(index));
-        let entry = entry.ok_or_else(|| SetError::Unknown(id.to_owned()))?;
+    pub fn set(&self, name: &str, value: f64, values: &mut ParameterValues) -> Result<Change, SetError> {
+        let entry = self.require(name)?;
         let same = match entry.value(values) {
             Value::Real(present) => present == value as f32,
             Value::Integer(present) => f64::from(present) == value,
@@ -96,26 +109,25 @@ impl ParameterTable {
         if same {
             return Ok(Change::Nothing);
         }
-        match entry.source {
+        let change = match entry.source {
             Source::Loop(parameter) => {
-                write(id, parameter, value, &mut values.configuration)?;
-                Ok(Change::ClosedLoop)
+                write(parameter, value, &mut values.configuration).map(|()| Change::ClosedLoop)
             }
             Source::Conduct(parameter, scale) => {
-                set_conduct(entry, parameter, value, scale, &mut values.conduct)?;
-                Ok(Change::Conduct)
+                set_conduct(parameter, value, scale, &mut values.conduct).map(|()| Change::Conduct)
             }
-            Source::SystemId => Err(SetError::ReadOnly(id.to_owned())),
-            Source::Speed => {
-                values.speed = Speed::from_parameter(value).ok_or_else(|| SetError::OutOfRange {
-                    id: id.to_owned(),
-                    value,
-                    minimum: -1.0,
-                    maximum: 1000.0,
-                })?;
-                Ok(Change::Speed)
-            }
-        }
+            Source::SystemId => return Err(SetError::ReadOnly(name.to_owned())),
+            Source::HoverThrust => return Err(SetError::Calculated(name.to_owned())),
+            Source::Speed => Speed::from_parameter(value).map(|speed| {
+                values.speed = speed;
+                Change::Speed
+            }),
+        };
+        change.ok_or_else(|| SetError::NotAllowed {
+            name: name.to_owned(),
+            value: entry.describe().shown(value),
+            allowed: entry.allowed(),
+        })
     }
 
     /// As [`set`](Self::set), for a vehicle that is still to be made: the closed loop must be able to fly the values.
@@ -124,41 +136,25 @@ impl ParameterTable {
     /// [`SetError`]; nothing has changed then.
     pub fn set_checked(
         &self,
-        id: &str,
+        name: &str,
         value: f64,
         values: &mut ParameterValues,
     ) -> Result<Change, SetError> {
         let mut changed = *values;
-        let change = self.set(id, value, &mut changed)?;
+        let change = self.set(name, value, &mut changed)?;
         if change == Change::ClosedLoop {
-            changed.check().map_err(|source| SetError::refused(id, source))?;
+            changed.check().map_err(|source| SetError::refused(name, source))?;
         }
         *values = changed;
         Ok(change)
     }
 }
 
-fn set_conduct(
-    entry: &Entry,
-    parameter: &ConductParameter,
-    value: f64,
-    scale: f64,
-    into: &mut Conduct,
-) -> Result<(), SetError> {
-    let (minimum, maximum) = (parameter.minimum * scale, parameter.maximum * scale);
+/// `None` if the parameter cannot have the value; nothing has changed then.
+fn set_conduct(parameter: &ConductParameter, value: f64, scale: f64, into: &mut Conduct) -> Option<()> {
+    let value = within(parameter.minimum * scale, parameter.maximum * scale, value)?;
     let mut conduct = *into;
-    // NaN is in no range.
-    if !(minimum..=maximum).contains(&value) || !(parameter.set)(&mut conduct, value / scale) {
-        let id = entry.id.clone();
-        let names = entry.describe().names;
-        if names.is_empty() {
-            return Err(SetError::OutOfRange { id, value, minimum, maximum });
-        }
-        let meanings: Vec<_> = names.into_iter().map(|(value, name)| format!("{value} {name}")).collect();
-        return Err(SetError::Meaningless { id, value, meanings: meanings.join(", ") });
-    }
-    *into = conduct;
-    Ok(())
+    (parameter.set)(&mut conduct, value / scale).then(|| *into = conduct)
 }
 
 #[cfg(test)]
@@ -167,7 +163,7 @@ mod tests {
 
     use super::{Change, ParameterTable};
     use crate::identity::Identity;
-    use crate::parameters::{ParameterValues, SetError, Speed, Value, parse, render};
+    use crate::parameters::{FileFormat, ParameterValues, SetError, Speed, Value, parse, render};
     use crate::vehicle::Conduct;
 
     fn defaults() -> (ParameterTable, ParameterValues) {
@@ -180,14 +176,15 @@ mod tests {
     fn what_is_set_is_read_again_and_a_refusal_changes_nothing() {
         let (table, mut values) = defaults();
         for (id, value, expected) in [
-            ("AF_MASS", 0.8, Ok(Change::ClosedLoop)),
-            ("AF_MASS", f64::from(0.8_f32), Ok(Change::Nothing)),
+            ("FRAME_MASS", 0.8, Ok(Change::ClosedLoop)),
+            ("FRAME_MASS", f64::from(0.8_f32), Ok(Change::Nothing)),
             ("MIS_TAKEOFF_ALT", 4.0, Ok(Change::Conduct)),
             ("SIM_SPEEDUP", 5.0, Ok(Change::Speed)),
             ("MAV_SYS_ID", 7.0, Ok(Change::Nothing)),
             ("MAV_SYS_ID", 8.0, Err(())),
+            ("MPC_THR_HOVER", 0.5, Err(())),
             ("SIM_SPEEDUP", -2.0, Err(())),
-            ("AF_MASS", f64::NAN, Err(())),
+            ("FRAME_MASS", f64::NAN, Err(())),
             ("COM_OBL_RC_ACT", 1.0, Err(())),
             ("NO_SUCH", 1.0, Err(())),
         ] {
@@ -204,24 +201,73 @@ mod tests {
     #[test]
     fn values_that_only_fit_together_come_in_any_order() {
         let (table, start) = defaults();
-        let index = table.index_of("AF_ROT_K1").expect("there");
+        let index = table.index_of("ROTOR_THRUST_K").expect("there");
         let k1 = table.value(index, &start).expect("there").number();
-        let (heavy, strong) = ("AF_MASS 5", format!("AF_ROT_K1 {}", 8.0 * k1));
+        let (heavy, strong) = ("FRAME_MASS 5", format!("ROTOR_THRUST_K {}", 8.0 * k1));
         let mut values = start;
-        assert_eq!(table.set("AF_MASS", 5.0, &mut values.clone()), Ok(Change::ClosedLoop));
-        let refused = table.set_checked("AF_MASS", 5.0, &mut values).expect_err("too heavy");
-        assert!(matches!(&refused, SetError::Refused { id, .. } if id == "AF_MASS"), "{refused}");
+        assert_eq!(table.set("FRAME_MASS", 5.0, &mut values.clone()), Ok(Change::ClosedLoop));
+        let refused = table.set_checked("FRAME_MASS", 5.0, &mut values).expect_err("too heavy");
+        assert!(matches!(&refused, SetError::Refused { name, .. } if name == "FRAME_MASS"), "{refused}");
         assert_eq!(values, start);
         for text in [format!("{heavy}\n{strong}"), format!("{strong}\n{heavy}")] {
             let mut values = start;
             parse(&text, &table, &mut values).expect("both");
             assert_eq!(values.configuration.airframe.mass_kg, 5.0);
             let mut again = start;
-            parse(&render(&table, &values), &table, &mut again).expect("what was written");
-            assert_eq!(render(&table, &again), render(&table, &values));
+            parse(&render(FileFormat::Plain, &table, &values), &table, &mut again).expect("what was written");
+            assert_eq!(render(FileFormat::Plain, &table, &again), render(FileFormat::Plain, &table, &values));
         }
         assert!(
-            parse(heavy, &table, &mut values).expect_err("alone").to_string().starts_with("line 1: AF_MASS")
+            parse(heavy, &table, &mut values)
+                .expect_err("alone")
+                .to_string()
+                .starts_with("line 1: FRAME_MASS")
         );
+    }
+
+    #[test]
+    fn a_refusal_names_value_unit_range_and_remedy() {
+        let table = ParameterTable::new(Identity::Px4);
+        let (_, start) = defaults();
+        for (name, value, expected) in [
+            ("LIM_TILT", 45.0, "LIM_TILT = 45 rad; allowed 0.05–1.2 rad (3°–69°)"),
+            ("limits.tilt", f64::from(0.01_f32), "limits.tilt = 0.01 rad; allowed 0.05–1.2 rad (3°–69°)"),
+            (
+                "FRAME_MASS",
+                3.0,
+                "FRAME_MASS: 3 kg is too heavy: these rotors carry 1.78 kg; raise airframe.rotor.speed_max",
+            ),
+            ("C_ATT_N", 2.5, "C_ATT_N = 2.5; allowed whole numbers 1–20"),
+            ("CTRL_KIND", 4.0, "CTRL_KIND = 4; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
+            ("COM_ACT_FAIL_ACT", 1.0, "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)"),
+            ("COM_WIND_MAX", 60.0, "COM_WIND_MAX = 60 m/s; allowed -1 to 50 m/s"),
+            ("BAT_LOW_THR", 2.0, "BAT_LOW_THR = 2; allowed 0–0.9"),
+            (
+                "SIM_SPEEDUP",
+                -2.0,
+                "SIM_SPEEDUP = -2; allowed 0 (paused), 0.01–1000, -1 (as fast as possible)",
+            ),
+            ("MAV_SYS_ID", 9.0, "MAV_SYS_ID is read-only: it is set at the start"),
+            ("airframe.mas", 1.0, "unknown parameter airframe.mas; did you mean airframe.mass?"),
+            ("FRAME_MAS", 1.0, "unknown parameter FRAME_MAS; did you mean FRAME_MASS?"),
+            ("AF_MAS", 1.0, "unknown parameter AF_MAS; did you mean FRAME_MASS?"),
+            ("com_wind_max", 1.0, "unknown parameter com_wind_max; did you mean COM_WIND_MAX?"),
+            ("PILOT_TKOFF_ALT", 1.0, "unknown parameter PILOT_TKOFF_ALT; did you mean MIS_TAKEOFF_ALT?"),
+            ("NO_SUCH", 1.0, "unknown parameter NO_SUCH"),
+        ] {
+            let mut values = start;
+            let refused = table.set_checked(name, value, &mut values).expect_err(name);
+            assert_eq!(refused.to_string(), expected);
+            assert_eq!(values, start, "{name}");
+        }
+    }
+
+    /// Clients have single precision, in which a bound may lie a little beyond itself.
+    #[test]
+    fn bounds_can_be_set_by_clients() {
+        let (table, mut values) = defaults();
+        assert_eq!(table.set("LIM_TILT", f64::from(1.2_f32), &mut values), Ok(Change::ClosedLoop));
+        assert_eq!(values.configuration.limits.tilt_rad, 1.2);
+        assert_eq!(table.set("BAT_LOW_THR", f64::from(0.9_f32), &mut values), Ok(Change::Conduct));
     }
 }

@@ -38,13 +38,13 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
         && item.parameter(1) == command::ROI_ITEM
         && !(0.0..count as f64).contains(&named)
     {
-        let reason = format!("no item {named} among {count}");
+        let reason = format!("no item has sequence number {named}; the plan has {count} items");
         return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(2), reason));
     }
     match step(item, items, site) {
         Step::Do(Do::Look(look)) => Ok(look),
         _ => {
-            let reason = format!("command {} is not supported", item.command);
+            let reason = "not supported".to_owned();
             Err(PlanFault::of_item(index, FaultCode::Unsupported, reason))
         }
     }
@@ -142,7 +142,10 @@ mod tests {
         let named = |number| look(&item(DO_SET_ROI, [2.0, number, 0.0, 0.0], [0.0; 3]), &items, &site);
         assert_eq!(named(0.0), Ok(Some(Look::At(place([1.0, 2.0, -3.0])))));
         for number in [1.0, -1.0, NAN] {
-            assert_eq!(named(number).unwrap_err().reason, format!("no item {number} among 1"));
+            assert_eq!(
+                named(number).unwrap_err().reason,
+                format!("no item has sequence number {number}; the plan has 1 items")
+            );
         }
         assert!(look(&items[0], &items, &site).is_err(), "a waypoint is no look");
     }

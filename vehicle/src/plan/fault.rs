@@ -1,5 +1,7 @@
 //! Why a plan was not taken.
 
+use crate::identity::Identity;
+
 /// MAV_MISSION_RESULT of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultCode {
@@ -40,12 +42,14 @@ impl FaultCode {
     }
 }
 
-/// Why an item or a plan was refused. Nothing has changed then.
+/// Why an item or a plan was rejected. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}{reason}", item.map(|item| format!("item {item}: ")).unwrap_or_default())]
+#[error("{reason}")]
 pub struct PlanFault {
     /// Which item, counted from zero; `None` for the plan as a whole.
     pub item: Option<usize>,
+    /// MAV_CMD of that item, if the item itself is wrong.
+    pub command: Option<u16>,
     /// For the client's program.
     pub code: FaultCode,
     /// For the pilot: variable, value and allowed range.
@@ -55,11 +59,31 @@ pub struct PlanFault {
 impl PlanFault {
     /// A fault of an item.
     pub fn of_item(item: usize, code: FaultCode, reason: impl Into<String>) -> Self {
-        Self { item: Some(item), code, reason: reason.into() }
+        Self { item: Some(item), command: None, code, reason: reason.into() }
     }
 
     /// A fault of a plan.
     pub fn of_plan(code: FaultCode, reason: impl Into<String>) -> Self {
-        Self { item: None, code, reason: reason.into() }
+        Self { item: None, command: None, code, reason: reason.into() }
     }
+
+    /// The fault with its item in front: `item 3: outside the fence`.
+    pub fn located(&self, identity: Identity) -> String {
+        described(self.place(identity).as_deref(), None, &self.reason)
+    }
+
+    /// The fault with its item and command in front: `item 3: SET_CAMERA_MODE (530): not supported`. `name_of` names a MAV_CMD.
+    pub fn described(&self, identity: Identity, name_of: fn(u16) -> String) -> String {
+        let command = self.command.map(name_of);
+        described(self.place(identity).as_deref(), command.as_deref(), &self.reason)
+    }
+
+    fn place(&self, identity: Identity) -> Option<String> {
+        self.item.map(|item| format!("item {}", identity.item_number(item)))
+    }
+}
+
+/// A reason with its place and command in front, as far as they are known.
+pub(super) fn described(place: Option<&str>, command: Option<&str>, reason: &str) -> String {
+    [place, command, Some(reason)].into_iter().flatten().collect::<Vec<_>>().join(": ")
 }

@@ -42,7 +42,7 @@ fn circle(index: usize, item: &MissionItem, site: &Site) -> Result<Zone, PlanFau
     let radius_m = item.parameter(1);
     // NaN is in no range.
     if !(radius_m > 0.0 && radius_m <= LARGEST_RADIUS_M) {
-        let reason = format!("radius {radius_m} m is outside (0, {LARGEST_RADIUS_M}]");
+        let reason = format!("radius = {radius_m} m; allowed above 0 to {LARGEST_RADIUS_M} m");
         return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
     }
     let shape = Shape::Circle { centre_m: point(index, item, site)?, radius_m };
@@ -55,7 +55,7 @@ fn corner_count(index: usize, item: &MissionItem) -> Result<usize, PlanFault> {
     if (3.0..=1000.0).contains(&count) && libm::trunc(count) == count {
         Ok(count as usize)
     } else {
-        let reason = format!("{count} corners, needs a whole number of at least 3");
+        let reason = format!("corner count = {count}; allowed: a whole number from 3");
         Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason))
     }
 }
@@ -66,13 +66,13 @@ fn polygon(first: usize, count: usize, items: &[MissionItem], site: &Site) -> Re
     for index in first..first + count {
         let corner = items.get(index).filter(|item| Some(item.command) == of_first);
         let Some(item) = corner.filter(|item| item.parameter(1) == count as f64) else {
-            let reason = format!("the polygon from item {first} on needs {count} corners of the same kind");
+            let reason = format!("this polygon needs {count} consecutive corners of the same kind");
             return Err(PlanFault::of_item(index.min(items.len() - 1), FaultCode::Invalid, reason));
         };
         corners.push(point(index, item, site)?);
     }
     let polygon = Polygon::new(corners).map_err(|fault| {
-        PlanFault::of_item(first, FaultCode::Invalid, format!("the polygon here: {fault}"))
+        PlanFault::of_item(first, FaultCode::Invalid, format!("invalid polygon: {fault}"))
     })?;
     let inclusion = of_first == Some(command::NAV_FENCE_POLYGON_VERTEX_INCLUSION);
     Ok(Zone { shape: Shape::Polygon(polygon), inclusion })

@@ -77,22 +77,11 @@ impl ClosedLoop {
         self.simulation.advance_to(time_us + duration_us, &inputs)
     }
 
-    /// Changes the configuration. What is fixed in flight changes only where the loop may begin anew, from the same state;
-    /// returns whether it has done so.
+    /// Changes the configuration, on the ground and in flight: see [`Simulation::reconfigure`].
     ///
     /// # Errors
     /// [`ConfigurationError`]; nothing has changed then.
-    pub fn configure(
-        &mut self,
-        configuration: &Configuration,
-        may_begin_anew: bool,
-    ) -> Result<bool, ConfigurationError> {
-        match self.simulation.reconfigure(configuration) {
-            Err(ConfigurationError::Fixed { .. }) if may_begin_anew => {
-                self.simulation = Simulation::from_state(configuration, self.simulation.state())?;
-                Ok(true)
-            }
-            result => result.map(|()| false),
-        }
+    pub fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        self.simulation.reconfigure(configuration)
     }
 }

@@ -55,7 +55,7 @@ impl Failsafe {
             Some(_) if action == Action::None => {}
             Some(Change::Begun) => self.act(situation, proposal, cause, action),
             Some(Change::Ended) => {
-                proposal.say(Severity::Info, format!("Failsafe: {} is over", lower(cause)));
+                proposal.say(Severity::Info, format!("Failsafe cleared: {}", cause.cleared()));
             }
             None => {}
         }
@@ -65,25 +65,33 @@ impl Failsafe {
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, action: Action) {
         let flying = situation.flies();
         let acts = flying && self.goes_before(action, Action::of_mode(situation.mode));
-        let why = cause.name();
+        let why = self.name(situation, cause);
         let severity = if action > Action::Warn { Severity::Critical } else { Severity::Warning };
         tracing::debug!(cause = why, action = action.name(), flying, acts, "failsafe");
         let details = self.details(situation, cause);
         if !acts {
             let meanwhile = match (flying, action > Action::Warn) {
                 (true, true) => {
-                    format!(": goes on in {} mode", situation.identity.mode_name(situation.mode))
+                    format!(": staying in {} mode", situation.identity.mode_name(situation.mode))
                 }
                 _ => String::new(),
             };
-            proposal.say(severity, format!("Failsafe: {why}{details}{meanwhile}"));
+            proposal.say(severity, format!("{why}{details}{meanwhile}"));
             return;
         }
-        proposal.say(severity, format!("Failsafe: {why}{details}: {}", action.name()));
+        proposal.say(severity, format!("{why}{details}: {}", action.doing()));
         self.engage(cause, action);
         match action.mode() {
             Some(mode) => proposal.enter(mode),
             None => proposal.terminate(),
+        }
+    }
+
+    /// What has happened, for the pilot.
+    fn name(&self, situation: &Situation, cause: Cause) -> &'static str {
+        match cause {
+            Cause::Fence if situation.fence_is_ahead => "Fence ahead",
+            _ => cause.name(),
         }
     }
 
@@ -93,11 +101,12 @@ impl Failsafe {
                 format!(" ({:.0} %)", 100.0 * situation.battery_remaining)
             }
             Cause::HighWind => format!(" ({:.1} m/s)", self.wind_m_s()),
+            Cause::Fence if situation.fence_is_ahead => String::new(),
             Cause::Fence => situation.breach.map(|breach| format!(" ({breach})")).unwrap_or_default(),
             Cause::PositionLost => match situation.failed_instruments().join(", ") {
                 failed if failed.is_empty() => failed,
                 failed if situation.health.gyroscope => format!(" ({failed} failed)"),
-                failed => format!(" ({failed} failed: no attitude can be held)"),
+                failed => format!(" ({failed} failed: cannot hold attitude)"),
             },
             _ => String::new(),
         }
@@ -127,7 +136,9 @@ impl Failsafe {
         let lost = self.is_present(Cause::PositionLost);
         if lost && situation.conduct.failsafe.position_lost >= Action::Land {
             let name = situation.identity.mode_name(mode);
-            return Err(Refusal::later(format!("{name} rejected: position lost, only landing is left")));
+            return Err(Refusal::later(format!(
+                "{name} mode rejected: position lost, only landing is possible"
+            )));
         }
         Ok(())
     }
@@ -158,7 +169,7 @@ mod tests {
         assert!(failsafe.finds(&scene.situation(), Cause::GroundStationLost));
         let requests = take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true);
         let [said_first, Request::Enter(Mode::Return)] = requests.as_slice() else { panic!("{requests:?}") };
-        assert_eq!(said(std::slice::from_ref(said_first)), ["Failsafe: Ground station lost: return"]);
+        assert_eq!(said(std::slice::from_ref(said_first)), ["Ground station lost: returning"]);
         assert_eq!(failsafe.engaged(), Some((Cause::GroundStationLost, Action::Return)));
         // It is there: nothing more to be said.
         assert!(take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true).is_empty());
@@ -169,10 +180,10 @@ mod tests {
         let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
         (scene.mode, scene.conduct.failsafe.high_wind) = (Mode::Land, Action::Return);
         let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
-        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s): goes on in Land mode"]);
+        assert_eq!(said(&requests), ["High wind (0.0 m/s): staying in Land mode"]);
         let mut scene = Scene::on_the_ground();
         scene.conduct.failsafe.high_wind = Action::Terminate;
         let requests = take_in(&mut Failsafe::default(), &mut scene, Cause::HighWind, true);
-        assert_eq!(said(&requests), ["Failsafe: High wind (0.0 m/s)"]);
+        assert_eq!(said(&requests), ["High wind (0.0 m/s)"]);
     }
 }

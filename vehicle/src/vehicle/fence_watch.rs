@@ -26,6 +26,8 @@ const STANDING_M_S: f64 = 0.1;
 pub struct FenceRecord {
     /// The breach of now, if there is one.
     pub now: Option<Breach>,
+    /// Whether it still lies ahead: the vehicle is inside, and could not stop before it.
+    pub is_ahead: bool,
     /// How many there were.
     pub count: u16,
     /// The latest, and when it began, µs.
@@ -53,7 +55,8 @@ impl FenceWatch {
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
-        let ahead = || if predicts { situation.breach_to(&stopping_place_m(situation)) } else { None };
+        self.record.is_ahead = here.is_none();
+        let ahead = || if predicts { breach_ahead(situation) } else { None };
         self.record.now = here.or_else(ahead);
     }
 
@@ -65,6 +68,24 @@ impl FenceWatch {
     }
 }
 
+/// What of the fence the vehicle cannot help breaching.
+fn breach_ahead(situation: &Situation) -> Option<Breach> {
+    let stopping_m = stopping_place_m(situation);
+    let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
+    // It stops on its way, around the next corner if need be.
+    let mut from_m = situation.outputs.position_m;
+    let mut left_m = (stopping_m - from_m).norm();
+    path.places_m(situation.time_us).find_map(|place_m| {
+        let way = place_m - from_m;
+        let to_m = from_m + way.cap_magnitude(left_m);
+        left_m -= (to_m - from_m).norm();
+        let fence = situation.fence()?;
+        let breach = fence.breach(&to_m).or_else(|| fence.breach_between(&from_m, &to_m));
+        from_m = to_m;
+        breach
+    })
+}
+
 /// Where the vehicle comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is
 /// not beyond the goal, where the shaper stops.
 fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
@@ -74,7 +95,7 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
         return position_m;
     }
     let mut motion = steering.present(situation.outputs);
-    if !matches!(steering, Steering::Motion(_) | Steering::Goal(_)) {
+    if !matches!(steering, Steering::Motion(_) | Steering::Goal(_) | Steering::Path(_)) {
         motion.position_m += motion.velocity_m_s * REACTION_S;
     }
     let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
@@ -91,6 +112,8 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
             let left_m = (goal.position_m - position_m).norm();
             position_m + ahead * (motion.position_m - position_m).norm().min(left_m)
         }
+        // A planned way ends where it is to.
+        Steering::Path(_) => motion.position_m,
         _ => motion.position_m + ahead * MARGIN_M,
     }
 }
@@ -101,7 +124,7 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
 /// [`Refusal::Denied`] that says what of it.
 pub fn check_goal(situation: &Situation, what: &str, goal_m: &Vector3<f64>) -> Result<(), Refusal> {
     match situation.breach_to(goal_m) {
-        Some(breach) => Err(Refusal::denied(format!("{what} denied: {breach}"))),
+        Some(breach) => Err(Refusal::denied(format!("{what} rejected: {breach}"))),
         None => Ok(()),
     }
 }
@@ -173,7 +196,7 @@ mod tests {
     fn goals_beyond_are_refused_and_speeds_are_not() {
         let scene = scene();
         let refusal = check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)).unwrap_err();
-        assert_eq!(refusal.to_string(), "Takeoff denied: farther than 50 m from home");
+        assert_eq!(refusal.to_string(), "Takeoff rejected: farther than 50 m from home");
         let set_point = |north| PositionSetPoint {
             axes: [north, AxisTarget::HOLD, AxisTarget::HOLD],
             yaw: YawTarget::Hold,

@@ -1,8 +1,10 @@
 //! The machines that the vehicle consists of, each with a state of its own.
 
+use super::autostart::Autostart;
 use super::battery::Battery;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
@@ -16,6 +18,8 @@ use super::takeoff::Takeoff;
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
 pub struct Machines {
+    /// The start of the mission without a pilot.
+    pub autostart: Autostart,
     /// What is broken.
     pub injection: Injection,
     /// The battery.
@@ -26,6 +30,8 @@ pub struct Machines {
     pub failsafe: Failsafe,
     /// The rotors, and the descent without one.
     pub rotors: RotorWatch,
+    /// Whether the position can be held.
+    pub hold: HoldWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
     /// Takeoffs.

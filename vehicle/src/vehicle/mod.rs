@@ -26,15 +26,17 @@
 //! The order of a tick:
 //!
 //! ```text
+//!  autostart        arms and starts the mission, if it was asked to
 //!  injection        faults that are due
 //!  fence watch      breaches, present and predicted
 //!  failsafe         cause by cause
 //!  while armed      the machine of the mode (takeoff, manual control, offboard, return, mission),
 //!                   or the rotor watch while a rotor is lost; then what waits: lost set-points, disarming
 //!  closed loop      flies as the steering says; perception looks at the motion
-//!  afterwards       rotor watch, battery, touch-down and lift-off
+//!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
 //! ```
 
+mod autostart;
 mod battery;
 mod closed_loop;
 mod conduct;
@@ -43,6 +45,7 @@ mod descent;
 mod failsafe;
 mod failsafe_watch;
 mod fence_watch;
+mod hold_watch;
 mod home;
 mod injection;
 mod landed;
@@ -53,6 +56,7 @@ mod mission;
 mod motion;
 mod notice;
 mod offboard;
+mod path_steering;
 mod perception;
 mod plans;
 mod proposal;
@@ -72,6 +76,7 @@ mod steering;
 mod sticks;
 mod takeoff;
 mod tick;
+mod trajectory;
 
 pub use battery::{Battery, CELLS as BATTERY_CELLS};
 pub use conduct::Conduct;

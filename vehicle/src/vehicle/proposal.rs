@@ -3,16 +3,18 @@
 use std::borrow::Cow;
 
 use nalgebra::Vector3;
-use quadrotor::PositionReference;
+use quadrotor::{Heading, PositionReference};
 
 use super::failsafe::Cause;
 use super::home::Home;
 use super::notice::{Notice, Refusal, Severity};
+use super::path_steering::PathSteering;
 use super::region::RegionOfInterest;
 use super::set_point::{AttitudeSetPoint, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::speeds::SpeedChange;
 use super::steering::Steering;
+use super::trajectory::PieceFlight;
 use crate::mode::Mode;
 use crate::world::FARTHEST_M;
 
@@ -119,14 +121,36 @@ impl<'a> Proposal<'a> {
         const NEAR_M: f64 = 0.01;
         const SLOW_M_S: f64 = 0.01;
         let now = &situation.outputs.setpoint;
-        let rests_at = |goal: &PositionReference| {
-            (goal.position_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
+        let rests_at = |place_m: Vector3<f64>| {
+            (place_m - now.position_m).norm() < NEAR_M && now.velocity_m_s.norm() < SLOW_M_S
         };
         match self.steering() {
             Steering::Idle { .. } => {}
-            Steering::Goal(goal) if rests_at(goal) => {}
+            steering if steering.resting_place_m().is_some_and(rests_at) => {}
             _ => self.follow(situation, &PositionSetPoint::HOLD),
         }
+    }
+
+    /// Steers along a piece of a way, with the corners of the way after it, NED, m. The heading goes on.
+    pub fn fly_along(&mut self, situation: &Situation, flight: PieceFlight, after_m: [Vector3<f64>; 2]) {
+        let now = &situation.outputs.setpoint;
+        let begin = |yaw_rad| PathSteering::new(flight, after_m, now, yaw_rad, situation.time_us);
+        let path = match self.steering() {
+            Steering::Path(path) => path.onto(flight, after_m),
+            Steering::Goal(goal) => begin(goal.yaw_rad),
+            _ => begin(now.yaw_rad),
+        };
+        self.steer(Steering::Path(path));
+    }
+
+    /// Steers through a place with a velocity, through the shaper. The heading goes on.
+    pub fn go_through(&mut self, situation: &Situation, goal: &PositionReference) {
+        let (yaw_rad, yaw_rate_rad_s) = match self.steering() {
+            Steering::Goal(before) => (before.yaw_rad, before.yaw_rate_rad_s),
+            Steering::Path(path) => (path.goal().yaw_rad, path.goal().yaw_rate_rad_s),
+            _ => (situation.outputs.setpoint.yaw_rad, 0.0),
+        };
+        self.steer(Steering::Goal(PositionReference { yaw_rad, yaw_rate_rad_s, ..*goal }));
     }
 
     /// Turns on to a heading, rad, that changes at a rate, rad/s; without one it stays.
@@ -136,6 +160,12 @@ impl<'a> Proposal<'a> {
                 (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);
             }
             (Steering::Goal(goal), None) => goal.yaw_rate_rad_s = 0.0,
+            (Steering::Path(path), Some((yaw_rad, yaw_rate_rad_s))) => {
+                path.turn_to(Heading { yaw_rad, yaw_rate_rad_s });
+            }
+            (Steering::Path(path), None) => {
+                path.turn_to(Heading { yaw_rate_rad_s: 0.0, ..path.goal() });
+            }
             (Steering::Motion(motion), Some((heading_rad, rate_rad_s))) => {
                 motion.turn_to(YawTarget::Follow(heading_rad, rate_rad_s));
             }
@@ -235,6 +265,6 @@ pub fn check_distance(target_m: &Vector3<f64>) -> Result<(), Refusal> {
     if distance_m <= FARTHEST_M {
         Ok(())
     } else {
-        Err(Refusal::denied(format!("Target denied: {distance_m:.0} m away, at most {FARTHEST_M:.0} m")))
+        Err(Refusal::denied(format!("Target rejected: {distance_m:.0} m away; allowed {FARTHEST_M:.0} m")))
     }
 }

@@ -45,7 +45,7 @@ impl Return {
         let near = libm::hypot(place.x - x, place.y - y) < situation.conduct.return_near_m;
         if near {
             self.phase = Phase::Descend;
-            proposal.say(Severity::Info, "Returning: the place is near, landing");
+            proposal.say(Severity::Info, "Return point is near: landing");
         } else {
             self.phase = Phase::Climb;
             go_at_return_height(situation, proposal, situation.outputs.setpoint.position_m.xy().into());
@@ -66,7 +66,7 @@ impl Return {
             }
             Phase::Travel if reached() => {
                 self.phase = Phase::Descend;
-                proposal.say(Severity::Info, "Above the place to return to, landing");
+                proposal.say(Severity::Info, "Above the return point: landing");
             }
             Phase::Descend => descend(situation, proposal, self.way_m.back().copied()),
             _ => {}
@@ -125,7 +125,7 @@ fn way_m(situation: &Situation, proposal: &mut Proposal, goal: [f64; 2]) -> VecD
         None => Some(vec![goal]),
     };
     if way.is_none() {
-        proposal.say(Severity::Warning, "No way around the fence: returning straight");
+        proposal.say(Severity::Warning, "No route around the fence: returning straight");
     }
     way.unwrap_or_else(|| vec![goal]).into()
 }
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(scene.goal_m(), Some([0.0, 0.0, -30.0]));
         assert!(!way_home.descends());
         scene.come_to([0.0, 0.0, -30.0], [0.0; 3]);
-        assert_eq!(step(&mut way_home, &mut scene), ["Above the place to return to, landing"]);
+        assert_eq!(step(&mut way_home, &mut scene), ["Above the return point: landing"]);
         assert!(way_home.descends());
         step(&mut way_home, &mut scene);
         assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
@@ -168,7 +168,7 @@ mod tests {
         let mut scene = Scene::hovering_at([3.0, 0.0, -10.0]);
         let mut way_home = Return::default();
         let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
-        assert_eq!(said(&requests), ["Returning: the place is near, landing"]);
+        assert_eq!(said(&requests), ["Return point is near: landing"]);
         assert!(way_home.descends());
     }
 

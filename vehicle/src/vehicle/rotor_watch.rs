@@ -70,7 +70,7 @@ impl RotorWatch {
         let another = self.is_another_lost(rotor);
         if let Some(loss) = self.loss.as_mut().filter(|loss| another && !loss.falls) {
             loss.falls = true;
-            proposal.say(Severity::Critical, "More than one rotor lost: it falls");
+            proposal.say(Severity::Critical, "More than one rotor lost: falling");
         }
     }
 
@@ -208,7 +208,7 @@ mod tests {
         for _ in 0..2_000 {
             lines.extend(scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S)));
         }
-        assert_eq!(said(&lines), ["More than one rotor lost: it falls"]);
+        assert_eq!(said(&lines), ["More than one rotor lost: falling"]);
         scene.armed = false;
         scene.show(|situation, proposal| watch.watch(situation, proposal, TICK_S));
         assert_eq!(watch.lost_rotor(), None);

@@ -35,6 +35,7 @@ pub struct Scene {
     pub set_points_are_recent: bool,
     pub mission_goes_on: bool,
     pub rotor_command_rad_s: [f64; 4],
+    pub wind_m_s: Vector3<f64>,
     frame: LocalFrame,
 }
 
@@ -86,6 +87,7 @@ impl Scene {
             set_points_are_recent: false,
             mission_goes_on: false,
             rotor_command_rad_s: [hover_rad_s; 4],
+            wind_m_s: Vector3::zeros(),
             frame: LocalFrame::new(origin),
         }
     }
@@ -137,7 +139,7 @@ impl Scene {
             estimates: true,
             fix_velocity_down_m_s: None,
             rotor_command_rad_s: self.rotor_command_rad_s,
-            wind_m_s: Vector3::zeros(),
+            wind_m_s: self.wind_m_s,
             battery_remaining: 1.0,
             armed: self.armed,
             mode: self.mode,
@@ -147,6 +149,7 @@ impl Scene {
             landed: self.landed,
             lost_rotor: self.lost_rotor,
             breach: None,
+            fence_is_ahead: false,
             set_points_are_recent: self.set_points_are_recent,
             set_point_is_applied: false,
             mission_goes_on: self.mission_goes_on,
@@ -167,6 +170,7 @@ impl Scene {
     pub fn goal_m(&self) -> Option<[f64; 3]> {
         match &self.steering {
             Steering::Goal(goal) => Some(goal.position_m.into()),
+            Steering::Path(path) => Some(path.end().position_m.into()),
             _ => None,
         }
     }

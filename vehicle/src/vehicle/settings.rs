@@ -34,6 +34,9 @@ pub struct VehicleSettings {
     /// What it is to fly, and where it may.
     #[serde(default)]
     pub plans: Plans,
+    /// Whether it arms and starts its mission by itself as soon as it can.
+    #[serde(default)]
+    pub autostart: bool,
 }
 
 impl VehicleSettings {

@@ -70,6 +70,8 @@ pub struct Situation<'a> {
     pub lost_rotor: Option<usize>,
     /// What of the fence is breached, or is about to be.
     pub breach: Option<Breach>,
+    /// Whether that still lies ahead.
+    pub fence_is_ahead: bool,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
     /// Whether the latest set-point has been steered to.
@@ -128,7 +130,7 @@ impl<'a> Situation<'a> {
     /// [`Refusal::TemporarilyRejected`] that names the rotor.
     pub fn refuse_without_rotor(&self) -> Result<(), Refusal> {
         match self.lost_rotor {
-            Some(rotor) => Err(Refusal::later(format!("Rotor {} is lost: it can only land", rotor + 1))),
+            Some(rotor) => Err(Refusal::later(format!("Rotor {} lost: only landing is possible", rotor + 1))),
             None => Ok(()),
         }
     }

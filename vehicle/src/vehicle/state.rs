@@ -3,18 +3,21 @@
 mod arming;
 mod decision;
 mod plan_requests;
+mod plan_start;
 mod queries;
 mod requests;
 
 use nalgebra::Vector3;
 use quadrotor::{ConfigurationError, SimulationError};
 
+use super::autostart::Autostart;
 use super::battery::Battery;
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
 use super::landing::Landing;
@@ -67,11 +70,13 @@ impl Vehicle {
         let site = Site { identity: settings.identity, frame, home_m };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
         let machines = Machines {
+            autostart: Autostart::new(settings.autostart && program.is_flown()),
             injection: Injection::new(settings.faults.clone()),
             battery: Battery::default(),
             fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
+            hold: HoldWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
@@ -80,14 +85,16 @@ impl Vehicle {
             mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
         };
-        Ok(Self {
+        let mut vehicle = Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
             closed_loop,
             perception,
             plans: KnownPlans::new(settings.plans.clone(), &site),
             decided: Decided::new(settings.identity.first_mode(), home),
             machines,
-        })
+        };
+        vehicle.announce_plans();
+        Ok(vehicle)
     }
 
     /// What the machines see of the vehicle now.
@@ -107,6 +114,9 @@ impl Vehicle {
     /// # Errors
     /// [`SimulationError`]: the flight has left the range of numbers.
     pub fn tick(&mut self) -> Result<(), SimulationError> {
+        if self.machines.autostart.is_pending() {
+            self.autostart();
+        }
         if self.machines.injection.is_due(self.time_us()) {
             self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
         }
@@ -117,6 +127,7 @@ impl Vehicle {
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
+        self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
@@ -233,6 +244,7 @@ fn situation<'a>(
         landed: landing.is_landed(),
         lost_rotor: machines.rotors.lost_rotor(),
         breach: machines.fence.record().now,
+        fence_is_ahead: machines.fence.record().is_ahead,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_is_applied: machines.offboard.is_applied(),
         mission_goes_on: flies_mission && machines.mission.is_started(),

@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{AttitudeTarget, Inputs, Outputs, PositionReference, Simulation};
 
 use super::motion::{Motion, at_rest};
+use super::path_steering::PathSteering;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 
 /// A body-rate command may lead the vehicle by this angle, rad, and no further.
@@ -20,6 +21,8 @@ pub enum Steering {
     },
     /// To a place, through the shaper.
     Goal(PositionReference),
+    /// Along a planned way.
+    Path(PathSteering),
     /// A moving reference, as it is.
     Motion(Motion),
     /// An attitude and a thrust.
@@ -67,7 +70,7 @@ impl Steering {
     pub fn kind(&self) -> SteeringKind {
         match self {
             Self::Idle { .. } => SteeringKind::Idle,
-            Self::Goal(_) | Self::Motion(_) => SteeringKind::Position,
+            Self::Goal(_) | Self::Path(_) | Self::Motion(_) => SteeringKind::Position,
             Self::Attitude { .. } => SteeringKind::Attitude,
             Self::Descent { .. } => SteeringKind::Descent,
         }
@@ -89,6 +92,7 @@ impl Steering {
                 (YawTarget::Angle(angle), _) => angle,
                 // An unfinished turn goes on.
                 (_, Self::Goal(goal)) => goal.yaw_rad,
+                (_, Self::Path(path)) => path.goal().yaw_rad,
                 _ => now.yaw_rad,
             };
             *self = Self::Goal(at_rest(goal, yaw_rad));
@@ -113,7 +117,7 @@ impl Steering {
     /// The motion to take over: that of the reference, or of the vehicle if it does not follow one.
     pub(super) fn present(&self, outputs: &Outputs) -> PositionReference {
         match self {
-            Self::Goal(_) | Self::Motion(_) => outputs.setpoint,
+            Self::Goal(_) | Self::Path(_) | Self::Motion(_) => outputs.setpoint,
             Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => PositionReference {
                 velocity_m_s: outputs.velocity_m_s,
                 ..at_rest(outputs.position_m, outputs.attitude_rad.z)
@@ -121,13 +125,25 @@ impl Steering {
         }
     }
 
+    /// Where it comes to rest, if it is to.
+    pub(super) fn resting_place_m(&self) -> Option<Vector3<f64>> {
+        let end = match self {
+            Self::Goal(goal) => *goal,
+            Self::Path(path) => path.end(),
+            _ => return None,
+        };
+        (end.velocity_m_s.norm() == 0.0).then_some(end.position_m)
+    }
+
     /// Whether it goes by position, and nowhere above z, m.
     pub(super) fn stays_below(&self, z_m: f64) -> bool {
+        let leads_up = |goal_z_m: f64| {
+            let axes = [AxisTarget::HOLD, AxisTarget::HOLD, AxisTarget::Position(goal_z_m)];
+            PositionSetPoint { axes, yaw: YawTarget::Hold }.leads_up(z_m)
+        };
         match self {
-            Self::Goal(goal) => {
-                let axes = goal.position_m.data.0[0].map(AxisTarget::Position);
-                !PositionSetPoint { axes, yaw: YawTarget::Hold }.leads_up(z_m)
-            }
+            Self::Goal(goal) => !leads_up(goal.position_m.z),
+            Self::Path(path) => !leads_up(path.highest_z_m()),
             Self::Motion(motion) => !motion.leads_up(z_m),
             Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => false,
         }
@@ -176,6 +192,10 @@ impl Steering {
             }
             Self::Descent { reference, .. } => along(*reference, None),
             Self::Goal(goal) => along(*goal, Some(true)),
+            Self::Path(path) => {
+                let limits = &simulation.configuration().limits;
+                along(path.reference(limits, outputs.time_us), Some(false))
+            }
             Self::Motion(motion) => {
                 let reference = motion.reference(outputs.time_us);
                 motion.step(&simulation.configuration().limits, dt_s);

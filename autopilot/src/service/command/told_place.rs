@@ -30,7 +30,10 @@ pub fn told_place(command: &Command, vehicle: &Vehicle) -> Result<Vector3<f64>, 
     let altitude_m = vehicle.frame().origin().altitude_m;
     let place = Geodetic { latitude_deg: command.x, longitude_deg: command.y, altitude_m };
     if !place.is_valid() {
-        return Err(Refusal::denied(format!("No place at latitude {}, longitude {}", command.x, command.y)));
+        return Err(Refusal::denied(format!(
+            "Invalid position: latitude {}, longitude {}",
+            command.x, command.y
+        )));
     }
     Ok(vehicle.frame().to_local_m(&place))
 }

@@ -18,11 +18,11 @@ pub fn pack(context: &Context) -> Vec<u8> {
     for number in [MAGIC, count as u16, count as u16] {
         bytes.extend(number.to_le_bytes());
     }
-    let mut previous = String::new();
+    let mut previous = "";
     for index in 0..count {
         let Some(value) = context.parameters.value(index, &context.vehicle) else { continue };
         let Some(entry) = context.parameters.table().entries().get(index) else { continue };
-        let name = entry.id.clone();
+        let name = entry.id;
         let shared = name.bytes().zip(previous.bytes()).take_while(|(one, other)| one == other).count();
         // The rest has at least one letter, and each half of the byte holds 15.
         let shared = shared.min(name.len().saturating_sub(1)).min(15);

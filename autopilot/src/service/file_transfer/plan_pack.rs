@@ -59,7 +59,9 @@ pub fn unpack(bytes: &[u8], kind: PlanKind) -> Result<Vec<MissionItem>, PlanFaul
         )));
     }
     if options != 0 || first != 0 {
-        return Err(wrong(format!("options {options} and first item {first}: only whole plans are taken")));
+        return Err(wrong(format!(
+            "options {options} and first item {first}: only complete plans are supported"
+        )));
     }
     let items = bytes.get(HEADER..).unwrap_or_default();
     if items.len() != usize::from(count) * MissionItemMessage::LENGTH {

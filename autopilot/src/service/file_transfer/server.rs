@@ -11,7 +11,7 @@ use super::message::{DATA, Nak, Reply, Request, opcode};
 use super::sessions::{Client, Content, Sessions};
 use super::{plan_pack, root};
 use crate::codec::checksum::Checksum;
-use crate::codec::{Frame, id};
+use crate::codec::{Frame, command_name, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::file_store::Access;
@@ -169,7 +169,8 @@ impl FileServer {
 fn take_plan(context: &mut Context, kind: PlanKind, bytes: &[u8]) -> Result<(), Nak> {
     let items = plan_pack::unpack(bytes, kind);
     items.and_then(|items| context.vehicle.set_plan(kind, items)).map_err(|fault| {
-        context.say(Severity::Warning, &format!("{} refused: {fault}", kind.name()));
+        let reason = fault.described(context.vehicle.identity(), command_name);
+        context.say(Severity::Warning, &format!("{} rejected: {reason}", kind.name()));
         Nak::Fail
     })
 }

@@ -36,7 +36,7 @@ pub fn request(context: &mut Context, origin: &Origin, frame: &Frame) {
     };
     let Some(item) = context.vehicle.plan_item(kind, usize::from(sequence)) else {
         let count = context.vehicle.plans().get(kind).items().len();
-        let reason = format!("there is no item {sequence} among {count}");
+        let reason = format!("no item has sequence number {sequence}; the plan has {count} items");
         let fault = PlanFault::of_plan(FaultCode::InvalidSequence, reason);
         answer::refused_aloud(context, origin, number, &fault);
         return;

@@ -27,7 +27,7 @@ impl MissionProgress {
         let index = if command.parameter(1) == -1.0 {
             context.vehicle.mission_status().current
         } else {
-            command.whole(1).ok_or_else(|| Refusal::denied("A mission item has a number"))? as usize
+            command.whole(1).ok_or_else(|| Refusal::denied("Mission item number required"))? as usize
         };
         context.vehicle.set_mission_item(index, reset)?;
         self.tell(context);

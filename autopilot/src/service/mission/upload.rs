@@ -84,7 +84,7 @@ impl Uploads {
                 self.begin(context, origin, frame, number, Some(first), last + 1);
             }
             _ => {
-                let reason = format!("items {start} to {end} of {there} cannot be written");
+                let reason = format!("cannot write items {start} to {end}; the plan has {there}");
                 let fault = PlanFault::of_plan(FaultCode::InvalidSequence, reason);
                 answer::refused_aloud(context, origin, number, &fault);
             }
@@ -111,7 +111,7 @@ impl Uploads {
             return;
         }
         if end > kind.capacity() {
-            let reason = format!("{end} items are more than {}", kind.capacity());
+            let reason = format!("{end} items; at most {} fit", kind.capacity());
             let fault = PlanFault::of_plan(FaultCode::NoSpace, reason);
             answer::refused_aloud(context, origin, number, &fault);
             return;
@@ -216,7 +216,8 @@ impl Uploads {
             return;
         };
         if message.kind != upload.kind.number() {
-            let wrong = format!("type {} in an upload of type {}", message.kind, upload.kind.number());
+            let wrong =
+                format!("item of type {} in an upload of type {}", message.kind, upload.kind.number());
             self.fail(context, &PlanFault::of_item(sequence, FaultCode::Invalid, wrong));
             return;
         }
@@ -328,7 +329,7 @@ impl Uploads {
         let Some(upload) = &self.receiving else { return };
         let name = upload.kind.name();
         self.finish(context, Err(fault.code));
-        context.say(Severity::Warning, &format!("{name} refused: {fault}"));
+        context.say(Severity::Warning, &format!("{name} rejected: {}", answer::described(context, fault)));
     }
 
     fn finish(&mut self, context: &mut Context, answer: Result<u32, FaultCode>) {

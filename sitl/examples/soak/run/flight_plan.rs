@@ -100,7 +100,7 @@ pub fn observer(autopilot: &Autopilot, chance: &mut Chance) -> VecDeque<Step> {
     let step = match chance.one_of(&[0, 1, 2, 3, 4]) {
         0 => Step::ReadParameters,
         1 => Step::SetParameter { name: "MIS_TAKEOFF_ALT", value: chance.one_of(&[2.0, 3.0, 4.5]) },
-        2 => Step::SetParameter { name: "LIM_JERK_H", value: chance.one_of(&[3.0, 4.0, 5.0]) },
+        2 => Step::SetParameter { name: "LIM_JERK_HORIZ", value: chance.one_of(&[3.0, 4.0, 5.0]) },
         3 => command(target, MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, &[message, interval]),
         _ => command(target, MavCmd::MAV_CMD_REQUEST_MESSAGE, &[148.0]),
     };

@@ -211,7 +211,7 @@ impl Task {
         }
         if self.count.is_some_and(|count| self.values.len() == usize::from(count)) {
             let table = with.autopilot.parameter_table().entries();
-            let right = table.iter().zip(self.values.values()).all(|(entry, name)| entry.id == *name);
+            let right = table.iter().zip(self.values.values()).all(|(entry, name)| entry.id == name.as_str());
             with.figures.parameter_lists += 1;
             return Some(if right && table.len() == self.values.len() {
                 Outcome::Done

@@ -12,17 +12,17 @@ pub fn item(index: usize, item: &MissionItem, site: &Site) -> Result<(), ItemFau
         return Ok(());
     }
     let Some(rule) = mission_command(item.command) else {
-        return Err((FaultCode::Unsupported, format!("command {} is not supported", item.command)));
+        return Err((FaultCode::Unsupported, "not supported".to_owned()));
     };
     for (number, name, low, high) in rule.ranges {
         let value = item.parameter(usize::from(*number));
         if !value.is_nan() && !(*low..=*high).contains(&value) {
-            let reason = format!("{name} {value} is outside [{low}, {high}]");
+            let reason = format!("{name} = {value}; allowed {low} to {high}");
             return Err((FaultCode::InvalidParameter(*number), reason));
         }
     }
     if let Some(number) = rule.needed.iter().find(|number| item.parameter(usize::from(**number)).is_nan()) {
-        return Err((FaultCode::InvalidParameter(*number), format!("parameter {number} is needed")));
+        return Err((FaultCode::InvalidParameter(*number), format!("parameter {number} is required")));
     }
     check_whole(rule, item)?;
     particular(item, site)?;
@@ -33,7 +33,7 @@ fn check_whole(rule: &MissionCommand, item: &MissionItem) -> Result<(), ItemFaul
     for number in rule.whole {
         let value = item.parameter_or(usize::from(*number), 0.0);
         if value.fract() != 0.0 {
-            let reason = format!("{value} is not a whole number");
+            let reason = format!("parameter {number} = {value} must be a whole number");
             return Err((FaultCode::InvalidParameter(*number), reason));
         }
     }
@@ -45,13 +45,13 @@ fn particular(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
     let wrong = |number: u8, reason: String| Err((FaultCode::InvalidParameter(number), reason));
     let speed_m_s = item.parameter(2);
     if item.command == command::DO_CHANGE_SPEED && speed_m_s < 0.1 && speed_m_s != -1.0 && speed_m_s != -2.0 {
-        return wrong(2, format!("speed {speed_m_s} is outside [0.1, {}]", FASTEST_M_S));
+        return wrong(2, format!("speed = {speed_m_s} m/s; allowed 0.1 to {} m/s", FASTEST_M_S));
     }
     let delay_s = item.parameter(1);
     if item.command == command::NAV_DELAY && delay_s < 0.0 {
         // −1 stands for the time of day behind it.
         if delay_s != -1.0 {
-            return wrong(1, format!("delay {delay_s} is outside [0, {LONGEST_S}]"));
+            return wrong(1, format!("delay = {delay_s} s; allowed 0 to {LONGEST_S} s"));
         }
         if [2, 3, 4].iter().all(|number| item.parameter_or(*number, -1.0) < 0.0) {
             return wrong(2, "a delay until a time of day needs an hour, a minute or a second".to_owned());
@@ -80,7 +80,7 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
     let place = place(item, site)?;
     match place.down_m(site.home_m.z) {
         Some(down_m) if rule == PlaceRule::Goal && down_m > 0.0 => {
-            let reason = format!("altitude {} is {down_m:.1} m below the ground", item.position[2]);
+            let reason = format!("altitude = {} m is {down_m:.1} m below the ground", item.position[2]);
             Err((FaultCode::InvalidParameter(7), reason))
         }
         _ => Ok(()),
@@ -98,7 +98,7 @@ pub fn whole(items: &[MissionItem]) -> Result<(), PlanFault> {
         let Some((number, target)) = target else { continue };
         let exists = target >= 0.0 && target.fract() == 0.0 && (target as usize) < items.len();
         if !exists {
-            let reason = format!("there is no item {target} among {}", items.len());
+            let reason = format!("no item has sequence number {target}; the plan has {} items", items.len());
             return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(number), reason));
         }
     }

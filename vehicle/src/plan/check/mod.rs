@@ -17,7 +17,10 @@ pub fn item(kind: PlanKind, index: usize, item: &MissionItem, site: &Site) -> Re
         PlanKind::Fence => fence::item(item, site),
         PlanKind::Rally => rally::item(item, site),
     };
-    result.map_err(|(code, reason)| PlanFault::of_item(index, code, reason))
+    result.map_err(|(code, reason)| PlanFault {
+        command: Some(item.command),
+        ..PlanFault::of_item(index, code, reason)
+    })
 }
 
 /// Checks a plan: every item, and how they belong together.
@@ -26,7 +29,7 @@ pub fn item(kind: PlanKind, index: usize, item: &MissionItem, site: &Site) -> Re
 /// [`PlanFault`] of the first item, or of the plan.
 pub fn plan(kind: PlanKind, items: &[MissionItem], site: &Site) -> Result<(), PlanFault> {
     if items.len() > kind.capacity() {
-        let reason = format!("{} items are more than {}", items.len(), kind.capacity());
+        let reason = format!("{} items; at most {} fit", items.len(), kind.capacity());
         return Err(PlanFault::of_plan(FaultCode::NoSpace, reason));
     }
     for (index, one) in items.iter().enumerate() {
@@ -45,24 +48,28 @@ type ItemFault = (FaultCode, String);
 /// Checks the place of an item: its frame, latitude and longitude, and that it is not too far away.
 fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
     if !Site::knows(item.frame) {
-        let reason = format!("frame {} is none of 0, 1, 3, 5, 6, 10, 11", item.frame);
+        let reason = format!("frame {} is not supported; allowed 0, 1, 3, 5, 6, 10, 11", item.frame);
         return Err((FaultCode::UnsupportedFrame, reason));
     }
     let [x, y, z] = item.position;
     if z.is_infinite() {
-        return Err((FaultCode::InvalidParameter(7), format!("altitude {z} is not finite")));
+        return Err((FaultCode::InvalidParameter(7), format!("altitude must be finite")));
     }
     let Some(place) = site.place(item) else {
         let (parameter, name, value, most) =
             if x.abs() <= 90.0 { (6, "longitude", y, 180) } else { (5, "latitude", x, 90) };
-        let reason = format!("{name} {value} is outside [-{most}, {most}]");
+        let reason = format!("{name} = {value}; allowed -{most} to {most} degrees");
         return Err((FaultCode::InvalidParameter(parameter), reason));
     };
     if let Some([north, east]) = place.horizontal_m {
         let distance_m = libm::hypot(north, east);
         if distance_m > FARTHEST_M {
             let parameter = if north.abs() > east.abs() { 5 } else { 6 };
-            let reason = format!("place {:.0} km away, at most {:.0}", distance_m / 1e3, FARTHEST_M / 1e3);
+            let reason = format!(
+                "the place is {:.0} km away; at most {:.0} km is supported",
+                distance_m / 1e3,
+                FARTHEST_M / 1e3
+            );
             return Err((FaultCode::InvalidParameter(parameter), reason));
         }
     }
@@ -74,5 +81,5 @@ fn one_of(item: &MissionItem, commands: &[u16]) -> Result<(), ItemFault> {
     if commands.contains(&item.command) {
         return Ok(());
     }
-    Err((FaultCode::Unsupported, format!("command {} is not supported", item.command)))
+    Err((FaultCode::Unsupported, "not supported".to_owned()))
 }

@@ -79,9 +79,10 @@ const MISSION_VERSION: u32 = 2;
 
 /// Reads the items.
 pub fn parse(text: &str) -> Result<Content, String> {
-    let file: File = serde_json::from_str(text).map_err(|error| format!("no .plan: {error}"))?;
+    let file: File =
+        serde_json::from_str(text).map_err(|error| format!("not a valid .plan file: {error}"))?;
     if file.file_type != "Plan" {
-        return Err(format!("fileType is `{}`, not `Plan`", file.file_type));
+        return Err(format!("fileType is `{}`; only `Plan` is supported", file.file_type));
     }
     let mut content = Content::default();
     if let Some(mission) = &file.mission {
@@ -92,7 +93,7 @@ pub fn parse(text: &str) -> Result<Content, String> {
     let points = file.rally_points.map(|rally| rally.points).unwrap_or_default();
     let rally = |(index, point): (usize, [f64; 3])| {
         let item = place(command::NAV_RALLY_POINT, 0.0, frame::GLOBAL_RELATIVE, point);
-        (item, format!("rally point {index}"))
+        (item, format!("rally point {}", index + 1))
     };
     content.rally = points.into_iter().enumerate().map(rally).collect();
     Ok(content)
@@ -100,12 +101,15 @@ pub fn parse(text: &str) -> Result<Content, String> {
 
 fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
     if mission.version != MISSION_VERSION {
-        return Err(format!("mission version {} is not {MISSION_VERSION}", mission.version));
+        return Err(format!(
+            "mission version {} is not supported; expected {MISSION_VERSION}",
+            mission.version
+        ));
     }
     let mut items = Vec::new();
     let mut jump_ids = Vec::new();
     for (index, value) in mission.items.iter().enumerate() {
-        let simple = simple(value).map_err(|reason| format!("item {index}: {reason}"))?;
+        let simple = simple(value).map_err(|reason| format!("item {}: {reason}", index + 1))?;
         let [one, two, three, four, x, y, z] = simple.params.map(|value| value.unwrap_or(f64::NAN));
         jump_ids.push(simple.do_jump_id);
         let item = MissionItem {
@@ -115,13 +119,13 @@ fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
             position: [x, y, z],
             autocontinue: simple.auto_continue,
         };
-        items.push((item, format!("item {index}")));
+        items.push((item, format!("item {}", index + 1)));
     }
     // In the file a jump names the id of its target.
     for (item, place) in &mut items {
         let Some(target) = item.jump_target_mut() else { continue };
         let index = jump_ids.iter().position(|id| id.map(f64::from) == Some(*target));
-        *target = index.ok_or_else(|| format!("{place}: there is no item with doJumpId {target}"))? as f64;
+        *target = index.ok_or_else(|| format!("{place}: no item has doJumpId {target}"))? as f64;
     }
     Ok(items)
 }
@@ -133,10 +137,15 @@ fn simple(value: &Value) -> Result<Simple, String> {
         Some("ComplexItem") => {
             let kind = text("complexItemType").unwrap_or("unknown");
             return Err(format!(
-                "complex item `{kind}` is not supported: only simple items; let the ground station upload it"
+                "complex item `{kind}` is not supported; upload the plan from the ground station, which expands it"
             ));
         }
-        other => return Err(format!("type `{}` is not `SimpleItem`", other.unwrap_or("none"))),
+        other => {
+            return Err(format!(
+                "type `{}` is not supported; expected `SimpleItem`",
+                other.unwrap_or("none")
+            ));
+        }
     }
     Simple::deserialize(value).map_err(|error| error.to_string())
 }
@@ -152,7 +161,7 @@ fn fence_items(fence: &Fence) -> Vec<(MissionItem, String)> {
         let count = polygon.polygon.len() as f64;
         for [latitude, longitude] in &polygon.polygon {
             let item = place(command, count, frame::GLOBAL, [*latitude, *longitude, 0.0]);
-            items.push((item, format!("fence polygon {index}")));
+            items.push((item, format!("fence polygon {}", index + 1)));
         }
     }
     for (index, circle) in fence.circles.iter().enumerate() {
@@ -163,7 +172,7 @@ fn fence_items(fence: &Fence) -> Vec<(MissionItem, String)> {
         };
         let [latitude, longitude] = circle.circle.center;
         let item = place(command, circle.circle.radius, frame::GLOBAL, [latitude, longitude, 0.0]);
-        items.push((item, format!("fence circle {index}")));
+        items.push((item, format!("fence circle {}", index + 1)));
     }
     if let Some(point) = fence.breach_return {
         let item = place(command::NAV_FENCE_RETURN_POINT, 0.0, frame::GLOBAL_RELATIVE, point);

@@ -3,7 +3,7 @@
 mod json;
 mod text;
 
-use super::{MissionItem, Plan, PlanKind, Plans, Site, check};
+use super::{MissionItem, Plan, PlanFileFault, PlanKind, Plans, Site, check};
 
 /// The items of a file, before they are checked.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -19,8 +19,8 @@ struct Content {
 /// Reads the plans in a file's text for a vehicle at a site.
 ///
 /// # Errors
-/// A reason that names the line or the item, the value and its range.
-pub fn parse(text: &str, site: &Site) -> Result<Plans, String> {
+/// [`PlanFileFault`] that names the line or the item, the value and its range.
+pub fn parse(text: &str, site: &Site) -> Result<Plans, PlanFileFault> {
     let mut content =
         if text.trim_start().starts_with('{') { json::parse(text)? } else { text::parse(text)? };
     if site.identity.is_ardupilot() && !content.mission.is_empty() {
@@ -35,8 +35,8 @@ pub fn parse(text: &str, site: &Site) -> Result<Plans, String> {
     for (kind, named) in kinds {
         let items: Vec<MissionItem> = named.iter().map(|(item, _)| *item).collect();
         check::plan(kind, &items, site).map_err(|fault| {
-            let place = fault.item.and_then(|item| named.get(item)).map(|(_, place)| format!("{place}: "));
-            format!("{}{}", place.unwrap_or_default(), fault.reason)
+            let place = fault.item.and_then(|item| named.get(item)).map(|(_, place)| place.clone());
+            PlanFileFault::of_item(fault, place.as_deref())
         })?;
         plans.set(kind, Plan::new(items));
     }

@@ -42,7 +42,7 @@ fn without_home(content: &mut Content) -> Result<(), String> {
     for (item, place) in &mut content.mission {
         let Some(target) = item.jump_target_mut() else { continue };
         if *target < 1.0 {
-            return Err(format!("{place}: item {target} is home: no jump goes there"));
+            return Err(format!("{place}: a jump cannot go to item {target}, which is home"));
         }
         *target -= 1.0;
     }
@@ -52,7 +52,7 @@ fn without_home(content: &mut Content) -> Result<(), String> {
 fn item(index: usize, line: &str) -> Result<MissionItem, String> {
     let fields: Vec<&str> = line.split_whitespace().collect();
     if fields.len() != FIELDS {
-        return Err(format!("{} fields instead of {FIELDS}", fields.len()));
+        return Err(format!("found {} fields, expected {FIELDS}", fields.len()));
     }
     let number = |field: usize| -> Result<f64, String> {
         let text = fields.get(field).copied().unwrap_or_default();
@@ -63,12 +63,12 @@ fn item(index: usize, line: &str) -> Result<MissionItem, String> {
         if (0.0..=most).contains(&value) && value.fract() == 0.0 {
             Ok(value)
         } else {
-            Err(format!("{name} {value} is not a whole number within [0, {most}]"))
+            Err(format!("{name} = {value} must be a whole number from 0 to {most}"))
         }
     };
     let told = whole(0, "number", f64::from(u16::MAX))?;
     if told != index as f64 {
-        return Err(format!("item {told} where {index} was expected"));
+        return Err(format!("found item {told}, expected item {index}"));
     }
     Ok(MissionItem {
         frame: whole(2, "frame", f64::from(u8::MAX))? as u8,

@@ -48,7 +48,20 @@ impl Action {
         }
     }
 
-    /// Word for the pilot.
+    /// What the vehicle is doing, for the pilot.
+    pub fn doing(self) -> &'static str {
+        match self {
+            Self::None => "no action",
+            Self::Warn => "warning only",
+            Self::Position => "switching to position mode",
+            Self::Hold => "holding",
+            Self::Return => "returning",
+            Self::Land => "landing",
+            Self::Terminate => "stopping the rotors",
+        }
+    }
+
+    /// Name, as the documentation has it.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "nothing",

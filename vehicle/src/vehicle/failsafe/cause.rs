@@ -52,6 +52,21 @@ impl Cause {
         }
     }
 
+    /// Words for the pilot once the cause is gone.
+    pub fn cleared(self) -> &'static str {
+        match self {
+            Self::RotorFailure => "all rotors work",
+            Self::PositionLost => "position known",
+            Self::BatteryEmergency => "battery no longer empty",
+            Self::BatteryCritical => "battery no longer critical",
+            Self::BatteryLow => "battery no longer low",
+            Self::Fence => "inside fence",
+            Self::HighWind => "wind below limit",
+            Self::GroundStationLost => "ground station connected",
+            Self::SetPointsLost => "set-points received",
+        }
+    }
+
     /// Whether the flight is about to end by itself, for the system status in HEARTBEAT.
     pub fn is_emergency(self) -> bool {
         matches!(self, Self::RotorFailure | Self::BatteryEmergency)

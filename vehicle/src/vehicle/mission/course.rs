@@ -11,7 +11,7 @@ use super::super::situation::Situation;
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
-use super::leg::{Carry, Leg, LegProgress};
+use super::leg::{Guide, Leg, LegProgress, Turn, is_settling};
 use super::route::Route;
 use super::task::{Task, TaskProgress, Then};
 use crate::plan::Place;
@@ -21,8 +21,8 @@ use crate::plan::step::{Delay, Navigate};
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Course {
     task: Option<Task>,
-    /// Motion that the next leg takes over.
-    carry: Option<Carry>,
+    /// Turn that the next leg takes over.
+    turn: Option<Turn>,
     /// Where the next leg begins, NED, m.
     anchor_m: Vector3<f64>,
     /// Heading of the present step, rad.
@@ -53,24 +53,25 @@ impl Course {
         self.heading_rad
     }
 
-    /// Gives up what is being done, to be begun again; the next leg may take a motion over.
-    pub fn give_up(&mut self, carry: Option<Carry>) {
-        (self.task, self.carry) = (None, carry);
+    /// Gives up what is being done, to be begun again; the next leg may take a turn over.
+    pub fn give_up(&mut self, turn: Option<Turn>) {
+        (self.task, self.turn) = (None, turn);
     }
 
     /// Goes on from where the vehicle is.
     pub fn take_over(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        self.carry = None;
+        self.turn = None;
         self.anchor_m = proposal.steering().present(situation.outputs).position_m;
         self.heading_rad = situation.outputs.attitude_rad.z;
         proposal.hold(situation);
     }
 
-    /// Plans the corner of the present leg again: limits of speed have changed.
-    pub fn replan(&mut self, route: &Route) {
-        if let Some(Task::Leg(leg, _)) = &mut self.task {
-            let again = route.leg(leg.from_m, leg.to_m, None);
-            *leg = leg.with_corner(again.corner());
+    /// Plans the rest of the present leg again: limits of speed have changed. A corner that is being passed is passed as planned.
+    pub fn replan(&mut self, route: &Route, situation: &Situation) {
+        if let Some(Task::Leg(leg, _)) = &mut self.task
+            && let Some(start) = leg.start(situation)
+        {
+            leg.replan(route.corner(&leg.from_m, &start), situation);
         }
     }
 
@@ -113,8 +114,12 @@ impl Course {
                 let z_m = end_m.map_or(least_z_m, |end_m| end_m.z);
                 self.begin_climb(z_m.min(least_z_m), false, situation, proposal)
             }
+            // A leg begins at rest, after a turn or in full motion.
+            _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
+                return TaskProgress::Going;
+            }
             _ => match route.leg_end_m(step, &self.anchor_m) {
-                Some(end_m) => self.begin_leg(step, end_m, route),
+                Some(end_m) => self.begin_leg(step, end_m, route, situation),
                 None => {
                     proposal.hold(situation);
                     Task::Descend(None)
@@ -179,13 +184,19 @@ impl Course {
         if (end_m - self.anchor_m).norm() <= situation.conduct.acceptance_radius_m {
             return TaskProgress::Done(None);
         }
-        self.task = Some(self.begin_leg(step, end_m, route));
+        self.task = Some(self.begin_leg(step, end_m, route, situation));
         TaskProgress::Going
     }
 
-    fn begin_leg(&mut self, step: &Navigate, end_m: Vector3<f64>, route: &Route) -> Task {
-        let from_m = self.anchor_m;
-        let leg = route.leg(from_m, end_m, self.carry.take());
+    fn begin_leg(
+        &mut self,
+        step: &Navigate,
+        end_m: Vector3<f64>,
+        route: &Route,
+        situation: &Situation,
+    ) -> Task {
+        let (from_m, turn) = (self.anchor_m, self.turn.take());
+        let leg = route.leg([from_m, end_m], turn, situation);
         let (then, asked_rad) = match step {
             Navigate::Waypoint(waypoint) => (Then::Wait(waypoint.hold_s), waypoint.heading_rad),
             Navigate::Loiter { heading_rad, .. } => (Then::Stay, *heading_rad),
@@ -249,19 +260,17 @@ impl Course {
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> TaskProgress {
-        let outputs = situation.outputs;
-        let progress = leg.update(&outputs.setpoint, &outputs.position_m, &outputs.velocity_m_s);
-        let yaw_rad = match proposal.steering() {
-            Steering::Goal(goal) => goal.yaw_rad,
-            _ => outputs.setpoint.yaw_rad,
-        };
-        proposal.steer(Steering::Goal(leg.goal(yaw_rad)));
+        let progress = leg.update(situation);
+        match leg.guide() {
+            Guide::Goal(goal) => proposal.go_through(situation, &goal),
+            Guide::Path(flight, after_m) => proposal.fly_along(situation, flight, after_m),
+        }
         self.task = Some(Task::Leg(leg, then));
         match progress {
             LegProgress::Flying => return TaskProgress::Going,
-            LegProgress::Passed(carry) => {
+            LegProgress::Passed(turn) => {
                 self.anchor_m = leg.to_m;
-                return TaskProgress::Done(Some(carry));
+                return TaskProgress::Done(Some(turn));
             }
             LegProgress::Arrived => self.anchor_m = leg.to_m,
         }

@@ -1,38 +1,52 @@
 //! One leg: straight to a place, and around its corner without stopping where the next leg allows.
 //!
 //! ```text
-//!          W   acceptance radius around W
-//!   entry ·─┐
-//!   │       · exit ──► next leg
-//!   │ straight, arrives at the entry with the speed of the corner
+//!  in motion ─► Joining ─┐
+//!                        ▼ passes the entry
+//!  at rest ─► Straight ─► Turning ──► the next leg: Leaving ─► Straight ─► …
+//!                   └─► arrives at rest
 //! ```
 //!
-//! The shaper flies each piece: to the entry, around to the exit, and on. Entry and exit lie within the acceptance radius, the
-//! way between them inside the triangle that they make with W.
+//! Straights and blends are planned in time. Only a leg that begins in some motion, after a pause or another mode, is joined
+//! through the shaper.
 
 use nalgebra::Vector3;
-use quadrotor::PositionReference;
+use quadrotor::{Limits, PositionReference};
 
-use super::path::Corner;
+use super::super::situation::Situation;
+use super::super::trajectory::{Piece, PieceFlight, Straight};
+use super::path::{Corner, Start};
 
-/// Where the next leg takes over.
+/// A corner that is being passed since a time, µs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carry {
-    /// End of the corner, NED, m.
-    pub position_m: Vector3<f64>,
-    /// Velocity there, NED, m/s.
-    pub velocity_m_s: Vector3<f64>,
+pub struct Turn {
+    corner: Corner,
+    start_us: u64,
+}
+
+impl Turn {
+    fn flight(&self) -> PieceFlight {
+        PieceFlight { piece: Piece::Blend(self.corner.blend), start_us: self.start_us }
+    }
+
+    /// Motion at its end.
+    pub fn end(&self) -> PositionReference {
+        self.flight().end()
+    }
 }
 
 /// Part of a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // There is one of it.
 enum Phase {
     /// Around the corner before it.
-    Leaving(Carry),
-    /// Straight.
-    Straight,
+    Leaving(Turn),
+    /// To the straight line, from any motion.
+    Joining,
+    /// Along the line.
+    Straight(PieceFlight),
     /// Around the corner at its end.
-    Turning,
+    Turning(Turn),
 }
 
 /// How a leg goes on.
@@ -43,7 +57,17 @@ pub enum LegProgress {
     /// Its end is reached at rest.
     Arrived,
     /// Its end is passed.
-    Passed(Carry),
+    Passed(Turn),
+}
+
+/// How the vehicle is to be steered along a leg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // There is one of it.
+pub enum Guide {
+    /// Through the shaper, to a place that is passed with a velocity.
+    Goal(PositionReference),
+    /// Along a piece; with the corners of the way after it.
+    Path(PieceFlight, [Vector3<f64>; 2]),
 }
 
 /// A leg.
@@ -59,77 +83,155 @@ pub struct Leg {
     phase: Phase,
 }
 
-/// The nearest that an end at rest is waited for, m, and the farthest; and how slow, m/s.
+/// The nearest that an end at rest is waited for, m, and the farthest; and how slow, m/s. The reference is waited for as the
+/// nearest.
 const REST_M: (f64, f64) = (0.1, 0.5);
 const SLOW_M_S: f64 = 0.5;
-/// Share of a control sample that the switch to the next piece comes ahead: on average it is neither early nor late.
-const AHEAD_S: f64 = 0.025;
+/// A reference slower than this, m/s, rests.
+const RESTS_M_S: f64 = 1e-3;
+/// An entry that was passed this long ago, s, by a reference that does not move as the blend does was missed.
+const MISSED_S: f64 = 0.2;
+
+/// Whether a reference rests.
+pub fn is_at_rest(reference: &PositionReference) -> bool {
+    reference.velocity_m_s.norm() <= RESTS_M_S
+}
+
+/// Whether a reference is about to come to rest: that is waited for.
+pub fn is_settling(reference: &PositionReference) -> bool {
+    !is_at_rest(reference) && reference.velocity_m_s.norm() < SLOW_M_S
+}
 
 impl Leg {
-    /// A leg that takes a motion over, and passes its corner if there is one.
-    pub fn new(
-        from_m: Vector3<f64>,
-        to_m: Vector3<f64>,
+    /// A leg that takes a turn over, and passes its corner if there is one.
+    pub fn after(
+        turn: Turn,
+        [from_m, to_m]: [Vector3<f64>; 2],
         radius_m: f64,
-        carry: Option<Carry>,
         corner: Option<Corner>,
     ) -> Self {
-        let phase = carry.map_or(Phase::Straight, Phase::Leaving);
-        Self { from_m, to_m, radius_m, corner, phase }
+        Self { from_m, to_m, radius_m, corner, phase: Phase::Leaving(turn) }
     }
 
-    /// The same with another corner, if it is not being flown yet.
-    pub fn with_corner(mut self, corner: Option<Corner>) -> Self {
-        if self.phase != Phase::Turning {
-            self.corner = corner;
+    /// A leg that begins with a reference: straight at rest, and joined from any motion.
+    pub fn begin(
+        situation: &Situation,
+        [from_m, to_m]: [Vector3<f64>; 2],
+        radius_m: f64,
+        corner: Option<Corner>,
+    ) -> Self {
+        let mut leg = Self { from_m, to_m, radius_m, corner, phase: Phase::Joining };
+        let reference = &situation.outputs.setpoint;
+        if is_at_rest(reference) {
+            let rest = PositionReference::goal(reference.position_m.into(), reference.yaw_rad);
+            leg.phase = leg.straight(&rest, situation.time_us, situation.limits());
         }
-        self
+        leg
     }
 
-    /// Its corner, if it passes one.
-    pub fn corner(&self) -> Option<Corner> {
-        self.corner
+    /// Where a plan of its corner begins; `None` while that corner is being passed.
+    pub fn start(&self, situation: &Situation) -> Option<Start> {
+        let limits = situation.limits();
+        match self.phase {
+            Phase::Leaving(turn) => Some(Start::settled(&turn.end(), limits, true)),
+            Phase::Joining => Some(Start::settled(&situation.outputs.setpoint, limits, false)),
+            Phase::Straight(flight) => Some(Start::settled(&flight.at(situation.time_us), limits, true)),
+            Phase::Turning(_) => None,
+        }
     }
 
-    /// What the shaper is told.
-    pub fn goal(&self, yaw_rad: f64) -> PositionReference {
-        let (position_m, velocity_m_s) = match (self.phase, &self.corner) {
-            (Phase::Leaving(carry), _) => (carry.position_m, carry.velocity_m_s),
-            (Phase::Straight, Some(corner)) => (corner.entry_m, corner.entry_velocity_m_s),
-            (Phase::Turning, Some(corner)) => (corner.exit_m, corner.exit_velocity_m_s),
-            (_, None) => (self.to_m, Vector3::zeros()),
+    /// Plans again from the present motion, with another corner.
+    pub fn replan(&mut self, corner: Option<Corner>, situation: &Situation) {
+        self.corner = corner;
+        if let Phase::Straight(flight) = self.phase {
+            let now = flight.at(situation.time_us);
+            self.phase = self.straight(&now, situation.time_us, situation.limits());
+        }
+    }
+
+    /// How the vehicle is to be steered.
+    pub fn guide(&self) -> Guide {
+        match self.phase {
+            Phase::Leaving(turn) => Guide::Path(turn.flight(), [self.to_m; 2]),
+            Phase::Joining => Guide::Goal(self.joint()),
+            Phase::Straight(flight) => {
+                let after_m = self.corner.map_or(self.to_m, |corner| corner.after_m);
+                Guide::Path(flight, [self.to_m, after_m])
+            }
+            Phase::Turning(turn) => Guide::Path(turn.flight(), [turn.corner.after_m; 2]),
+        }
+    }
+
+    /// The motion at the end of the straight line.
+    fn joint(&self) -> PositionReference {
+        let (position_m, velocity_m_s) = match &self.corner {
+            Some(Corner { blend, .. }) => (blend.entry_m(), blend.velocity_in_m_s),
+            None => (self.to_m, Vector3::zeros()),
         };
-        PositionReference { velocity_m_s, ..PositionReference::goal(position_m.into(), yaw_rad) }
+        PositionReference { velocity_m_s, ..PositionReference::goal(position_m.into(), 0.0) }
+    }
+
+    /// Along the line from a motion on it; a corner that cannot be passed after that is given up.
+    fn straight(&mut self, from: &PositionReference, start_us: u64, limits: &Limits) -> Phase {
+        let plan = |leg: &Self| {
+            let PositionReference { position_m, velocity_m_s, .. } = leg.joint();
+            Straight::new(from, &position_m, &velocity_m_s, limits)
+        };
+        let straight = plan(self).or_else(|| {
+            self.corner = None;
+            plan(self)
+        });
+        straight.map_or(Phase::Joining, |straight| {
+            Phase::Straight(PieceFlight { piece: Piece::Straight(straight), start_us })
+        })
     }
 
     /// One look: at the reference and at the vehicle.
-    pub fn update(
-        &mut self,
-        reference: &PositionReference,
-        position_m: &Vector3<f64>,
-        velocity_m_s: &Vector3<f64>,
-    ) -> LegProgress {
-        if let Phase::Leaving(carry) = self.phase {
-            if is_past(reference, &carry.position_m, &carry.velocity_m_s) {
-                self.phase = Phase::Straight;
+    pub fn update(&mut self, situation: &Situation) -> LegProgress {
+        let (outputs, time_us) = (situation.outputs, situation.time_us);
+        let distance_m = (outputs.position_m - self.to_m).norm();
+        self.phase = match self.phase {
+            Phase::Leaving(turn) if time_us >= turn.flight().end_us() => {
+                self.straight(&turn.end(), turn.flight().end_us(), situation.limits())
             }
-            return LegProgress::Flying;
-        }
-        let distance_m = (position_m - self.to_m).norm();
-        let Some(corner) = self.corner else {
-            let near_m = self.radius_m.clamp(REST_M.0, REST_M.1);
-            let arrived = distance_m < near_m && velocity_m_s.norm() < SLOW_M_S;
-            return if arrived { LegProgress::Arrived } else { LegProgress::Flying };
+            Phase::Joining => self.joined(&outputs.setpoint, time_us),
+            Phase::Straight(flight) if time_us >= flight.end_us() => match self.corner {
+                Some(corner) => Phase::Turning(Turn { corner, start_us: flight.end_us() }),
+                None => self.phase,
+            },
+            unchanged => unchanged,
         };
-        if self.phase == Phase::Straight && is_past(reference, &corner.entry_m, &corner.entry_velocity_m_s) {
-            self.phase = Phase::Turning;
+        match self.phase {
+            Phase::Turning(turn) => {
+                // The middle of the turn is the nearest that the reference comes to the corner.
+                let through = distance_m <= self.radius_m || time_us >= turn.flight().time_us(0.5);
+                if through { LegProgress::Passed(turn) } else { LegProgress::Flying }
+            }
+            Phase::Joining | Phase::Straight(_) if self.corner.is_none() => {
+                let near_m = self.radius_m.clamp(REST_M.0, REST_M.1);
+                let led_m = (outputs.setpoint.position_m - self.to_m).norm();
+                let near = distance_m < near_m && led_m < REST_M.0;
+                let arrived = near && outputs.velocity_m_s.norm() < SLOW_M_S;
+                if arrived { LegProgress::Arrived } else { LegProgress::Flying }
+            }
+            _ => LegProgress::Flying,
         }
-        let through = self.phase == Phase::Turning
-            && (distance_m <= self.radius_m || is_past(reference, &corner.exit_m, &corner.exit_velocity_m_s));
-        if !through {
-            return LegProgress::Flying;
+    }
+
+    /// A join ends where the reference passes the entry as the blend does.
+    fn joined(&mut self, reference: &PositionReference, time_us: u64) -> Phase {
+        let Some(corner) = self.corner else { return Phase::Joining };
+        if let Some(elapsed_s) = corner.blend.elapsed_s(reference) {
+            let start_us = time_us.saturating_sub((elapsed_s * 1e6) as u64);
+            return Phase::Turning(Turn { corner, start_us });
         }
-        LegProgress::Passed(Carry { position_m: corner.exit_m, velocity_m_s: corner.exit_velocity_m_s })
+        let velocity_m_s = corner.blend.velocity_in_m_s;
+        let past_m = (reference.position_m - corner.blend.entry_m()).dot(&velocity_m_s) / velocity_m_s.norm();
+        let ahead = reference.velocity_m_s.dot(&velocity_m_s) > 0.0;
+        if ahead && past_m > MISSED_S * velocity_m_s.norm() {
+            self.corner = None;
+        }
+        Phase::Joining
     }
 
     /// Signed distance of a position from the leg's line, horizontally, positive to the right, m.
@@ -148,13 +250,4 @@ impl Leg {
         let way = self.to_m - self.from_m;
         (way.xy().norm() > SHORTEST_M).then(|| libm::atan2(way.y, way.x))
     }
-}
-
-/// Whether a reference that moves through a point has passed it, or does so within this sample.
-fn is_past(reference: &PositionReference, point_m: &Vector3<f64>, velocity_m_s: &Vector3<f64>) -> bool {
-    let speed_m_s = velocity_m_s.norm();
-    if speed_m_s == 0.0 {
-        return false;
-    }
-    (point_m - reference.position_m).dot(velocity_m_s) <= AHEAD_S * speed_m_s * speed_m_s
 }

@@ -10,7 +10,7 @@ use super::super::steering::{Steering, SteeringKind};
 use super::actions::Actions;
 use super::course::Course;
 use super::jumps::Jumps;
-use super::leg::{Carry, Leg};
+use super::leg::{Leg, Turn};
 use super::route::Route;
 use super::task::TaskProgress;
 use crate::mode::Mode;
@@ -107,10 +107,11 @@ impl Mission {
         first: Option<usize>,
     ) -> Result<(), Refusal> {
         if !self.program.is_flown() {
-            return Err(Refusal::later("Mission rejected: there is none"));
+            return Err(Refusal::later("Mission rejected: no mission uploaded"));
         }
         check_way(situation, &self.program)
-            .map_err(|fault| Refusal::denied(format!("Mission denied: {fault}")))?;
+            .map_err(|fault| fault.located(situation.identity))
+            .map_err(|reason| Refusal::denied(format!("Mission rejected: {reason}")))?;
         if let Some(first) = first {
             self.set_current(situation, proposal, first, true)?;
         }
@@ -141,7 +142,7 @@ impl Mission {
         if self.progress == Progress::Started && self.program.is_flown() {
             Ok(())
         } else {
-            Err(Refusal::denied("Nothing to continue"))
+            Err(Refusal::denied("No paused mission to continue"))
         }
     }
 
@@ -158,7 +159,7 @@ impl Mission {
     ) -> Result<(), Refusal> {
         let count = self.program.len();
         if index >= count {
-            return Err(Refusal::denied(format!("Mission has no item {index} among {count}")));
+            return Err(Refusal::denied(format!("Mission item {index} does not exist; it has {count}")));
         }
         if reset {
             self.jumps.clear();
@@ -219,7 +220,7 @@ impl Mission {
     /// Other limits of speed hold now.
     pub fn replan(&mut self, situation: &Situation, proposal: &Proposal) {
         let route = Route::new(&self.program, self.current, &self.jumps, situation, proposal);
-        self.course.replan(&route);
+        self.course.replan(&route, situation);
     }
 
     /// One tick in its mode.
@@ -263,8 +264,8 @@ impl Mission {
                     break;
                 }
                 TaskProgress::Again => {}
-                TaskProgress::Done(carry) => {
-                    if !self.finish(&step, carry, situation, proposal) {
+                TaskProgress::Done(turn) => {
+                    if !self.finish(&step, turn, situation, proposal) {
                         return false;
                     }
                 }
@@ -277,12 +278,12 @@ impl Mission {
     fn finish(
         &mut self,
         step: &Navigate,
-        carry: Option<Carry>,
+        turn: Option<Turn>,
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> bool {
         let index = self.current;
-        self.give_up(carry);
+        self.give_up(turn);
         self.reach(index);
         if *step == Navigate::ReturnToLaunch {
             self.complete(situation, proposal);
@@ -295,7 +296,10 @@ impl Mission {
             return self.go_on_from(index + 1, situation, proposal);
         }
         self.current = index + 1;
-        proposal.say(Severity::Info, format!("Mission waits after item {index}"));
+        proposal.say(
+            Severity::Info,
+            format!("Mission paused after item {}", situation.identity.item_number(index)),
+        );
         proposal.enter(Mode::Hold);
         false
     }
@@ -322,16 +326,20 @@ impl Mission {
     /// Turns the vehicle to where it is to look.
     fn turn(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let turned = self.actions.turn();
-        let Steering::Goal(goal) = *proposal.steering() else {
-            proposal.turn_to_region(situation);
-            return;
+        let yaw_rad = match proposal.steering() {
+            Steering::Goal(goal) => goal.yaw_rad,
+            Steering::Path(path) => path.goal().yaw_rad,
+            _ => {
+                proposal.turn_to_region(situation);
+                return;
+            }
         };
         let next_m = self.course.leg().map(|leg| leg.to_m);
         let heading = match (turned, proposal.region()) {
             (Some(turned), _) => turned,
             (None, Some(region)) => {
                 // What is too near to be looked at does not turn the vehicle.
-                region.heading(&situation.outputs.setpoint, next_m).unwrap_or((goal.yaw_rad, 0.0))
+                region.heading(&situation.outputs.setpoint, next_m).unwrap_or((yaw_rad, 0.0))
             }
             (None, None) => (self.course.heading_rad(), 0.0),
         };
@@ -356,8 +364,8 @@ impl Mission {
     }
 
     /// Gives up what is done for the present step and on the way to it.
-    fn give_up(&mut self, carry: Option<Carry>) {
-        self.course.give_up(carry);
+    fn give_up(&mut self, turn: Option<Turn>) {
+        self.course.give_up(turn);
         self.actions.clear();
     }
 

@@ -1,20 +1,20 @@
 //! How fast corners are passed, with a look at the legs behind them.
+//!
+//! The speed of a corner is the largest whose blend comes within the acceptance radius and takes at most half of each leg. Then
+//! the legs between two corners must be long enough to change from the speed of one to that of the next.
 
-use libm::sqrt;
 use nalgebra::Vector3;
-use quadrotor::Limits;
+use quadrotor::{Limits, PositionReference};
 
-/// A corner between two legs.
+use super::super::trajectory::{Blend, change_distance_m, limits_along};
+
+/// A corner that is passed without stopping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Where the first leg is left, NED, m.
-    pub entry_m: Vector3<f64>,
-    /// Velocity there, NED, m/s.
-    pub entry_velocity_m_s: Vector3<f64>,
-    /// Where the second leg begins, NED, m.
-    pub exit_m: Vector3<f64>,
-    /// Velocity there, NED, m/s.
-    pub exit_velocity_m_s: Vector3<f64>,
+    /// The way around it.
+    pub blend: Blend,
+    /// Where the next leg ends, NED, m.
+    pub after_m: Vector3<f64>,
 }
 
 /// A place on the way.
@@ -28,110 +28,169 @@ pub struct Stop {
     pub rests: bool,
 }
 
-/// Share of the acceptance radius that a corner is cut by; the rest is for what the vehicle is off its reference.
-const CUT: f64 = 0.7;
-/// Largest share of a leg that a corner takes.
-const SHARE_OF_LEG: f64 = 0.45;
-/// Share of the horizontal limits that the shaper has on each of two axes.
-const EACH_AXIS: f64 = 0.7;
-/// Share of the acceleration that a change of speed along a leg is counted with; the jerk takes the rest.
-const CHANGE: f64 = 0.5;
-/// A corner that had to be passed slower than this, m/s, is one to stop at.
-const SLOWEST_M_S: f64 = 0.3;
-
-/// Geometry of a corner.
-struct Bend {
-    into: Vector3<f64>,
-    out: Vector3<f64>,
-    cut_m: f64,
-    speed_m_s: f64,
+/// Where the way begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// The place, NED, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity there, NED, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Whether that is along the line to the first place; if not, the shaper joins it.
+    pub on_line: bool,
 }
 
-/// The corner at the first of the places ahead, on a way that begins at `from_m` with a speed; `None` if the vehicle has to stop
-/// there.
-pub fn first_corner(
-    from_m: &Vector3<f64>,
+impl Start {
+    /// Where a motion is, and how fast, as soon as its acceleration has been taken back.
+    pub fn settled(motion: &PositionReference, limits: &Limits, on_line: bool) -> Self {
+        let (v, a) = (motion.velocity_m_s, motion.acceleration_m_s2);
+        let t = a.norm() / limits.jerk_horizontal_m_s3.min(limits.jerk_vertical_m_s3);
+        Self {
+            position_m: motion.position_m + (v + a * (t / 3.0)) * t,
+            velocity_m_s: v + a * (t / 2.0),
+            on_line,
+        }
+    }
+}
+
+/// The nearest that a blend comes to its corner, as a share of the acceptance radius, and how much nearer than the radius at
+/// least, m, as long as that is half of it: the rest is for what the vehicle is off its reference.
+const NEAREST: f64 = 0.9;
+const MARGIN_M: f64 = 0.15;
+/// Largest share of a leg that one of its two corners takes.
+const SHARE_OF_LEG: f64 = 0.5;
+/// Share of a leg that is counted with to change the speed between two corners: the plan of the next leg must not fail by a hair.
+const USED: f64 = 0.98;
+/// Share of the limits of speed that the shaper has for each of two horizontal axes.
+const EACH_AXIS: f64 = 0.7;
+/// A corner that had to be passed slower than this, m/s, is one to stop at.
+const SLOWEST_M_S: f64 = 0.2;
+/// How often a blend that the fence forbids is halved.
+const HALVINGS: usize = 3;
+/// Speeds that are tried from the largest one down.
+const TRIES: usize = 64;
+
+/// A bend between two legs.
+#[derive(Clone, Copy)]
+struct Bend<'a> {
+    corner_m: Vector3<f64>,
+    directions: [Vector3<f64>; 2],
+    after_m: Vector3<f64>,
     speed_m_s: f64,
+    limits: &'a Limits,
+}
+
+impl<'a> Bend<'a> {
+    /// The bend between two legs with its largest speed; `None` if one of them has no length or the fence forbids it.
+    fn new(
+        before: &Vector3<f64>,
+        here: &Stop,
+        after: &Vector3<f64>,
+        limits: &'a Limits,
+        is_free: &impl Fn(&Blend) -> bool,
+    ) -> Option<Self> {
+        let (way_in, way_out) = (here.position_m - before, after - here.position_m);
+        let (into, out) = (way_in.try_normalize(1e-3)?, way_out.try_normalize(1e-3)?);
+        let cap_m_s = limits_along(&into, limits).speed.min(limits_along(&out, limits).speed);
+        let longest_m = SHARE_OF_LEG * way_in.norm().min(way_out.norm());
+        let mut nearest_m = (NEAREST * here.radius_m).min(here.radius_m - MARGIN_M).max(0.5 * here.radius_m);
+        let mut bend = Self {
+            corner_m: here.position_m,
+            directions: [into, out],
+            after_m: *after,
+            speed_m_s: 0.0,
+            limits,
+        };
+        for _ in 0..=HALVINGS {
+            bend.speed_m_s = largest(cap_m_s, |speed| {
+                let blend = bend.at(speed);
+                blend.nearest_m() <= nearest_m && blend.cut_m() <= longest_m
+            })?;
+            if is_free(&bend.blend()) {
+                return Some(bend);
+            }
+            nearest_m /= 2.0;
+        }
+        None
+    }
+
+    /// Its blend at a speed, m/s.
+    fn at(&self, speed_m_s: f64) -> Blend {
+        Blend::new(self.corner_m, self.directions, speed_m_s, self.limits)
+    }
+
+    fn blend(&self) -> Blend {
+        self.at(self.speed_m_s)
+    }
+}
+
+/// The corner at the first of the places ahead, on a way that begins somewhere; `None` if the vehicle has to stop there. The fence
+/// decides which blends are free.
+pub fn first_corner(
+    start: &Start,
     ahead: &[Stop],
     limits: &Limits,
+    is_free: impl Fn(&Blend) -> bool,
 ) -> Option<Corner> {
-    let acceleration = CHANGE * limits.acceleration_horizontal_m_s2.min(limits.acceleration_vertical_m_s2);
-    let reachable = |speed: f64, way_m: f64| sqrt(speed * speed + 2.0 * acceleration * way_m.max(0.0));
     // From the last one back: what is passed must leave room to brake for what comes then.
     let mut next: Option<Bend> = None;
     for index in (0..ahead.len()).rev() {
-        let here = ahead[index];
-        let before = if index == 0 { *from_m } else { ahead[index - 1].position_m };
-        let mut bend = match ahead.get(index + 1) {
-            Some(after) if !here.rests => bend(&before, &here, &after.position_m, limits),
+        let here = &ahead[index];
+        let before = if index == 0 { &start.position_m } else { &ahead[index - 1].position_m };
+        let bend = match ahead.get(index + 1) {
+            Some(after) if !here.rests => Bend::new(before, here, &after.position_m, limits, &is_free),
             _ => None,
         };
-        if let (Some(bend), Some(after)) = (&mut bend, ahead.get(index + 1)) {
-            let way_m = (after.position_m - here.position_m).norm() - bend.cut_m;
-            let (then_m_s, then_cut_m) =
-                next.as_ref().map_or((0.0, 0.0), |next| (next.speed_m_s, next.cut_m));
-            bend.speed_m_s = bend.speed_m_s.min(reachable(then_m_s, way_m - then_cut_m));
-        }
-        next = bend;
+        next = bend.and_then(|bend| braking(bend, next.as_ref()));
     }
-    let mut bend = next?;
-    let place_m = ahead.first()?.position_m;
-    let way_m = (place_m - from_m).norm() - bend.cut_m;
-    bend.speed_m_s = bend.speed_m_s.min(reachable(speed_m_s, way_m));
-    (bend.speed_m_s >= SLOWEST_M_S).then(|| Corner {
-        entry_m: place_m - bend.into * bend.cut_m,
-        entry_velocity_m_s: bend.into * bend.speed_m_s,
-        exit_m: place_m + bend.out * bend.cut_m,
-        exit_velocity_m_s: bend.out * bend.speed_m_s,
-    })
+    let bend = reached(next?, start)?;
+    let blend = bend.blend();
+    (bend.speed_m_s >= SLOWEST_M_S && is_free(&blend)).then_some(Corner { blend, after_m: bend.after_m })
 }
 
-/// The bend between two legs; `None` if one of them has no length.
-fn bend(before: &Vector3<f64>, here: &Stop, after: &Vector3<f64>, limits: &Limits) -> Option<Bend> {
-    let (way_in, way_out) = (here.position_m - before, after - here.position_m);
-    let shortest_m = way_in.norm().min(way_out.norm());
-    let (into, out) = (way_in.try_normalize(1e-3)?, way_out.try_normalize(1e-3)?);
-    let cut_m = (CUT * here.radius_m).min(SHARE_OF_LEG * shortest_m);
-    let fastest = speed_along_m_s(&into, limits).min(speed_along_m_s(&out, limits));
-    let speed_m_s = bend_speed_m_s((out - into).norm(), cut_m, EACH_AXIS * fastest, limits);
-    Some(Bend { into, out, cut_m, speed_m_s })
+/// A bend that leaves room to brake for the next one, or for a stop.
+fn braking<'a>(mut bend: Bend<'a>, next: Option<&Bend>) -> Option<Bend<'a>> {
+    let way = bend.after_m - bend.corner_m;
+    let axis = limits_along(&bend.directions[1], bend.limits);
+    let (then_m_s, then_m) = next.map_or((0.0, 0.0), |next| (next.speed_m_s, next.blend().cut_m()));
+    let room_m = USED * way.norm() - then_m;
+    bend.speed_m_s = largest(bend.speed_m_s, |speed| {
+        speed <= then_m_s || change_distance_m(speed, then_m_s, &axis) + bend.at(speed).cut_m() <= room_m
+    })?;
+    Some(bend)
 }
 
-/// Fastest that a leg in a direction may be flown, m/s.
-fn speed_along_m_s(direction: &Vector3<f64>, limits: &Limits) -> f64 {
-    let horizontal = direction.xy().norm();
-    let vertical = if direction.z < 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s };
-    let by = |share: f64, limit: f64| if share > 1e-9 { limit / share } else { f64::INFINITY };
-    by(horizontal, limits.speed_horizontal_m_s).min(by(direction.z.abs(), vertical))
+/// A bend whose speed can be reached from the start.
+fn reached<'a>(mut bend: Bend<'a>, start: &Start) -> Option<Bend<'a>> {
+    /// What rounding may take, m.
+    const ROUNDING_M: f64 = 1e-6;
+    let into = bend.directions[0];
+    let axis = limits_along(&into, bend.limits);
+    let room_m = (bend.corner_m - start.position_m).norm() - ROUNDING_M;
+    let from_m_s = start.velocity_m_s.dot(&into).max(0.0);
+    let fastest_m_s = if start.on_line { bend.speed_m_s } else { bend.speed_m_s.min(EACH_AXIS * axis.speed) };
+    bend.speed_m_s = largest(fastest_m_s, |speed| {
+        change_distance_m(from_m_s, speed, &axis) + bend.at(speed).cut_m() <= room_m
+    })?;
+    Some(bend)
 }
 
-/// The largest speed v at which the velocity can be turned within the cut,
-///
-/// ```text
-/// v T(v |Δu|) ≤ 2 cut,   T(Δv) = Δv/a + a/j,  or 2 √(Δv/j) if the acceleration a is not reached
-/// ```
-///
-/// with Δu the change of direction, and a and j the limits that the shaper has on each axis.
-fn bend_speed_m_s(change: f64, cut_m: f64, fastest_m_s: f64, limits: &Limits) -> f64 {
-    let a = EACH_AXIS * limits.acceleration_horizontal_m_s2.min(limits.acceleration_vertical_m_s2);
-    let j = EACH_AXIS * limits.jerk_horizontal_m_s3.min(limits.jerk_vertical_m_s3);
-    let time_s = |change_m_s: f64| {
-        if change_m_s >= a * a / j { change_m_s / a + a / j } else { 2.0 * sqrt(change_m_s / j) }
-    };
-    let fits = |speed: f64| speed * time_s(speed * change) <= 2.0 * cut_m;
-    if fits(fastest_m_s) {
-        return fastest_m_s;
+/// The largest of the speeds up to one, m/s, at which something holds. What holds need not hold at all lower speeds.
+fn largest(fastest_m_s: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
+    let tried = |index: usize| fastest_m_s * index as f64 / TRIES as f64;
+    let found = (1..=TRIES).rev().find(|index| holds(tried(*index)))?;
+    if found == TRIES {
+        return Some(fastest_m_s);
     }
-    let (mut low, mut high) = (0.0, fastest_m_s);
-    for _ in 0..40 {
+    let (mut low, mut high) = (tried(found), tried(found + 1));
+    for _ in 0..30 {
         let middle = (low + high) / 2.0;
-        if fits(middle) {
+        if holds(middle) {
             low = middle;
         } else {
             high = middle;
         }
     }
-    low
+    Some(low)
 }
 
 #[cfg(test)]
@@ -139,35 +198,51 @@ mod tests {
     use nalgebra::Vector3;
     use quadrotor::Limits;
 
-    use super::{Stop, first_corner};
+    use super::{Start, Stop, first_corner};
 
     fn stop(x: f64, y: f64, rests: bool) -> Stop {
         Stop { position_m: Vector3::new(x, y, -10.0), radius_m: 2.0, rests }
     }
 
+    fn start() -> Start {
+        Start { position_m: Vector3::new(0.0, 0.0, -10.0), velocity_m_s: Vector3::zeros(), on_line: true }
+    }
+
     fn speed(ahead: &[Stop]) -> f64 {
-        let start = Vector3::new(0.0, 0.0, -10.0);
-        first_corner(&start, 0.0, ahead, &Limits::default())
-            .map_or(0.0, |corner| corner.entry_velocity_m_s.norm())
+        first_corner(&start(), ahead, &Limits::default(), |_| true)
+            .map_or(0.0, |corner| corner.blend.velocity_in_m_s.norm())
     }
 
     #[test]
     fn sharper_corners_and_shorter_legs_are_passed_slower() {
         let straight = speed(&[stop(50.0, 0.0, false), stop(100.0, 0.0, true)]);
-        let slight = speed(&[stop(50.0, 0.0, false), stop(100.0, 10.0, true)]);
+        let slight = speed(&[stop(50.0, 0.0, false), stop(100.0, 20.0, true)]);
         let right = speed(&[stop(50.0, 0.0, false), stop(50.0, 50.0, true)]);
         let sharp = speed(&[stop(50.0, 0.0, false), stop(10.0, 10.0, true)]);
-        assert!(straight > slight && slight > right && right > sharp, "{straight} {slight} {right} {sharp}");
-        assert!(right > 1.0, "{right}");
+        assert!(straight >= slight && slight > right && right > sharp, "{straight} {slight} {right} {sharp}");
+        assert!((straight - Limits::default().speed_horizontal_m_s).abs() < 1e-9, "{straight}");
+        assert!(right > 4.0, "{right}");
         // There and back again is slower still, and a place to rest at is a stop.
         let back = speed(&[stop(50.0, 0.0, false), stop(0.0, 0.0, true)]);
-        assert!(sharp > back && back > 0.0, "{sharp} {back}");
+        assert!(sharp > back && back > 1.0, "{sharp} {back}");
         assert_eq!(speed(&[stop(50.0, 0.0, true), stop(100.0, 0.0, true)]), 0.0);
         // Braking for the end begins before the corner.
         let short = speed(&[stop(50.0, 0.0, false), stop(54.0, 0.0, true)]);
-        assert!(short < 2.6 && short > 1.0, "{short}");
+        assert!(short < 4.0 && short > 2.0, "{short}");
         // And so it does for a corner behind the corner.
         let chain = speed(&[stop(50.0, 0.0, false), stop(55.0, 0.0, false), stop(55.0, 50.0, true)]);
-        assert!(chain < straight / 1.5, "{chain}");
+        assert!(chain < 0.75 * straight, "{chain}");
+    }
+
+    #[test]
+    fn what_the_fence_forbids_is_passed_nearer_or_stopped_at() {
+        let ahead = [stop(50.0, 0.0, false), stop(50.0, 50.0, true)];
+        let within = |most_m: f64| {
+            let is_free = |blend: &super::Blend| blend.nearest_m() < most_m;
+            first_corner(&start(), &ahead, &Limits::default(), is_free)
+        };
+        let corner = within(1.0).expect("passed");
+        assert!(corner.blend.nearest_m() < 1.0 && corner.blend.velocity_in_m_s.norm() > 2.0, "{corner:?}");
+        assert_eq!(within(0.01), None);
     }
 }

@@ -5,10 +5,12 @@ use quadrotor::Limits;
 
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
+use super::super::trajectory::Blend;
 use super::circle::Circle;
 use super::jumps::Jumps;
-use super::leg::{Carry, Leg};
-use super::path::{Stop, first_corner};
+use super::leg::{Leg, Turn, is_at_rest};
+use super::path::{Corner, Start, Stop, first_corner};
+use crate::fence::Fence;
 use crate::plan::step::{Navigate, Turns, Waypoint};
 use crate::plan::{Place, Program};
 
@@ -16,7 +18,7 @@ use crate::plan::{Place, Program};
 const AHEAD: usize = 6;
 
 /// The steps from the present one on, seen from now.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Route<'a> {
     program: &'a Program,
     /// Number of the present step.
@@ -27,6 +29,7 @@ pub struct Route<'a> {
     /// z of home, m.
     home_z_m: f64,
     limits: &'a Limits,
+    fence: Option<Fence<'a>>,
 }
 
 impl<'a> Route<'a> {
@@ -45,6 +48,7 @@ impl<'a> Route<'a> {
             radius_m: situation.conduct.acceptance_radius_m,
             home_z_m: proposal.home().position_m.z,
             limits: situation.limits(),
+            fence: situation.fence(),
         }
     }
 
@@ -73,15 +77,42 @@ impl<'a> Route<'a> {
     }
 
     /// A leg of the present step from place to place, NED, m, with its corner.
-    pub fn leg(&self, from_m: Vector3<f64>, to_m: Vector3<f64>, carry: Option<Carry>) -> Leg {
-        let stops = self.stops(&from_m);
-        let (start_m, velocity_m_s) = match carry {
-            Some(carry) => (carry.position_m, carry.velocity_m_s),
-            None => (from_m, Vector3::zeros()),
+    /// Without a turn to take over it begins with the present reference.
+    pub fn leg(&self, way_m: [Vector3<f64>; 2], turn: Option<Turn>, situation: &Situation) -> Leg {
+        let [from_m, _] = way_m;
+        let radius_m = self.stops(&from_m).first().map_or(self.radius_m, |stop| stop.radius_m);
+        let reference = &situation.outputs.setpoint;
+        match turn {
+            Some(turn) => {
+                let start = Start::settled(&turn.end(), self.limits, true);
+                Leg::after(turn, way_m, radius_m, self.corner(&from_m, &start))
+            }
+            None => {
+                let start = Start::settled(reference, self.limits, is_at_rest(reference));
+                Leg::begin(situation, way_m, radius_m, self.corner(&from_m, &start))
+            }
+        }
+    }
+
+    /// The corner at the end of the present step's leg, on a way that goes on from a start; `None` for a stop.
+    pub fn corner(&self, from_m: &Vector3<f64>, start: &Start) -> Option<Corner> {
+        first_corner(start, &self.stops(from_m), self.limits, |blend| self.is_free(blend))
+    }
+
+    /// Whether the fence leaves room for a blend, and for a margin on its inner side.
+    fn is_free(&self, blend: &Blend) -> bool {
+        const PARTS: usize = 8;
+        const MARGIN_M: f64 = 0.5;
+        let Some(fence) = &self.fence else { return true };
+        let point = |part: usize| {
+            let place_m = blend.at(blend.duration_s * part as f64 / PARTS as f64).position_m;
+            let inward = (place_m - blend.corner_m).try_normalize(1e-9).unwrap_or_default();
+            place_m + inward * MARGIN_M
         };
-        let corner = first_corner(&start_m, velocity_m_s.norm(), &stops, self.limits);
-        let radius_m = stops.first().map_or(self.radius_m, |stop| stop.radius_m);
-        Leg::new(from_m, to_m, radius_m, carry, corner)
+        (0..PARTS).all(|part| {
+            let (from_m, to_m) = (point(part), point(part + 1));
+            fence.breach(&to_m).or_else(|| fence.breach_between(&from_m, &to_m)).is_none()
+        })
     }
 
     /// The places from the present step on, as far as the vehicle goes from one to the next.

@@ -1,7 +1,7 @@
 //! What is being done for a step.
 
 use super::circle::Circle;
-use super::leg::{Carry, Leg};
+use super::leg::{Leg, Turn};
 
 /// A task.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +46,6 @@ pub enum TaskProgress {
     Staying,
     /// With the same step.
     Again,
-    /// The step is done; the next leg may take a motion over.
-    Done(Option<Carry>),
+    /// The step is done; the next leg may take a turn over.
+    Done(Option<Turn>),
 }

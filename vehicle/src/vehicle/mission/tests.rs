@@ -179,8 +179,8 @@ fn it_starts_with_what_there_is() {
         let mut proposal = Proposal::new(&situation);
         mission.start(&situation, &mut proposal, first).unwrap_err().to_string()
     };
-    assert_eq!(refusal(&mut mission(&[slow_down()]), None), "Mission rejected: there is none");
+    assert_eq!(refusal(&mut mission(&[slow_down()]), None), "Mission rejected: no mission uploaded");
     let mut one = mission(&[waypoint([20.0, 0.0, -10.0])]);
-    assert_eq!(refusal(&mut one, Some(1)), "Mission has no item 1 among 1");
+    assert_eq!(refusal(&mut one, Some(1)), "Mission item 1 does not exist; it has 1");
     assert_eq!(one, mission(&[waypoint([20.0, 0.0, -10.0])]), "nothing has changed");
 }

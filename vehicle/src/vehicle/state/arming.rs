@@ -22,23 +22,27 @@ impl Vehicle {
         let attitude_rad = situation.outputs.attitude_rad;
         let [lean, pitch] = [attitude_rad.x.abs(), attitude_rad.y.abs()];
         if lean.max(pitch) > LARGEST_LEAN_RAD {
-            obstacles.push(format!("leaning by {:.0} deg", lean.max(pitch).to_degrees()));
+            obstacles.push(format!("tilted by {:.0} deg", lean.max(pitch).to_degrees()));
         }
         let (remaining, needed) = (situation.battery_remaining, situation.conduct.battery_to_arm);
         if remaining < needed {
-            obstacles.push(format!("battery at {:.0} %, needs {:.0} %", 100.0 * remaining, 100.0 * needed));
+            obstacles.push(format!(
+                "battery at {:.0} %, required {:.0} %",
+                100.0 * remaining,
+                100.0 * needed
+            ));
         }
         obstacles.extend(self.perception.obstacles());
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
             Mode::Land | Mode::Return => {
-                obstacles.push(format!("not in {} mode", identity.mode_name(situation.mode)));
+                obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
                 let fault = check_way(&situation, self.machines.mission.program()).err();
-                obstacles.extend(fault.map(|fault| format!("mission: {fault}")));
+                obstacles.extend(fault.map(|fault| format!("mission: {}", fault.located(identity))));
             }
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 obstacles.push("no set-points".to_owned());

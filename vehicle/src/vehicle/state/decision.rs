@@ -136,11 +136,9 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Changes the closed loop, what is fixed in flight only while it is disarmed on the ground.
     fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        if self.closed_loop.configure(configuration, self.stands())? {
-            self.perception.look_again(self.closed_loop.simulation());
-        }
+        self.closed_loop.configure(configuration)?;
+        self.perception.look_again(self.closed_loop.simulation());
         Ok(())
     }
 }

@@ -36,7 +36,8 @@ impl Vehicle {
             }
         }
         if let Err(fault) = check_way(&self.situation(), self.machines.mission.program()) {
-            self.decided.say(Severity::Warning, format!("Mission cannot be flown: {fault}"));
+            self.decided
+                .say(Severity::Warning, format!("Mission cannot be flown: {}", fault.located(site.identity)));
         }
         Ok(())
     }

@@ -33,8 +33,8 @@ impl Vehicle {
     }
 
     /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,
-    /// and its own. Tunable parameters of the closed loop change in flight, without a bump; the others only while the vehicle
-    /// is disarmed on the ground.
+    /// and its own. All of them change in flight, too: the closed loop designs its controllers beside the running ones, and
+    /// hands over to them at its next sample.
     ///
     /// # Errors
     /// [`ConfigurationError`]; nothing has changed then.
@@ -73,10 +73,10 @@ impl Vehicle {
     /// [`Refusal::Denied`] while the parameter SYS_FAILURE_EN forbids it, [`Refusal::Unsupported`] when it would change nothing.
     pub fn inject(&mut self, fault: &Fault) -> Result<(), Refusal> {
         if !self.conduct().failure_injection {
-            return Err(Refusal::denied("Failure injection denied: SYS_FAILURE_EN is 0"));
+            return Err(Refusal::denied("Failure injection rejected: set SYS_FAILURE_EN to 1"));
         }
         if self.navigation().is_none() && fault.needs_readings() {
-            let reason = "ideal sensors only fall silent: start with --sensors realistic";
+            let reason = "ideal sensors can only fail as off; start with --sensors realistic";
             return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
         self.consult(|parts, _, proposal| parts.injection.inject(fault, proposal));
@@ -107,10 +107,13 @@ impl Vehicle {
             Mode::Takeoff => return self.take_off(None),
             Mode::Mission => return self.start_mission(None),
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
-                return Err(Refusal::later("Offboard rejected: no recent set-point"));
+                return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
             Mode::Land | Mode::Return if situation.armed && !flying => {
-                return Err(Refusal::later(format!("{} rejected: on the ground", identity.mode_name(mode))));
+                return Err(Refusal::later(format!(
+                    "{} mode rejected: on the ground",
+                    identity.mode_name(mode)
+                )));
             }
             _ => {}
         }

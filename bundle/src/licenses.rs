@@ -1,0 +1,111 @@
+//! Our licences, and the notices of what is linked into the library.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::Path;
+
+use crate::failure::Failure;
+use xtask::cargo::{Package, cargo, metadata_with_dependencies};
+use xtask::files;
+use xtask::process;
+use xtask::workspace::Workspace;
+
+/// Files of the folder `licenses/`, by name.
+pub fn texts(workspace: &Workspace) -> Result<Vec<(&'static str, String)>, Failure> {
+    let linked = linked_packages(workspace)?;
+    Ok(vec![
+        ("license.txt", OVERVIEW.to_owned()),
+        ("LICENSE-MIT.txt", files::read_text(&workspace.root().join("LICENSE-MIT"))?),
+        ("LICENSE-APACHE.txt", files::read_text(&workspace.root().join("LICENSE-APACHE"))?),
+        ("third-party.txt", notices(&linked)?),
+    ])
+}
+
+const OVERVIEW: &str = "\
+This FMU is licensed under either of
+
+  * the Apache License, Version 2.0 (LICENSE-APACHE.txt)
+  * the MIT licence (LICENSE-MIT.txt)
+
+at your option. It contains the libraries that third-party.txt lists with their notices.
+";
+
+/// Packages linked into the library: neither build tools nor procedural macros.
+fn linked_packages(workspace: &Workspace) -> Result<Vec<Package>, Failure> {
+    let tree = process::output(
+        cargo()
+            .args(["tree", "--package", "fmu", "--edges", "normal,no-proc-macro"])
+            .args(["--prefix", "none", "--format", "{p}"])
+            .current_dir(workspace.root()),
+        "cargo tree",
+    )?;
+    let names = names_and_versions(&String::from_utf8_lossy(&tree));
+    let mut packages = metadata_with_dependencies()?.packages;
+    packages.retain(|package| {
+        package.source.is_some() && names.contains(&(package.name.clone(), package.version.clone()))
+    });
+    packages.sort_by(|one, other| (&one.name, &one.version).cmp(&(&other.name, &other.version)));
+    Ok(packages)
+}
+
+/// Reads lines like `nalgebra v0.35.0 (*)`.
+fn names_and_versions(tree: &str) -> BTreeSet<(String, String)> {
+    tree.lines()
+        .filter_map(|line| {
+            let mut words = line.split_whitespace();
+            let (name, version) = (words.next()?, words.next()?);
+            Some((name.to_owned(), version.strip_prefix('v')?.to_owned()))
+        })
+        .collect()
+}
+
+/// The list of packages, and each licence text once with the packages that carry it.
+fn notices(packages: &[Package]) -> Result<String, Failure> {
+    let mut page = "Libraries that are linked into this FMU.\n\n".to_owned();
+    let mut carriers: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for package in packages {
+        let license = package.license.as_deref().unwrap_or("see its text");
+        let home = package.repository.as_deref().unwrap_or("");
+        // Writing to a String cannot fail.
+        let _ = writeln!(page, "{} {}: {license} {home}", package.name, package.version);
+        for text in license_texts(package)? {
+            carriers.entry(text).or_default().push(&package.name);
+        }
+    }
+    page.push_str("Rust standard library: MIT OR Apache-2.0 https://github.com/rust-lang/rust\n");
+    for (text, names) in carriers {
+        let _ = write!(page, "\n{}\n{}\n\n{}\n", "=".repeat(80), names.join(", "), text.trim_end());
+    }
+    Ok(page)
+}
+
+/// The licence files that a package brings along, with uniform line ends.
+fn license_texts(package: &Package) -> Result<Vec<String>, Failure> {
+    let Some(folder) = package.manifest_path.parent() else { return Ok(Vec::new()) };
+    files::names_in(folder)?
+        .iter()
+        .filter(|path| path.is_file() && is_license(path))
+        .map(|path| {
+            let text = files::read(path)?;
+            Ok(String::from_utf8_lossy(&text).replace("\r\n", "\n"))
+        })
+        .collect()
+}
+
+fn is_license(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_uppercase();
+    ["LICENSE", "LICENCE", "COPYING", "NOTICE", "COPYRIGHT"].iter().any(|start| name.starts_with(start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names_and_versions;
+
+    #[test]
+    fn reads_names_and_versions_of_a_tree() {
+        let tree = "fmu v0.1.0 (/somewhere/fmu)\nlibm v0.2.16\nnalgebra v0.35.0 (*)\n\n";
+        let expected = [("fmu", "0.1.0"), ("libm", "0.2.16"), ("nalgebra", "0.35.0")];
+        let expected = expected.map(|(name, version)| (name.to_owned(), version.to_owned()));
+        assert_eq!(names_and_versions(tree), expected.into());
+    }
+}

@@ -1,0 +1,86 @@
+//! Writes what is generated from the FMU's model. `cargo xtask` builds and runs it; a program of its own, so that `cargo xtask`
+//! starts without waiting for the engine to compile.
+//!
+//! ```text
+//! modelDescription.xml        fmi::description of fmu::ClosedLoop
+//! model.png                   fmu/assets
+//! binaries/linux64/….so       platform, merge
+//! documentation/index.html    documentation ◄─ variables, picture
+//! licenses/                   licenses
+//! ```
+
+mod archive;
+mod chart;
+mod documentation;
+mod failure;
+mod fmu_file;
+mod licenses;
+mod merge;
+mod picture;
+mod platform;
+mod variables;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+use xtask::files;
+use xtask::workspace::Workspace;
+
+/// Writes the FMU and its description. Run it through `cargo xtask fmu` and `cargo xtask model-description`.
+#[derive(Parser)]
+#[command(name = "bundle", disable_help_subcommand = true)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Writes target/fmu/LmpcQuadrotor.fmu.
+    Fmu {
+        /// The built library.
+        #[arg(long, value_name = "FILE")]
+        library: PathBuf,
+        /// An FMU of the same sources, built on another platform, whose binaries are added; may be repeated.
+        #[arg(long, value_name = "OTHER.fmu")]
+        merge: Vec<PathBuf>,
+    },
+    /// Rewrites modelDescription.xml at the root of the repository.
+    ModelDescription,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse().task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: &Task) -> Result<(), Failure> {
+    let workspace = Workspace::find()?;
+    match task {
+        Task::Fmu { library, merge } => fmu_file::write(&workspace, library, merge),
+        Task::ModelDescription => {
+            let path = workspace.model_description();
+            files::write(&path, fmi::description::model_description::<fmu::ClosedLoop>().as_bytes())?;
+            println!("{}", workspace.shown(&path));
+            Ok(())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

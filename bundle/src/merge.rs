@@ -1,0 +1,113 @@
+//! Several platforms in one FMU.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use zip::ZipArchive;
+
+use crate::archive::{Archive, MODEL_DESCRIPTION};
+use crate::failure::Failure;
+use xtask::files;
+
+/// Takes over the binaries of an FMU that was built from the same sources on another platform. Platforms
+/// that the archive already has stay as they are.
+pub fn binaries(archive: &mut Archive, other: &Path, description: &str) -> Result<(), Failure> {
+    let file = files::open(other)?;
+    let unreadable = |source| Failure::Archive { path: other.to_owned(), source };
+    let mut read = ZipArchive::new(BufReader::new(file)).map_err(unreadable)?;
+
+    let same = entry(&mut read, MODEL_DESCRIPTION).map_err(unreadable)? == description.as_bytes();
+    if !same {
+        return Err(Failure::OtherModel { path: other.to_owned() });
+    }
+    let names = read.file_names().map(|name| name.map(|name| name.into_owned()));
+    let names = names.collect::<Result<Vec<String>, _>>().map_err(unreadable)?;
+    let further: Vec<&String> = names
+        .iter()
+        .filter(|name| platform_folder(name).is_some_and(|folder| !archive.has_folder(&folder)))
+        .collect();
+    if further.is_empty() {
+        return Err(Failure::NothingToMerge { path: other.to_owned() });
+    }
+    for name in further {
+        archive.add_binary(name, entry(&mut read, name).map_err(unreadable)?);
+    }
+    Ok(())
+}
+
+fn entry(archive: &mut ZipArchive<BufReader<File>>, name: &str) -> Result<Vec<u8>, zip::result::ZipError> {
+    let mut bytes = Vec::new();
+    archive.by_name(name)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// `binaries/<platform>` of a file that lies there, and of nothing else: the name of an entry comes from
+/// outside.
+fn platform_folder(name: &str) -> Option<String> {
+    let mut parts = name.split('/');
+    let (Some("binaries"), Some(platform), Some(file), None) =
+        (parts.next(), parts.next(), parts.next(), parts.next())
+    else {
+        return None;
+    };
+    let plain = |part: &str| !part.is_empty() && part != ".." && !part.contains('\\');
+    (plain(platform) && plain(file)).then(|| format!("binaries/{platform}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::{Archive, binaries, platform_folder};
+    use crate::failure::Failure;
+    use xtask::files;
+
+    const DESCRIPTION: &str = "<fmiModelDescription/>";
+
+    /// An FMU of this description with one binary, in a file of its own.
+    fn fmu(name: &str, description: &str, binary: &str) -> PathBuf {
+        let mut archive = Archive::default();
+        archive.add("modelDescription.xml", description.into());
+        archive.add("documentation/index.html", b"other".to_vec());
+        archive.add_binary(binary, b"library".to_vec());
+        let path = std::env::temp_dir().join(format!("xtask-merge-{}-{name}.fmu", std::process::id()));
+        files::write(&path, &archive.into_bytes().expect("writes to memory")).expect("writes to a file");
+        path
+    }
+
+    fn merged(name: &str, description: &str, binary: &str) -> Result<Archive, Failure> {
+        let path = fmu(name, description, binary);
+        let mut archive = Archive::default();
+        archive.add_binary("binaries/linux64/LmpcQuadrotor.so", b"ours".to_vec());
+        let result = binaries(&mut archive, &path, DESCRIPTION);
+        std::fs::remove_file(&path).expect("removes its own file");
+        result.map(|()| archive)
+    }
+
+    #[test]
+    fn takes_over_a_further_platform_and_nothing_else() {
+        let archive = merged("further", DESCRIPTION, "binaries/win64/LmpcQuadrotor.dll").expect("merges");
+        assert!(archive.has_folder("binaries/linux64"));
+        assert!(archive.has_folder("binaries/win64"));
+        assert!(!archive.has_folder("documentation"));
+    }
+
+    #[test]
+    fn refuses_another_model_and_a_platform_that_is_there() {
+        let other = merged("model", "<other/>", "binaries/win64/LmpcQuadrotor.dll");
+        assert!(matches!(other, Err(Failure::OtherModel { .. })));
+        let same = merged("platform", DESCRIPTION, "binaries/linux64/LmpcQuadrotor.so");
+        assert!(matches!(same, Err(Failure::NothingToMerge { .. })));
+    }
+
+    #[test]
+    fn entries_outside_of_a_platform_folder_are_left_out() {
+        assert_eq!(platform_folder("binaries/win64/a.dll").as_deref(), Some("binaries/win64"));
+        for name in
+            ["binaries/a.dll", "binaries/../a.dll", "binaries//a", "resources/win64/a", "binaries/a/b/c"]
+        {
+            assert_eq!(platform_folder(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Time-optimal motion of some axes from state to state under limits of speed, acceleration and jerk.
+//!
+//! The profiles are Ruckig's (Berscheid and Kröger 2021). This file keeps the result as plain data.
+
+use rsruckig::prelude::{
+    ControlInterface, DataArrayOrVec, InputParameter, Ruckig, Synchronization, ThrowErrorHandler, Trajectory,
+};
+
+use crate::guidance::motion_profile::{Motion, MotionProfile};
+
+/// Limits of the motion along one axis, in SI units of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisLimits {
+    /// Largest speed.
+    pub speed: f64,
+    /// Largest acceleration.
+    pub acceleration: f64,
+    /// Largest jerk.
+    pub jerk: f64,
+}
+
+impl MotionProfile {
+    /// The fastest motion from a state to a position that is passed with a velocity; it goes on with that velocity. `None` if the
+    /// solver finds none, as for limits that are not positive.
+    pub fn fastest(from: &Motion, position: f64, velocity: f64, limits: &AxisLimits) -> Option<Self> {
+        let [profile] = StateToState {
+            interface: ControlInterface::Position,
+            from: [*from],
+            target_position: [position],
+            target_velocity: [velocity],
+            max_velocity: [limits.speed],
+            min_velocity: [-limits.speed],
+            max_acceleration: [limits.acceleration],
+            max_jerk: [limits.jerk],
+        }
+        .solve()?;
+        Some(profile)
+    }
+}
+
+/// A state-to-state problem for `DOF` axes that arrive together.
+pub(crate) struct StateToState<const DOF: usize> {
+    /// Whether they arrive at positions with velocities, or only at velocities.
+    pub interface: ControlInterface,
+    /// Where they start.
+    pub from: [Motion; DOF],
+    /// Where they arrive; ignored if they arrive only at velocities.
+    pub target_position: [f64; DOF],
+    /// How fast they arrive.
+    pub target_velocity: [f64; DOF],
+    /// Limits.
+    pub max_velocity: [f64; DOF],
+    /// Negative.
+    pub min_velocity: [f64; DOF],
+    pub max_acceleration: [f64; DOF],
+    pub max_jerk: [f64; DOF],
+}
+
+impl<const DOF: usize> StateToState<DOF> {
+    /// The fastest profiles that arrive together; `None` if the solver finds none.
+    pub fn solve(&self) -> Option<[MotionProfile; DOF]> {
+        let mut input = InputParameter::<DOF>::new(None);
+        input.synchronization = Synchronization::Time;
+        input.control_interface = self.interface;
+        input.current_position = stack(self.from.map(|motion| motion.position));
+        input.current_velocity = stack(self.from.map(|motion| motion.velocity));
+        input.current_acceleration = stack(self.from.map(|motion| motion.acceleration));
+        input.target_position = stack(self.target_position);
+        input.target_velocity = stack(self.target_velocity);
+        input.max_velocity = stack(self.max_velocity);
+        input.min_velocity = Some(stack(self.min_velocity));
+        input.max_acceleration = stack(self.max_acceleration);
+        input.max_jerk = stack(self.max_jerk);
+
+        let mut trajectory = Trajectory::<DOF>::new(None);
+        // The cycle time matters only for discrete durations, which are not asked for.
+        let mut ruckig = Ruckig::<DOF, ThrowErrorHandler>::new(None, 0.01);
+        ruckig.calculate(&input, &mut trajectory).ok()?;
+        let profiles = trajectory.profiles.first()?;
+        Some(core::array::from_fn(|axis| {
+            let profile = &profiles[axis];
+            let (mut start_s, mut pieces) = (0.0, None);
+            let brake = &profile.brake;
+            let parts = (0..2).map(|i| (brake.t[i], brake.p[i], brake.v[i], brake.a[i], brake.j[i])).chain(
+                (0..7).map(|i| (profile.t[i], profile.p[i], profile.v[i], profile.a[i], profile.j[i])),
+            );
+            for (duration_s, position, velocity, acceleration, jerk) in parts {
+                if duration_s > 0.0 {
+                    add(&mut pieces, start_s, Motion { position, velocity, acceleration, jerk });
+                    start_s += duration_s;
+                }
+            }
+            let [position, velocity, acceleration] = [profile.p[7], profile.v[7], profile.a[7]];
+            let last = Motion { position, velocity, acceleration, jerk: 0.0 };
+            add(&mut pieces, start_s, last);
+            pieces.unwrap_or_else(|| MotionProfile::constant(last))
+        }))
+    }
+}
+
+fn add(pieces: &mut Option<MotionProfile>, start_s: f64, motion: Motion) {
+    match pieces {
+        Some(profile) => profile.push(start_s, motion),
+        None => *pieces = Some(MotionProfile::constant(motion)),
+    }
+}
+
+fn stack<const DOF: usize>(values: [f64; DOF]) -> DataArrayOrVec<f64, DOF> {
+    DataArrayOrVec::Stack(values)
+}

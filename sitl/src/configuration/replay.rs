@@ -1,0 +1,155 @@
+//! `--replay FILE` goes with hardly any other flag.
+
+use super::Arguments;
+use crate::failure::Failure;
+
+/// Refuses what would be ignored: a replay flies the settings and messages of the record, as fast as possible.
+///
+/// # Errors
+/// [`Failure::Value`] that names the first such setting.
+pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
+    // Without `..`: whoever adds a setting decides whether it goes with a replay.
+    let Arguments {
+        config: _,
+        link,
+        instance,
+        system_id,
+        vehicles,
+        ports,
+        formation,
+        clocks,
+        autopilot,
+        home,
+        speed,
+        lockstep,
+        lockstep_period,
+        lockstep_timeout,
+        wind,
+        gusts,
+        sensors,
+        noise,
+        kalman,
+        seed,
+        set,
+        fault,
+        parameters,
+        list_parameters,
+        mission,
+        autostart,
+        record,
+        record_size,
+        replay: _,
+        hil,
+        hil_mount,
+        tlog,
+        log_dir,
+        log_start,
+        log_size,
+        log_count,
+        ftp_root,
+        ftp_write,
+        signing_key,
+        ready_file,
+        duration,
+        log: _,
+    } = arguments;
+    let given = [
+        ("link", link.is_some()),
+        ("instance", instance.is_some()),
+        ("system-id", system_id.is_some()),
+        ("vehicles", vehicles.is_some()),
+        ("ports", ports.is_some()),
+        ("formation", formation.is_some()),
+        ("clocks", clocks.is_some()),
+        ("autopilot", autopilot.is_some()),
+        ("home", home.is_some()),
+        ("speed", speed.is_some()),
+        ("lockstep", lockstep.is_some()),
+        ("lockstep-period", lockstep_period.is_some()),
+        ("lockstep-timeout", lockstep_timeout.is_some()),
+        ("wind", wind.is_some()),
+        ("gusts", gusts.is_some()),
+        ("sensors", sensors.is_some()),
+        ("noise", noise.is_some()),
+        ("kalman", kalman.is_some()),
+        ("seed", seed.is_some()),
+        ("set", set.is_some()),
+        ("fault", fault.is_some()),
+        ("parameters", parameters.is_some()),
+        ("list-parameters", list_parameters.is_some()),
+        ("mission", mission.is_some()),
+        ("autostart", autostart.is_some()),
+        ("record", record.is_some()),
+        ("record-size", record_size.is_some()),
+        ("hil", hil.is_some()),
+        ("hil-mount", hil_mount.is_some()),
+        ("tlog", tlog.is_some()),
+        ("log-dir", log_dir.is_some()),
+        ("log-start", log_start.is_some()),
+        ("log-size", log_size.is_some()),
+        ("log-count", log_count.is_some()),
+        ("ftp-root", ftp_root.is_some()),
+        ("ftp-write", ftp_write.is_some()),
+        ("signing-key", signing_key.is_some()),
+        ("ready-file", ready_file.is_some()),
+        ("duration", duration.is_some()),
+    ];
+    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    let variable = name.replace('-', "_").to_uppercase();
+    let reason = format!(
+        "cannot be used with --replay, which flies the settings of the record; remove the flag, `{name}` in the configuration \
+         file, or LMPC_SITL_{variable}"
+    );
+    Err(Failure::Value { name: format!("--{name}"), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use super::{Arguments, check_replay};
+
+    /// Values that some flags take; the others take `1`.
+    const VALUES: &[(&str, &str)] = &[
+        ("link", "udpin:0"),
+        ("ports", "own"),
+        ("formation", "line"),
+        ("clocks", "shared"),
+        ("autopilot", "px4"),
+        ("home", "0,0,0"),
+        ("sensors", "ideal"),
+        ("noise", "rtk-gps"),
+        ("kalman", "true"),
+        ("set", "AF_MASS=1"),
+        ("fault", "1:gps=off"),
+        ("hil-mount", "x"),
+        ("log-start", "arm"),
+        ("ftp-write", "true"),
+        ("wind", "3"),
+        ("list-parameters", "json"),
+        ("log", "warn"),
+        ("autostart", "true"),
+        ("lockstep", "always"),
+    ];
+
+    #[test]
+    fn every_flag_but_three_is_refused_by_its_name() {
+        let command = Arguments::command();
+        let flags = command.get_arguments().filter_map(|argument| argument.get_long());
+        let mut refused = 0;
+        for flag in flags.filter(|flag| !matches!(*flag, "replay" | "help" | "version")) {
+            let value = VALUES.iter().find(|(name, _)| *name == flag).map_or("1", |(_, value)| value);
+            let line = ["lmpc-sitl", "--replay=a.lmpc", &format!("--{flag}={value}")].map(str::to_owned);
+            let arguments = Arguments::try_parse_from(line).unwrap_or_else(|error| panic!("{flag}: {error}"));
+            let result = check_replay(&arguments).map_err(|failure| failure.to_string());
+            if matches!(flag, "config" | "log") {
+                assert_eq!(result, Ok(()), "{flag}");
+            } else {
+                let text = result.expect_err(flag);
+                assert!(text.starts_with(&format!("--{flag}: cannot be used with --replay")), "{text}");
+                refused += 1;
+            }
+        }
+        assert!(refused >= 34, "{refused}");
+    }
+}

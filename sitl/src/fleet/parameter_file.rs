@@ -1,0 +1,90 @@
+//! The file that a vehicle's parameters are kept in.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use vehicle::parameters::FileFormat;
+
+use crate::failure::Failure;
+use crate::files::{FileLock, Notice, Readers, Upkeep, WRITE_PERIOD, replace};
+
+/// Keeps changed parameters: at once, or as soon as the disk lets.
+#[derive(Debug)]
+pub struct ParameterFile {
+    path: PathBuf,
+    upkeep: Upkeep,
+    /// What the file should hold and does not.
+    unsaved: Option<String>,
+    tried: Option<Instant>,
+    _lock: Option<FileLock>,
+}
+
+impl ParameterFile {
+    /// Of a path, for this process alone.
+    ///
+    /// # Errors
+    /// As [`FileLock::claim`].
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let lock = FileLock::claim(path)?;
+        let upkeep = Upkeep::new("Parameters", path);
+        Ok(Self { path: path.to_owned(), upkeep, unsaved: None, tried: None, _lock: lock })
+    }
+
+    /// The form in which it is written.
+    pub fn format(&self) -> FileFormat {
+        FileFormat::of(&self.path)
+    }
+
+    /// Saves what has changed, or tries again what could not be saved, each second. Returns what to announce.
+    pub fn save(&mut self, changed: Option<String>, now: Instant) -> Option<Notice> {
+        self.unsaved = changed.or(self.unsaved.take());
+        let text = self.unsaved.as_ref()?;
+        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
+        if early && self.upkeep.is_failing() {
+            return None;
+        }
+        self.tried = Some(now);
+        let result = replace(&self.path, text.as_bytes(), Readers::All);
+        if result.is_ok() {
+            self.unsaved = None;
+        }
+        self.upkeep.judge(result)
+    }
+
+    /// Tries a last time. Returns what is missing from the file, if anything is.
+    pub fn finish(&mut self) -> Option<String> {
+        self.tried = None;
+        let _told_below = self.save(None, Instant::now());
+        self.unsaved.as_ref().map(|_| self.upkeep.lacks("lacks the latest changes of parameters"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::ParameterFile;
+
+    #[test]
+    fn what_cannot_be_saved_is_saved_later_and_the_last_change_counts() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = place.path().join("gone");
+        std::fs::create_dir(&folder).expect("a folder");
+        let path = folder.join("a.params");
+        let mut file = ParameterFile::open(&path).expect("free");
+        let start = Instant::now();
+        let after = |ms| start + Duration::from_millis(ms);
+        assert_eq!(file.save(Some("one".to_owned()), after(0)), None);
+        std::fs::remove_dir_all(&folder).expect("removed");
+        let (_, text) = file.save(Some("two".to_owned()), after(10)).expect("news");
+        assert!(text.starts_with("Parameters not written: ") && text.len() <= 50, "{text}");
+        assert_eq!(file.save(Some("three".to_owned()), after(20)), None);
+        let lacking = file.finish().expect("not saved");
+        assert!(lacking.contains("a.params lacks the latest changes"), "{lacking}");
+        std::fs::create_dir(&folder).expect("a folder");
+        assert_eq!(file.save(None, after(30)), None, "too early");
+        let news = file.save(None, after(5_000)).map(|(_, text)| text);
+        assert_eq!(news.as_deref(), Some("Parameters written again"));
+        assert_eq!((std::fs::read(&path).expect("there"), file.finish()), (b"three".to_vec(), None));
+    }
+}

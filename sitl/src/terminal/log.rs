@@ -1,0 +1,66 @@
+//! The log on the standard error stream.
+
+use std::fmt;
+use std::io::{Write, stderr};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::fmt::format::Writer;
+use tracing_subscriber::fmt::time::{FormatTime, SystemTime};
+use tracing_subscriber::layer::SubscriberExt;
+use tracing_subscriber::util::SubscriberInitExt;
+
+use super::screen::{has_colours, has_live_line};
+
+/// Simulation time of what happens now, µs. The log belongs to the process, and so does this.
+static SIMULATION_TIME_US: AtomicU64 = AtomicU64::new(0);
+
+/// What is logged from now on happens at this simulation time, µs.
+pub fn set_simulation_time(time_us: u64) {
+    SIMULATION_TIME_US.store(time_us, Ordering::Relaxed);
+}
+
+/// Logs what passes the filter to the standard error stream. A log that is set up already stays.
+pub fn start_log(filter: Targets) {
+    let live_line = has_live_line();
+    let lines = tracing_subscriber::fmt::layer()
+        .with_timer(Stamp)
+        .with_target(false)
+        .with_ansi(has_colours())
+        .with_writer(move || LogLines { live_line });
+    let _kept = tracing_subscriber::registry().with(filter).with(lines).try_init();
+}
+
+/// Wall clock and simulation time.
+#[derive(Clone, Copy, Debug)]
+struct Stamp;
+
+impl FormatTime for Stamp {
+    fn format_time(&self, writer: &mut Writer<'_>) -> fmt::Result {
+        SystemTime.format_time(writer)?;
+        let time_us = SIMULATION_TIME_US.load(Ordering::Relaxed);
+        write!(writer, " {:9.3}s", time_us as f64 / 1e6)
+    }
+}
+
+/// A writer of log lines that does not mix them with the status line.
+#[derive(Clone, Copy, Debug)]
+struct LogLines {
+    live_line: bool,
+}
+
+impl Write for LogLines {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        // Whoever has closed it does not want it: the flight goes on.
+        if self.live_line {
+            let _gone = stderr().write_all(b"\r\x1b[K");
+        }
+        let _gone = stderr().write_all(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let _gone = stderr().flush();
+        Ok(())
+    }
+}
