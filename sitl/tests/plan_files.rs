@@ -98,7 +98,7 @@ fn errors_name_the_file_the_place_the_value_and_its_range() {
             replaced(PLAN, "[47.398, 8.545]", "[47.398, 190]"),
             "fence polygon 1: NAV_FENCE_POLYGON_VERTEX_EXCLUSION (5002): longitude = 190",
         ),
-        ("a.plan", "{".to_owned(), "no .plan: EOF"),
+        ("a.plan", "{".to_owned(), "not a valid .plan file: EOF"),
         (
             "a.txt",
             replaced(TEXT, "47.398", "147.398"),

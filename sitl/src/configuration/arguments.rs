@@ -96,7 +96,7 @@ pub struct Arguments {
     /// With the values at the start, as a table or as JSON. [default: table]
     #[arg(
         long, env = "LMPC_SITL_LIST_PARAMETERS", value_name = "table|json", num_args = 0..=1,
-        default_missing_value = "table", help_heading = VEHICLE
+        default_missing_value = "table", help_heading = VEHICLE, hide_possible_values = true
     )]
     pub list_parameters: Option<ListFormat>,
 
@@ -116,7 +116,7 @@ pub struct Arguments {
     /// another mode takes over.
     #[arg(
         long, env = "LMPC_SITL_AUTOSTART", value_name = "true|false", num_args = 0..=1,
-        default_missing_value = "true", help_heading = VEHICLE
+        default_missing_value = "true", help_heading = VEHICLE, hide_possible_values = true
     )]
     pub autostart: Option<bool>,
 
@@ -152,7 +152,7 @@ pub struct Arguments {
     /// set-points, `always` from the start. [default: off; `streaming` without a value]
     #[arg(
         long, env = "LMPC_SITL_LOCKSTEP", value_name = "PHASE", num_args = 0..=1,
-        default_missing_value = "streaming", help_heading = SIMULATION
+        default_missing_value = "streaming", help_heading = SIMULATION, hide_possible_values = true
     )]
     pub lockstep: Option<LockstepPhase>,
 
