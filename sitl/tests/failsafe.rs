@@ -104,7 +104,7 @@ const ENDS: [(&str, &str); 5] = [
 
 #[test]
 fn the_documentation_draws_what_the_parameters_can_choose() {
-    let page = include_str!("../docs/failsafes.md");
+    let page = include_str!("../../book/src/vehicle/failsafes.md");
     let (_, rest) = page.split_once("```mermaid").expect("a diagram");
     let (diagram, _) = rest.split_once("```").expect("its end");
     let mut drawn: Vec<&str> =

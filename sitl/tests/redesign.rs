@@ -135,7 +135,7 @@ fn part<'a>(page: &'a str, mark: &str) -> &'a str {
 /// The page names each parameter that changes by a hand-over, and each that waits.
 #[test]
 fn the_documentation_lists_what_is_handed_over_and_what_waits() {
-    let page = include_str!("../docs/parameters-in-flight.md");
+    let page = include_str!("../../book/src/vehicle/parameters-in-flight.md");
     for (mark, mutability) in [("structural", Mutability::Structural), ("start", Mutability::Start)] {
         let named = PARAMETERS.iter().filter(|parameter| parameter.mutability == mutability);
         let rows = named.map(|parameter| format!("| `{}` | {} |\n", parameter.name, parameter.description));

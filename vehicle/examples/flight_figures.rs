@@ -175,7 +175,7 @@ fn main() -> Outcome<()> {
 mod tests {
     use super::{Rotors, hover, lose};
 
-    /// As `sitl/docs/failsafes.md` has it.
+    /// As `book/src/vehicle/failsafes.md` has it.
     #[test]
     fn a_lost_rotor_drifts_as_documented() {
         let drift_m = |rotor, speed_m_s| lose(rotor, 20.0, speed_m_s).expect("it lands").drift_m;

@@ -1,5 +1,6 @@
 //! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
+mod book;
 mod demo;
 mod fmu;
 mod library;
@@ -56,6 +57,8 @@ enum Task {
         #[arg(long, value_name = "MODEL.toml")]
         gain: Option<PathBuf>,
     },
+    /// Builds the book into target/book; a warning is an error.
+    Book,
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
@@ -81,6 +84,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain } => paper::run(&workspace, &progress, gain.as_deref()),
+        Task::Book => book::build(&workspace, &progress),
         Task::Test => test::run_all(&workspace, &progress),
     }
 }

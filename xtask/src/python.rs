@@ -46,13 +46,33 @@ const LAYERS: [Layer; 2] = [
     },
 ];
 
-/// What the environment is for; each includes the one before it.
+/// The book has an environment of its own, which takes seconds.
+const BOOK_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing the book's Python packages (first time; downloads about 15 MB)",
+    lists: &[Pinned { file: "book.txt", complete: true }],
+    made_from: "made-from.txt",
+}];
+
+/// What an environment is for.
 #[derive(Clone, Copy)]
 pub enum Packages {
     /// The demo's flights and plots.
     Demo,
     /// Also the tests' oracles and clients.
     Tests,
+    /// The book.
+    Book,
+}
+
+impl Packages {
+    /// Name of the folder of the environment, all layers that it can have, and how many of them are needed.
+    fn environment(self) -> (&'static str, &'static [Layer], usize) {
+        match self {
+            Self::Demo => ("venv", &LAYERS, 1),
+            Self::Tests => ("venv", &LAYERS, 2),
+            Self::Book => ("venv-book", &BOOK_LAYERS, 1),
+        }
+    }
 }
 
 /// A Python of this machine that is new enough and can create environments.
@@ -105,7 +125,7 @@ impl Python {
     }
 }
 
-/// The environment in target/venv with all that `packages` need. It is created anew when the interpreter or a list that it was made
+/// The environment with all that `packages` need. It is created anew when the interpreter or a list that it was made
 /// from has changed; missing packages are added.
 pub fn environment(
     workspace: &Workspace,
@@ -114,30 +134,28 @@ pub fn environment(
     packages: Packages,
 ) -> Result<Python, Failure> {
     let sources = workspace.python_sources();
-    let layers = match packages {
-        Packages::Demo => &LAYERS[..1],
-        Packages::Tests => &LAYERS[..],
-    };
+    let (name, layers, needed) = packages.environment();
     let mut wanted = Vec::new();
     let mut text = format!("{} {}\n", interpreter.program, interpreter.version);
-    for layer in &LAYERS {
+    for layer in layers {
         for list in layer.lists {
             text.push_str(&files::read_text(&sources.join(list.file))?);
         }
         wanted.push(text.clone());
     }
-    let folder = workspace.python_environment();
+    let folder = workspace.target(name);
     let python = Python { folder: folder.clone() };
     let found: Vec<Option<String>> =
-        LAYERS.iter().map(|layer| std::fs::read_to_string(folder.join(layer.made_from)).ok()).collect();
+        layers.iter().map(|layer| std::fs::read_to_string(folder.join(layer.made_from)).ok()).collect();
     let mut installed = up_to_date(&found, &wanted);
     if installed > 0 && !python.works() {
         installed = 0;
     }
     if installed == 0 {
-        progress.timed("Creating the Python environment in target/venv", || create(interpreter, &folder))?;
+        let what = format!("Creating the Python environment in target/{name}");
+        progress.timed(&what, || create(interpreter, &folder))?;
     }
-    for (layer, made_from) in layers.iter().zip(&wanted).skip(installed) {
+    for (layer, made_from) in layers.iter().zip(&wanted).take(needed).skip(installed) {
         progress
             .timed(layer.what, || layer.lists.iter().try_for_each(|list| python.install(list, &sources)))?;
         // Last: an environment that was interrupted is not taken for a finished one.

@@ -72,9 +72,14 @@ impl Workspace {
         self.target.join("debug").join("examples")
     }
 
-    /// The Python environment.
-    pub fn python_environment(&self) -> PathBuf {
-        self.target.join("venv")
+    /// A file or folder below the target folder.
+    pub fn target(&self, name: &str) -> PathBuf {
+        self.target.join(name)
+    }
+
+    /// Sources of the book.
+    pub fn book(&self) -> PathBuf {
+        self.root.join("book")
     }
 
     /// Report of the Python tests.

@@ -1,0 +1,75 @@
+"""Writes the tables of variables and parameters into their pages while MkDocs builds the book.
+
+The variables come from modelDescription.xml.
+The parameters come from the JSON that `lmpc-sitl --list-parameters=json` prints, in the file named by LMPC_BOOK_PARAMETERS.
+"""
+
+import json
+import os
+from pathlib import Path
+from xml.etree import ElementTree
+
+from mkdocs.exceptions import PluginError
+
+ROOT = Path(__file__).resolve().parent.parent
+FMU_VARIABLES = "<!-- fmu-variables -->"
+VEHICLE_PARAMETERS = "<!-- vehicle-parameters -->"
+HEADINGS = {
+    "input": "Inputs",
+    "output": "Outputs",
+    "local": "Local variables",
+    "parameter": "Parameters",
+    "calculatedParameter": "Calculated parameters",
+}
+
+
+def on_page_markdown(markdown: str, **_) -> str:
+    if FMU_VARIABLES in markdown:
+        return markdown.replace(FMU_VARIABLES, fmu_variables())
+    if VEHICLE_PARAMETERS in markdown:
+        return markdown.replace(VEHICLE_PARAMETERS, vehicle_parameters())
+    return markdown
+
+
+def fmu_variables() -> str:
+    description = ElementTree.parse(ROOT / "modelDescription.xml").getroot()
+    units = {kind.get("name"): kind[0].get("unit", "") for kind in description.find("TypeDefinitions")}
+    rows = {causality: [] for causality in HEADINGS}
+    for variable in description.find("ModelVariables"):
+        if variable.get("causality") in rows:
+            rows[variable.get("causality")].append(variable)
+    lines = []
+    for causality, variables in rows.items():
+        if not variables:
+            continue
+        lines += ["", f"## {HEADINGS[causality]}", "", "| name | default | range | unit | meaning |", "| --- | --- | --- | --- | --- |"]
+        for variable in variables:
+            value = variable[0]
+            bounds = f"{value.get('min')} to {value.get('max')}" if value.get("min") else ""
+            unit = value.get("unit") or units.get(value.get("declaredType"), "")
+            tunable = "; tunable" if causality == "parameter" and variable.get("variability") == "tunable" else ""
+            lines.append(row(f"`{variable.get('name')}`", value.get("start", ""), bounds, unit, variable.get("description", "") + tunable))
+    return "\n".join(lines)
+
+
+def vehicle_parameters() -> str:
+    path = os.environ.get("LMPC_BOOK_PARAMETERS")
+    if path is None:
+        raise PluginError("LMPC_BOOK_PARAMETERS must name the output of `lmpc-sitl --list-parameters=json`; `cargo xtask book` sets it")
+    lines = ["| name | dotted name | default | range | unit | meaning |", "| --- | --- | --- | --- | --- | --- |"]
+    for parameter in json.loads(Path(path).read_text(encoding="utf-8")):
+        lines.append(row(*(parameter_cell(parameter, key) for key in ("name", "dotted_name", "value", "range", "unit", "description"))))
+    return "\n".join(lines)
+
+
+def parameter_cell(parameter: dict, key: str) -> str:
+    value = parameter.get(key)
+    if key in ("name", "dotted_name"):
+        return f"`{value}`" if value else ""
+    if key == "range":
+        return f"{parameter['min']:g} to {parameter['max']:g}" if "min" in parameter else ""
+    return f"{value:g}" if isinstance(value, float) else str(value if value is not None else "")
+
+
+def row(*cells: str) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
