@@ -41,9 +41,9 @@
 //! use quadrotor::{Configuration, Inputs, Simulation};
 //!
 //! # if !cfg!(feature = "shaper") { return Ok(()); }
-//! let inputs = Inputs::default(); // armed, with that goal
+//! let inputs = Inputs::default(); // armed, with a goal 5 m north, 5 m east, 10 m up
 //! let mut flight = Simulation::new(&Configuration::default(), &inputs)?;
-//! flight.advance_to(15_000_000, &inputs)?;
+//! flight.advance_to(15_000_000, &inputs)?; // µs
 //! let goal = inputs.reference.position_m;
 //! assert!((flight.outputs().position_m - goal).norm() < 0.01);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -114,7 +114,11 @@ fn a_record_with_changes_of_structure_replays_bit_for_bit() {
     assert!(before > 3.0 && after > 3.0, "{before} and {after} m/s");
     let flown = recording.bench.autopilot.vehicle().simulation().configuration();
     assert_eq!((flown.controllers.attitude.sample_time_us, flown.airframe.mass_kg as f32), (7_000, 0.6));
-    assert!(recording.bench.texts().iter().all(|text| !text.contains("; allowed") && !text.contains("cannot")), "{:?}", recording.bench.texts());
+    assert!(
+        recording.bench.texts().iter().all(|text| !text.contains("; allowed") && !text.contains("cannot")),
+        "{:?}",
+        recording.bench.texts()
+    );
     let record = recording.finish();
     record.assert_same();
     // The instant of a change belongs to the flight.

@@ -169,7 +169,7 @@ pub struct Arguments {
     pub lockstep_timeout: Option<f64>,
 
     /// End after this much simulated time
-    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", value_parser = number(0.0, 1e9), allow_hyphen_values = true, help_heading = SIMULATION)]
+    #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", value_parser = number(0.0, 1e9), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
     pub duration: Option<f64>,
 
     /// Seed of everything random [default: 1]
@@ -187,7 +187,7 @@ pub struct Arguments {
     /// Standard deviation of gusts, 0 to 10 m/s
     ///
     /// Dryden's spectrum. Gusts push through the same drag as --wind. [default: 0]
-    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", value_parser = number(0.0, 10.0), allow_hyphen_values = true, help_heading = SIMULATION)]
+    #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", value_parser = number(0.0, 10.0), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
     pub gusts: Option<f64>,
 
     /// Sensors: ideal or realistic [default: ideal]
