@@ -42,13 +42,14 @@ def fmu_variables() -> str:
     for causality, variables in rows.items():
         if not variables:
             continue
-        lines += ["", f"## {HEADINGS[causality]}", "", "| name | default | range | unit | meaning |", "| --- | --- | --- | --- | --- |"]
+        lines += ["", f"## {HEADINGS[causality]}", "", "| name | default | allowed | meaning |", "| --- | --- | --- | --- |"]
         for variable in variables:
             value = variable[0]
             bounds = f"{value.get('min')} to {value.get('max')}" if value.get("min") else ""
             unit = value.get("unit") or units.get(value.get("declaredType"), "")
             tunable = "; tunable" if causality == "parameter" and variable.get("variability") == "tunable" else ""
-            lines.append(row(f"`{variable.get('name')}`", value.get("start", ""), bounds, unit, variable.get("description", "") + tunable))
+            allowed = f"{bounds} {unit}".strip()
+            lines.append(row(f"`{variable.get('name')}`", value.get("start", ""), allowed, variable.get("description", "") + tunable))
     return "\n".join(lines)
 
 
@@ -56,18 +57,26 @@ def vehicle_parameters() -> str:
     path = os.environ.get("LMPC_BOOK_PARAMETERS")
     if path is None:
         raise PluginError("LMPC_BOOK_PARAMETERS must name the output of `lmpc-sitl --list-parameters=json`; `cargo xtask book` sets it")
-    lines = ["| name | dotted name | default | range | unit | meaning |", "| --- | --- | --- | --- | --- | --- |"]
+    groups = {}
     for parameter in json.loads(Path(path).read_text(encoding="utf-8")):
-        lines.append(row(*(parameter_cell(parameter, key) for key in ("name", "dotted_name", "value", "range", "unit", "description"))))
+        groups.setdefault(parameter["group"], []).append(parameter)
+    lines = []
+    for group, parameters in groups.items():
+        lines += ["", f"## {group}", "", "| name | default | allowed | meaning |", "| --- | --- | --- | --- |"]
+        lines += [row(names(parameter), *(parameter_cell(parameter, key) for key in ("value", "range", "description")))
+                  for parameter in parameters]
     return "\n".join(lines)
+
+
+def names(parameter: dict) -> str:
+    dotted = parameter.get("dotted_name")
+    return f"`{parameter['name']}`" + (f"<br>`{dotted}`" if dotted else "")
 
 
 def parameter_cell(parameter: dict, key: str) -> str:
     value = parameter.get(key)
-    if key in ("name", "dotted_name"):
-        return f"`{value}`" if value else ""
     if key == "range":
-        return f"{parameter['min']:g} to {parameter['max']:g}" if "min" in parameter else ""
+        return f"{parameter['min']:g} to {parameter['max']:g} {parameter['unit']}".strip()
     return f"{value:g}" if isinstance(value, float) else str(value if value is not None else "")
 
 
