@@ -112,7 +112,7 @@ def test_a_disk_that_is_full_for_a_while_costs_nothing(program, launch, tmp_path
     said(client, *AGAIN)
     still_flies(client)
     output = ended(process, 0)
-    assert "MIS_TAKEOFF_ALT 3.5" in files["--parameters"].read_text()
+    assert "MIS_TAKEOFF_ALT\t3.5" in files["--parameters"].read_text()
     digest = re.search("digest ([0-9a-f]{16})", output)[1]
     replayed = run(program, "--replay", files["--record"])
     assert replayed.returncode == 0 and f"{digest}: the same flight\n" in replayed.stdout, replayed
@@ -179,7 +179,7 @@ def test_a_disk_without_space_and_one_that_becomes_read_only(program, launch, sm
     still_flies(client)
     subprocess.run([*within, "umount", folder], check=True)
     said(client, "Parameters written again")
-    assert "MIS_TAKEOFF_ALT 4.5" in (inside / "a.params").read_text()
+    assert "MIS_TAKEOFF_ALT\t4.5" in (inside / "a.params").read_text()
     kept = folder.parent / "kept.lmpc"
     content = (inside / "flight.lmpc").read_bytes()
     kept.write_bytes(content)
@@ -203,7 +203,7 @@ def test_too_many_open_files_end_no_flight(program, launch, tmp_path):
     resource.prlimit(process.pid, resource.RLIMIT_NOFILE, limits)
     said(client, "Parameters written again")
     ended(process, 0)
-    assert "MIS_TAKEOFF_ALT 3.5" in parameters.read_text()
+    assert "MIS_TAKEOFF_ALT\t3.5" in parameters.read_text()
 
 
 def test_a_device_that_takes_nothing(program, tmp_path):
@@ -229,7 +229,7 @@ def test_after_kill_9_all_but_a_second_replays(program, launch, tmp_path):
     process.kill()
     process.wait()
     replayed = run(program, "--replay", record)
-    line = re.search(r"replayed ([\d.]+) s, digest \w+: the same flight up to ([\d.]+) s; the record ends early", replayed.stdout)
+    line = re.search(r"replayed ([\d.]+) s, flight digest \w+: the same flight up to ([\d.]+) s; the record ends early", replayed.stdout)
     assert replayed.returncode == 0 and line, replayed
     assert "the record was cut in line" in replayed.stderr
     assert heard_s - 1.5 < float(line[2]) <= float(line[1]) < heard_s + 1.5, (heard_s, line[0])

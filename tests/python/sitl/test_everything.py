@@ -77,7 +77,7 @@ def test_two_flights_with_all_of_it_replay_bit_for_bit(program, start, connect, 
     assert len(flights) == 2 and flights[0][2] != flights[1][2], vehicle.output()
     replayed = run(program, "--replay", record)
     assert replayed.returncode == 0, replayed.stderr
-    assert re.findall(r"system (\d): replayed ([\d.]+) s, digest ([0-9a-f]{16})", replayed.stdout) == flights
+    assert re.findall(r"system (\d): replayed ([\d.]+) s, flight digest ([0-9a-f]{16})", replayed.stdout) == flights
 
     # All of it was there.
     said = {}

@@ -46,7 +46,7 @@ def test_wrong_folders_are_refused(program, tmp_path):
     for arguments, code, words in (
         (("--ftp-root", tmp_path / "none"), 4, "cannot read"),
         (("--ftp-write",), 2, "--ftp-root"),
-        (("--log-size", "0"), 2, "--log-size: `0` is no number within 0.1 to 4000"),
+        (("--log-size", "0"), 2, "--log-size: `0` is not a number from 0.1 to 4000"),
         (("--log-dir", "/proc/none"), 4, "cannot write"),
     ):
         result = run(program, "--link", "udpin:0", *arguments)

@@ -187,7 +187,7 @@ def test_a_record_holds_all_vehicles(start, connect, program, tmp_path):
     assert result.returncode == 0 and digests_of(result.stdout) == digests, result
     # A parameter is kept by the vehicle that it was set on.
     assert not (tmp_path / "fleet-1.params").exists() and not parameters.exists()
-    assert "MIS_TAKEOFF_ALT 3.5\n" in (tmp_path / "fleet-3.params").read_text()
+    assert "MIS_TAKEOFF_ALT\t3.5\t" in (tmp_path / "fleet-3.params").read_text()
 
     # What one vehicle was told is left out: its flight is another, and is named.
     lines = records.entries(record)

@@ -142,7 +142,7 @@ def test_a_waiting_vehicle_ends_when_it_is_told_to(start):
 
 @pytest.mark.parametrize("arguments, reason", [
     (("--lockstep-period", "0.02"), "--lockstep-period: needs --lockstep"),
-    (("--lockstep", "sometimes"), "streaming, always"),
+    (("--lockstep", "sometimes"), "streaming or always"),
     (("--lockstep", "--lockstep-period", "0"), "0.001 to 1"),
     (("--lockstep", "--hil", "4560"), "--lockstep: does not go with --hil"),
 ])

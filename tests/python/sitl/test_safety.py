@@ -40,8 +40,8 @@ MEANINGLESS = {
     "crossing sides": ([(INSIDE, 4, *SQUARE[corner]) for corner in (0, 2, 1, 3)], INVALID, "sides 0 and 2 cross"),
     "no area": ([(INSIDE, 3, 5, 5)] * 3, INVALID, "sides 0 and 1 cross"),
     "corners of another kind": ([(INSIDE, 3, 0, 0), (OUTSIDE, 3, 9, 0), (INSIDE, 3, 9, 9)], INVALID, "item 2: this polygon"),
-    "a corner missing": ([(INSIDE, 4, *corner) for corner in SQUARE[:3]], INVALID, "needs 4 corners"),
-    "no number of corners": ([(INSIDE, math.nan, 0, 0)], INVALID_RADIUS, "NaN corners"),
+    "a corner missing": ([(INSIDE, 4, *corner) for corner in SQUARE[:3]], INVALID, "needs 4 consecutive corners"),
+    "no number of corners": ([(INSIDE, math.nan, 0, 0)], INVALID_RADIUS, "corner count = NaN"),
     "radius 0": ([(CIRCLE_IN, 0, 0, 0)], INVALID_RADIUS, "radius = 0 m; allowed"),
     "radius below 0": ([(CIRCLE_OUT, -1, 0, 0)], INVALID_RADIUS, "radius = -1 m; allowed"),
     "radius NaN": ([(CIRCLE_IN, math.nan, 0, 0)], INVALID_RADIUS, "radius = NaN m; allowed"),
@@ -53,9 +53,9 @@ MEANINGLESS = {
 def told(client, words):
     """Waits for words in the lines for the pilot, whose pieces are joined."""
     whole = ""
-    while words not in whole:
-        # Pieces are filled up with spaces.
-        whole = " ".join(f"{whole}{client.wait('STATUSTEXT', timeout=3).text}".split())
+    # Pieces are filled up with spaces.
+    while words not in " ".join(whole.split()):
+        whole += client.wait("STATUSTEXT", timeout=3).text
 
 
 def test_zones_without_meaning_are_refused_and_the_fence_stays(start, connect):

@@ -21,7 +21,8 @@ def all_parameters(client):
 
 def test_parameters(start, connect, tmp_path):
     file = tmp_path / "vehicle.parm"
-    client = connect(start("--parameters", str(file)))
+    vehicle = start("--parameters", str(file))
+    client = connect(vehicle)
     every = all_parameters(client)
     assert len(every) > 70
     assert [value.param_index for _, value in sorted(every.items())] == list(range(len(every)))
@@ -56,6 +57,7 @@ def test_parameters(start, connect, tmp_path):
     # MAVProxy's own reader takes the file.
     kept = mavparm.MAVParmDict()
     assert kept.load(str(file)) and kept["POS_R_PITCH"] == 900.0
+    assert vehicle.stop() == 0
     again = connect(start("--parameters", str(file)))
     assert again.parameter("POS_R_PITCH").param_value == 900.0
     assert abs(again.parameter("FRAME_MASS").param_value - 0.8) < 1e-6

@@ -124,4 +124,4 @@ def test_help_fits_the_terminal(program, columns, flag):
     lines = watch(program, flag, columns=columns).splitlines()
     assert all(len(line) <= max(columns, 60) for line in lines), [line for line in lines if len(line) > columns]
     if flag == "-h" and columns >= 80:
-        assert len(lines) <= 45, len(lines)
+        assert len(lines) <= 50, len(lines)
