@@ -53,7 +53,7 @@ fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
     }
     let [x, y, z] = item.position;
     if z.is_infinite() {
-        return Err((FaultCode::InvalidParameter(7), format!("altitude must be finite")));
+        return Err((FaultCode::InvalidParameter(7), "altitude must be finite".to_owned()));
     }
     let Some(place) = site.place(item) else {
         let (parameter, name, value, most) =
