@@ -48,7 +48,7 @@ enum Task {
     ModelDescription,
     /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables and plots to target/demo.
     ///
-    /// Builds both and the Python environment first: about two minutes the first time, seconds later.
+    /// Builds both and the Python environment first: about two and a half minutes the first time, seconds later.
     /// Fails if a flight misses its goal.
     Demo,
     /// Recomputes the paper's tables and figures: target/paper/report.html, results.json and PNG files.

@@ -17,7 +17,7 @@ use crate::flight_log::LogStart;
 use crate::hil::Mount;
 use crate::link::LinkSpecification;
 
-/// A simulated quadrotor under Laguerre model predictive control that MAVLink clients fly.
+/// A simulated MAVLink quadrotor under Laguerre model predictive control.
 #[derive(Clone, Debug, Default, PartialEq, Parser)]
 #[command(
     name = "lmpc-sitl", version, max_term_width = 110, after_help = help::AFTER_SHORT, after_long_help = help::AFTER_LONG
@@ -48,7 +48,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_LINK", value_name = "LINK", value_delimiter = ';', help_heading = LINKS)]
     pub link: Option<Vec<LinkSpecification>>,
 
-    /// Number of this run on the machine, 0 to 200 [default: 0]
+    /// Instance number on this machine, 0 to 200 [default: 0]
     ///
     /// Moves the default ports and the system id, so that several runs do not collide.
     #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = whole(0_u16, 200), allow_negative_numbers = true, help_heading = LINKS)]
@@ -65,7 +65,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_SIGNING_KEY", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub signing_key: Option<PathBuf>,
 
-    /// Conventions to follow [default: px4]
+    /// Autopilot whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT", help_heading = VEHICLE)]
     pub autopilot: Option<Conventions>,
 
@@ -112,7 +112,7 @@ pub struct Arguments {
 
     /// Arm and start the mission at once [default: false]
     ///
-    /// The vehicle arms and starts the mission of --mission as soon as nothing speaks against it. A pilot who arms or chooses
+    /// The vehicle arms and starts the mission of --mission as soon as the vehicle is ready. A pilot who arms or chooses
     /// another mode takes over.
     #[arg(
         long, env = "LMPC_SITL_AUTOSTART", value_name = "true|false", num_args = 0..=1,
@@ -122,11 +122,11 @@ pub struct Arguments {
 
     /// Number of vehicles, 1 to 250 [default: 1]
     ///
-    /// Their system ids count up from --system-id. Gusts and noise of each have a seed of their own.
+    /// Their system ids count up from --system-id. Each has its own seed for gusts and noise.
     #[arg(long, env = "LMPC_SITL_VEHICLES", value_name = "N", value_parser = whole(1_u8, 250), allow_negative_numbers = true, help_heading = FLEET)]
     pub vehicles: Option<u8>,
 
-    /// Whether vehicles share their ports [default: own]
+    /// Own or shared ports [default: own]
     #[arg(long, env = "LMPC_SITL_PORTS", help_heading = FLEET, hide_short_help = true)]
     pub ports: Option<Ports>,
 
@@ -136,7 +136,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_FORMATION", value_name = "SHAPE[,SPACING]", help_heading = FLEET, hide_short_help = true)]
     pub formation: Option<Formation>,
 
-    /// Whether vehicles share their clock [default: shared]
+    /// Shared or separate clocks [default: shared]
     #[arg(long, env = "LMPC_SITL_CLOCKS", help_heading = FLEET, hide_short_help = true)]
     pub clocks: Option<Clocks>,
 
@@ -156,7 +156,7 @@ pub struct Arguments {
     )]
     pub lockstep: Option<LockstepPhase>,
 
-    /// Simulated time that a set-point grants [default: 0.02]
+    /// Simulated time per set-point [default: 0.02]
     ///
     /// From 0.001 to 1 s, in lock-step.
     #[arg(long, env = "LMPC_SITL_LOCKSTEP_PERIOD", value_name = "SECONDS", value_parser = number(0.001, 1.0), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
@@ -179,14 +179,14 @@ pub struct Arguments {
     /// Steady wind: m/s, and degrees it comes from
     ///
     /// From 0 to 30 m/s. Wind pushes through drag (airframe.drag.x, .y and .z). In wind or gusts a vehicle has a drag of
-    /// 0.15 N s/m unless --set or --parameters give another. A warning tells if the vehicle cannot hold its position.
+    /// 0.15 N s/m unless --set or --parameters give another. A warning appears if the vehicle cannot hold its position.
     /// [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true, help_heading = SIMULATION)]
     pub wind: Option<WindFrom>,
 
     /// Standard deviation of gusts, 0 to 10 m/s
     ///
-    /// Dryden's spectrum. Gusts push through the same drag as --wind. [default: 0]
+    /// Gusts have a Dryden spectrum and push through the same drag as --wind. [default: 0]
     #[arg(long, env = "LMPC_SITL_GUSTS", value_name = "SIGMA", value_parser = number(0.0, 10.0), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
     pub gusts: Option<f64>,
 
@@ -234,8 +234,8 @@ pub struct Arguments {
     /// Fly a record again and compare the flights
     ///
     /// It flies as fast as possible and opens no links. The record holds all settings, so only --log goes with this flag, and a
-    /// --config with nothing else in it. The record of a program that was killed replays up to its last whole line. Exit code 5
-    /// tells that the flights differ.
+    /// --config with nothing else in it. The record of a program that was killed replays up to its last complete line. Exit code 5
+    /// means that the flights differ.
     #[arg(long, env = "LMPC_SITL_REPLAY", value_name = "FILE", help_heading = FILES)]
     pub replay: Option<PathBuf>,
 

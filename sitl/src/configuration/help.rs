@@ -60,8 +60,8 @@ Examples:
   Mission      lmpc-sitl --mission survey.plan --autostart
   Fault        lmpc-sitl --mission survey.plan --fault 60:rotor1=off
   Speed        lmpc-sitl --speed max --duration 600
-  Record       lmpc-sitl --record flight.record
-  Replay       lmpc-sitl --replay flight.record
+  Record       lmpc-sitl --record flight.lmpc
+  Replay       lmpc-sitl --replay flight.lmpc
   Flight logs  lmpc-sitl --log-dir logs --log-start boot
   PX4          lmpc-sitl --hil 4560
 
@@ -72,12 +72,12 @@ Lock-step (--speed max --lockstep always):
   set-point. Messages that arrive in between take effect when the period ends.
   A client that answers each report with one set-point flies the same at every
   speed. Do not ask for reports more often than once per period.
-    streaming   time waits from the first set-point on; outside of Offboard
-                (Guided) until none has come for 0.5 s
+    streaming   time waits from the first set-point on; outside Offboard
+                (Guided) only until none has come for 0.5 s
     always      time also waits for the first set-point, so that the whole
                 flight is the same bit for bit
   If the client disconnects in flight, or is silent for --lockstep-timeout, the
-  vehicle says so and flies on without waiting, until the next set-point.
+  vehicle reports this and flies on without waiting, until the next set-point.
 
 Several vehicles:
   Each has its own default ports, as PX4's instances have; with --link, local
@@ -103,8 +103,8 @@ Output:
   identical flights.
 
 Files:
-  No file ends a flight. A file that cannot be written is announced, tried again
-  every second, and named at the end with exit code 4. A file that another
+  A file error never ends a flight. A file that cannot be written is reported,
+  tried again every second, and named at the end with exit code 4. A file that another
   process is writing is refused at the start; FILE.lock beside it is the lock.
 
 Exit codes:
