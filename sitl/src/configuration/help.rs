@@ -104,8 +104,8 @@ Output:
 
 Files:
   A file error never ends a flight. A file that cannot be written is reported,
-  tried again every second, and named at the end with exit code 4. A file that another
-  process is writing is refused at the start; FILE.lock beside it is the lock.
+  tried again every second, and named at the end with exit code 4. A file that
+  another process is writing is refused at the start; the lock is FILE.lock.
 
 Exit codes:
   0  ended as asked
