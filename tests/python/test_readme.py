@@ -16,6 +16,7 @@ def test_python_code_with_the_fmu(fmu, tmp_path, block):
     done = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True, timeout=120,
                           env=os.environ | {"MPLBACKEND": "Agg"})
     assert done.returncode == 0, done.stderr
+    assert "warn" not in (done.stdout + done.stderr).lower(), done
     documents.check_output(block, done.stdout)
 
 

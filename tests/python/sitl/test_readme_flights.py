@@ -39,10 +39,10 @@ class Stand:
         number = printed if isinstance(printed, str) else printed[0]
         return self.ports.setdefault(number, str(free_port()))
 
-    def fly(self, block):
+    def fly(self, block, python=sys.executable):
         code = re.sub(r"(?<=:)\d{4,5}\b", self.port, block.text)
         assert code != block.text, f"{block} names no port"
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=90)
+        done = subprocess.run([python, "-c", code], capture_output=True, text=True, timeout=90)
         assert done.returncode == 0, f"{block}: {done.stdout}{done.stderr}"
         documents.check_output(block, done.stdout)
 
