@@ -253,7 +253,7 @@ fn each_action_is_taken_at_the_border() {
         let told: Vec<_> = told.take(if fell { 1 } else { usize::MAX }).collect();
         match action {
             Action::None => assert!(told.is_empty(), "{told:?}"),
-            Action::Warn => assert_eq!(told, ["Fence ahead"]),
+            Action::Warn => assert_eq!(told, ["Fence ahead", "Fence breached (outside the fence)"]),
             _ => {
                 let action = action.doing();
                 assert_eq!(told, [format!("Fence ahead: {action}")]);

@@ -4,6 +4,7 @@ use super::failsafe::{Action, Cause, Change, Failsafe};
 use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::situation::Situation;
+use crate::fence::Breach;
 use crate::mode::Mode;
 
 impl Failsafe {
@@ -84,6 +85,15 @@ impl Failsafe {
         match action.mode() {
             Some(mode) => proposal.enter(mode),
             None => proposal.terminate(),
+        }
+    }
+
+    /// Announces that the fence, which was announced as ahead, has been crossed.
+    pub fn tell_crossing(&self, situation: &Situation, proposal: &mut Proposal, breach: Breach) {
+        match situation.conduct.failsafe.action(Cause::Fence) {
+            Action::None => {}
+            Action::Warn => proposal.say(Severity::Warning, format!("Fence breached ({breach})")),
+            _ => proposal.say(Severity::Critical, format!("Fence breached ({breach})")),
         }
     }
 

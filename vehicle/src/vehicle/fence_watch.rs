@@ -46,18 +46,20 @@ impl FenceWatch {
         &self.record
     }
 
-    /// Looks whether the vehicle is, or cannot help coming, where it must not be.
-    pub fn watch(&mut self, situation: &Situation) {
+    /// Looks whether the vehicle is, or cannot help coming, where it must not be. Returns a breach that was ahead and is crossed now.
+    pub fn watch(&mut self, situation: &Situation) -> Option<Breach> {
         let here = situation.breach_at(&situation.outputs.position_m);
         if here.is_none() && !situation.time_us.is_multiple_of(PREDICTION_PERIOD_US) {
-            return;
+            return None;
         }
+        let was_ahead = self.record.is_ahead && self.record.now.is_some();
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
         self.record.is_ahead = here.is_none();
         let ahead = || if predicts { breach_ahead(situation) } else { None };
         self.record.now = here.or_else(ahead);
+        here.filter(|_| was_ahead)
     }
 
     /// Counts the breach of now, which has begun.

@@ -136,8 +136,13 @@ impl Vehicle {
     /// Looks at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
         let (situation, parts) = self.situation_and_machines();
-        parts.fence.watch(&situation);
+        let crossed = parts.fence.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
+        if let Some(breach) = crossed {
+            self.consult(|parts, situation, proposal| {
+                parts.failsafe.tell_crossing(situation, proposal, breach);
+            });
+        }
         let mut causes = Cause::ALL.iter();
         while !causes.as_slice().is_empty() {
             self.consult(|parts, situation, proposal| {
