@@ -34,8 +34,8 @@ pub(crate) enum CallError {
     WrongType { name: &'static str, reference: ValueReference, declared: Type, asked: Type },
     #[error("value reference {reference} is not a String: this model has no String variables")]
     NoStrings { reference: ValueReference },
-    #[error("{name} cannot be set: it is {causality} (read-only)")]
-    ReadOnly { name: &'static str, causality: &'static str },
+    #[error("{name} cannot be set: it is {kind} (read-only)")]
+    ReadOnly { name: &'static str, kind: &'static str },
     #[error("{name} is fixed: set it before the end of initialization mode")]
     Fixed { name: &'static str },
     #[error("{name} = {value}; allowed {allowed}")]

@@ -45,8 +45,9 @@ impl<M: Model> Instance<M> {
                     return Err(CallError::Fixed { name });
                 }
                 Role::Parameter { field, .. } => field.set(&mut settings.parameters, value),
-                Role::Output { .. } | Role::CalculatedParameter { .. } => {
-                    return Err(CallError::ReadOnly { name, causality: variable.causality() });
+                Role::Output { .. } => return Err(CallError::ReadOnly { name, kind: "an output" }),
+                Role::CalculatedParameter { .. } => {
+                    return Err(CallError::ReadOnly { name, kind: "calculated" });
                 }
             }
         }
