@@ -8,12 +8,10 @@ use mavlink::dialects::common::{
     MavType,
 };
 use mavlink::{Message as _, MessageData};
-use vehicle::estimation::SensorSettings;
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
-use vehicle::plan::Plans;
-use vehicle::world::{Geodetic, WindSettings};
-use vehicle::{Conduct, TICK_US, VehicleSettings};
+use vehicle::world::WindSettings;
+use vehicle::{TICK_US, VehicleSettings};
 
 const SECOND: u64 = 1_000_000 / TICK_US;
 /// The link that the commands come by, and another one.
@@ -32,18 +30,7 @@ impl Bench {
     }
 
     fn in_wind(identity: Identity, wind: WindSettings) -> Self {
-        let settings = VehicleSettings {
-            identity,
-            configuration: quadrotor::Configuration::default(),
-            conduct: Conduct::new(identity.is_ardupilot()),
-            origin: Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 },
-            heading_rad: 0.0,
-            wind,
-            faults: Vec::new(),
-            sensors: SensorSettings::default(),
-            plans: Plans::default(),
-            autostart: false,
-        };
+        let settings = VehicleSettings { wind, ..VehicleSettings::new(identity) };
         let links = [LinkProfile::Ground, LinkProfile::Onboard];
         let autopilot = Autopilot::new(&settings, 1, Speed::Factor(1.0), &links, 0).expect("valid settings");
         Self { autopilot, heard: Vec::new(), sequence: 0 }

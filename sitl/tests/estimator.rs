@@ -10,7 +10,7 @@ use vehicle::world::{Geodetic, LocalFrame};
 const REST_S: f64 = 5.0;
 
 fn frame() -> LocalFrame {
-    LocalFrame::new(Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 })
+    LocalFrame::new(Geodetic::default())
 }
 
 /// A sum of sines that begins at rest: amplitude (1 − cos ωt) and two derivatives.

@@ -9,7 +9,7 @@ use vehicle::plan::{PlanKind, Plans, Site, command};
 use vehicle::world::{Geodetic, LocalFrame};
 
 fn site(identity: Identity) -> Site {
-    let origin = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 };
+    let origin = Geodetic::default();
     Site { identity, frame: LocalFrame::new(origin), home_m: nalgebra::Vector3::zeros() }
 }
 

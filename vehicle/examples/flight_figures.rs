@@ -9,12 +9,11 @@
 use std::error::Error;
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, RotorFault};
+use quadrotor::RotorFault;
 use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::fault::{Fault, Rotors};
 use vehicle::identity::Identity;
-use vehicle::world::{Geodetic, WindSettings};
-use vehicle::{Conduct, Mode, Reposition, Vehicle, VehicleSettings};
+use vehicle::{Mode, Reposition, Vehicle, VehicleSettings};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -30,18 +29,7 @@ const HOVER_S: f64 = 120.0;
 const SEEDS: u64 = 20;
 
 fn settings() -> VehicleSettings {
-    VehicleSettings {
-        identity: Identity::Px4,
-        configuration: Configuration::default(),
-        conduct: Conduct::new(false),
-        origin: Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 },
-        heading_rad: 0.0,
-        wind: WindSettings::default(),
-        faults: Vec::new(),
-        sensors: SensorSettings::default(),
-        plans: vehicle::plan::Plans::default(),
-        autostart: false,
-    }
+    VehicleSettings::new(Identity::Px4)
 }
 
 /// Flies until a condition holds.

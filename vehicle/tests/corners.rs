@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use quadrotor::{Configuration, Limits, PositionReference};
 use vehicle::identity::Identity;
 use vehicle::plan::{ChangeSpeed, MissionItem, PlanKind, command, frame};
-use vehicle::world::{Geodetic, WindSettings};
-use vehicle::{Conduct, MissionState, Mode, Vehicle, VehicleSettings};
+use vehicle::world::WindSettings;
+use vehicle::{MissionState, Mode, Vehicle, VehicleSettings};
 
 const TAKEOFF: [f64; 3] = [0.0, 0.0, -10.0];
 /// Ticks between two samples of the track.
@@ -33,18 +33,7 @@ impl Flight {
         let mut configuration = Configuration::default();
         configuration.limits.speed_horizontal_m_s = speed_m_s;
         configuration.airframe.drag_n_s_m = [0.15; 3];
-        let settings = VehicleSettings {
-            identity: Identity::Px4,
-            configuration,
-            conduct: Conduct::new(false),
-            origin: Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 },
-            heading_rad: 0.0,
-            wind,
-            faults: Vec::new(),
-            sensors: vehicle::estimation::SensorSettings::default(),
-            plans: vehicle::plan::Plans::default(),
-            autostart: false,
-        };
+        let settings = VehicleSettings { configuration, wind, ..VehicleSettings::new(Identity::Px4) };
         let mut vehicle = Vehicle::new(&settings).expect("valid settings");
         vehicle.set_plan(PlanKind::Fence, fence).expect("a fence");
         let takeoff = item(command::NAV_TAKEOFF, [0.0, 0.0, 0.0, f64::NAN], TAKEOFF);

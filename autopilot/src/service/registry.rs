@@ -139,12 +139,11 @@ mod tests {
     use std::fmt::Debug;
 
     use mavlink::Message as _;
-    use vehicle::estimation::SensorSettings;
+
     use vehicle::identity::Identity;
     use vehicle::parameters::Speed;
-    use vehicle::plan::Plans;
-    use vehicle::world::{Geodetic, WindSettings};
-    use vehicle::{Conduct, Vehicle, VehicleSettings};
+
+    use vehicle::{Vehicle, VehicleSettings};
 
     use super::{Registry, all};
     use crate::codec::id;
@@ -171,18 +170,7 @@ mod tests {
     /// The identifier of a row and its maker agree.
     #[test]
     fn every_row_makes_its_message() {
-        let settings = VehicleSettings {
-            identity: Identity::Px4,
-            configuration: quadrotor::Configuration::default(),
-            conduct: Conduct::new(false),
-            origin: Geodetic { latitude_deg: 47.4, longitude_deg: 8.5, altitude_m: 488.0 },
-            heading_rad: 0.0,
-            wind: WindSettings::default(),
-            faults: Vec::new(),
-            sensors: SensorSettings::default(),
-            plans: Plans::default(),
-            autostart: false,
-        };
+        let settings = VehicleSettings::new(Identity::Px4);
         let vehicle = Vehicle::new(&settings).expect("valid settings");
         let parameters = Parameters::new(&settings, &vehicle, 1, Speed::Factor(1.0));
         let registry = Registry::new();

@@ -17,8 +17,7 @@ pub struct HomePosition {
 
 impl Default for HomePosition {
     fn default() -> Self {
-        let place = Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 };
-        Self { place, heading_deg: 0.0 }
+        Self { place: Geodetic::default(), heading_deg: 0.0 }
     }
 }
 

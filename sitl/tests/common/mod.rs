@@ -13,28 +13,15 @@ use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
-use vehicle::estimation::SensorSettings;
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
-use vehicle::world::{Geodetic, WindSettings};
-use vehicle::{Conduct, Mode, VehicleSettings};
+use vehicle::{Mode, VehicleSettings};
 
 pub const GROUND_STATION: (u8, u8) = (255, 190);
 
 /// Settings of a vehicle in Zurich.
 pub fn settings(identity: Identity) -> VehicleSettings {
-    VehicleSettings {
-        identity,
-        configuration: quadrotor::Configuration::default(),
-        conduct: Conduct::new(identity.is_ardupilot()),
-        origin: Geodetic { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 },
-        heading_rad: 0.0,
-        wind: WindSettings::default(),
-        faults: Vec::new(),
-        sensors: SensorSettings::default(),
-        plans: vehicle::plan::Plans::default(),
-        autostart: false,
-    }
+    VehicleSettings::new(identity)
 }
 
 /// A vehicle and what it has said.

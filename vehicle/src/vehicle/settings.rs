@@ -40,6 +40,22 @@ pub struct VehicleSettings {
 }
 
 impl VehicleSettings {
+    /// The default vehicle, at the default place, in calm air, with ideal sensors and nothing to fly.
+    pub fn new(identity: Identity) -> Self {
+        Self {
+            identity,
+            configuration: Configuration::default(),
+            conduct: Conduct::new(identity.is_ardupilot()),
+            origin: Geodetic::default(),
+            heading_rad: 0.0,
+            wind: WindSettings::default(),
+            faults: Vec::new(),
+            sensors: SensorSettings::default(),
+            plans: Plans::default(),
+            autostart: false,
+        }
+    }
+
     /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.
     pub fn flown_configuration(&self) -> Configuration {
         let mut configuration = self.configuration;

@@ -43,6 +43,13 @@ pub struct LocalFrame {
     east: Vector3<f64>,
 }
 
+impl Default for Geodetic {
+    /// Where PX4's simulators start: a field near Zurich.
+    fn default() -> Self {
+        Self { latitude_deg: 47.397_742, longitude_deg: 8.545_594, altitude_m: 488.0 }
+    }
+}
+
 impl LocalFrame {
     /// The frame whose origin lies here.
     pub fn new(origin: Geodetic) -> Self {
