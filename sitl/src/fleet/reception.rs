@@ -47,9 +47,9 @@ impl Reception {
 }
 
 impl Fleet {
-    /// Gives what has come to the vehicles that it is for: one, or all behind the link. Whether there was more than the
-    /// budget is enough for.
-    pub(crate) fn receive(&mut self, now: Instant) -> bool {
+    /// Gives what has come to the vehicles that it is for: one, or all behind the link. What the budget is not enough for
+    /// waits until the next look.
+    pub(crate) fn receive(&mut self, now: Instant) {
         let start = Instant::now();
         let hubs = self.hubs.len();
         for _ in 0..hubs {
@@ -72,10 +72,9 @@ impl Fleet {
             self.reception.served = (hub + 1) % hubs;
             idle = if self.serve(hub, now, start + BUDGET) { 0 } else { idle + 1 };
             if start.elapsed() >= BUDGET {
-                return true;
+                break;
             }
         }
-        false
     }
 
     /// Turns of the peers of a hub, for a share of the time. Whether there was anything to do.

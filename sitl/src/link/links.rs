@@ -8,15 +8,14 @@ use autopilot::codec::{Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 
 use super::echo::Echoes;
-use super::endpoint::{Endpoint, LinkSpecification};
+use super::endpoint::LinkSpecification;
 use super::error::LinkError;
 use super::forwarding::Forwarding;
+use super::open::open;
 use super::peer::Peer;
 use super::signing_setup::SigningSetup;
-use super::tcp::Tcp;
 use super::transport::{Event, Transport};
 use super::turns::Turns;
-use super::udp::Udp;
 use crate::signing::Signing;
 
 /// Peers of a link that are gone and have left something that is not handled yet; the oldest makes room.
@@ -105,7 +104,7 @@ impl Links {
         let links = specifications
             .iter()
             .map(|specification| {
-                Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
+                Ok(Link { transport: open(&specification.endpoint)?, peers: BTreeMap::new() })
             })
             .collect::<Result<_, LinkError>>()?;
         Ok(Self::of(links, systems))
@@ -335,51 +334,24 @@ impl Links {
     }
 }
 
-fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
-    let text = endpoint.to_string();
-    Ok(match endpoint {
-        Endpoint::UdpOut { host, port, local_port } => {
-            // To this machine from this machine; else from whichever of its addresses leads there.
-            let loopback = super::udp::resolve(host, *port, &text)?.ip().is_loopback();
-            let local = if loopback { "127.0.0.1" } else { "0.0.0.0" };
-            Box::new(Udp::open((local, *local_port), Some((host, *port)), &text)?)
-        }
-        Endpoint::UdpIn { host, port } => Box::new(Udp::open((host, *port), None, &text)?),
-        Endpoint::TcpIn { host, port } => Box::new(Tcp::open((host, *port), &text)?),
-        #[cfg(unix)]
-        Endpoint::Serial { path, baud } => Box::new(super::serial::Serial::open(path, *baud, &text)?),
-        #[cfg(not(unix))]
-        Endpoint::Serial { path, .. } => {
-            return Err(LinkError::Device {
-                path: path.display().to_string(),
-                link: text,
-                source: std::io::Error::new(
-                    std::io::ErrorKind::Unsupported,
-                    "serial links need a Unix system",
-                ),
-            });
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
     use std::sync::{Arc, Mutex};
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
+    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA, SYSTEM_TIME_DATA};
 
-    use super::{Link, Links, Received};
+    use super::{Link, Links, Lost, Received};
     use crate::link::SigningSetup;
     use crate::link::transport::{Event, Transport};
     use crate::signing::{SecretKey, Signing};
     use autopilot::codec::{Frame, Message, Version};
-    use autopilot::envelope::{Destination, Outgoing};
+    use autopilot::envelope::{Destination, Outgoing, PeerId};
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 
-    /// A link whose two ends are lists.
+    /// A link whose two ends are lists. An empty piece ends the peer's connection.
     #[derive(Debug)]
     struct Ends {
         inward: Bytes,
@@ -390,7 +362,9 @@ mod tests {
     impl Transport for Ends {
         fn poll(&mut self, _now: Instant, _room: &dyn Fn(u64) -> usize) -> Vec<Event> {
             let mut waiting = self.inward.lock().expect("one thread");
-            waiting.drain(..).map(|bytes| Event::Bytes(1, bytes)).collect()
+            let event =
+                |bytes: Vec<u8>| if bytes.is_empty() { Event::Closed(1) } else { Event::Bytes(1, bytes) };
+            waiting.drain(..).map(event).collect()
         }
 
         fn send(&mut self, _peer: u64, bytes: &[u8]) {
@@ -511,5 +485,92 @@ mod tests {
         });
         assert_eq!(sent.map(|signature| signature.link), [0, 1]);
         assert!(sent[0].timestamp < sent[1].timestamp);
+    }
+
+    fn put(end: &(Bytes, Bytes), bytes: &[u8]) {
+        end.0.lock().expect("one thread").push(bytes.to_vec());
+    }
+
+    /// Number of the link of the next frames, each of which costs as much as a redesign.
+    fn served(links: &mut Links, turns: usize) -> Vec<usize> {
+        let now = Instant::now();
+        let served = (0..turns).filter_map(|_| {
+            let turn = links.take_turn(now, |_| true)?;
+            links.charge(turn.peer, Duration::from_micros(1_500));
+            turn.received.map(|received| received.origin.peer.link)
+        });
+        served.collect()
+    }
+
+    /// Frames from a system that are no repetitions of one another.
+    fn different(system: u8, count: u64) -> Vec<u8> {
+        let message = |time_unix_usec| SYSTEM_TIME_DATA { time_unix_usec, time_boot_ms: 0 };
+        (0..count).flat_map(|n| frame(MavMessage::SYSTEM_TIME(message(n)), system).bytes().to_vec()).collect()
+    }
+
+    #[test]
+    fn a_message_does_not_wait_behind_those_of_another_peer() {
+        let (mut links, [flood, quiet]) = links();
+        put(&flood, &different(254, 1_000));
+        links.poll(Instant::now());
+        assert_eq!(served(&mut links, 3), [0; 3]);
+        put(&quiet, heartbeat(255).bytes());
+        links.poll(Instant::now());
+        assert_eq!(served(&mut links, 2), [1, 0]);
+        // Both want more than they get: they get the same.
+        put(&quiet, &different(255, 1_000));
+        links.poll(Instant::now());
+        let served = served(&mut links, 100);
+        let share = served.iter().filter(|link| **link == 1).count();
+        assert!((49..=51).contains(&share), "{share} of {}", served.len());
+        // A peer that may not have a turn now keeps what it has, and no one waits for it.
+        let turn = links.take_turn(Instant::now(), |peer| peer.link == 1).expect("more waits");
+        assert_eq!(turn.peer.link, 1);
+    }
+
+    #[test]
+    fn an_inbox_is_bounded_and_what_is_lost_is_counted() {
+        let (mut links, [flood, quiet]) = links();
+        (0..9).for_each(|_| put(&flood, &different(254, 4_000)));
+        put(&quiet, heartbeat(255).bytes());
+        links.poll(Instant::now());
+        assert_eq!(links.lost(), Lost { datagrams: 7, forwards: 0 });
+        assert_eq!(links.lost().to_string(), "dropped 7 datagrams");
+        let handled = receive(&mut links);
+        assert_eq!(handled.iter().filter(|received| received.origin.peer.link == 0).count(), 8_000);
+        assert!(handled.iter().any(|received| received.origin.peer.link == 1));
+    }
+
+    #[test]
+    fn what_a_flood_has_forwarded_is_bounded() {
+        let (mut links, [flood, quiet]) = links();
+        put(&quiet, heartbeat(255).bytes());
+        assert_eq!(receive(&mut links).len(), 1);
+        put(&flood, &different(254, 2_000));
+        // The vehicle itself hears all.
+        assert_eq!(receive(&mut links).len(), 2_000);
+        let forwarded = quiet.1.lock().expect("one thread").len() as u64;
+        assert_eq!(links.lost(), Lost { datagrams: 0, forwards: 2_000 - forwarded });
+        assert!((100..1_000).contains(&forwarded), "{forwarded}");
+    }
+
+    #[test]
+    fn what_a_peer_has_sent_before_it_left_is_still_handled() {
+        let (mut links, [end, _]) = links();
+        put(&end, &[heartbeat(255).bytes(), heartbeat(254).bytes()].concat());
+        put(&end, &[]);
+        links.poll(Instant::now());
+        let peer = PeerId { link: 0, number: 1 };
+        assert_eq!((links.has_room(peer), links.active_peers()), (None, 0), "it has left");
+        assert_eq!(receive(&mut links).len(), 2);
+        assert!(links.links.iter().all(|link| link.peers.is_empty()), "and is forgotten");
+        // Those who come, say something and go are bounded, too.
+        let now = Instant::now();
+        let link = &mut links.links[0];
+        for number in 0..100 {
+            link.peers.entry(number).or_default().inbox.put(vec![0], true, 0, now);
+            link.depart(number, now);
+        }
+        assert_eq!(link.peers.len(), super::MOST_DEPARTED);
     }
 }

@@ -6,6 +6,7 @@ mod error;
 mod forwarding;
 mod inbox;
 mod links;
+mod open;
 mod peer;
 #[cfg(unix)]
 mod serial;
