@@ -7,6 +7,7 @@ import socket
 import struct
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import dataclass
 
@@ -135,7 +136,6 @@ class Quiet:
         answered = [number for number in asked if number in self.answered]
         return {
             "late_ms": round(1000 * (max(during, default=float("inf")) - min(before)), 1),
-            "late_before_ms": round(1000 * (max(before) - min(before)), 1),
             "rate": round(len(during) / (end - begin) / (len(before) / (begin - first)), 3),
             "answered": len(answered) / len(asked),
             "answer_ms": round(1000 * max((self.answered[n] - self.asked[n] for n in answered), default=float("inf")), 1),
@@ -160,10 +160,28 @@ def flood(tmp_path):
         process.wait()
 
 
-# What floods may cost others: what is sent late and what is flown late look the same.
-LATE_MS, RATE, ANSWER_MS, STOP_S = 20.0, 0.9, 50.0, 0.1
-# What is late without a flood tells how busy the machine is; a flood takes as much from it as can be had.
-BUSY = 4
+# What floods may cost others: what is sent late and what is flown late look the same. An answer may wait behind one message of each
+# other client, and 30 redesigns take 100 ms in a debug build.
+LATE_MS, RATE, ANSWER_MS, STOP_MS = 20.0, 0.9, 250.0, 100.0
+
+
+class Machine(threading.Thread):
+    """Measures how late the machine lets a program go on that only sleeps: that is not the vehicle's fault."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.worst_ms = 0.0
+        self.start()
+
+    def run(self):
+        while True:
+            begin = time.monotonic()
+            time.sleep(0.001)
+            self.worst_ms = max(self.worst_ms, 1000 * (time.monotonic() - begin))
+
+    def late_ms(self) -> float:
+        """What a program may be late that sleeps a few times one after the other."""
+        return 4 * self.worst_ms
 
 
 @dataclass
@@ -194,7 +212,7 @@ every_attack = pytest.mark.parametrize("attack", ATTACKS.values(), ids=ATTACKS.k
 @pytest.mark.alone
 @every_attack
 def test_a_flood_slows_down_only_its_sender(start, flood, attack):
-    vehicle = start(links=("udpin:0,onboard", "tcpin:0"))
+    vehicle, machine = start(links=("udpin:0,onboard", "tcpin:0")), Machine()
     # Its datagrams go through the socket that is flooded.
     quiet = Quiet(vehicle.addresses[0])
     quiet.watch(BEFORE)
@@ -202,20 +220,20 @@ def test_a_flood_slows_down_only_its_sender(start, flood, attack):
     attack.begin(flood, vehicle)
     quiet.watch(ATTACK)
     figures = quiet.figures(begin, time.time() - 0.1)
-    busy_ms = BUSY * figures["late_before_ms"]
-    assert figures["late_ms"] <= LATE_MS + busy_ms and figures["rate"] >= RATE, figures
-    assert figures["answered"] == 1.0 and figures["answer_ms"] <= ANSWER_MS + busy_ms, figures
+    late_ms = machine.late_ms()
+    assert figures["late_ms"] <= LATE_MS + late_ms and figures["rate"] >= RATE, figures
+    assert figures["answered"] == 1.0 and figures["answer_ms"] <= ANSWER_MS + late_ms, figures
 
 
 @pytest.mark.alone
 @every_attack
 def test_a_signal_is_answered_under_a_flood(start, flood, attack):
-    vehicle = start(links=("udpin:0", "tcpin:0"))
+    vehicle, machine = start(links=("udpin:0", "tcpin:0")), Machine()
     attack.begin(flood, vehicle)
     Quiet(vehicle.addresses[0]).watch(0.5)
     begin = time.monotonic()
     assert vehicle.stop() == 0
-    assert time.monotonic() - begin <= STOP_S
+    assert 1000 * (time.monotonic() - begin) <= STOP_MS + machine.late_ms()
 
 
 def test_a_tcp_client_keeps_its_heartbeats_among_30_that_flood(start, connect, flood):
