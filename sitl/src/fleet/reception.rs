@@ -34,6 +34,8 @@ pub struct Reception {
     polled: usize,
     /// The hub whose peers are next.
     served: usize,
+    /// The vehicle whose held messages are next.
+    released: usize,
     /// What was told of each hub.
     told: Vec<Lost>,
     told_at: Option<Instant>,
@@ -42,7 +44,7 @@ pub struct Reception {
 impl Reception {
     /// Of this many hubs.
     pub fn new(hubs: usize) -> Self {
-        Self { polled: 0, served: 0, told: vec![Lost::default(); hubs], told_at: None }
+        Self { polled: 0, served: 0, released: 0, told: vec![Lost::default(); hubs], told_at: None }
     }
 }
 
@@ -138,23 +140,25 @@ impl Fleet {
         }
     }
 
-    /// A message that lock-step has held takes effect on each vehicle of a hub for which it is time. Whether there was one.
+    /// A message that lock-step has held takes effect on a vehicle of a hub for which it is time. Whether there was one.
     fn release(&mut self, hub: usize, now: Instant) -> bool {
-        let mut released = false;
-        for number in 0..self.members.len() {
-            let start = Instant::now();
+        let start = Instant::now();
+        let members = self.members.len();
+        for offset in 0..members {
+            let number = (self.reception.released + offset) % members;
             let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
                 continue;
             };
             let circumstances = member.circumstances();
             let held = member.lockstep.as_mut().and_then(|lockstep| lockstep.take(&circumstances));
             let Some(received) = held else { continue };
+            self.reception.released = number + 1;
             self.take_in(number, &received, now);
             let lockstep = self.members.get_mut(number).and_then(|member| member.lockstep.as_mut());
             lockstep.into_iter().for_each(|step| step.charge(received.origin.peer, start.elapsed()));
-            released = true;
+            return true;
         }
-        released
+        false
     }
 
     /// A message takes effect on a vehicle.

@@ -97,8 +97,9 @@ impl Inbox {
 mod tests {
     use std::time::Instant;
 
-    use autopilot::codec::{Frame, Version};
+    use autopilot::codec::{Frame, FrameDecoder, Version};
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SYSTEM_TIME_DATA};
+    use proptest::prelude::*;
 
     use super::{CAPACITY, Inbox, PIECE, SILENCE};
 
@@ -177,5 +178,26 @@ mod tests {
         let (before, after) = (now + SILENCE, now + SILENCE * 2);
         assert_eq!(decoded(&mut inbox, before).0 + decoded(&mut inbox, after).0, 1);
         assert_eq!(inbox.waiting(after), None);
+    }
+
+    proptest! {
+        /// However a stream is cut: its frames are those that decoding it as a whole finds.
+        #[test]
+        fn cuts_change_nothing(
+            parts in prop::collection::vec((prop::collection::vec(any::<u8>(), 0..40), any::<bool>()), 1..20),
+            cuts in prop::collection::vec(1_usize..60, 1..40),
+        ) {
+            let of = |(noise, frame): &(Vec<u8>, bool)| if *frame { bytes() } else { noise.clone() };
+            let stream: Vec<u8> = parts.iter().flat_map(of).collect();
+            let (mut inbox, now) = (Inbox::default(), Instant::now());
+            let mut rest = stream.as_slice();
+            for cut in cuts.iter().cycle().take(stream.len()) {
+                let (piece, behind) = rest.split_at((*cut).min(rest.len()));
+                prop_assert!(inbox.put(piece.to_vec(), true, 0, now));
+                rest = behind;
+            }
+            let whole = FrameDecoder::default().push(&stream);
+            prop_assert_eq!(decoded(&mut inbox, now).0, whole.len());
+        }
     }
 }
