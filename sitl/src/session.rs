@@ -83,8 +83,8 @@ fn fly(
     let mut status = StatusLine::new(start);
     let several = clocks.len() as u32;
     while !stop.load(Ordering::Relaxed) && !clocks.iter().all(Clock::is_over) {
+        fleet.receive(Instant::now());
         let now = Instant::now();
-        fleet.receive(now);
         let mut behind = false;
         for clock in clocks.iter_mut().filter(|clock| !clock.is_over()) {
             behind |= clock.advance(fleet, now, several)?;

@@ -3,12 +3,28 @@
 use super::Frame;
 use super::frame::{CHECKSUM_LENGTH, SIGNATURE_LENGTH, SIGNED, Version, extra_crc, message_id};
 
+/// Most places of one [`FrameDecoder::step`]: noise can be made so that each place costs the checksum of a whole frame.
+const PLACES: usize = 64;
+
 /// Finds frames in bytes that come in pieces of any size. What is no frame is dropped from its second byte on,
-/// so that a frame behind noise is not lost. Never holds more than one incomplete frame.
+/// so that a frame behind noise is not lost. Once all is decoded, it holds no more than one incomplete frame.
 #[derive(Clone, Debug, Default)]
 pub struct FrameDecoder {
     bytes: Vec<u8>,
+    /// Where the bytes begin that are not decoded yet.
+    position: usize,
     rejected_bytes: u64,
+}
+
+/// What a bounded piece of decoding has found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Decoded {
+    /// A frame.
+    Frame(Frame),
+    /// No frame so far; there are more bytes to decode.
+    Noise,
+    /// Nothing more until more bytes come.
+    Starved,
 }
 
 /// What the bytes begin with.
@@ -19,50 +35,60 @@ enum Start {
 }
 
 impl FrameDecoder {
-    /// Takes bytes in and returns the frames that are complete now.
-    pub fn push(&mut self, bytes: &[u8]) -> Vec<Frame> {
+    /// Takes bytes in, to be decoded by [`Self::step`].
+    pub fn feed(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
-        let mut frames = Vec::new();
-        let mut position = 0;
-        loop {
-            match start(self.bytes.get(position..).unwrap_or_default()) {
+    }
+
+    /// Decodes up to the next frame, but only a bounded number of bytes. With `ended` no more bytes follow: an incomplete
+    /// frame is none, and may hide a whole one behind its marker.
+    pub fn step(&mut self, ended: bool) -> Decoded {
+        for _ in 0..PLACES {
+            match start(self.bytes.get(self.position..).unwrap_or_default()) {
                 Start::Frame(frame, length) => {
-                    frames.push(*frame);
-                    position += length;
+                    self.position += length;
+                    return Decoded::Frame(*frame);
                 }
-                Start::Noise => {
+                Start::Incomplete if !ended || self.waiting_bytes() == 0 => {
+                    self.bytes.drain(..self.position);
+                    self.position = 0;
+                    return Decoded::Starved;
+                }
+                Start::Incomplete | Start::Noise => {
                     self.rejected_bytes += 1;
-                    position += 1;
+                    self.position += 1;
                 }
-                Start::Incomplete => break,
             }
         }
-        self.bytes.drain(..position.min(self.bytes.len()));
-        frames
+        Decoded::Noise
+    }
+
+    fn frames(&mut self, ended: bool) -> Vec<Frame> {
+        let mut frames = Vec::new();
+        loop {
+            match self.step(ended) {
+                Decoded::Frame(frame) => frames.push(frame),
+                Decoded::Noise => {}
+                Decoded::Starved => return frames,
+            }
+        }
+    }
+
+    /// Takes bytes in and returns the frames that are complete now.
+    pub fn push(&mut self, bytes: &[u8]) -> Vec<Frame> {
+        self.feed(bytes);
+        self.frames(false)
     }
 
     /// Frames of one datagram; none crosses from one into the next.
     pub fn datagram(&mut self, bytes: &[u8]) -> Vec<Frame> {
-        let mut frames = self.push(bytes);
-        frames.extend(self.give_up());
-        frames
+        self.feed(bytes);
+        self.frames(true)
     }
 
-    /// Nothing more comes: an incomplete frame is none, and may hide a whole one behind its marker.
-    pub fn give_up(&mut self) -> Vec<Frame> {
-        let mut frames = Vec::new();
-        while !self.bytes.is_empty() {
-            self.rejected_bytes += 1;
-            let rest = self.bytes.split_off(1);
-            self.bytes.clear();
-            frames.extend(self.push(&rest));
-        }
-        frames
-    }
-
-    /// Bytes of a frame that is not complete yet.
+    /// Bytes that are not decoded yet, or belong to a frame that is not complete.
     pub fn waiting_bytes(&self) -> usize {
-        self.bytes.len()
+        self.bytes.len().saturating_sub(self.position)
     }
 
     /// Bytes that belonged to no frame so far.

@@ -23,7 +23,7 @@ mod target;
 pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
 pub use command_name::command_name;
-pub use decoder::FrameDecoder;
+pub use decoder::{Decoded, FrameDecoder};
 pub use frame::{Frame, Signature, Version};
 pub use message::{CommandAck, Message};
 pub use mission_item::MissionItemMessage;

@@ -10,19 +10,13 @@
 //! While a period is flown, received messages are held until it ends. So each message takes effect at a simulation time
 //! that follows from the order of the messages alone, whatever the speed of the simulation and of the client.
 
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use autopilot::codec::{Frame, id};
 use autopilot::envelope::PeerId;
 
+use super::held::{Held, is_set_point};
 use crate::link::Received;
 
-/// A client that sends more set-points than it needs may be this many ahead. Beyond that the older ones take effect at
-/// once, so that it is not heard later and later.
-const MOST_SET_POINTS: usize = 1;
-/// Messages that are held at most.
-const MOST_HELD: usize = 1_000;
 /// Where nothing depends on set-points, a client that is silent for so long has ended its stream: PX4, too, asks for two a
 /// second.
 const STREAM_END: Duration = Duration::from_millis(500);
@@ -84,7 +78,7 @@ pub struct Lockstep {
     settings: LockstepSettings,
     /// End of the period that is flown, µs; `None`: it runs freely.
     until_us: Option<u64>,
-    held: VecDeque<Received>,
+    held: Held,
     /// Of the client's last set-point.
     client: Option<PeerId>,
     /// Whether the client knows where the vehicle is.
@@ -100,7 +94,7 @@ impl Lockstep {
         Self {
             settings,
             until_us,
-            held: VecDeque::new(),
+            held: Held::default(),
             client: None,
             reported: false,
             waiting_since: None,
@@ -123,22 +117,26 @@ impl Lockstep {
         self.settings.timeout
     }
 
+    /// Whether it holds so many messages of a peer that the next have to wait.
+    pub fn is_full(&self, peer: PeerId) -> bool {
+        self.held.is_full(peer)
+    }
+
     /// A message has come.
     pub fn put(&mut self, received: Received) {
-        self.held.push_back(received);
+        self.held.put(received);
+    }
+
+    /// The effect of a message of a peer has cost this much.
+    pub fn charge(&mut self, peer: PeerId, cost: Duration) {
+        self.held.charge(peer, cost);
     }
 
     /// The next message that takes effect now.
     pub fn take(&mut self, now: &Circumstances) -> Option<Received> {
         let flying = self.until_us.is_some_and(|until_us| now.time_us < until_us);
         // A pause must be able to end.
-        if flying && !now.paused && self.held.len() <= MOST_HELD {
-            let set_points = self.held.iter().filter(|received| is_set_point(&received.frame)).count();
-            if set_points <= MOST_SET_POINTS {
-                return None;
-            }
-        }
-        let received = self.held.pop_front()?;
+        let received = self.held.take(flying && !now.paused)?;
         if is_set_point(&received.frame) {
             self.until_us = Some(now.time_us + self.settings.period_us);
             self.client = Some(received.origin.peer);
@@ -187,13 +185,6 @@ fn is_steered(now: &Circumstances) -> bool {
     now.armed && now.offboard
 }
 
-fn is_set_point(frame: &Frame) -> bool {
-    matches!(
-        frame.message_id(),
-        id::SET_ATTITUDE_TARGET | id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::{Duration, Instant};
@@ -215,8 +206,12 @@ mod tests {
     }
 
     fn put(lockstep: &mut Lockstep, message: MavMessage) {
+        put_from(lockstep, CLIENT, message);
+    }
+
+    fn put_from(lockstep: &mut Lockstep, peer: PeerId, message: MavMessage) {
         let frame = Frame::encode(&message.into(), Version::Two, 0, (255, 190)).expect("MAVLink 2");
-        lockstep.put(Received { origin: Origin { peer: CLIENT, system: 255, component: 190 }, frame });
+        lockstep.put(Received { origin: Origin { peer, system: 255, component: 190 }, frame });
     }
 
     fn set_point(lockstep: &mut Lockstep) {
@@ -258,6 +253,29 @@ mod tests {
         (0..5).for_each(|_| set_point(&mut lockstep));
         assert_eq!(taken(&mut lockstep, &STEERED).len(), 4);
         assert_eq!(lockstep.limit_us(), Some(120_000));
+    }
+
+    #[test]
+    fn a_client_does_not_wait_behind_what_others_have_held() {
+        let mut lockstep = lockstep(LockstepPhase::Streaming);
+        set_point(&mut lockstep);
+        assert_eq!(taken(&mut lockstep, &STEERED).len(), 1);
+        let other = PeerId { link: 1, number: 3 };
+        while !lockstep.is_full(other) {
+            put_from(&mut lockstep, other, MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+        }
+        let during = Circumstances { time_us: 119_000, ..STEERED };
+        assert!(lockstep.take(&during).is_none(), "a flood does not take effect earlier, either");
+        set_point(&mut lockstep);
+        assert!(!lockstep.is_full(CLIENT));
+        let end = Circumstances { time_us: 120_000, ..STEERED };
+        let mut before = 0;
+        while let Some(received) = lockstep.take(&end) {
+            before += usize::from(received.origin.peer == other);
+            lockstep.charge(received.origin.peer, Duration::from_micros(50));
+        }
+        assert_eq!(lockstep.limit_us(), Some(140_000), "the set-point has begun the next period");
+        assert!(before <= 3, "{before} messages of the other took effect before it");
     }
 
     #[test]

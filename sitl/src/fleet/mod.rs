@@ -10,9 +10,11 @@
 
 mod books;
 mod clock;
+mod held;
 mod lockstep;
 mod member;
 mod parameter_file;
+mod reception;
 mod roster;
 mod signing_keeper;
 

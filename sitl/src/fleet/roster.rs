@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use autopilot::codec::{id, target_of};
+use autopilot::codec::id;
 use autopilot::envelope::{Destination, Outgoing};
 use vehicle::Severity;
 
@@ -11,22 +11,23 @@ use super::Member;
 use super::books::Books;
 use super::lockstep::{Lockstep, Step};
 use super::parameter_file::ParameterFile;
+use super::reception::Reception;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, FileLock, LogFolder};
 use crate::flight_log::FlightLog;
-use crate::link::{Links, Received};
-use crate::terminal::set_simulation_time;
+use crate::link::Links;
 
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]
 pub struct Fleet {
-    members: Vec<Member>,
-    hubs: Vec<Links>,
+    pub(super) members: Vec<Member>,
+    pub(super) hubs: Vec<Links>,
     /// One for each hub.
-    signing: Vec<SigningKeeper>,
-    books: Books,
+    pub(super) signing: Vec<SigningKeeper>,
+    pub(super) books: Books,
+    pub(super) reception: Reception,
     /// The key's files are those of this process.
     _key_lock: Option<FileLock>,
 }
@@ -67,7 +68,8 @@ impl Fleet {
                 Ok(member.keep(files, log).keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Self { members, hubs, signing, books, _key_lock: key_lock })
+        let reception = Reception::new(hubs.len());
+        Ok(Self { members, hubs, signing, books, reception, _key_lock: key_lock })
     }
 
     /// The vehicles.
@@ -83,58 +85,6 @@ impl Fleet {
     /// The links.
     pub fn hubs(&self) -> &[Links] {
         &self.hubs
-    }
-
-    /// Gives everything that has come to the vehicles that it is for: one, or all behind the link.
-    pub(crate) fn receive(&mut self, now: Instant) {
-        for hub in 0..self.hubs.len() {
-            let Some(links) = self.hubs.get_mut(hub) else { continue };
-            let received = links.receive(now);
-            self.keep_signing(hub, now);
-            for received in received {
-                self.books.keep_size(&self.members);
-                let target = target_of(&received.frame).system;
-                let mut logged = false;
-                for number in 0..self.members.len() {
-                    let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
-                        continue;
-                    };
-                    let time_us = member.time_us();
-                    set_simulation_time(time_us);
-                    if !std::mem::replace(&mut logged, true) {
-                        self.books.traffic(time_us, &received.frame);
-                    }
-                    if target == 0 || target == member.autopilot.system_id() {
-                        member.hear(&received.frame, now);
-                        match &mut member.lockstep {
-                            Some(lockstep) => lockstep.put(received.clone()),
-                            None => self.take_in(number, &received, now),
-                        }
-                    }
-                }
-            }
-        }
-        self.take_held(now);
-    }
-
-    /// A message takes effect on a vehicle.
-    fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
-        let Some(member) = self.members.get_mut(number) else { return };
-        self.books.received(number, member.time_us(), received);
-        member.autopilot.receive(&received.origin, &received.frame);
-        self.send(number, now);
-    }
-
-    /// Messages that lock-step has held take effect if it is time.
-    fn take_held(&mut self, now: Instant) {
-        for number in 0..self.members.len() {
-            while let Some(received) = self.members.get_mut(number).and_then(|member| {
-                let circumstances = member.circumstances();
-                member.lockstep.as_mut()?.take(&circumstances)
-            }) {
-                self.take_in(number, &received, now);
-            }
-        }
     }
 
     /// Simulation time that lock-step lets these vehicles reach now, µs.
@@ -180,28 +130,6 @@ impl Fleet {
             self.send(number, now);
         }
         expected
-    }
-
-    /// Keeps what has changed about signing at a hub before it takes effect, and tells it to those behind it. A key is
-    /// the same everywhere.
-    fn keep_signing(&mut self, hub: usize, now: Instant) {
-        let (Some(links), Some(keeper)) = (self.hubs.get_mut(hub), self.signing.get_mut(hub)) else {
-            return;
-        };
-        let said = keeper.update(links, now);
-        if said.new_key {
-            let key = links.signing().key().cloned();
-            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone(), 0));
-        }
-        for (severity, text) in said.lines {
-            for number in 0..self.members.len() {
-                let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
-                    continue;
-                };
-                member.autopilot.announce(severity, &text);
-                self.send(number, now);
-            }
-        }
     }
 
     /// A tick of one vehicle.

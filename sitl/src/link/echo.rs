@@ -1,6 +1,7 @@
 //! Frames that come again by another way.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use autopilot::codec::Frame;
@@ -8,29 +9,54 @@ use autopilot::envelope::PeerId;
 
 /// A frame that comes again within this time by another way is the same frame.
 const LATEST: Duration = Duration::from_millis(500);
-/// Frames that are remembered: each is compared with all of them, and a flood must not keep the vehicle from flying.
-const MOST: usize = 1024;
+/// Frames of each peer that are remembered: a flood makes the sender's own frames forgotten, and nobody else's.
+const MOST: usize = 512;
+
+/// Frames of a peer with the times when they came, oldest first.
+type Order = VecDeque<(Arc<[u8]>, Instant)>;
 
 /// Frames that have come lately, and from whom.
 #[derive(Debug, Default)]
-pub struct Echoes(VecDeque<(Vec<u8>, PeerId, Instant)>);
+pub struct Echoes {
+    /// From whom a frame has come, and when it came from there last.
+    seen: HashMap<Arc<[u8]>, (PeerId, Instant)>,
+    order: BTreeMap<PeerId, Order>,
+}
 
 impl Echoes {
     /// Whether a frame has come lately from another peer.
-    pub fn has(&mut self, frame: &Frame, from: PeerId, now: Instant) -> bool {
-        while self.0.front().is_some_and(|(_, _, when)| now.saturating_duration_since(*when) > LATEST) {
-            self.0.pop_front();
-        }
-        self.0.iter().any(|(seen, by, _)| *by != from && seen == frame.bytes())
+    pub fn has(&self, frame: &Frame, from: PeerId, now: Instant) -> bool {
+        let seen = self.seen.get(frame.bytes());
+        seen.is_some_and(|(by, when)| *by != from && is_lately(*when, now))
     }
 
-    /// Remembers a frame; the oldest makes room.
+    /// Remembers a frame that is no echo; the oldest of its peer makes room.
     pub fn remember(&mut self, frame: &Frame, from: PeerId, now: Instant) {
-        if self.0.len() >= MOST {
-            self.0.pop_front();
+        let order = self.order.entry(from).or_default();
+        while order.len() >= MOST || order.front().is_some_and(|(_, when)| !is_lately(*when, now)) {
+            let Some((oldest, when)) = order.pop_front() else { break };
+            // It may have come again since.
+            if self.seen.get(&oldest) == Some(&(from, when)) {
+                self.seen.remove(&oldest);
+            }
         }
-        self.0.push_back((frame.bytes().to_vec(), from, now));
+        let bytes: Arc<[u8]> = frame.bytes().into();
+        order.push_back((Arc::clone(&bytes), now));
+        self.seen.insert(bytes, (from, now));
     }
+
+    /// A peer is gone.
+    pub fn forget(&mut self, peer: PeerId) {
+        for (frame, _) in self.order.remove(&peer).into_iter().flatten() {
+            if self.seen.get(&frame).is_some_and(|(by, _)| *by == peer) {
+                self.seen.remove(&frame);
+            }
+        }
+    }
+}
+
+fn is_lately(when: Instant, now: Instant) -> bool {
+    now.saturating_duration_since(when) <= LATEST
 }
 
 #[cfg(test)]
@@ -50,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn echoes_are_known_for_a_while_and_a_flood_is_bounded() {
+    fn echoes_are_known_for_a_while() {
         let [one, other] = [1, 2].map(|number| PeerId { link: 0, number });
         let now = Instant::now();
         let mut echoes = Echoes::default();
@@ -59,8 +85,29 @@ mod tests {
         assert!(!echoes.has(&frame(0), one, now), "who repeats itself is heard again");
         assert!(!echoes.has(&frame(1), other, now));
         assert!(!echoes.has(&frame(0), other, now + 2 * LATEST));
+        // What has come again counts from then.
+        echoes.remember(&frame(0), one, now + LATEST);
+        echoes.remember(&frame(1), one, now + LATEST * 3 / 2);
+        assert!(echoes.has(&frame(0), other, now + 2 * LATEST));
+    }
+
+    #[test]
+    fn a_flood_is_bounded_and_makes_no_one_elses_frames_forgotten() {
+        let [one, other] = [1, 2].map(|number| PeerId { link: 0, number });
+        let now = Instant::now();
+        let mut echoes = Echoes::default();
+        echoes.remember(&frame(u64::MAX), other, now);
         (0..2 * MOST as u64).for_each(|number| echoes.remember(&frame(number), one, now));
-        assert_eq!(echoes.0.len(), MOST);
+        assert_eq!((echoes.seen.len(), echoes.order[&one].len()), (MOST + 1, MOST));
         assert!(echoes.has(&frame(2 * MOST as u64 - 1), other, now) && !echoes.has(&frame(0), other, now));
+        assert!(echoes.has(&frame(u64::MAX), one, now));
+        echoes.remember(&frame(7), one, now + 2 * LATEST);
+        assert_eq!(
+            (echoes.seen.len(), echoes.order[&one].len()),
+            (2, 1),
+            "what is old goes when the peer speaks"
+        );
+        [one, other].into_iter().for_each(|peer| echoes.forget(peer));
+        assert!(echoes.seen.is_empty() && echoes.order.is_empty());
     }
 }

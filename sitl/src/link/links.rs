@@ -1,21 +1,25 @@
-//! All links: receiving, sending, and forwarding from one peer to the others.
+//! All links: receiving in turns, sending, and forwarding from one peer to the others.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use autopilot::COMPONENT;
 use autopilot::codec::{Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 
 use super::echo::Echoes;
-use super::endpoint::{Endpoint, LinkSpecification};
+use super::endpoint::LinkSpecification;
 use super::error::LinkError;
+use super::forwarding::Forwarding;
+use super::open::open;
 use super::peer::Peer;
 use super::signing_setup::SigningSetup;
-use super::tcp::Tcp;
 use super::transport::{Event, Transport};
-use super::udp::Udp;
+use super::turns::Turns;
 use crate::signing::Signing;
+
+/// Peers of a link that are gone and have left something that is not handled yet; the oldest makes room.
+const MOST_DEPARTED: usize = 32;
 
 /// A received frame.
 #[derive(Clone, Debug)]
@@ -24,6 +28,33 @@ pub struct Received {
     pub origin: Origin,
     /// The frame.
     pub frame: Frame,
+}
+
+/// A piece of work for one peer.
+#[derive(Clone, Debug)]
+pub struct Turn {
+    /// Whose turn it is.
+    pub peer: PeerId,
+    /// The frame that was received and accepted, and is forwarded already; `None`: there was none among the bytes of this turn.
+    pub received: Option<Received>,
+}
+
+/// What was lost because more came than can be handled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lost {
+    /// Datagrams for which the inbox of their sender had no room.
+    pub datagrams: u64,
+    /// Frames beyond the share that their sender may have forwarded.
+    pub forwards: u64,
+}
+
+impl std::fmt::Display for Lost {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let counts = [(self.datagrams, "datagrams"), (self.forwards, "forwarded frames")];
+        let words =
+            counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        write!(formatter, "dropped {}", words.collect::<Vec<_>>().join(", "))
+    }
 }
 
 #[derive(Debug)]
@@ -38,9 +69,30 @@ pub struct Links {
     /// Our systems.
     systems: Vec<u8>,
     links: Vec<Link>,
+    turns: Turns<PeerId>,
+    /// Number of pieces that have come, which says what came first.
+    arrivals: u64,
     echoes: Echoes,
+    forwarding: Forwarding,
+    lost: Lost,
     signing: Signing,
     setups: Vec<SigningSetup>,
+}
+
+impl Link {
+    /// A peer is gone: its own is forgotten once what it has sent is handled. Returns who is forgotten now.
+    fn depart(&mut self, number: u64, now: Instant) -> Option<u64> {
+        let peer = self.peers.get_mut(&number)?;
+        peer.departed = true;
+        let idle = peer.inbox.waiting(now).is_none();
+        let mut departed = self.peers.iter().filter(|(_, peer)| peer.departed).map(|(number, _)| *number);
+        let oldest = departed.next();
+        let forgotten =
+            if idle { Some(number) } else { oldest.filter(|_| departed.count() >= MOST_DEPARTED) };
+        forgotten.inspect(|number| {
+            self.peers.remove(number);
+        })
+    }
 }
 
 impl Links {
@@ -52,16 +104,24 @@ impl Links {
         let links = specifications
             .iter()
             .map(|specification| {
-                Ok(Link { transport: transport(&specification.endpoint)?, peers: BTreeMap::new() })
+                Ok(Link { transport: open(&specification.endpoint)?, peers: BTreeMap::new() })
             })
             .collect::<Result<_, LinkError>>()?;
-        Ok(Self {
+        Ok(Self::of(links, systems))
+    }
+
+    fn of(links: Vec<Link>, systems: Vec<u8>) -> Self {
+        Self {
             systems,
             links,
+            turns: Turns::default(),
+            arrivals: 0,
             echoes: Echoes::default(),
+            forwarding: Forwarding::default(),
+            lost: Lost::default(),
             signing: Signing::default(),
             setups: Vec::new(),
-        })
+        }
     }
 
     /// Signs and verifies from now on.
@@ -92,50 +152,76 @@ impl Links {
 
     /// Number of peers that have sent something.
     pub fn active_peers(&self) -> usize {
-        self.links.iter().flat_map(|link| link.peers.values()).filter(|peer| peer.has_spoken()).count()
+        let peers = self.links.iter().flat_map(|link| link.peers.values());
+        peers.filter(|peer| peer.has_spoken() && !peer.departed).count()
     }
 
-    /// Frames that were received and accepted; they are already forwarded to the peers they are for.
-    pub fn receive(&mut self, now: Instant) -> Vec<Received> {
-        let mut received = self.poll(now);
-        received.retain(|received| self.is_accepted(received, now));
-        for received in &received {
-            self.forward(received);
-        }
-        received
+    /// What was lost so far.
+    pub fn lost(&self) -> Lost {
+        self.lost
     }
 
-    fn poll(&mut self, now: Instant) -> Vec<Received> {
-        let mut received = Vec::new();
+    /// Takes what has come into the inboxes of the peers. Of a stream, no more than there is room for is read, so that its
+    /// sender has to wait; datagrams are always read, and lost if there is no room, so that they keep nobody else's out.
+    pub fn poll(&mut self, now: Instant) {
         for (index, link) in self.links.iter_mut().enumerate() {
-            let mut take = |number: u64, frames: Vec<Frame>| {
-                for frame in frames {
-                    let peer = PeerId { link: index, number };
-                    let origin = Origin { peer, system: frame.system(), component: frame.component() };
-                    received.push(Received { origin, frame });
-                }
-            };
-            for event in link.transport.poll(now) {
+            let Link { transport, peers } = link;
+            let room = |number| peers.get(&number).map_or(usize::MAX, |peer| peer.inbox.room());
+            let events = transport.poll(now, &room);
+            let stream = !transport.is_datagram();
+            for event in events {
                 match event {
                     Event::Opened(number) => {
                         link.peers.insert(number, Peer::default());
                     }
                     Event::Closed(number) => {
-                        link.peers.remove(&number);
+                        if let Some(number) = link.depart(number, now) {
+                            self.echoes.forget(PeerId { link: index, number });
+                        }
                     }
                     Event::Bytes(number, bytes) => {
-                        let peer = link.peers.entry(number).or_default();
-                        let frames = peer.frames(&bytes, link.transport.is_datagram(), now);
-                        take(number, frames);
+                        self.arrivals += 1;
+                        let inbox = &mut link.peers.entry(number).or_default().inbox;
+                        if !inbox.put(bytes, stream, self.arrivals, now) {
+                            self.lost.datagrams += 1;
+                        }
                     }
                 }
             }
-            for (number, peer) in &mut link.peers {
-                let frames = peer.overdue(now);
-                take(*number, frames);
-            }
         }
-        received
+    }
+
+    /// Handles a bounded part of what waits in the inboxes: a frame at most. `None`: nothing waits of those who may have a
+    /// turn. What the turn has cost, with all that it led to, is the caller's to charge.
+    pub fn take_turn(&mut self, now: Instant, may: impl Fn(PeerId) -> bool) -> Option<Turn> {
+        let waiting = self.links.iter().enumerate().flat_map(|(link, own)| {
+            own.peers.iter().filter_map(move |(number, peer)| {
+                Some((PeerId { link, number: *number }, peer.inbox.waiting(now)?))
+            })
+        });
+        let id = self.turns.next(waiting.filter(|(peer, _)| may(*peer)))?;
+        let peers = &mut self.links.get_mut(id.link)?.peers;
+        let peer = peers.get_mut(&id.number)?;
+        let frame = peer.inbox.decode(now);
+        let left = peer.departed && peer.inbox.waiting(now).is_none();
+        let received = frame.and_then(|frame| {
+            let origin = Origin { peer: id, system: frame.system(), component: frame.component() };
+            let received = Received { origin, frame };
+            self.is_accepted(&received, now).then_some(received)
+        });
+        if let Some(received) = &received {
+            self.forward(received, now);
+        }
+        if left {
+            self.links.get_mut(id.link)?.peers.remove(&id.number);
+            self.echoes.forget(id);
+        }
+        Some(Turn { peer: id, received })
+    }
+
+    /// A turn has cost this much.
+    pub fn charge(&mut self, peer: PeerId, cost: Duration) {
+        self.turns.charge(peer, cost);
     }
 
     /// Whether a frame goes on from here. What is refused teaches nothing about who sent it.
@@ -182,18 +268,23 @@ impl Links {
     }
 
     /// Passes a frame on to the peers that lead to its target, unless it is for one of ours alone.
-    fn forward(&mut self, received: &Received) {
+    fn forward(&mut self, received: &Received, now: Instant) {
         let target = target_of(&received.frame);
         if self.systems.contains(&target.system) {
             return;
         }
         let from = received.origin.peer;
+        let mut allowed = None;
         for (index, link) in self.links.iter_mut().enumerate() {
             for (number, peer) in &link.peers {
                 let itself = from == PeerId { link: index, number: *number };
                 // What has never spoken cannot be known not to be the sender itself, by another way.
                 if !itself && peer.has_spoken() && peer.leads_to(target.system) {
-                    link.transport.send(*number, received.frame.bytes());
+                    if !*allowed.get_or_insert_with(|| self.forwarding.allows(from, now)) {
+                        self.lost.forwards += 1;
+                        return;
+                    }
+                    link.transport.forward(*number, received.frame.bytes());
                 }
             }
         }
@@ -210,7 +301,7 @@ impl Links {
                     Destination::Link(link) => link == index,
                     Destination::Peer(id) => id == PeerId { link: index, number: *number },
                 };
-                if !wanted {
+                if !wanted || peer.departed {
                     continue;
                 }
                 // MAVLink 1 has no signatures.
@@ -231,7 +322,8 @@ impl Links {
     /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
     pub fn has_room(&self, peer: PeerId) -> Option<bool> {
         let link = self.links.get(peer.link)?;
-        link.peers.contains_key(&peer.number).then(|| link.transport.has_room(peer.number))
+        let connected = link.peers.get(&peer.number).is_some_and(|peer| !peer.departed);
+        connected.then(|| link.transport.has_room(peer.number))
     }
 
     /// Sends what is waiting.
@@ -242,51 +334,24 @@ impl Links {
     }
 }
 
-fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
-    let text = endpoint.to_string();
-    Ok(match endpoint {
-        Endpoint::UdpOut { host, port, local_port } => {
-            // To this machine from this machine; else from whichever of its addresses leads there.
-            let loopback = super::udp::resolve(host, *port, &text)?.ip().is_loopback();
-            let local = if loopback { "127.0.0.1" } else { "0.0.0.0" };
-            Box::new(Udp::open((local, *local_port), Some((host, *port)), &text)?)
-        }
-        Endpoint::UdpIn { host, port } => Box::new(Udp::open((host, *port), None, &text)?),
-        Endpoint::TcpIn { host, port } => Box::new(Tcp::open((host, *port), &text)?),
-        #[cfg(unix)]
-        Endpoint::Serial { path, baud } => Box::new(super::serial::Serial::open(path, *baud, &text)?),
-        #[cfg(not(unix))]
-        Endpoint::Serial { path, .. } => {
-            return Err(LinkError::Device {
-                path: path.display().to_string(),
-                link: text,
-                source: std::io::Error::new(
-                    std::io::ErrorKind::Unsupported,
-                    "serial links need a Unix system",
-                ),
-            });
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
     use std::sync::{Arc, Mutex};
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
+    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA, SYSTEM_TIME_DATA};
 
-    use super::{Echoes, Link, Links};
+    use super::{Link, Links, Lost, Received};
     use crate::link::SigningSetup;
     use crate::link::transport::{Event, Transport};
     use crate::signing::{SecretKey, Signing};
     use autopilot::codec::{Frame, Message, Version};
-    use autopilot::envelope::{Destination, Outgoing};
+    use autopilot::envelope::{Destination, Outgoing, PeerId};
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 
-    /// A link whose two ends are lists.
+    /// A link whose two ends are lists. An empty piece ends the peer's connection.
     #[derive(Debug)]
     struct Ends {
         inward: Bytes,
@@ -295,9 +360,11 @@ mod tests {
     }
 
     impl Transport for Ends {
-        fn poll(&mut self, _now: Instant) -> Vec<Event> {
+        fn poll(&mut self, _now: Instant, _room: &dyn Fn(u64) -> usize) -> Vec<Event> {
             let mut waiting = self.inward.lock().expect("one thread");
-            waiting.drain(..).map(|bytes| Event::Bytes(1, bytes)).collect()
+            let event =
+                |bytes: Vec<u8>| if bytes.is_empty() { Event::Closed(1) } else { Event::Bytes(1, bytes) };
+            waiting.drain(..).map(event).collect()
         }
 
         fn send(&mut self, _peer: u64, bytes: &[u8]) {
@@ -328,9 +395,14 @@ mod tests {
             transport: Box::new(Ends { inward: inward.clone(), outward: outward.clone(), local }),
             peers: BTreeMap::new(),
         };
-        let links = vec![of(&ends[0], true), of(&ends[1], false)];
-        let (echoes, signing, setups) = (Echoes::default(), Signing::default(), Vec::new());
-        (Links { systems: vec![1], links, echoes, signing, setups }, ends)
+        (Links::of(vec![of(&ends[0], true), of(&ends[1], false)], vec![1]), ends)
+    }
+
+    /// All frames that have come and are accepted.
+    fn receive(links: &mut Links) -> Vec<Received> {
+        let now = Instant::now();
+        links.poll(now);
+        std::iter::from_fn(|| links.take_turn(now, |_| true)).filter_map(|turn| turn.received).collect()
     }
 
     fn frame(message: MavMessage, system: u8) -> Frame {
@@ -356,7 +428,7 @@ mod tests {
         let (mut links, [near, far]) = links();
         let mut receive = |end: &(Bytes, Bytes), frame: &Frame| {
             end.0.lock().expect("one thread").push(frame.bytes().to_vec());
-            let received = links.receive(Instant::now());
+            let received = receive(&mut links);
             (received.len(), links.take_setups(), links.signing().is_on())
         };
         // Both ends have spoken: what one sends is forwarded to the other.
@@ -391,14 +463,14 @@ mod tests {
         let sign = |frame: Frame, timestamp| frame.sign(0, timestamp, |bytes| key.tag(bytes));
         put(&near, &sign(heartbeat(255), 9));
         put(&far, &heartbeat(254));
-        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert_eq!(receive(&mut links).len(), 1);
         assert_eq!(links.active_peers(), 1);
         put(&near, &sign(heartbeat(255), 10));
-        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert_eq!(receive(&mut links).len(), 1);
         assert!(far.1.lock().expect("one thread").is_empty(), "who was refused is not forwarded to");
         put(&far, &sign(heartbeat(254), 11));
         put(&far, &sign(heartbeat(254), 11));
-        assert_eq!(links.receive(Instant::now()).len(), 1);
+        assert_eq!(receive(&mut links).len(), 1);
         assert_eq!(near.1.lock().expect("one thread").len(), 1, "forwarded once, as it came");
         assert_eq!(links.signing().counts().to_string(), "1 unsigned, 1 replayed");
 
@@ -413,5 +485,92 @@ mod tests {
         });
         assert_eq!(sent.map(|signature| signature.link), [0, 1]);
         assert!(sent[0].timestamp < sent[1].timestamp);
+    }
+
+    fn put(end: &(Bytes, Bytes), bytes: &[u8]) {
+        end.0.lock().expect("one thread").push(bytes.to_vec());
+    }
+
+    /// Number of the link of the next frames, each of which costs as much as a redesign.
+    fn served(links: &mut Links, turns: usize) -> Vec<usize> {
+        let now = Instant::now();
+        let served = (0..turns).filter_map(|_| {
+            let turn = links.take_turn(now, |_| true)?;
+            links.charge(turn.peer, Duration::from_micros(1_500));
+            turn.received.map(|received| received.origin.peer.link)
+        });
+        served.collect()
+    }
+
+    /// Frames from a system that are no repetitions of one another.
+    fn different(system: u8, count: u64) -> Vec<u8> {
+        let message = |time_unix_usec| SYSTEM_TIME_DATA { time_unix_usec, time_boot_ms: 0 };
+        (0..count).flat_map(|n| frame(MavMessage::SYSTEM_TIME(message(n)), system).bytes().to_vec()).collect()
+    }
+
+    #[test]
+    fn a_message_does_not_wait_behind_those_of_another_peer() {
+        let (mut links, [flood, quiet]) = links();
+        put(&flood, &different(254, 1_000));
+        links.poll(Instant::now());
+        assert_eq!(served(&mut links, 3), [0; 3]);
+        put(&quiet, heartbeat(255).bytes());
+        links.poll(Instant::now());
+        assert_eq!(served(&mut links, 2), [1, 0]);
+        // Both want more than they get: they get the same.
+        put(&quiet, &different(255, 1_000));
+        links.poll(Instant::now());
+        let served = served(&mut links, 100);
+        let share = served.iter().filter(|link| **link == 1).count();
+        assert!((49..=51).contains(&share), "{share} of {}", served.len());
+        // A peer that may not have a turn now keeps what it has, and no one waits for it.
+        let turn = links.take_turn(Instant::now(), |peer| peer.link == 1).expect("more waits");
+        assert_eq!(turn.peer.link, 1);
+    }
+
+    #[test]
+    fn an_inbox_is_bounded_and_what_is_lost_is_counted() {
+        let (mut links, [flood, quiet]) = links();
+        (0..9).for_each(|_| put(&flood, &different(254, 4_000)));
+        put(&quiet, heartbeat(255).bytes());
+        links.poll(Instant::now());
+        assert_eq!(links.lost(), Lost { datagrams: 7, forwards: 0 });
+        assert_eq!(links.lost().to_string(), "dropped 7 datagrams");
+        let handled = receive(&mut links);
+        assert_eq!(handled.iter().filter(|received| received.origin.peer.link == 0).count(), 8_000);
+        assert!(handled.iter().any(|received| received.origin.peer.link == 1));
+    }
+
+    #[test]
+    fn what_a_flood_has_forwarded_is_bounded() {
+        let (mut links, [flood, quiet]) = links();
+        put(&quiet, heartbeat(255).bytes());
+        assert_eq!(receive(&mut links).len(), 1);
+        put(&flood, &different(254, 2_000));
+        // The vehicle itself hears all.
+        assert_eq!(receive(&mut links).len(), 2_000);
+        let forwarded = quiet.1.lock().expect("one thread").len() as u64;
+        assert_eq!(links.lost(), Lost { datagrams: 0, forwards: 2_000 - forwarded });
+        assert!((100..1_000).contains(&forwarded), "{forwarded}");
+    }
+
+    #[test]
+    fn what_a_peer_has_sent_before_it_left_is_still_handled() {
+        let (mut links, [end, _]) = links();
+        put(&end, &[heartbeat(255).bytes(), heartbeat(254).bytes()].concat());
+        put(&end, &[]);
+        links.poll(Instant::now());
+        let peer = PeerId { link: 0, number: 1 };
+        assert_eq!((links.has_room(peer), links.active_peers()), (None, 0), "it has left");
+        assert_eq!(receive(&mut links).len(), 2);
+        assert!(links.links.iter().all(|link| link.peers.is_empty()), "and is forgotten");
+        // Those who come, say something and go are bounded, too.
+        let now = Instant::now();
+        let link = &mut links.links[0];
+        for number in 0..100 {
+            link.peers.entry(number).or_default().inbox.put(vec![0], true, 0, now);
+            link.depart(number, now);
+        }
+        assert_eq!(link.peers.len(), super::MOST_DEPARTED);
     }
 }

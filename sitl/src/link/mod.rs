@@ -3,18 +3,23 @@
 mod echo;
 mod endpoint;
 mod error;
+mod forwarding;
+mod inbox;
 mod links;
+mod open;
 mod peer;
 #[cfg(unix)]
 mod serial;
 mod signing_setup;
 mod tcp;
 mod transport;
+mod turns;
 mod udp;
 
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
-pub use links::{Links, Received};
+pub use links::{Links, Lost, Received, Turn};
 pub use signing_setup::SigningSetup;
 pub(crate) use transport::is_nothing_yet;
+pub(crate) use turns::Turns;
 pub(crate) use udp::resolve;

@@ -1,9 +1,10 @@
-//! A peer: its stream of frames, protocol version and systems.
+//! A peer: its inbox, protocol version and systems.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 
-use autopilot::codec::{Frame, FrameDecoder, Version};
+use autopilot::codec::{Frame, Version};
+
+use super::inbox::Inbox;
 
 /// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
 /// and change when they hear version 2.
@@ -11,15 +12,13 @@ const OLD_FRAMES: u8 = 3;
 /// Systems behind one peer that are remembered.
 const MOST_SEEN: usize = 64;
 
-/// An incomplete frame is given up after this long a silence: the longest one takes 50 ms on a slow serial line.
-const SILENCE: Duration = Duration::from_millis(200);
-
 /// A peer.
 #[derive(Clone, Debug, Default)]
 pub struct Peer {
-    /// Its stream of bytes.
-    decoder: FrameDecoder,
-    last_bytes: Option<Instant>,
+    /// What it has sent and nobody has looked at yet.
+    pub inbox: Inbox,
+    /// Whether it is gone, and only what it sent before is left to be looked at.
+    pub departed: bool,
     /// Number of the next frame to it, from each of our systems: each peer sees flows of its own.
     pub sequences: BTreeMap<u8, u8>,
     old_frames: u8,
@@ -28,18 +27,6 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Frames that received bytes complete.
-    pub fn frames(&mut self, bytes: &[u8], datagram: bool, now: Instant) -> Vec<Frame> {
-        self.last_bytes = Some(now);
-        if datagram { self.decoder.datagram(bytes) } else { self.decoder.push(bytes) }
-    }
-
-    /// Frames after the start of a frame that never ended.
-    pub fn overdue(&mut self, now: Instant) -> Vec<Frame> {
-        let silent = self.last_bytes.is_some_and(|last| now.saturating_duration_since(last) > SILENCE);
-        if silent && self.decoder.waiting_bytes() > 0 { self.decoder.give_up() } else { Vec::new() }
-    }
-
     /// Learns version and sender from a frame.
     pub fn learn(&mut self, frame: &Frame) {
         self.old_frames = match frame.version() {

@@ -55,14 +55,15 @@ impl Serial {
 }
 
 impl Transport for Serial {
-    fn poll(&mut self, _now: Instant) -> Vec<Event> {
+    fn poll(&mut self, _now: Instant, room: &dyn Fn(u64) -> usize) -> Vec<Event> {
         let mut events = Vec::new();
         if !std::mem::replace(&mut self.opened, true) {
             events.push(Event::Opened(PEER));
         }
         let mut bytes = Vec::new();
         let mut piece = [0; 1024];
-        while bytes.len() < MOST_READ {
+        let most = room(PEER).min(MOST_READ);
+        while bytes.len() + piece.len() <= most {
             // Nothing yet, or the other half of a pseudo-terminal is not open (yet, or again).
             match self.device.read(&mut piece) {
                 Ok(length) if length > 0 => bytes.extend_from_slice(piece.get(..length).unwrap_or_default()),
@@ -78,6 +79,12 @@ impl Transport for Serial {
     fn send(&mut self, _peer: u64, bytes: &[u8]) {
         if self.waiting.len() + bytes.len() <= MOST_WAITING {
             self.waiting.extend_from_slice(bytes);
+        }
+    }
+
+    fn forward(&mut self, peer: u64, bytes: &[u8]) {
+        if self.waiting.len() <= MOST_WAITING / 2 {
+            self.send(peer, bytes);
         }
     }
 

@@ -60,11 +60,11 @@ impl Tcp {
 }
 
 impl Client {
-    /// Bytes that have come; `None` when the client is gone.
-    fn read(&mut self) -> Option<Vec<u8>> {
+    /// Bytes that have come, no more than there is room for; `None` when the client is gone.
+    fn read(&mut self, room: usize) -> Option<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut piece = [0; 4096];
-        while bytes.len() < MOST_READ {
+        while bytes.len() + piece.len() <= room.min(MOST_READ) {
             match self.stream.read(&mut piece) {
                 Ok(0) => return (!bytes.is_empty()).then_some(bytes),
                 Ok(length) => bytes.extend_from_slice(piece.get(..length).unwrap_or_default()),
@@ -93,12 +93,12 @@ impl Client {
 }
 
 impl Transport for Tcp {
-    fn poll(&mut self, _now: Instant) -> Vec<Event> {
+    fn poll(&mut self, _now: Instant, room: &dyn Fn(u64) -> usize) -> Vec<Event> {
         let mut events = Vec::new();
         while let Some(number) = self.accept() {
             events.push(Event::Opened(number));
         }
-        self.clients.retain(|number, client| match client.read() {
+        self.clients.retain(|number, client| match client.read(room(*number)) {
             Some(bytes) => {
                 if !bytes.is_empty() {
                     events.push(Event::Bytes(*number, bytes));
@@ -119,6 +119,12 @@ impl Transport for Tcp {
             if client.waiting.len() + bytes.len() <= MOST_WAITING {
                 client.waiting.extend_from_slice(bytes);
             }
+        }
+    }
+
+    fn forward(&mut self, peer: u64, bytes: &[u8]) {
+        if self.clients.get(&peer).is_some_and(|client| client.waiting.len() <= MOST_WAITING / 2) {
+            self.send(peer, bytes);
         }
     }
 

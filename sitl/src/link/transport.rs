@@ -15,11 +15,17 @@ pub enum Event {
 
 /// Carries bytes to and from peers, which it numbers; never blocks.
 pub trait Transport: std::fmt::Debug {
-    /// Events since the last call.
-    fn poll(&mut self, now: Instant) -> Vec<Event>;
+    /// Events since the last call. `room` says how many bytes of a peer there is room for: of a stream no more are read,
+    /// so that its sender has to wait.
+    fn poll(&mut self, now: Instant, room: &dyn Fn(u64) -> usize) -> Vec<Event>;
 
     /// Sends a whole frame to a peer. If the peer's buffer is full, the frame is lost.
     fn send(&mut self, peer: u64, bytes: &[u8]);
+
+    /// Sends somebody else's frame to a peer: it leaves room for our own.
+    fn forward(&mut self, peer: u64, bytes: &[u8]) {
+        self.send(peer, bytes);
+    }
 
     /// Whether a peer has room for more than the telemetry.
     fn has_room(&self, _peer: u64) -> bool {

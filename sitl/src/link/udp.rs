@@ -11,8 +11,9 @@ use super::transport::{Event, Numbers, Transport, is_nothing_yet};
 const EXPIRY: Duration = Duration::from_secs(60);
 /// Peers of one socket; the one that has been silent longest makes room.
 const MOST_PEERS: usize = 32;
-/// Datagrams of one look: a flood must not keep the vehicle from flying.
+/// Datagrams and bytes of one look: a flood must not keep the vehicle from flying.
 const MOST_DATAGRAMS: usize = 512;
+const MOST_BYTES: usize = 1 << 20;
 /// The largest MAVLink frame has 280 bytes; some senders put several into a datagram.
 const DATAGRAM: usize = 65_536;
 
@@ -86,13 +87,17 @@ pub fn resolve(host: &str, port: u16, link: &str) -> Result<SocketAddr, LinkErro
 }
 
 impl Transport for Udp {
-    fn poll(&mut self, now: Instant) -> Vec<Event> {
+    fn poll(&mut self, now: Instant, _room: &dyn Fn(u64) -> usize) -> Vec<Event> {
         let mut events = std::mem::take(&mut self.fresh);
-        for _ in 0..MOST_DATAGRAMS {
+        let (mut datagrams, mut bytes_read) = (0, 0);
+        // What there is no room for is read as well: it must not keep those of other peers out of the socket.
+        while datagrams < MOST_DATAGRAMS && bytes_read < MOST_BYTES {
+            datagrams += 1;
             match self.socket.recv_from(&mut self.buffer) {
                 Ok((length, address)) => {
                     let number = self.number_of(address, now, false);
                     events.append(&mut self.fresh);
+                    bytes_read += length;
                     let bytes = self.buffer.get(..length).unwrap_or_default().to_vec();
                     events.push(Event::Bytes(number, bytes));
                 }

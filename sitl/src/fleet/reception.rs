@@ -1,0 +1,216 @@
+//! Received messages take effect on the vehicles, within a budget of time, so that the flight and all that is regular go on
+//! whatever comes.
+//!
+//! ```text
+//!            poll                a turn: decode, verify,          a turn
+//!   sockets ──────► an inbox ─────────────────────────────► held ────────► a vehicle
+//!                   of each peer  forward, log              in lock-step
+//! ```
+//!
+//! The turns of a hub go to its peers by the time that each has used; see [`crate::link`].
+
+use std::time::{Duration, Instant};
+
+use autopilot::codec::target_of;
+use vehicle::Severity;
+
+use super::Fleet;
+use crate::link::{Lost, Received};
+use crate::terminal::set_simulation_time;
+
+/// What one look at the links may take; a turn that has begun then is ended.
+const BUDGET: Duration = Duration::from_millis(2);
+/// Of that for taking bytes from the sockets.
+const POLLING: Duration = Duration::from_millis(1);
+/// What the peers of one hub get before another hub is next.
+const SHARE: Duration = Duration::from_micros(100);
+/// Lost messages are announced this often.
+const TOLD: Duration = Duration::from_secs(5);
+
+/// Where reception goes on, and what has been told of it.
+#[derive(Debug)]
+pub struct Reception {
+    /// The hub whose sockets are next.
+    polled: usize,
+    /// The hub whose peers are next.
+    served: usize,
+    /// The vehicle whose held messages are next.
+    released: usize,
+    /// What was told of each hub.
+    told: Vec<Lost>,
+    told_at: Option<Instant>,
+}
+
+impl Reception {
+    /// Of this many hubs.
+    pub fn new(hubs: usize) -> Self {
+        Self { polled: 0, served: 0, released: 0, told: vec![Lost::default(); hubs], told_at: None }
+    }
+}
+
+impl Fleet {
+    /// Gives what has come to the vehicles that it is for: one, or all behind the link. What the budget is not enough for
+    /// waits until the next look.
+    pub(crate) fn receive(&mut self, now: Instant) {
+        let start = Instant::now();
+        let hubs = self.hubs.len();
+        for _ in 0..hubs {
+            let hub = self.reception.polled;
+            self.reception.polled = (hub + 1) % hubs;
+            if let Some(links) = self.hubs.get_mut(hub) {
+                links.poll(now);
+            }
+            if start.elapsed() >= POLLING {
+                break;
+            }
+        }
+        for hub in 0..hubs {
+            self.keep_signing(hub, now);
+        }
+        self.tell_lost(now);
+        let mut idle = 0;
+        while idle < hubs {
+            let hub = self.reception.served;
+            self.reception.served = (hub + 1) % hubs;
+            idle = if self.serve(hub, now, start + BUDGET) { 0 } else { idle + 1 };
+            if start.elapsed() >= BUDGET {
+                break;
+            }
+        }
+    }
+
+    /// Turns of the peers of a hub, for a share of the time. Whether there was anything to do.
+    fn serve(&mut self, hub: usize, now: Instant, end: Instant) -> bool {
+        let end = end.min(Instant::now() + SHARE);
+        let mut served = false;
+        loop {
+            // What has come may only be held, and what is held may have to wait for what comes.
+            let (admitted, took_effect) = (self.admit(hub, now), self.release(hub, now));
+            if !admitted && !took_effect {
+                return served;
+            }
+            served = true;
+            if Instant::now() >= end {
+                return true;
+            }
+        }
+    }
+
+    /// A turn of a peer of a hub. Whether one was due.
+    fn admit(&mut self, hub: usize, now: Instant) -> bool {
+        let start = Instant::now();
+        let Some(links) = self.hubs.get_mut(hub) else { return false };
+        let locksteps = || self.members.iter().filter(|member| member.hub == hub);
+        let turn = links.take_turn(now, |peer| {
+            !locksteps().any(|member| member.lockstep.as_ref().is_some_and(|step| step.is_full(peer)))
+        });
+        let Some(turn) = turn else { return false };
+        // What signing must remember is kept before what it has accepted takes effect.
+        self.keep_signing(hub, now);
+        if let Some(received) = turn.received {
+            self.distribute(hub, &received, now);
+        }
+        if let Some(links) = self.hubs.get_mut(hub) {
+            links.charge(turn.peer, start.elapsed());
+        }
+        true
+    }
+
+    /// A message reaches the vehicles behind a hub that it is for.
+    fn distribute(&mut self, hub: usize, received: &Received, now: Instant) {
+        self.books.keep_size(&self.members);
+        let target = target_of(&received.frame).system;
+        let mut logged = false;
+        for number in 0..self.members.len() {
+            let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+                continue;
+            };
+            let time_us = member.time_us();
+            set_simulation_time(time_us);
+            if !std::mem::replace(&mut logged, true) {
+                self.books.traffic(time_us, &received.frame);
+            }
+            if target == 0 || target == member.autopilot.system_id() {
+                member.hear(&received.frame, now);
+                match &mut member.lockstep {
+                    Some(lockstep) => lockstep.put(received.clone()),
+                    None => self.take_in(number, received, now),
+                }
+            }
+        }
+    }
+
+    /// A message that lock-step has held takes effect on a vehicle of a hub for which it is time. Whether there was one.
+    fn release(&mut self, hub: usize, now: Instant) -> bool {
+        let start = Instant::now();
+        let members = self.members.len();
+        for offset in 0..members {
+            let number = (self.reception.released + offset) % members;
+            let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+                continue;
+            };
+            let circumstances = member.circumstances();
+            let held = member.lockstep.as_mut().and_then(|lockstep| lockstep.take(&circumstances));
+            let Some(received) = held else { continue };
+            self.reception.released = number + 1;
+            self.take_in(number, &received, now);
+            let lockstep = self.members.get_mut(number).and_then(|member| member.lockstep.as_mut());
+            lockstep.into_iter().for_each(|step| step.charge(received.origin.peer, start.elapsed()));
+            return true;
+        }
+        false
+    }
+
+    /// A message takes effect on a vehicle.
+    fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
+        let Some(member) = self.members.get_mut(number) else { return };
+        self.books.received(number, member.time_us(), received);
+        member.autopilot.receive(&received.origin, &received.frame);
+        self.send(number, now);
+    }
+
+    /// Keeps what has changed about signing at a hub before it takes effect, and tells it to those behind it. A key is
+    /// the same everywhere.
+    fn keep_signing(&mut self, hub: usize, now: Instant) {
+        let (Some(links), Some(keeper)) = (self.hubs.get_mut(hub), self.signing.get_mut(hub)) else {
+            return;
+        };
+        let said = keeper.update(links, now);
+        if said.new_key {
+            let key = links.signing().key().cloned();
+            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone(), 0));
+        }
+        for (severity, text) in said.lines {
+            self.announce(hub, severity, &text, now);
+        }
+    }
+
+    /// Says that messages were lost, if there are more than were told, and it is time.
+    fn tell_lost(&mut self, now: Instant) {
+        if self.reception.told_at.is_some_and(|told| now.saturating_duration_since(told) < TOLD) {
+            return;
+        }
+        for hub in 0..self.hubs.len() {
+            let (Some(links), Some(told)) = (self.hubs.get(hub), self.reception.told.get_mut(hub)) else {
+                continue;
+            };
+            let lost = links.lost();
+            if std::mem::replace(told, lost) == lost {
+                continue;
+            }
+            self.reception.told_at = Some(now);
+            self.announce(hub, Severity::Warning, &format!("Links overloaded: {lost}"), now);
+        }
+    }
+
+    /// Tells something to all behind a hub.
+    fn announce(&mut self, hub: usize, severity: Severity, text: &str, now: Instant) {
+        for number in 0..self.members.len() {
+            let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+                continue;
+            };
+            member.autopilot.announce(severity, text);
+            self.send(number, now);
+        }
+    }
+}
