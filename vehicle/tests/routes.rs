@@ -175,7 +175,8 @@ fn a_detour_stays_within_the_greatest_distance() {
     assert_eq!(searched(&within(24.5), [0.0, 0.0], [24.0, 0.0]).0, None);
 }
 
-/// As many circles as a fence can have, far away, in the way, and without a gap: all of them are looked at, in bounded slices.
+/// As many areas as a fence can have: far away, with gaps, with narrow ones, with none so that the way leads around all of them, and
+/// one comb. A slice takes about a millisecond; the bounds are twice what was measured.
 #[test]
 fn the_largest_fences_are_searched_in_slices() {
     let grid = |spacing: f64, radius: f64| -> Vec<Zone> {
@@ -186,32 +187,23 @@ fn the_largest_fences_are_searched_in_slices() {
     let comb: Vec<Place> = (0..249)
         .flat_map(|tooth: u32| {
             let x = f64::from(tooth) - 125.0;
-            if tooth % 2 == 0 { [[x, -60.0], [x, 55.0]] } else { [[x, 55.0], [x, -60.0]] }
+            if tooth.is_multiple_of(2) { [[x, -60.0], [x, 55.0]] } else { [[x, 55.0], [x, -60.0]] }
         })
         .chain([[125.0, 60.0], [-126.0, 60.0]])
         .collect();
     let far: Vec<Zone> = (0..500).map(|index| circle([5000.0 + f64::from(index), 0.0], 3.0, false)).collect();
-    for (name, zones, most_slices, passes) in [
-        ("far", [far, vec![circle([0.0, 0.0], 10.0, false)]].concat(), 1, true),
-        ("grid", grid(12.0, 3.0), 400, true),
-        ("narrow", grid(12.0, 5.2), 1500, true),
-        ("closed", grid(12.0, 6.1), 4000, false),
-        ("comb", vec![polygon(&comb, false)], 4000, true),
+    for (name, zones, most_slices) in [
+        ("far", [far, vec![circle([0.0, 0.0], 10.0, false)]].concat(), 1),
+        ("grid", grid(12.0, 3.0), 210),
+        ("narrow", grid(12.0, 5.2), 2000),
+        ("closed", grid(12.0, 6.1), 2000),
+        ("comb", vec![polygon(&comb, false)], 25),
     ] {
         let zones = Zones { zones, return_m: None };
         let (start, goal) = ([-140.0, -131.0], [140.0, 134.0]);
-        let begun = std::time::Instant::now();
         let (way, slices) = searched(&fence(&zones), start, goal);
-        println!(
-            "{name}: {slices} slices, {:?}, {:?}",
-            begun.elapsed(),
-            way.as_ref().map(|way| (way.len(), length_m(start, way)))
-        );
-        assert_eq!(way.is_some(), passes || name == "closed", "{name}");
         assert!(slices <= most_slices, "{name}: {slices} slices");
-        if let Some(way) = way {
-            assert_eq!(breach(&fence(&zones), start, &way), None, "{name}");
-        }
+        assert_eq!(breach(&fence(&zones), start, &way.expect(name)), None, "{name}");
     }
 }
 

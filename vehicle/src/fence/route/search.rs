@@ -1,10 +1,11 @@
 //! The search for a way, in slices.
 
+use nalgebra::Vector3;
+
 use super::super::{Fence, Zones};
 use super::corners::{Corner, around, inside};
 use super::graph::Graph;
 use super::ground::Ground;
-use nalgebra::Vector3;
 
 /// So far off the areas a way leads, m: where that leaves none, the next.
 const CLEARANCES_M: [f64; 2] = [2.0, 0.5];
