@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::Bench;
+use common::{Bench, settings};
 use mavlink::dialects::common::{
     AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
     SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
@@ -314,7 +314,7 @@ fn the_thrust_that_hovers_is_told() {
         (Identity::Px4, "MPC_THR_HOVER", 1.1),
         (Identity::ArduPilot, "MOT_THST_HOVER", 0.7),
     ] {
-        let mut settings = common::settings(identity);
+        let mut settings = settings(identity);
         settings.configuration.airframe.mass_kg = mass_kg;
         let mut bench = Bench::hovering_with(&settings);
         bench.fly(5.0);
