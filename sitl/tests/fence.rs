@@ -207,6 +207,59 @@ fn fence_status(bench: &Bench) -> FENCE_STATUS_DATA {
     told.expect("FENCE_STATUS")
 }
 
+/// Many circles, near and far: the way back keeps its distance from all of them. Without any way it lands where it is.
+#[test]
+fn a_return_keeps_out_of_many_exclusions_or_lands() {
+    let mut start = settings(Identity::Px4);
+    start.conduct.return_height_m = 12.0;
+    let mut circles: Vec<([f64; 2], f64)> = Vec::new();
+    for index in 0..60 {
+        let (row, column) = (f64::from(index / 10), f64::from(index % 10));
+        // Rows that are staggered, in the way; and some far away.
+        circles.push(([12.0 + 10.0 * row, 10.0 * column - 45.0 + 5.0 * (row % 2.0)], 2.5));
+        circles.push(([2000.0 + 10.0 * row, 10.0 * column], 2.5));
+    }
+    let fence = circles
+        .iter()
+        .map(|(centre, radius)| item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, *radius, *centre));
+    let mut bench = hovering(&start, fence.collect(), Vec::new());
+    // There it is led around the rows.
+    for (north, east) in [(0.0, 70.0), (80.0, 70.0), (80.0, 3.0)] {
+        there(&mut bench, north, east);
+    }
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    let (mut nearest, mut slowest) = (f64::INFINITY, 0);
+    for step in 0..1800 {
+        bench.fly(0.1);
+        let position = bench.autopilot.vehicle().truth().position_m;
+        for ([north, east], radius) in &circles {
+            nearest = nearest.min((position.x - north).hypot(position.y - east) - radius);
+        }
+        if bench.autopilot.vehicle().is_armed() {
+            slowest = step;
+        }
+    }
+    assert!(nearest > 1.5, "{nearest} m from a circle");
+    assert!(slowest < 1500 && bench.position()[0].hypot(bench.position()[1]) < 0.5, "{:?}", bench.position());
+
+    // A ring around it.
+    let ring = (0..24).map(|index| {
+        let angle = f64::from(index) * std::f64::consts::TAU / 24.0;
+        let centre = [60.0 + 20.0 * angle.cos(), 20.0 * angle.sin()];
+        item(&start, command::NAV_FENCE_CIRCLE_EXCLUSION, 4.0, centre)
+    });
+    let ring: Vec<_> = ring.collect();
+    let mut bench = hovering(&start, Vec::new(), Vec::new());
+    there(&mut bench, 60.0, 0.0);
+    bench.heard = upload(&mut bench, PlanKind::Fence, &ring);
+    assert_eq!(result(&bench.heard), Some(0));
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    bench.fly_until("landing", 60.0, |bench| !bench.autopilot.vehicle().is_armed());
+    let told = "No route home around the fence: landing here";
+    assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
+    assert!((bench.position()[0] - 60.0).hypot(bench.position()[1]) < 1.0, "{:?}", bench.position());
+}
+
 /// Full stick northwards against a circle of 20 m. Returns how far it came within some seconds.
 fn push(bench: &mut Bench, seconds: f64) -> f64 {
     assert_eq!(bench.set_mode(Mode::Position), 0);

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::Bench;
+use common::{Bench, settings};
 use mavlink::dialects::common::{
     AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
     SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
@@ -270,6 +270,42 @@ fn attitude_and_thrust_lean_and_rates_turn() {
     assert!(bench.autopilot.vehicle().outputs().velocity_m_s.norm() < 0.1);
 }
 
+/// Full thrust leaves room for the attitude, whatever it is and in wind, too.
+#[test]
+fn an_attitude_is_kept_at_full_thrust() {
+    for (roll_deg, pitch_deg, wind_m_s) in [(20.0_f32, 0.0_f32, 0.0), (0.0, -20.0, 0.0), (-14.0, 14.0, 12.0)]
+    {
+        let mut start = settings(Identity::Px4);
+        start.wind.speed_m_s = wind_m_s;
+        let mut bench = Bench::hovering_with(&start);
+        bench.fly(5.0);
+        let (roll, pitch) = (roll_deg.to_radians() / 2.0, pitch_deg.to_radians() / 2.0);
+        let target = MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+            target_system: 1,
+            target_component: 1,
+            type_mask: AttitudeTargetTypemask::from_bits_retain(0b111),
+            // Pitch, then roll, without yaw.
+            q: [
+                pitch.cos() * roll.cos(),
+                pitch.cos() * roll.sin(),
+                pitch.sin() * roll.cos(),
+                -pitch.sin() * roll.sin(),
+            ],
+            thrust: 1.0,
+            ..SET_ATTITUDE_TARGET_DATA::default()
+        });
+        bench.send(target.clone());
+        assert_eq!(bench.set_mode(Mode::Offboard), 0);
+        bench.stream(3.0, |bench| bench.send(target.clone()));
+        let truth = bench.autopilot.vehicle().truth();
+        let angles_deg = truth.attitude_rad.map(f64::to_degrees);
+        let told = format!("{roll_deg}° {pitch_deg}° in {wind_m_s} m/s: {angles_deg}");
+        assert!((angles_deg.x - f64::from(roll_deg)).abs() < 2.0, "{told}");
+        assert!((angles_deg.y - f64::from(pitch_deg)).abs() < 2.0, "{told}");
+        assert!(truth.velocity_m_s.z < -10.0, "it climbs: {}", truth.velocity_m_s);
+    }
+}
+
 /// Whatever the mass: the parameter and ATTITUDE_TARGET tell the thrust that hovers, and a set-point with it does.
 #[test]
 fn the_thrust_that_hovers_is_told() {
@@ -278,7 +314,7 @@ fn the_thrust_that_hovers_is_told() {
         (Identity::Px4, "MPC_THR_HOVER", 1.1),
         (Identity::ArduPilot, "MOT_THST_HOVER", 0.7),
     ] {
-        let mut settings = common::settings(identity);
+        let mut settings = settings(identity);
         settings.configuration.airframe.mass_kg = mass_kg;
         let mut bench = Bench::hovering_with(&settings);
         bench.fly(5.0);

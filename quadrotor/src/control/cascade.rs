@@ -10,7 +10,9 @@ use crate::control::attitude_controller::AttitudeController;
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
-use crate::design::controller_limits::{COMMANDED_TILT_SHARE, attitude_bounds, largest_tilt, thrust_range_n};
+use crate::design::controller_limits::{
+    COMMANDED_TILT_SHARE, attitude_bounds, largest_tilt, least_thrust_n, thrust_range_n,
+};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
 use crate::guidance::ramp::Ramp;
@@ -182,6 +184,8 @@ impl Cascade {
         let rate = turned(&reference, &next) / period_s;
 
         let thrust_n = thrust(configuration, now.1, upright(&seen.body));
+        // The altitude controller leaves the torques their reserve itself: its thrust is kept.
+        let thrust_n = (thrust_n, thrust_n);
         self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n, time_us)
     }
 
@@ -197,17 +201,19 @@ impl Cascade {
         let (phi, theta, _) = target.attitude.euler_angles();
         self.tilt_reference_rad = [phi, theta];
         let reference = (&target.attitude, &target.body_rate_rad_s);
-        self.command_rotors(configuration, design, seen, reference, target.thrust_n, time_us)
+        let thrust_n = (target.thrust_n, least_thrust_n(configuration, upright(&seen.body).max(UPRIGHT)));
+        self.command_rotors(configuration, design, seen, reference, thrust_n, time_us)
     }
 
-    /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N.
+    /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N, which may be
+    /// reduced for the torques to a least one, N.
     fn command_rotors(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
         reference: (&UnitQuaternion<f64>, &Vector3<f64>),
-        thrust_n: f64,
+        (thrust_n, least_thrust_n): (f64, f64),
         time_us: u64,
     ) -> [f64; 4] {
         let period_us = configuration.controllers.attitude.sample_time_us;
@@ -219,14 +225,14 @@ impl Cascade {
             design,
             &seen.rotation(),
             reference,
-            &attitude_bounds(&configuration.airframe, &design.mixer, thrust_n, &gyroscopic),
+            &attitude_bounds(&design.mixer, (thrust_n, least_thrust_n), &gyroscopic),
             interval_s(&mut self.sampled.attitude_us, time_us, period_us),
         );
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
         let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
-        let rotor_command_rad_s = design.mixer.rotor_speeds_rad_s(&wanted);
+        let rotor_command_rad_s = design.mixer.rotor_speeds_rad_s(&wanted, least_thrust_n);
         let made = wrench_of_rotors(&configuration.airframe, &rotor_command_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);

@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix4;
 
+use crate::control::largest_share::{Bound, largest_share};
 use crate::{Airframe, ConfigurationError, Wrench};
 
 /// From thrust and torques to rotor speeds, for one airframe.
@@ -22,8 +23,16 @@ pub struct Mixer {
 /// A rotor with a smaller share in the yaw has none.
 const NO_YAW: f64 = 1e-100;
 
-/// A bound on the yaw y, N, under a share s of the tilt: y ≥ s·size − room, or y ≤ room − s·size.
-type Bound = (f64, f64);
+/// Largest share of the rotors' range by which the thrust is reduced for the yaw torque. At full thrust the heading stays
+/// controllable, and turning costs little of the climb.
+const YAW_HEADROOM: f64 = 0.15;
+
+/// A bound on the yaw y, N, under a share s of the tilt, while the mean thrust gives way by g:
+/// y ≥ s·size − room − gain·g, or y ≤ room + gain·g − s·size.
+type YawBound = Bound;
+
+/// Bounds on the share of the tilt: what is left of those on the yaw.
+const TILT_BOUNDS: usize = 24;
 
 impl Mixer {
     /// For an airframe.
@@ -45,24 +54,31 @@ impl Mixer {
 
     /// The inverse of (1) within the rotors' speed limits: speeds in the order of the airframe's layout, rad/s.
     ///
-    /// What does not fit is given up in this order: the yaw torque first, then the roll and pitch torques
-    /// together (their direction is kept). The thrust is kept, clamped to what the rotors can do; no rotor
-    /// pulls backwards.
-    pub fn rotor_speeds_rad_s(&self, wanted: &Wrench) -> [f64; 4] {
+    /// At the upper end of the rotors' range attitude comes before thrust. What does not fit is given up in this order:
+    ///
+    /// 1. Yaw torque, except for what fits when the thrust gives way by 15 % of the rotors' range.
+    /// 2. Thrust, as far as the roll and pitch torques need it, down to the middle of the rotors' range, where they have the
+    ///    most room, or down to `least_thrust_n` if that is more.
+    /// 3. The roll and pitch torques together, so that their direction is kept.
+    ///
+    /// Below the middle the thrust is kept and the torques give way: thrust is never raised, except to the least that the rotors
+    /// make. No rotor pulls backwards.
+    pub fn rotor_speeds_rad_s(&self, wanted: &Wrench, least_thrust_n: f64) -> [f64; 4] {
         let (weakest, strongest) = self.range_n;
         // Thrust of each rotor: F/4 + tilt ± yaw
-        let mean = (wanted.thrust_n / 4.0).clamp(weakest, strongest);
         let roll = wanted.torque_n_m.x / self.arm_length_m;
         let pitch = wanted.torque_n_m.y / self.arm_length_m;
         let tilt = self.tilting.map(|[by_roll, by_pitch]| by_roll * roll + by_pitch * pitch);
         let yaw = wanted.torque_n_m.z * self.thrust_coefficient_n_s2 / (4.0 * self.torque_coefficient_n_m_s2);
+        let mean = (wanted.thrust_n / 4.0).clamp(weakest, strongest);
+        let mean = mean - self.given(mean, self.most_given(mean, least_thrust_n), &tilt, yaw);
 
-        let (below, above) = (mean - weakest, strongest - mean);
-        let (least, most) = self.bounds(&tilt, below, above);
-        let share = tilting_share(&least, &most, (yaw.min(0.0), yaw.max(0.0)));
+        let (least, most) = self.yaw_bounds(&tilt, mean);
+        let (share, _) = largest_share(&tilt_bounds(&least, &most, yaw), 0.0);
         // What is left for yaw: all four rotors within their range. Rounding may cross the two bounds.
-        let least = least.iter().map(|(size, room)| share * size - room).fold(f64::NEG_INFINITY, f64::max);
-        let most = most.iter().map(|(size, room)| room - share * size).fold(f64::INFINITY, f64::min);
+        let least =
+            least.iter().map(|bound| share * bound.size - bound.room).fold(f64::NEG_INFINITY, f64::max);
+        let most = most.iter().map(|bound| bound.room - share * bound.size).fold(f64::INFINITY, f64::min);
         let yaw = yaw.min(most).max(least.min(most));
 
         // ω = √(thrust / k₁)
@@ -72,16 +88,65 @@ impl Mixer {
         })
     }
 
-    /// Bounds that the rotors' ranges put on the yaw from below and from above, when each may lose `below` and gain
-    /// `above`. A rotor that makes no yaw bounds the tilt alone: its bounds are far away for any tilt that fits.
-    fn bounds(&self, tilt: &[f64; 4], below: f64, above: f64) -> ([Bound; 4], [Bound; 4]) {
+    /// By how much the mean thrust, N, may give way: to the middle of the range, where the room for torques is largest, or to the
+    /// least one.
+    fn most_given(&self, mean: f64, least_thrust_n: f64) -> f64 {
+        let (weakest, strongest) = self.range_n;
+        (mean - f64::midpoint(weakest, strongest).max(least_thrust_n / 4.0)).max(0.0)
+    }
+
+    /// By how much of `most` the mean thrust, N, gives way to the torques: first to roll and pitch, then to yaw.
+    fn given(&self, mean: f64, most: f64, tilt: &[f64; 4], yaw: f64) -> f64 {
+        if most <= 0.0 {
+            return 0.0;
+        }
+        let (weakest, strongest) = self.range_n;
+        let (least_yaw, most_yaw) = self.yaw_bounds(tilt, mean);
+        let (share, to_tilt) = largest_share(&tilt_bounds(&least_yaw, &most_yaw, yaw), most);
+        // f_min ≤ mean − g + s·tilt + t·yaw ≤ f_max for every rotor, t the share of the yaw
+        let mean = mean - to_tilt;
+        let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
+        let bounds: [Bound; 8] = core::array::from_fn(|index| {
+            let (rotor, above) = (index % 4, index < 4);
+            let (level, turning) = (mean + share * tilt[rotor], self.turning[rotor] * yaw);
+            if above {
+                Bound { size: turning, room: strongest - level, gain: 1.0 }
+            } else {
+                Bound { size: -turning, room: level - weakest, gain: -1.0 }
+            }
+        });
+        let (_, to_yaw) = largest_share(&bounds, headroom);
+        to_tilt + to_yaw
+    }
+
+    /// Bounds that the rotors' ranges put on the yaw from below and from above, under a mean thrust, N. A rotor that makes no
+    /// yaw bounds the tilt alone: its bounds are far away for any tilt that fits.
+    fn yaw_bounds(&self, tilt: &[f64; 4], mean: f64) -> ([YawBound; 4], [YawBound; 4]) {
+        let (weakest, strongest) = self.range_n;
         let bound = |rotor: usize, from_below: bool| {
             let (tilt, turning) = (tilt[rotor], self.turning[rotor]);
             let size = libm::fabs(turning).max(NO_YAW);
-            let (tilt, room) = if (turning > 0.0) == from_below { (-tilt, below) } else { (tilt, above) };
-            (tilt / size, room / size)
+            let (tilt, room, gain) = if (turning > 0.0) == from_below {
+                (-tilt, mean - weakest, -1.0)
+            } else {
+                (tilt, strongest - mean, 1.0)
+            };
+            YawBound { size: tilt / size, room: room / size, gain: gain / size }
         };
         (core::array::from_fn(|rotor| bound(rotor, true)), core::array::from_fn(|rotor| bound(rotor, false)))
+    }
+
+    /// Largest roll, pitch and yaw torques, N·m, each for itself, when a thrust, N, is asked for that is reduced for them to
+    /// the least one, N, if need be.
+    pub(crate) fn available_torques_n_m(&self, thrust_n: f64, least_thrust_n: f64) -> [f64; 3] {
+        let (weakest, strongest) = self.range_n;
+        let mean = (thrust_n / 4.0).clamp(weakest, strongest);
+        let room = |mean: f64| (mean - weakest).min(strongest - mean);
+        let to_tilt = self.most_given(mean, least_thrust_n);
+        let to_yaw = to_tilt.min(YAW_HEADROOM * (strongest - weakest));
+        let [roll, pitch, _] = self.largest_torques_n_m(room(mean - to_tilt));
+        let [_, _, yaw] = self.largest_torques_n_m(room(mean - to_yaw));
+        [roll, pitch, yaw]
     }
 
     /// Largest roll, pitch and yaw torques, N·m, each for itself, when each rotor may differ from the mean by `room_n`.
@@ -93,27 +158,14 @@ impl Mixer {
     }
 }
 
-/// Largest s ≤ 1 for which s times the tilt fits together with some share of the yaw, whose thrusts lie between
-/// `yaw.0` ≤ 0 and `yaw.1` ≥ 0: no bound from below may cross one from above, nor the other end of the yaw.
-fn tilting_share(least: &[Bound; 4], most: &[Bound; 4], yaw: (f64, f64)) -> f64 {
-    let mut share: f64 = 1.0;
-    let mut keep = |size: f64, room: f64| {
-        if size > 0.0 {
-            share = share.min(room / size);
-        }
-    };
-    for (size, room) in least {
-        keep(*size, room + yaw.1);
-    }
-    for (size, room) in most {
-        keep(*size, room - yaw.0);
-    }
-    for (size, room) in least {
-        for (other_size, other_room) in most {
-            keep(size + other_size, room + other_room);
-        }
-    }
-    share
+/// Bounds on the share of the tilt that fits together with some share of the yaw, N: no bound on the yaw from below may cross
+/// one from above, nor the other end of the yaw.
+fn tilt_bounds(least: &[YawBound; 4], most: &[YawBound; 4], yaw: f64) -> [Bound; TILT_BOUNDS] {
+    core::array::from_fn(|index| match index {
+        0..4 => Bound { room: least[index].room + yaw.max(0.0), ..least[index] },
+        4..8 => Bound { room: most[index - 4].room - yaw.min(0.0), ..most[index - 4] },
+        _ => least[(index - 8) / 4].joined(most[index % 4]),
+    })
 }
 
 #[cfg(test)]
@@ -130,33 +182,47 @@ mod tests {
         fn map_and_inverse_agree_inside_the_limits(speeds in prop::array::uniform4(50.0..450.0)) {
             let airframe = Airframe::default();
             let wrench = wrench_of_rotors(&airframe, &speeds);
-            let again = Mixer::new(&airframe).expect("a mixer").rotor_speeds_rad_s(&wrench);
+            let again = Mixer::new(&airframe).expect("a mixer").rotor_speeds_rad_s(&wrench, 0.0);
             for (speed, repeated) in speeds.iter().zip(again) {
                 prop_assert!((speed - repeated).abs() < 1e-6, "{speeds:?} became {again:?}");
             }
         }
 
-        /// Whatever is asked, no rotor leaves its range, the thrust is kept as far as it exists, and the
-        /// roll and pitch torques keep their direction.
+        /// Whatever is asked, no rotor leaves its range, thrust gives way at the upper end only, and the roll and pitch
+        /// torques keep their direction.
         #[test]
-        fn saturation_gives_up_yaw_then_roll_and_pitch(
-            thrust in -50.0..60.0, x in -5.0..5.0, y in -5.0..5.0, z in -2.0..2.0, layout in 0..3_usize,
+        fn saturation_gives_up_yaw_then_thrust_then_roll_and_pitch(
+            thrust in -50.0..60.0, least in 0.0..25.0, x in -5.0..5.0, y in -5.0..5.0, z in -2.0..2.0,
+            layout in 0..3_usize,
         ) {
             let layout = [RotorLayout::plus(), RotorLayout::x(), RotorLayout::h(1.5)][layout];
             let airframe = Airframe { layout, ..Airframe::default() };
             let (weakest, strongest) = airframe.thrust_range_n();
             let wanted = Wrench { thrust_n: thrust, torque_n_m: Vector3::new(x, y, z) };
             let mixer = Mixer::new(&airframe).expect("a mixer");
-            let speeds = mixer.rotor_speeds_rad_s(&wanted);
+            let made_of = |wanted: &Wrench, least: f64| {
+                wrench_of_rotors(&airframe, &mixer.rotor_speeds_rad_s(wanted, least))
+            };
+            let speeds = mixer.rotor_speeds_rad_s(&wanted, least);
             for speed in speeds {
                 prop_assert!((50.0 - 1e-9..=450.0 + 1e-9).contains(&speed));
             }
             let made = wrench_of_rotors(&airframe, &speeds);
-            prop_assert!((made.thrust_n - thrust.clamp(weakest, strongest)).abs() < 1e-9);
+            // Thrust is never raised, and reduced no further than allowed.
+            let middle = f64::midpoint(weakest, strongest);
+            let asked = thrust.clamp(weakest, strongest);
+            prop_assert!(made.thrust_n <= asked + 1e-9);
+            prop_assert!(made.thrust_n >= asked.min(middle.max(least)) - 1e-9);
+            // What is asked for above the middle costs no roll or pitch that there would be at the least thrust.
+            let level = |thrust_n: f64| Wrench { thrust_n, torque_n_m: Vector3::new(x, y, 0.0) };
+            let roomiest = made_of(&level(asked.min(middle.max(least))), least);
+            prop_assert!(made.torque_n_m.xy().norm() >= roomiest.torque_n_m.xy().norm() - 1e-9);
+            // Without roll and pitch, yaw costs no more than its headroom.
+            let turning = made_of(&Wrench { torque_n_m: Vector3::new(0.0, 0.0, z), ..wanted }, least);
+            prop_assert!(turning.thrust_n >= asked - 0.15 * (strongest - weakest) - 1e-9);
 
             // Yaw never costs roll and pitch anything.
-            let level = Wrench { torque_n_m: Vector3::new(x, y, 0.0), ..wanted };
-            let without_yaw = wrench_of_rotors(&airframe, &mixer.rotor_speeds_rad_s(&level));
+            let without_yaw = made_of(&level(thrust), least);
             prop_assert!(made.torque_n_m.xy().norm() >= without_yaw.torque_n_m.xy().norm() - 1e-9);
             // Roll and pitch are scaled by one factor in [0, 1].
             let share = made.torque_n_m.xy().norm() / wanted.torque_n_m.xy().norm();
@@ -167,6 +233,20 @@ mod tests {
             // Nothing is given up while there is room: some rotor is at a limit, or all is delivered.
             let at_limit = speeds.iter().any(|speed| (speed - 50.0).abs() < 1e-6 || (speed - 450.0).abs() < 1e-6);
             prop_assert!(at_limit || (made.torque_n_m - wanted.torque_n_m).norm() < 1e-9);
+            prop_assert!(at_limit || (made.thrust_n - asked).abs() < 1e-9);
+        }
+
+        /// The torques that are said to be available are made, each for itself, and no more of yaw and thrust is lost.
+        #[test]
+        fn available_torques_are_made(thrust in 0.0..25.0, least in 0.0..25.0, axis in 0..3_usize) {
+            let airframe = Airframe::default();
+            let mixer = Mixer::new(&airframe).expect("a mixer");
+            let available = mixer.available_torques_n_m(thrust, least);
+            let mut torque_n_m = Vector3::zeros();
+            torque_n_m[axis] = 100.0;
+            let speeds = mixer.rotor_speeds_rad_s(&Wrench { thrust_n: thrust, torque_n_m }, least);
+            let made = wrench_of_rotors(&airframe, &speeds).torque_n_m[axis];
+            prop_assert!((made - available[axis]).abs() < 1e-9, "{made} {available:?}");
         }
 
         /// The map and its inverse agree for whatever layout is balanced and can make every torque.
@@ -185,7 +265,7 @@ mod tests {
             let airframe = Airframe { layout: RotorLayout { rotors }, ..Airframe::default() };
             if let Ok(mixer) = Mixer::new(&airframe) {
                 let wrench = wrench_of_rotors(&airframe, &speeds);
-                let again = mixer.rotor_speeds_rad_s(&wrench);
+                let again = mixer.rotor_speeds_rad_s(&wrench, 0.0);
                 for (speed, repeated) in speeds.iter().zip(again) {
                     prop_assert!((speed - repeated).abs() < 1e-6, "{speeds:?} became {again:?}");
                 }

@@ -11,6 +11,7 @@ pub(crate) mod control_state;
 pub(crate) mod estimator;
 pub(crate) mod governor;
 pub(crate) mod instants;
+mod largest_share;
 pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;

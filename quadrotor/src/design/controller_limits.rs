@@ -10,7 +10,7 @@ use crate::design::capacities::{
     ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
 };
 use crate::design::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
-use crate::{Airframe, Configuration, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
+use crate::{Configuration, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -113,21 +113,16 @@ pub(crate) fn attitude_limits(settings: &ControllerSettings<3>) -> Vec<Limit> {
     [Limit::range(Quantity::Input, 3, placed(settings, ATTITUDE))].into()
 }
 
-/// Values of [`attitude_limits`]: what the rotors can do about each axis alone when they make the thrust
-/// `thrust_n`, beside the torque `other_n_m` that they make anyway.
+/// Values of [`attitude_limits`]: what the rotors can do about each axis alone under a thrust, N, that may be reduced to
+/// a least one, N, beside the torque `other_n_m` that they make anyway.
 ///
 /// Each axis for itself: what the mixer does when they add up (roll and pitch first) no convex limit tells.
 pub(crate) fn attitude_bounds(
-    airframe: &Airframe,
     mixer: &Mixer,
-    thrust_n: f64,
+    (thrust_n, least_thrust_n): (f64, f64),
     other_n_m: &Vector3<f64>,
 ) -> [f64; ATTITUDE_BOUNDS] {
-    let (weakest, strongest) = airframe.thrust_range_n();
-    let mean = thrust_n.clamp(weakest, strongest);
-    // By how much each rotor may differ from the mean.
-    let room = (mean - weakest).min(strongest - mean) / 4.0;
-    let most = mixer.largest_torques_n_m(room);
+    let most = mixer.available_torques_n_m(thrust_n, least_thrust_n);
     core::array::from_fn(|bound| {
         let axis = bound % 3;
         if bound < 3 { most[axis] - other_n_m[axis] } else { most[axis] + other_n_m[axis] }
@@ -137,6 +132,13 @@ pub(crate) fn attitude_bounds(
 /// The largest tilt as |a|/g when the thrust axis may lean by `tilt_rad` under the vertical acceleration G.
 pub(crate) fn largest_tilt(tilt_rad: f64, vertical_m_s2: f64) -> f64 {
     libm::tan(tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0) / GRAVITY_M_S2
+}
+
+/// Thrust, N, that an attitude target keeps whatever its torques need: what holds the altitude at a tilt of the given cosine, as
+/// far as the altitude controller may use it.
+pub(crate) fn least_thrust_n(configuration: &Configuration, upright: f64) -> f64 {
+    let (_, strongest) = configuration.airframe.thrust_range_n();
+    (configuration.believed_mass_kg() * GRAVITY_M_S2 / upright).min(USABLE_THRUST_SHARE * strongest)
 }
 
 /// Smallest and largest thrust that the altitude controller asks for, N.

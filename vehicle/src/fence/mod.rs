@@ -13,6 +13,6 @@ mod zones;
 
 pub use breach::{Breach, Fence};
 pub use polygon::{Polygon, PolygonFault};
-pub use route::route_m;
+pub use route::{Progress, RouteSearch};
 pub use zone::{Shape, Zone};
 pub use zones::Zones;

@@ -6,12 +6,18 @@ pub struct Polygon {
     corners: Vec<[f64; 2]>,
 }
 
+/// Narrower than this, m, it encloses nothing that a place could be told to be in.
+const NARROWEST_M: f64 = 0.1;
+
 /// Why corners are no polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolygonFault {
     /// Fewer than three.
     #[error("a polygon needs at least 3 corners, not {0}")]
     TooFew(usize),
+    /// All corners are on one line, or nearly.
+    #[error("all corners lie on one line; it must be at least {NARROWEST_M} m wide")]
+    Flat,
     /// Two sides cross or touch; sides are numbered by their first corners.
     #[error("sides {0} and {1} cross")]
     Crossing(usize, usize),
@@ -28,6 +34,9 @@ impl Polygon {
             return Err(PolygonFault::TooFew(count));
         }
         let polygon = Self { corners };
+        if polygon.width_m() < NARROWEST_M {
+            return Err(PolygonFault::Flat);
+        }
         let sides: Vec<Side> = polygon.sides().collect();
         for (first, one) in sides.iter().enumerate() {
             for (second, other) in sides.iter().enumerate().skip(first + 1) {
@@ -39,6 +48,22 @@ impl Polygon {
             }
         }
         Ok(polygon)
+    }
+
+    /// Width across the line from the first corner to the farthest one, m.
+    fn width_m(&self) -> f64 {
+        let first = self.corners.first().copied().unwrap_or_default();
+        let length = |corner: &[f64; 2]| libm::hypot(corner[0] - first[0], corner[1] - first[1]);
+        let farthest =
+            self.corners.iter().copied().max_by(|one, other| length(one).total_cmp(&length(other)));
+        let farthest = farthest.unwrap_or(first);
+        let length_m = length(&farthest);
+        if length_m == 0.0 {
+            return 0.0;
+        }
+        let aside = self.corners.iter().map(|corner| turn(first, farthest, *corner) / length_m);
+        let (least, most) = aside.fold((0.0_f64, 0.0_f64), |(least, most), at| (least.min(at), most.max(at)));
+        most - least
     }
 
     /// Corners in order.
@@ -66,6 +91,53 @@ impl Polygon {
     /// Whether the straight way between two points meets the border.
     pub fn is_met_by(&self, way: &Side) -> bool {
         self.sides().any(|side| crosses(&side, way))
+    }
+
+    /// Whether the straight way between two points meets the border or comes as near to it as a margin, m.
+    pub(super) fn comes_within(&self, way: &Side, margin_m: f64) -> bool {
+        self.sides().any(|side| {
+            crosses(&side, way)
+                || distance_to(&side, way.0) <= margin_m
+                || distance_to(&side, way.1) <= margin_m
+                || distance_to(way, side.0) <= margin_m
+        })
+    }
+
+    /// The parts of a straight way that are inside, as shares of it from one to another, are added.
+    pub(super) fn parts_inside(&self, way: &Side, parts: &mut Vec<(f64, f64)>) {
+        let along = minus(way.1, way.0);
+        let mut shares = vec![0.0, 1.0];
+        for (a, b) in self.sides().filter(|side| crosses(side, way)) {
+            let (side, offset) = (minus(b, a), minus(a, way.0));
+            let area = along[0] * side[1] - along[1] * side[0];
+            let share = (offset[0] * side[1] - offset[1] * side[0]) / area;
+            // A side that the way lies on has two ends where the next sides cross.
+            if share.is_finite() {
+                shares.push(share.clamp(0.0, 1.0));
+            }
+        }
+        shares.sort_by(f64::total_cmp);
+        let between = shares.iter().zip(shares.iter().skip(1));
+        parts.extend(between.map(|(from, to)| (*from, *to)).filter(|(from, to)| {
+            let middle = f64::midpoint(*from, *to);
+            self.contains([way.0[0] + middle * along[0], way.0[1] + middle * along[1]])
+        }));
+    }
+
+    /// South-west and north-east corners of what surrounds it, north and east, m.
+    pub(super) fn bounds_m(&self) -> [[f64; 2]; 2] {
+        let most = |of: fn(f64, f64) -> f64, from: f64| {
+            self.corners
+                .iter()
+                .fold([from; 2], |most, corner| [of(most[0], corner[0]), of(most[1], corner[1])])
+        };
+        [most(f64::min, f64::INFINITY), most(f64::max, f64::NEG_INFINITY)]
+    }
+
+    /// Area, m²: positive when the corners follow one another clockwise, seen from above.
+    pub fn signed_area_m2(&self) -> f64 {
+        let first = self.corners.first().copied().unwrap_or_default();
+        self.sides().map(|(a, b)| turn(first, a, b)).sum::<f64>() / 2.0
     }
 
     fn sides(&self) -> impl Iterator<Item = Side> {
@@ -119,7 +191,8 @@ fn distance_to((a, b): &Side, point: [f64; 2]) -> f64 {
     } else {
         0.0
     };
-    libm::hypot(offset[0] - share * along[0], offset[1] - share * along[1])
+    let apart = [offset[0] - share * along[0], offset[1] - share * along[1]];
+    libm::sqrt(apart[0] * apart[0] + apart[1] * apart[1])
 }
 
 #[cfg(test)]
@@ -184,5 +257,13 @@ mod tests {
         assert_eq!(Polygon::new(vec![a, c, b, d]), Err(PolygonFault::Crossing(0, 2)));
         assert_eq!(Polygon::new(vec![a, b, b, c]), Err(PolygonFault::Crossing(0, 1)));
         assert_eq!(Polygon::new(vec![a, b, a, c]), Err(PolygonFault::Crossing(0, 1)));
+        // On one line, but for the rounding of latitudes and longitudes; a thin wall is none.
+        let line = |aside: f64| vec![[0.0, 0.0], [100.0, 100.0], [50.0, 50.0 + aside]];
+        assert_eq!(Polygon::new(line(0.0)), Err(PolygonFault::Flat));
+        assert_eq!(Polygon::new(line(0.01)), Err(PolygonFault::Flat));
+        assert!(Polygon::new(line(0.5)).is_ok());
+        let tiny = square.map(|corner| corner.map(|m: f64| m / 1000.0));
+        assert_eq!(Polygon::new(tiny.to_vec()), Err(PolygonFault::Flat));
+        assert_eq!(Polygon::new(vec![a; 4]), Err(PolygonFault::Flat));
     }
 }

@@ -1,9 +1,10 @@
 //! Zones out of the items of a fence plan.
 
-use super::{FaultCode, MissionItem, PlanFault, Site, command};
+use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site, command};
 use crate::fence::{Polygon, Shape, Zone, Zones};
 
-/// Largest radius of a circle, m.
+/// Range of the radius of a circle, m: a smaller one is below the accuracy of latitudes and longitudes.
+const SMALLEST_RADIUS_M: f64 = 0.1;
 const LARGEST_RADIUS_M: f64 = 100_000.0;
 
 /// The zones of the items of a plan. The corners of a polygon follow one another; each tells how many there are.
@@ -35,14 +36,16 @@ pub fn zones(items: &[MissionItem], site: &Site) -> Result<Zones, PlanFault> {
 
 fn point(index: usize, item: &MissionItem, site: &Site) -> Result<[f64; 2], PlanFault> {
     let place = site.place(item).and_then(|place| place.horizontal_m);
-    place.ok_or_else(|| PlanFault::of_item(index, FaultCode::InvalidParameter(5), "it needs a place"))
+    place.ok_or_else(|| {
+        PlanFault::of_item(index, FaultCode::InvalidParameter(5), "latitude and longitude are required")
+    })
 }
 
 fn circle(index: usize, item: &MissionItem, site: &Site) -> Result<Zone, PlanFault> {
     let radius_m = item.parameter(1);
     // NaN is in no range.
-    if !(radius_m > 0.0 && radius_m <= LARGEST_RADIUS_M) {
-        let reason = format!("radius = {radius_m} m; allowed above 0 to {LARGEST_RADIUS_M} m");
+    if !(SMALLEST_RADIUS_M..=LARGEST_RADIUS_M).contains(&radius_m) {
+        let reason = format!("radius = {radius_m} m; allowed {SMALLEST_RADIUS_M} to {LARGEST_RADIUS_M} m");
         return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
     }
     let shape = Shape::Circle { centre_m: point(index, item, site)?, radius_m };
@@ -52,10 +55,11 @@ fn circle(index: usize, item: &MissionItem, site: &Site) -> Result<Zone, PlanFau
 fn corner_count(index: usize, item: &MissionItem) -> Result<usize, PlanFault> {
     let count = item.parameter(1);
     // NaN is in no range.
-    if (3.0..=1000.0).contains(&count) && libm::trunc(count) == count {
+    let most = PlanKind::Fence.capacity();
+    if (3.0..=most as f64).contains(&count) && libm::trunc(count) == count {
         Ok(count as usize)
     } else {
-        let reason = format!("corner count = {count}; allowed: a whole number from 3");
+        let reason = format!("corner count = {count}; allowed: an integer from 3 to {most}");
         Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason))
     }
 }

@@ -67,8 +67,7 @@ impl Failsafe {
         let flying = situation.flies();
         let acts = flying && self.goes_before(action, Action::of_mode(situation.mode));
         let why = self.name(situation, cause);
-        let severity = if action > Action::Warn { Severity::Critical } else { Severity::Warning };
-        tracing::debug!(cause = why, action = action.name(), flying, acts, "failsafe");
+        tracing::debug!(cause = why, ?action, flying, acts, "failsafe");
         let details = self.details(situation, cause);
         if !acts {
             let meanwhile = match (flying, action > Action::Warn) {
@@ -77,10 +76,10 @@ impl Failsafe {
                 }
                 _ => String::new(),
             };
-            proposal.say(severity, format!("{why}{details}{meanwhile}"));
+            proposal.say(severity(action), format!("{why}{details}{meanwhile}"));
             return;
         }
-        proposal.say(severity, format!("{why}{details}: {}", action.doing()));
+        proposal.say(severity(action), format!("{why}{details}: {}", action.doing()));
         self.engage(cause, action);
         match action.mode() {
             Some(mode) => proposal.enter(mode),
@@ -90,10 +89,9 @@ impl Failsafe {
 
     /// Announces that the fence, which was announced as ahead, has been crossed.
     pub fn tell_crossing(&self, situation: &Situation, proposal: &mut Proposal, breach: Breach) {
-        match situation.conduct.failsafe.action(Cause::Fence) {
-            Action::None => {}
-            Action::Warn => proposal.say(Severity::Warning, format!("Fence breached ({breach})")),
-            _ => proposal.say(Severity::Critical, format!("Fence breached ({breach})")),
+        let action = situation.conduct.failsafe.action(Cause::Fence);
+        if action != Action::None {
+            proposal.say(severity(action), format!("Fence breached ({breach})"));
         }
     }
 
@@ -152,6 +150,11 @@ impl Failsafe {
         }
         Ok(())
     }
+}
+
+/// How severe a cause with this action is.
+fn severity(action: Action) -> Severity {
+    if action > Action::Warn { Severity::Critical } else { Severity::Warning }
 }
 
 fn lower(cause: Cause) -> String {

@@ -52,13 +52,13 @@ impl FenceWatch {
         if here.is_none() && !situation.time_us.is_multiple_of(PREDICTION_PERIOD_US) {
             return None;
         }
-        let was_ahead = self.record.is_ahead && self.record.now.is_some();
+        let was_ahead = self.record.is_ahead;
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
-        self.record.is_ahead = here.is_none();
         let ahead = || if predicts { breach_ahead(situation) } else { None };
         self.record.now = here.or_else(ahead);
+        self.record.is_ahead = here.is_none() && self.record.now.is_some();
         here.filter(|_| was_ahead)
     }
 

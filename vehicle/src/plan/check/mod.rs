@@ -4,7 +4,7 @@ mod fence;
 mod mission;
 mod rally;
 
-use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site};
+use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site, frame};
 use crate::world::FARTHEST_M;
 
 /// Checks an item by itself.
@@ -52,8 +52,15 @@ fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
         return Err((FaultCode::UnsupportedFrame, reason));
     }
     let [x, y, z] = item.position;
-    if z.is_infinite() {
-        return Err((FaultCode::InvalidParameter(7), "altitude must be finite".to_owned()));
+    let local = item.frame == frame::LOCAL_NED;
+    // What is not a number leaves the place open; latitudes and longitudes have ranges of their own.
+    for (parameter, name, value) in [(5, "north", x), (6, "east", y), (7, "altitude", z)] {
+        let name = if local && parameter == 7 { "down" } else { name };
+        let limited = if parameter == 7 { value.abs() > FARTHEST_M } else { local && value.is_infinite() };
+        if limited {
+            let reason = format!("{name} = {value} m; allowed -{FARTHEST_M} to {FARTHEST_M} m");
+            return Err((FaultCode::InvalidParameter(parameter), reason));
+        }
     }
     let Some(place) = site.place(item) else {
         let (parameter, name, value, most) =
@@ -66,7 +73,7 @@ fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
         if distance_m > FARTHEST_M {
             let parameter = if north.abs() > east.abs() { 5 } else { 6 };
             let reason = format!(
-                "the place is {:.0} km away; at most {:.0} km is supported",
+                "the place is {:.0} km away; allowed up to {:.0} km: move it, or start the vehicle nearer to it",
                 distance_m / 1e3,
                 FARTHEST_M / 1e3
             );

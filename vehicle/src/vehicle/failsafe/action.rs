@@ -60,17 +60,4 @@ impl Action {
             Self::Terminate => "stopping the rotors",
         }
     }
-
-    /// Name, as the documentation has it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "nothing",
-            Self::Warn => "warning",
-            Self::Position => "position mode",
-            Self::Hold => "hold",
-            Self::Return => "return",
-            Self::Land => "land",
-            Self::Terminate => "terminate",
-        }
-    }
 }
