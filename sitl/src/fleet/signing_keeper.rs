@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use vehicle::Severity;
 
 use crate::failure::Failure;
-use crate::files::{Notice, Upkeep, WRITE_PERIOD};
+use crate::files::{Notice, Upkeep};
 use crate::link::{Links, SigningSetup};
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
 
@@ -30,7 +30,6 @@ struct Files {
     key: Upkeep,
     /// Whether the key in use is another than that of the file.
     new_key: bool,
-    tried: Option<Instant>,
 }
 
 /// Keeps the state of signing up to date, on the disk, too.
@@ -59,7 +58,6 @@ impl SigningKeeper {
                     key: Upkeep::new("Signing key", path),
                     key_file,
                     new_key: false,
-                    tried: None,
                 })
             }
             None => None,
@@ -107,36 +105,34 @@ impl SigningKeeper {
 impl Files {
     /// Keeps what has changed. Returns what to announce.
     fn keep(&mut self, signing: &mut Signing, now: Instant) -> Vec<Notice> {
-        let failing = self.timestamps.is_failing() || self.key.is_failing();
-        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
-        if failing && early {
-            return Vec::new();
-        }
-        self.tried = Some(now);
+        let Self { key_file, timestamps, key, new_key } = self;
         let mut notices = Vec::new();
-        if let Some(kept) = signing.take_unkept() {
-            let result = self.key_file.keep(&kept);
-            if result.is_err() {
-                signing.keep_again();
-            }
-            notices.extend(self.timestamps.judge(result));
+        if signing.is_unkept() {
+            notices.extend(timestamps.attempt(now, || {
+                let result = signing.take_unkept().map_or(Ok(()), |kept| key_file.keep(&kept));
+                if result.is_err() {
+                    signing.keep_again();
+                }
+                result
+            }));
         }
-        notices.extend(self.keep_key(signing));
+        if *new_key {
+            notices.extend(key.attempt(now, || {
+                key_file.keep_key(signing.key())?;
+                *new_key = false;
+                Ok(())
+            }));
+        }
         notices
-    }
-
-    fn keep_key(&mut self, signing: &Signing) -> Option<Notice> {
-        if !self.new_key {
-            return None;
-        }
-        let result = self.key_file.keep_key(signing.key());
-        self.new_key = result.is_err();
-        self.key.judge(result)
     }
 
     fn finish(&mut self, signing: &Signing) -> Vec<String> {
         let _told_below = self.timestamps.judge(self.key_file.keep(&signing.at_end()));
-        let _told_below = self.keep_key(signing);
+        if self.new_key {
+            let result = self.key_file.keep_key(signing.key());
+            self.new_key = result.is_err();
+            let _told_below = self.key.judge(result);
+        }
         let timestamps = self.timestamps.is_failing().then(|| {
             self.timestamps.lacks(
                 "lacks the latest timestamps, so that frames of this run could be replayed to the next",

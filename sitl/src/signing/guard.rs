@@ -209,6 +209,11 @@ impl Signing {
         frame.sign(link, self.sent, |bytes| key.tag(bytes))
     }
 
+    /// Whether there is something to be kept.
+    pub fn is_unkept(&self) -> bool {
+        self.unkept
+    }
+
     /// What is to be kept, if it has changed since the last call.
     pub fn take_unkept(&mut self) -> Option<Kept> {
         std::mem::take(&mut self.unkept).then(|| self.kept(self.sent_kept, |seen| seen.kept))
