@@ -16,7 +16,7 @@ use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, FileLock, LogFolder};
 use crate::flight_log::FlightLog;
-use crate::link::{Links, Received};
+use crate::link::{Links, Received, SetupRules};
 use crate::terminal::set_simulation_time;
 
 /// The vehicles of a run and the hubs that they are behind.
@@ -26,6 +26,8 @@ pub struct Fleet {
     hubs: Vec<Links>,
     /// One for each hub.
     signing: Vec<SigningKeeper>,
+    /// Whether a key may be set while there is none.
+    accept_signing_setup: bool,
     books: Books,
     /// The key's files are those of this process.
     _key_lock: Option<FileLock>,
@@ -50,7 +52,7 @@ impl Fleet {
         let signing = hubs
             .iter_mut()
             .enumerate()
-            .map(|(hub, links)| SigningKeeper::new(key, hub, unix_start_us, links))
+            .map(|(hub, links)| SigningKeeper::new(key, hub, settings.accept_signing_setup, links))
             .collect::<Result<_, _>>()?;
         // A port that is taken belongs to somebody whose files these may be, too: they come after the links.
         let participants = settings.participants();
@@ -67,7 +69,8 @@ impl Fleet {
                 Ok(member.keep(files, log).keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(Self { members, hubs, signing, books, _key_lock: key_lock })
+        let accept_signing_setup = settings.accept_signing_setup;
+        Ok(Self { members, hubs, signing, accept_signing_setup, books, _key_lock: key_lock })
     }
 
     /// The vehicles.
@@ -87,8 +90,11 @@ impl Fleet {
 
     /// Gives everything that has come to the vehicles that it is for: one, or all behind the link.
     pub(crate) fn receive(&mut self, now: Instant) {
+        let armed = self.members.iter().any(|member| member.autopilot.vehicle().is_armed());
+        let rules = SetupRules { without_key: self.accept_signing_setup, armed };
         for hub in 0..self.hubs.len() {
             let Some(links) = self.hubs.get_mut(hub) else { continue };
+            links.set_setup_rules(rules);
             let received = links.receive(now);
             self.keep_signing(hub, now);
             for received in received {
@@ -191,7 +197,7 @@ impl Fleet {
         let said = keeper.update(links, now);
         if said.new_key {
             let key = links.signing().key().cloned();
-            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone(), 0));
+            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone()));
         }
         for (severity, text) in said.lines {
             for number in 0..self.members.len() {

@@ -1,7 +1,7 @@
 //! Signing at the edge: the wall clock, the key files and the announcements.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use vehicle::Severity;
 
@@ -10,7 +10,7 @@ use crate::files::{Notice, Upkeep};
 use crate::link::{Links, SigningSetup};
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
 
-/// Rejected frames are announced this often.
+/// Rejected frames are announced this often, and refused attempts to change the key.
 const TOLD: Duration = Duration::from_secs(5);
 
 /// What is to be said, and whether another key is used from now on.
@@ -36,22 +36,26 @@ struct Files {
 #[derive(Debug)]
 pub struct SigningKeeper {
     files: Option<Files>,
-    start: Instant,
-    start_timestamp: u64,
     told: Counts,
     told_at: Option<Instant>,
+    refusal_told_at: Option<Instant>,
 }
 
 impl SigningKeeper {
-    /// Reads the key, if there is a file for it, and begins to sign with it.
+    /// Reads the key, if there is a file for it, and begins to sign with it. An empty file is refused unless the key may come
+    /// by SETUP_SIGNING.
     ///
     /// # Errors
     /// As [`KeyFile::open`].
-    pub fn new(path: Option<&Path>, hub: usize, unix_us: u64, links: &mut Links) -> Result<Self, Failure> {
-        let start_timestamp = timestamp(unix_us);
+    pub fn new(path: Option<&Path>, hub: usize, waits: bool, links: &mut Links) -> Result<Self, Failure> {
         let files = match path {
             Some(path) => {
                 let (key_file, key, kept) = KeyFile::open(path, hub)?;
+                if key.is_none() && !waits {
+                    let reason = "is empty; write a key of 64 hexadecimal digits into it, or add --accept-signing-setup to let a \
+                                  local client set the key";
+                    return Err(Failure::Content { path: path.to_owned(), reason: reason.to_owned() });
+                }
                 links.sign_with(Signing::new(key, kept));
                 Some(Files {
                     timestamps: Upkeep::new("Signing timestamps", key_file.timestamps()),
@@ -62,18 +66,21 @@ impl SigningKeeper {
             }
             None => None,
         };
-        links.signing().advance(start_timestamp);
-        Ok(Self { files, start: Instant::now(), start_timestamp, told: Counts::default(), told_at: None })
+        links.signing().set_clock(present());
+        Ok(Self { files, told: Counts::default(), told_at: None, refusal_told_at: None })
     }
 
     /// Keeps what has changed, before it takes effect, and returns what is to be said. What cannot be written is tried again each
     /// second; meanwhile signing goes on, and only a restart could forget which frames have come.
     pub fn update(&mut self, links: &mut Links, now: Instant) -> Said {
-        let since_start = now.saturating_duration_since(self.start).as_micros() as u64;
-        links.signing().advance(self.start_timestamp + since_start / 10);
+        links.signing().set_clock(present());
         let setups = links.take_setups();
-        let new_key = setups.iter().any(|setup| !matches!(setup, SigningSetup::Refused(..)));
-        let mut lines: Vec<_> = setups.iter().map(|setup| (Severity::Warning, setup.to_string())).collect();
+        let new_key = setups.iter().any(SigningSetup::is_change);
+        let mut lines: Vec<_> = setups
+            .iter()
+            .filter(|setup| setup.is_change() || is_due(&mut self.refusal_told_at, now))
+            .map(|setup| (Severity::Warning, setup.to_string()))
+            .collect();
         if let Some(files) = &mut self.files {
             files.new_key |= new_key;
             lines.extend(files.keep(links.signing(), now));
@@ -84,12 +91,13 @@ impl SigningKeeper {
 
     /// A line about refused frames, if there are more than were told, and it is time.
     fn refused(&mut self, counts: Counts, now: Instant) -> Option<(Severity, String)> {
-        let early = self.told_at.is_some_and(|told| now.saturating_duration_since(told) < TOLD);
-        if counts == self.told || early {
+        if counts == self.told || !is_due(&mut self.told_at, now) {
             return None;
         }
-        (self.told, self.told_at) = (counts, Some(now));
-        Some((Severity::Warning, format!("Signing: rejected so far: {counts}")))
+        let clocks = (counts.late, counts.early) != (self.told.late, self.told.early);
+        self.told = counts;
+        let hint = if clocks { "; compare the clocks" } else { "" };
+        Some((Severity::Warning, format!("Signing: rejected so far: {counts}{hint}")))
     }
 
     /// Keeps the state at an end that was asked for. Returns what is missing from the files, a sentence each.
@@ -100,6 +108,20 @@ impl SigningKeeper {
         }
         self.files.as_mut().map_or_else(Vec::new, |files| files.finish(links.signing()))
     }
+}
+
+/// Whether it is time to tell something again, and if so it is told now.
+fn is_due(told_at: &mut Option<Instant>, now: Instant) -> bool {
+    let due = told_at.is_none_or(|told| now.saturating_duration_since(told) >= TOLD);
+    if due {
+        *told_at = Some(now);
+    }
+    due
+}
+
+/// The timestamp of the present, by the machine's clock as it is set now: it may be corrected while vehicles fly.
+fn present() -> u64 {
+    timestamp(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros() as u64)
 }
 
 impl Files {

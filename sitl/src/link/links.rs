@@ -11,7 +11,7 @@ use super::echo::Echoes;
 use super::endpoint::{Endpoint, LinkSpecification};
 use super::error::LinkError;
 use super::peer::Peer;
-use super::signing_setup::SigningSetup;
+use super::signing_setup::{SetupRules, SigningSetup};
 use super::tcp::Tcp;
 use super::transport::{Event, Transport};
 use super::udp::Udp;
@@ -40,6 +40,7 @@ pub struct Links {
     links: Vec<Link>,
     echoes: Echoes,
     signing: Signing,
+    setup_rules: SetupRules,
     setups: Vec<SigningSetup>,
 }
 
@@ -60,6 +61,7 @@ impl Links {
             links,
             echoes: Echoes::default(),
             signing: Signing::default(),
+            setup_rules: SetupRules::default(),
             setups: Vec::new(),
         })
     }
@@ -72,6 +74,11 @@ impl Links {
     /// What is signed with; its clock is the caller's to advance.
     pub fn signing(&mut self) -> &mut Signing {
         &mut self.signing
+    }
+
+    /// Sets who may change the key from now on.
+    pub fn set_setup_rules(&mut self, rules: SetupRules) {
+        self.setup_rules = rules;
     }
 
     /// Attempts to change the key since the last call. They are acted upon already, and neither forwarded nor returned
@@ -152,9 +159,13 @@ impl Links {
         }
         if received.frame.message_id() == id::SETUP_SIGNING {
             if news && ours {
-                let setup = SigningSetup::of(&received.frame, link.transport.is_local(number));
-                setup.act(&mut self.signing, &received.frame);
-                self.setups.push(setup);
+                let local = link.transport.is_local(number);
+                let (rules, signing) = (self.setup_rules, &mut self.signing);
+                let setup = SigningSetup::carry_out(&received.frame, local, rules, signing);
+                // A flood of refused ones says nothing new.
+                if setup.is_change() || self.setups.last() != Some(&setup) {
+                    self.setups.push(setup);
+                }
             }
             return false;
         }
@@ -278,11 +289,14 @@ mod tests {
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
 
     use super::{Echoes, Link, Links};
-    use crate::link::SigningSetup;
     use crate::link::transport::{Event, Transport};
+    use crate::link::{SetupRefusal, SetupRules, SigningSetup};
     use crate::signing::{SecretKey, Signing};
     use autopilot::codec::{Frame, Message, Version};
     use autopilot::envelope::{Destination, Outgoing};
+
+    /// What the clock shows.
+    const NOW: u64 = 50;
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 
@@ -329,8 +343,11 @@ mod tests {
             peers: BTreeMap::new(),
         };
         let links = vec![of(&ends[0], true), of(&ends[1], false)];
-        let (echoes, signing, setups) = (Echoes::default(), Signing::default(), Vec::new());
-        (Links { systems: vec![1], links, echoes, signing, setups }, ends)
+        let setup_rules = SetupRules { without_key: true, armed: false };
+        let mut signing = Signing::default();
+        signing.set_clock(NOW);
+        let (echoes, setups) = (Echoes::default(), Vec::new());
+        (Links { systems: vec![1], links, echoes, signing, setup_rules, setups }, ends)
     }
 
     fn frame(message: MavMessage, system: u8) -> Frame {
@@ -343,7 +360,7 @@ mod tests {
 
     fn setup(key: u8, target_system: u8) -> Frame {
         let setup = SETUP_SIGNING_DATA {
-            initial_timestamp: 50,
+            initial_timestamp: NOW,
             target_system,
             target_component: 1,
             secret_key: [key; 32],
@@ -365,7 +382,10 @@ mod tests {
         let forwarded = near.1.lock().expect("one thread").len();
         assert_eq!(forwarded, 1);
 
-        assert_eq!(receive(&far, &setup(7, 1)), (0, vec![SigningSetup::Refused(255, 190)], false));
+        assert_eq!(
+            receive(&far, &setup(7, 1)),
+            (0, vec![SigningSetup::Refused(255, 190, SetupRefusal::NotLocal)], false)
+        );
         // For another vehicle it is not passed on, either.
         assert_eq!(receive(&near, &setup(7, 2)), (0, vec![], false));
         assert_eq!(receive(&near, &setup(7, 1)), (0, vec![SigningSetup::Set(255, 190)], true));

@@ -15,6 +15,6 @@ mod udp;
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
 pub use links::{Links, Received};
-pub use signing_setup::SigningSetup;
+pub use signing_setup::{SetupRefusal, SetupRules, SigningSetup};
 pub(crate) use transport::is_nothing_yet;
 pub(crate) use udp::resolve;

@@ -13,8 +13,9 @@ mod guard;
 mod kept;
 mod key;
 mod key_file;
+mod streams;
 
-pub use guard::{Counts, Refusal, Signing};
+pub use guard::{Counts, MOST_AHEAD, Refusal, Signing};
 pub use kept::{Kept, Stream};
 pub use key::SecretKey;
 pub use key_file::KeyFile;
