@@ -1,12 +1,14 @@
 //! All links: receiving, sending, and forwarding from one peer to the others.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::time::Instant;
 
 use autopilot::COMPONENT;
 use autopilot::codec::{Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 
+use super::allowance::Allowance;
 use super::echo::Echoes;
 use super::endpoint::{Endpoint, LinkSpecification};
 use super::error::LinkError;
@@ -131,13 +133,18 @@ impl Links {
                         link.peers.remove(&number);
                     }
                     Event::Bytes(number, bytes) => {
-                        let peer = link.peers.entry(number).or_default();
-                        let frames = peer.frames(&bytes, link.transport.is_datagram(), now);
+                        let datagram = link.transport.is_datagram();
+                        let frames = match link.peers.get_mut(&number) {
+                            Some(peer) => peer.frames(&bytes, datagram, now),
+                            // A stranger has no place until one of its frames is accepted.
+                            None => Peer::default().frames(&bytes, datagram, now),
+                        };
                         take(number, frames);
                     }
                 }
             }
             for (number, peer) in &mut link.peers {
+                peer.allowance.update(now);
                 let frames = peer.overdue(now);
                 take(*number, frames);
             }
@@ -151,12 +158,12 @@ impl Links {
         if if news { self.signing.verify(&received.frame).is_err() } else { self.signing.is_on() } {
             return false;
         }
-        let PeerId { link, number } = received.origin.peer;
+        let number = received.origin.peer.number;
         let ours = self.is_for_us(&received.frame);
-        let Some(link) = self.links.get_mut(link) else { return false };
-        if let Some(peer) = link.peers.get_mut(&number) {
-            peer.learn(&received.frame);
+        if !self.is_from_peer(received, now) {
+            return false;
         }
+        let Some(link) = self.links.get_mut(received.origin.peer.link) else { return false };
         if received.frame.message_id() == id::SETUP_SIGNING {
             if news && ours {
                 let local = link.transport.is_local(number);
@@ -170,6 +177,31 @@ impl Links {
             return false;
         }
         news
+    }
+
+    /// Whether an accepted frame is from a peer, or makes its sender one. Peers learn from it.
+    fn is_from_peer(&mut self, received: &Received, now: Instant) -> bool {
+        let PeerId { link, number } = received.origin.peer;
+        let Some(link) = self.links.get_mut(link) else { return false };
+        let (frame, has_key) = (&received.frame, self.signing.is_on());
+        // What a radio says without a key proves nothing.
+        let proven = !has_key || frame.signature().is_some();
+        if proven && !link.transport.confirm(number, now) {
+            return false;
+        }
+        let peer = match link.peers.entry(number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(_) if !proven => return false,
+            Entry::Vacant(new) => {
+                let allowance = Allowance::new(link.transport.may_be_forged(number));
+                new.insert(Peer::new(allowance))
+            }
+        };
+        peer.learn(frame);
+        if proven {
+            peer.allowance.hear(frame.bytes().len(), has_key, now);
+        }
+        true
     }
 
     fn is_for_us(&self, frame: &Frame) -> bool {
@@ -186,10 +218,17 @@ impl Links {
         let known = self.echoes.has(&received.frame, origin.peer, now);
         // One peer has no one to be an echo of, and a key is not remembered.
         let secret = received.frame.message_id() == id::SETUP_SIGNING;
-        if !known && !secret && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
+        if !known && !secret && self.has_others(origin.peer) {
             self.echoes.remember(&received.frame, origin.peer, now);
         }
         !known
+    }
+
+    /// Whether there is a peer beside one.
+    fn has_others(&self, one: PeerId) -> bool {
+        let number = self.links.iter().map(|link| link.peers.len()).sum::<usize>();
+        let link = self.links.get(one.link);
+        number > usize::from(link.is_some_and(|link| link.peers.contains_key(&one.number)))
     }
 
     /// Passes a frame on to the peers that lead to its target, unless it is for one of ours alone.
@@ -200,10 +239,11 @@ impl Links {
         }
         let from = received.origin.peer;
         for (index, link) in self.links.iter_mut().enumerate() {
-            for (number, peer) in &link.peers {
+            for (number, peer) in &mut link.peers {
                 let itself = from == PeerId { link: index, number: *number };
                 // What has never spoken cannot be known not to be the sender itself, by another way.
-                if !itself && peer.has_spoken() && peer.leads_to(target.system) {
+                let wanted = !itself && peer.has_spoken() && peer.leads_to(target.system);
+                if wanted && peer.allowance.spend(received.frame.bytes().len(), false) {
                     link.transport.send(*number, received.frame.bytes());
                 }
             }
@@ -213,6 +253,7 @@ impl Links {
     /// Sends a message of one of our systems and returns it as one of its frames, for a log.
     pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<Frame> {
         let sender = (system, COMPONENT);
+        let essential = matches!(outgoing.to, Destination::Peer(_)) || outgoing.message.id() == id::HEARTBEAT;
         let mut sent = None;
         for (index, link) in self.links.iter_mut().enumerate() {
             for (number, peer) in &mut link.peers {
@@ -229,6 +270,9 @@ impl Links {
                 // Messages beyond number 255 do not exist in MAVLink 1.
                 let sequence = peer.sequences.entry(system).or_default();
                 if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
+                    if !peer.allowance.spend(frame.bytes().len(), essential) {
+                        continue;
+                    }
                     let frame = self.signing.sign(frame, index as u8);
                     *sequence = sequence.wrapping_add(1);
                     link.transport.send(*number, frame.bytes());
@@ -242,7 +286,8 @@ impl Links {
     /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
     pub fn has_room(&self, peer: PeerId) -> Option<bool> {
         let link = self.links.get(peer.link)?;
-        link.peers.contains_key(&peer.number).then(|| link.transport.has_room(peer.number))
+        let open = link.peers.get(&peer.number)?.allowance.is_open();
+        Some(open && link.transport.has_room(peer.number))
     }
 
     /// Sends what is waiting.
@@ -284,9 +329,11 @@ fn transport(endpoint: &Endpoint) -> Result<Box<dyn Transport>, LinkError> {
 mod tests {
     use std::collections::BTreeMap;
     use std::sync::{Arc, Mutex};
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
 
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA};
+    use mavlink::dialects::common::{
+        ATTITUDE_DATA, HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA, SETUP_SIGNING_DATA,
+    };
 
     use super::{Echoes, Link, Links};
     use crate::link::transport::{Event, Transport};
@@ -306,6 +353,8 @@ mod tests {
         inward: Bytes,
         outward: Bytes,
         local: bool,
+        /// Whether it has no place for peers.
+        full: bool,
     }
 
     impl Transport for Ends {
@@ -320,6 +369,14 @@ mod tests {
 
         fn is_datagram(&self) -> bool {
             true
+        }
+
+        fn confirm(&mut self, _peer: u64, _now: Instant) -> bool {
+            !self.full
+        }
+
+        fn may_be_forged(&self, _peer: u64) -> bool {
+            !self.local
         }
 
         fn is_local(&self, _peer: u64) -> bool {
@@ -339,7 +396,12 @@ mod tests {
     fn links() -> (Links, [(Bytes, Bytes); 2]) {
         let ends: [(Bytes, Bytes); 2] = Default::default();
         let of = |(inward, outward): &(Bytes, Bytes), local| Link {
-            transport: Box::new(Ends { inward: inward.clone(), outward: outward.clone(), local }),
+            transport: Box::new(Ends {
+                inward: inward.clone(),
+                outward: outward.clone(),
+                local,
+                full: false,
+            }),
             peers: BTreeMap::new(),
         };
         let links = vec![of(&ends[0], true), of(&ends[1], false)];
@@ -398,6 +460,96 @@ mod tests {
         let removal = setup(0, 1).sign(0, 60, |bytes| key.tag(bytes));
         assert_eq!(receive(&near, &removal), (0, vec![SigningSetup::Removed(255, 190)], false));
         assert!(!format!("{links:?}").contains("7, 7, 7, 7"), "the key is remembered in the open");
+    }
+
+    /// Bytes that have left by one end since the last call.
+    fn drawn(end: &(Bytes, Bytes)) -> usize {
+        end.1.lock().expect("one thread").drain(..).map(|bytes| bytes.len()).sum()
+    }
+
+    /// What is told to everyone, a thousand times: telemetry and heartbeats.
+    fn tell(links: &mut Links) {
+        let heartbeat = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+        let attitude = Message::from(MavMessage::ATTITUDE(ATTITUDE_DATA::default()));
+        for message in [heartbeat, attitude] {
+            for _ in 0..1000 {
+                links.send(&Outgoing { to: Destination::Everyone, message: message.clone() }, 1);
+            }
+        }
+    }
+
+    #[test]
+    fn a_stranger_gets_nothing_and_an_address_from_afar_ten_times_what_it_sent() {
+        let (mut links, [near, far]) = links();
+        let start = Instant::now();
+        let put = |end: &(Bytes, Bytes), bytes: &[u8]| end.0.lock().expect("one thread").push(bytes.to_vec());
+        for end in [&near, &far] {
+            put(end, &[0xfd]);
+            put(end, &heartbeat(9).bytes()[..20]);
+        }
+        assert!(links.receive(start).is_empty());
+        tell(&mut links);
+        assert_eq!((drawn(&near), drawn(&far), links.active_peers()), (0, 0, 0));
+        // A frame makes a peer: on this machine without a limit.
+        let frame = heartbeat(9);
+        put(&near, frame.bytes());
+        assert_eq!(links.receive(start).len(), 1);
+        tell(&mut links);
+        assert!(drawn(&near) > 30_000);
+        let frame = heartbeat(10);
+        put(&far, frame.bytes());
+        assert_eq!(links.receive(start).len(), 1);
+        drawn(&near);
+        // Forwarded frames count as telemetry.
+        put(&near, heartbeat(9).bytes());
+        links.receive(start);
+        assert_eq!(drawn(&far), 0);
+        tell(&mut links);
+        let most = 10 * frame.bytes().len();
+        assert!((most - 21..=most).contains(&drawn(&far)));
+        // Whoever keeps talking gets everything, forwarded frames, too.
+        for second in 1..=3 {
+            put(&far, frame.bytes());
+            links.receive(start + Duration::from_secs(second));
+        }
+        put(&near, heartbeat(8).bytes());
+        links.receive(start + Duration::from_secs(3));
+        assert_eq!(drawn(&far), heartbeat(8).bytes().len());
+        tell(&mut links);
+        assert!(drawn(&far) > 30_000);
+        links.receive(start + Duration::from_secs(9));
+        tell(&mut links);
+        assert_eq!(drawn(&far), 0);
+    }
+
+    #[test]
+    fn who_has_no_place_has_no_effect() {
+        let (mut links, [near, _]) = links();
+        links.links[0].transport =
+            Box::new(Ends { inward: near.0.clone(), outward: near.1.clone(), local: true, full: true });
+        near.0.lock().expect("one thread").push(heartbeat(9).bytes().to_vec());
+        assert!(links.receive(Instant::now()).is_empty(), "nobody could be answered");
+        assert_eq!(links.active_peers(), 0);
+    }
+
+    /// With a key a radio may speak without one, but does not become a peer by that.
+    #[test]
+    fn with_a_key_only_signed_frames_make_peers() {
+        let (mut links, [near, _]) = links();
+        let key = SecretKey::new([7; 32]).expect("a key");
+        let mut signing = Signing::new(Some(key.clone()), Default::default());
+        signing.set_clock(NOW);
+        links.sign_with(signing);
+        let mut receive = |frame: Frame| {
+            near.0.lock().expect("one thread").push(frame.bytes().to_vec());
+            let received = links.receive(Instant::now()).len();
+            (received, links.active_peers())
+        };
+        let radio = || frame(MavMessage::RADIO_STATUS(RADIO_STATUS_DATA::default()), 51);
+        assert_eq!(receive(radio()), (0, 0));
+        assert_eq!(receive(heartbeat(255)), (0, 0));
+        assert_eq!(receive(heartbeat(255).sign(0, NOW, |bytes| key.tag(bytes))), (1, 1));
+        assert_eq!(receive(radio()), (1, 1));
     }
 
     #[test]

@@ -1,13 +1,17 @@
 //! Links: transports, their peers, and forwarding between them.
 
+mod allowance;
+mod descriptors;
 mod echo;
 mod endpoint;
 mod error;
 mod links;
 mod peer;
+mod rarely;
 #[cfg(unix)]
 mod serial;
 mod signing_setup;
+mod strangers;
 mod tcp;
 mod transport;
 mod udp;

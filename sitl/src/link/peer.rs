@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use autopilot::codec::{Frame, FrameDecoder, Version};
 
+use super::allowance::Allowance;
+
 /// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
 /// and change when they hear version 2.
 const OLD_FRAMES: u8 = 3;
@@ -22,12 +24,19 @@ pub struct Peer {
     last_bytes: Option<Instant>,
     /// Number of the next frame to it, from each of our systems: each peer sees flows of its own.
     pub sequences: BTreeMap<u8, u8>,
+    /// What it may be sent.
+    pub allowance: Allowance,
     old_frames: u8,
     /// Systems and components behind it.
     seen: Vec<(u8, u8)>,
 }
 
 impl Peer {
+    /// One that may be sent so much.
+    pub fn new(allowance: Allowance) -> Self {
+        Self { allowance, ..Self::default() }
+    }
+
     /// Frames that received bytes complete.
     pub fn frames(&mut self, bytes: &[u8], datagram: bool, now: Instant) -> Vec<Frame> {
         self.last_bytes = Some(now);
