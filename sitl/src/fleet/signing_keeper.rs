@@ -1,17 +1,15 @@
 //! Signing at the edge: the wall clock, the key files and the announcements.
 
 use std::path::Path;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use vehicle::Severity;
 
 use crate::failure::Failure;
 use crate::files::{Notice, Upkeep};
 use crate::link::{Links, SigningSetup};
+use crate::rarely::Rarely;
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
-
-/// Rejected frames are announced this often, and refused attempts to change the key.
-const TOLD: Duration = Duration::from_secs(5);
 
 /// What is to be said, and whether another key is used from now on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,8 +35,8 @@ struct Files {
 pub struct SigningKeeper {
     files: Option<Files>,
     told: Counts,
-    told_at: Option<Instant>,
-    refusal_told_at: Option<Instant>,
+    rejections: Rarely,
+    refusals: Rarely,
 }
 
 impl SigningKeeper {
@@ -67,7 +65,12 @@ impl SigningKeeper {
             None => None,
         };
         links.signing().set_clock(present());
-        Ok(Self { files, told: Counts::default(), told_at: None, refusal_told_at: None })
+        Ok(Self {
+            files,
+            told: Counts::default(),
+            rejections: Rarely::default(),
+            refusals: Rarely::default(),
+        })
     }
 
     /// Keeps what has changed, before it takes effect, and returns what is to be said. What cannot be written is tried again each
@@ -78,7 +81,7 @@ impl SigningKeeper {
         let new_key = setups.iter().any(SigningSetup::is_change);
         let mut lines: Vec<_> = setups
             .iter()
-            .filter(|setup| setup.is_change() || is_due(&mut self.refusal_told_at, now))
+            .filter(|setup| setup.is_change() || self.refusals.is_due(now))
             .map(|setup| (Severity::Warning, setup.to_string()))
             .collect();
         if let Some(files) = &mut self.files {
@@ -91,7 +94,7 @@ impl SigningKeeper {
 
     /// A line about refused frames, if there are more than were told, and it is time.
     fn refused(&mut self, counts: Counts, now: Instant) -> Option<(Severity, String)> {
-        if counts == self.told || !is_due(&mut self.told_at, now) {
+        if counts == self.told || !self.rejections.is_due(now) {
             return None;
         }
         let clocks = (counts.late, counts.early) != (self.told.late, self.told.early);
@@ -108,15 +111,6 @@ impl SigningKeeper {
         }
         self.files.as_mut().map_or_else(Vec::new, |files| files.finish(links.signing()))
     }
-}
-
-/// Whether it is time to tell something again, and if so it is told now.
-fn is_due(told_at: &mut Option<Instant>, now: Instant) -> bool {
-    let due = told_at.is_none_or(|told| now.saturating_duration_since(told) >= TOLD);
-    if due {
-        *told_at = Some(now);
-    }
-    due
 }
 
 /// The timestamp of the present, by the machine's clock as it is set now: it may be corrected while vehicles fly.

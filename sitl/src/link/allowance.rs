@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 /// A peer that has not been heard for this long is not talking any more.
-const SILENCE: Duration = Duration::from_secs(5);
+pub(super) const SILENCE: Duration = Duration::from_secs(5);
 /// A peer that has been talking for this long gets everything.
-const TALK: Duration = Duration::from_secs(2);
+pub(super) const TALK: Duration = Duration::from_secs(2);
 /// Bytes that a peer may draw before that, for each byte received from it.
-const FACTOR: usize = 10;
+pub(super) const FACTOR: usize = 10;
 
 /// What a peer may be sent.
 ///

@@ -2,7 +2,7 @@
 
 /// Descriptors that are left to files, unless the process may have few.
 #[cfg(unix)]
-const RESERVED: u64 = 64;
+pub(super) const RESERVED: u64 = 64;
 
 /// Whether a connection has one of the last descriptors that the process may open: the system gives the lowest that is free.
 #[cfg(unix)]

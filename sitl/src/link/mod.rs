@@ -2,12 +2,13 @@
 
 mod allowance;
 mod descriptors;
+#[cfg(test)]
+mod documented;
 mod echo;
 mod endpoint;
 mod error;
 mod links;
 mod peer;
-mod rarely;
 #[cfg(unix)]
 mod serial;
 mod signing_setup;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::net::SocketAddr;
 
 /// Strangers that are remembered, until their datagrams are judged: as many as one look at the socket brings.
-const MOST_STRANGERS: usize = 512;
+pub(super) const MOST_STRANGERS: usize = 512;
 
 /// Unknown senders of the latest datagrams, by number. The oldest is forgotten; nobody else makes room for them.
 #[derive(Debug, Default)]

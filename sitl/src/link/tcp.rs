@@ -10,24 +10,24 @@ use std::time::{Duration, Instant};
 
 use super::descriptors::is_one_of_the_last;
 use super::error::LinkError;
-use super::rarely::Rarely;
 use super::transport::{Event, Numbers, Transport, is_nothing_yet};
 use super::udp::resolve;
+use crate::rarely::Rarely;
 
 /// A client that lets this many bytes wait is too slow to be served: a frame more is lost.
 const MOST_WAITING: usize = 1 << 18;
 /// With more than this many bytes waiting for a client, downloads wait.
 const BUSY: usize = 1 << 14;
 /// Clients that have sent a valid frame.
-const MOST_SPEAKERS: usize = 32;
+pub(super) const MOST_SPEAKERS: usize = 32;
 /// Clients that have not. When there are more, the oldest makes room, if it has had [`GRACE`] to speak.
-const MOST_LISTENERS: usize = 32;
+pub(super) const MOST_LISTENERS: usize = 32;
 /// A connection has this long to send a valid frame before it may have to make room.
-const GRACE: Duration = Duration::from_secs(1);
+pub(super) const GRACE: Duration = Duration::from_secs(1);
 /// A client that takes no byte for this long is gone.
-const STALL: Duration = Duration::from_secs(60);
+pub(super) const STALL: Duration = Duration::from_secs(60);
 /// Connections accepted in one look.
-const MOST_ACCEPTED: usize = 8;
+pub(super) const MOST_ACCEPTED: usize = 8;
 /// Bytes of one look at one client.
 const MOST_READ: usize = 1 << 16;
 

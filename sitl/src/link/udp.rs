@@ -8,16 +8,16 @@ use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::error::LinkError;
-use super::rarely::Rarely;
 use super::strangers::Strangers;
 use super::transport::{Event, Numbers, Transport, is_nothing_yet};
+use crate::rarely::Rarely;
 
 /// A peer that has sent no valid frame for this long is forgotten.
-const EXPIRY: Duration = Duration::from_secs(60);
+pub(super) const EXPIRY: Duration = Duration::from_secs(60);
 /// Peers of one socket. The one that has been silent longest makes room for another, if it has been silent for [`PAUSE`].
-const MOST_PEERS: usize = 32;
+pub(super) const MOST_PEERS: usize = 32;
 /// A silent peer keeps its place for this long, whoever else wants it.
-const PAUSE: Duration = Duration::from_secs(5);
+pub(super) const PAUSE: Duration = Duration::from_secs(5);
 /// Datagrams of one look: a flood must not keep the vehicle from flying.
 const MOST_DATAGRAMS: usize = 512;
 /// The largest MAVLink frame has 280 bytes; some senders put several into a datagram.

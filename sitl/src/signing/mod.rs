@@ -19,6 +19,8 @@ pub use guard::{Counts, MOST_AHEAD, Refusal, Signing};
 pub use kept::{Kept, Stream};
 pub use key::SecretKey;
 pub use key_file::KeyFile;
+#[cfg(test)]
+pub(crate) use streams::{MOST_STREAMS, NEW_STREAM_BEHIND};
 
 /// Seconds from 1970 to 2015, where timestamps begin.
 const EPOCH_UNIX_S: u64 = 1_420_070_400;

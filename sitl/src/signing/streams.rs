@@ -6,7 +6,7 @@ use super::guard::Refusal;
 use super::kept::Stream;
 
 /// Streams that are remembered.
-const MOST_STREAMS: usize = 1024;
+pub const MOST_STREAMS: usize = 1024;
 /// A new stream may begin this far behind the clock, units of 10 µs: a minute, as MAVLink specifies.
 pub const NEW_STREAM_BEHIND: u64 = 6_000_000;
 /// Timestamps are kept this far ahead of those in use, so that not every frame is a write: a second.

@@ -32,8 +32,10 @@ def attitudes(client, seconds, meanwhile=lambda: None):
             if message.get_type() == "ATTITUDE":
                 times.append(message.time_boot_ms / 1000)
         time.sleep(0.001)
-    # A pause at the end counts, too.
-    return len(times), len(times) / max(seconds * 0.9, times[-1] - times[0] if times else 0)
+    # By simulated time: on a busy machine that may be less than the wall clock's.
+    simulated_s = times[-1] - times[0]
+    assert simulated_s > 0.3 * seconds, times
+    return (len(times) - 1) / simulated_s
 
 
 @pytest.mark.parametrize("datagram", [b"\xfd", packed()], ids=["one byte", "unsigned heartbeat"])
@@ -43,7 +45,7 @@ def test_strangers_take_nothing_from_a_signed_pilot(start, connect, tmp_path, da
     signed(pilot.connection)
     pilot.beat()
     pilot.wait("HEARTBEAT")
-    _, quiet = attitudes(pilot, 2)
+    quiet = attitudes(pilot, 2)
     assert quiet > 5, quiet
     host, port = vehicle.addresses[0].split(":")
     strangers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(200)]
@@ -58,7 +60,7 @@ def test_strangers_take_nothing_from_a_signed_pilot(start, connect, tmp_path, da
             sent += 1
 
     try:
-        _, attacked = attitudes(pilot, 5, attack)
+        attacked = attitudes(pilot, 5, attack)
         print(f"ATTITUDE per s: {quiet:.1f} quiet, {attacked:.1f} with {sent} datagrams from {len(strangers)} ports")
         assert sent > 1000 and attacked > 0.9 * quiet
         for stranger in strangers:
