@@ -21,6 +21,7 @@ pub mod flight_log;
 pub mod hil;
 pub mod link;
 mod pace;
+mod rarely;
 mod ready;
 pub mod record;
 mod run;

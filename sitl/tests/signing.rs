@@ -28,7 +28,7 @@ fn signed(with: &SecretKey, link: u8, system: u8, timestamp: u64) -> Frame {
 
 fn guard() -> Signing {
     let mut signing = Signing::new(Some(key(1)), Kept::default());
-    signing.advance(NOW);
+    signing.set_clock(NOW);
     signing
 }
 
@@ -62,7 +62,9 @@ fn signatures_are_pymavlinks() {
         let signature = parsed.signature().expect("it is signed");
         assert_eq!((signature.link, signature.timestamp), (link, timestamp));
         assert!(key.made(&signature.tag, parsed.covered_bytes()));
-        assert_eq!(Signing::new(Some(key), Kept::default()).verify(&parsed), Ok(()));
+        let mut signing = Signing::new(Some(key), Kept::default());
+        signing.set_clock(timestamp);
+        assert_eq!(signing.verify(&parsed), Ok(()));
     }
 }
 
@@ -101,7 +103,7 @@ fn what_is_wrong_is_refused_and_counted() {
 #[test]
 fn a_forged_frame_cannot_poison_a_stream() {
     let mut signing = guard();
-    let far = NOW + 1_000 * MINUTE;
+    let far = NOW + MINUTE;
     assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW)), Ok(()));
     assert_eq!(signing.verify(&signed(&key(2), 0, 255, far)), Err(Refusal::Forged));
     // Nor a right signature under another timestamp, link or flag.
@@ -131,24 +133,80 @@ fn our_timestamps_only_grow_even_across_a_crash_and_a_clock_that_goes_back() {
         kept = signing.take_unkept().unwrap_or(kept);
     }
     let mut after_a_crash = Signing::new(Some(key(1)), kept.clone());
-    after_a_crash.advance(NOW / 2);
+    after_a_crash.set_clock(NOW / 2);
     assert!(after_a_crash.sign(heartbeat(1), 0).signature().expect("signed").timestamp > last);
     let mut after_an_end = Signing::new(Some(key(1)), signing.at_end());
     assert_eq!(after_an_end.sign(heartbeat(1), 0).signature().expect("signed").timestamp, last + 1);
     assert!(kept.render().lines().count() == 3, "no stream but our own");
 }
 
+/// One clock that is wrong, by a day or by 80 years, moves neither ours nor the streams of those whose clocks are right.
 #[test]
-fn a_minute_behind_counts_from_the_latest_that_was_heard() {
+fn a_clock_ahead_locks_out_nobody_else() {
     let mut signing = guard();
-    assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW + 10 * MINUTE)), Ok(()));
-    assert_eq!(signing.verify(&signed(&key(1), 0, 254, NOW + 8 * MINUTE)), Err(Refusal::Late));
-    assert!(signing.sign(heartbeat(1), 0).signature().expect("signed").timestamp >= NOW + 10 * MINUTE);
+    for ahead in [MINUTE + 1, 24 * 60 * MINUTE, (1 << 48) - 1 - NOW] {
+        // The same stream as an honest client, and others.
+        for system in [255, 254] {
+            assert_eq!(signing.verify(&signed(&key(1), 0, system, NOW + ahead)), Err(Refusal::Early));
+        }
+    }
+    assert_eq!(signing.counts().to_string(), "6 early");
+    assert!(signing.sign(heartbeat(1), 0).signature().expect("signed").timestamp < NOW + 10);
+    assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW)), Ok(()));
+    // A minute ahead is accepted, and whoever has the right time still is.
+    assert_eq!(signing.verify(&signed(&key(1), 0, 254, NOW + MINUTE)), Ok(()));
+    assert_eq!(signing.verify(&signed(&key(1), 0, 253, NOW - MINUTE)), Ok(()));
+    // Its own stream waits for a minute at most.
+    assert_eq!(signing.verify(&signed(&key(1), 0, 254, NOW + 10)), Err(Refusal::Replayed));
+    signing.set_clock(NOW + MINUTE + 1);
+    assert_eq!(signing.verify(&signed(&key(1), 0, 254, NOW + MINUTE + 1)), Ok(()));
+}
+
+/// The machine's clock is corrected: what was sent before stays ahead, and clients that follow it are heard.
+#[test]
+fn a_clock_that_goes_back_locks_out_nobody() {
+    let day = 24 * 60 * MINUTE;
+    let mut signing = guard();
+    signing.set_clock(NOW + day);
+    let ours = signing.sign(heartbeat(1), 0).signature().expect("signed").timestamp;
+    assert_eq!(signing.verify(&signed(&key(1), 0, 255, ours + 1)), Ok(()));
     let mut again = Signing::new(Some(key(1)), signing.at_end());
-    assert_eq!(again.verify(&signed(&key(1), 0, 254, NOW + 8 * MINUTE)), Err(Refusal::Late));
-    // No frame may use up all timestamps there are.
-    assert_eq!(signing.verify(&signed(&key(1), 0, 255, (1 << 48) - 1)), Err(Refusal::NoRoom));
-    assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW + 11 * MINUTE)), Ok(()));
+    again.set_clock(NOW);
+    assert_eq!(again.verify(&signed(&key(1), 0, 254, NOW)), Ok(()), "with the right time");
+    let ours = again.sign(heartbeat(1), 0).signature().expect("signed").timestamp;
+    assert_eq!(again.verify(&signed(&key(1), 0, 255, ours + 1)), Ok(()), "with ours");
+    assert_eq!(again.verify(&signed(&key(1), 0, 255, ours)), Err(Refusal::Replayed));
+}
+
+/// A holder of the key invents ten thousand streams; one that is in use stays, and one that begins later finds room.
+#[test]
+fn invented_streams_lock_out_nobody_and_nothing_comes_again() {
+    let mut signing = guard();
+    let client = |link, timestamp| signed(&key(1), link, 255, timestamp);
+    for second in 0..5 {
+        assert_eq!(signing.verify(&client(200, NOW + second)), Ok(()));
+    }
+    let invented =
+        |number: u64| signed(&key(1), (number / 250) as u8, (number % 250) as u8, NOW + 10 + number);
+    for number in 0..10_000 {
+        assert_eq!(signing.verify(&invented(number)), Ok(()), "{number}");
+    }
+    // Its stream was not forgotten: an old frame is known as such, and the next one is accepted.
+    assert_eq!(signing.verify(&client(200, NOW + 4)), Err(Refusal::Replayed));
+    assert_eq!(signing.verify(&client(200, NOW + 5)), Ok(()));
+    // Of all that was accepted nothing is accepted again, even after a restart.
+    let kept = signing.at_end();
+    assert_eq!(kept.streams.len(), 1024);
+    let mut again = Signing::new(Some(key(1)), kept);
+    for signing in [&mut signing, &mut again] {
+        signing.set_clock(NOW);
+        for number in 0..10_000 {
+            assert!(signing.verify(&invented(number)).is_err(), "{number}");
+        }
+    }
+    // Another client is let in as soon as its clock is past the frames that were forgotten.
+    signing.set_clock(NOW + 20_000);
+    assert_eq!(signing.verify(&client(201, NOW + 20_000)), Ok(()));
 }
 
 #[test]
@@ -159,13 +217,16 @@ fn streams_that_are_forgotten_cannot_come_again() {
         let (link, system) = stream(index);
         assert_eq!(signing.verify(&signed(&key(1), link, system, NOW)), Ok(()));
     }
-    // While all are recent there is no room for more.
-    assert_eq!(signing.verify(&signed(&key(1), 9, 9, NOW)), Err(Refusal::NoRoom));
-    signing.advance(NOW + MINUTE + 1);
+    signing.set_clock(NOW + MINUTE + 1);
     assert_eq!(signing.verify(&signed(&key(1), 9, 9, NOW + MINUTE)), Ok(()));
-    for index in 0..1024 {
-        let (link, system) = stream(index);
-        assert_eq!(signing.verify(&signed(&key(1), link, system, NOW)), Err(Refusal::Late));
+    // Those that are too old have all made room at once.
+    assert_eq!(signing.at_end().streams.len(), 1);
+    for clock in [NOW + MINUTE + 1, NOW] {
+        signing.set_clock(clock);
+        for index in 0..1024 {
+            let (link, system) = stream(index);
+            assert_eq!(signing.verify(&signed(&key(1), link, system, NOW)), Err(Refusal::Late));
+        }
     }
 }
 
@@ -173,12 +234,12 @@ fn streams_that_are_forgotten_cannot_come_again() {
 fn another_key_is_another_secret_and_the_old_one_opens_nothing_old() {
     let mut signing = guard();
     assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW)), Ok(()));
-    signing.set_key(Some(key(2)), NOW + 5);
+    signing.set_key(Some(key(2)));
     assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW + 6)), Err(Refusal::Forged));
     assert_eq!(signing.verify(&signed(&key(2), 0, 255, NOW + 6)), Ok(()));
-    signing.set_key(Some(key(1)), 0);
+    signing.set_key(Some(key(1)));
     assert_eq!(signing.verify(&signed(&key(1), 0, 255, NOW)), Err(Refusal::Replayed));
-    signing.set_key(None, 0);
+    signing.set_key(None);
     assert_eq!(signing.verify(&heartbeat(255)), Ok(()));
     assert!(signing.sign(heartbeat(1), 0).signature().is_none());
 }
@@ -210,7 +271,7 @@ proptest! {
             }
             if fate == 0 {
                 signing = Signing::new(Some(key.clone()), on_disk.clone());
-                signing.advance(NOW);
+                signing.set_clock(NOW);
             }
         }
     }

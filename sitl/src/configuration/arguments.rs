@@ -61,9 +61,20 @@ pub struct Arguments {
     /// Key file for signing and verifying messages (MAVLink 2)
     ///
     /// The file has 64 hexadecimal digits or 32 bytes, and mode 0600. Timestamps are kept in a file beside it. An empty file
-    /// waits for SETUP_SIGNING, which only local links may send.
+    /// needs --accept-signing-setup.
     #[arg(long, env = "LMPC_SITL_SIGNING_KEY", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub signing_key: Option<PathBuf>,
+
+    /// Let a local client set the first signing key
+    ///
+    /// It sends SETUP_SIGNING over loopback or a serial link while no vehicle is armed. The key is stored in the file of
+    /// --signing-key; without that flag it is forgotten at the end. A key in use can only be changed by messages that it signs.
+    /// [default: false]
+    #[arg(
+        long, env = "LMPC_SITL_ACCEPT_SIGNING_SETUP", value_name = "true|false", num_args = 0..=1,
+        default_missing_value = "true", help_heading = LINKS, hide_short_help = true
+    )]
+    pub accept_signing_setup: Option<bool>,
 
     /// Autopilot whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT", help_heading = VEHICLE)]
@@ -340,6 +351,7 @@ impl Arguments {
             ftp_root: self.ftp_root.or(file.ftp_root),
             ftp_write: self.ftp_write.or(file.ftp_write),
             signing_key: self.signing_key.or(file.signing_key),
+            accept_signing_setup: self.accept_signing_setup.or(file.accept_signing_setup),
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),
             log: self.log.or(file.log),

@@ -32,6 +32,7 @@ impl HilSettings {
             ("mission", arguments.mission.is_some()),
             ("autostart", arguments.autostart.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
+            ("accept-signing-setup", arguments.accept_signing_setup.is_some()),
         ] {
             if given {
                 return Err(wrong(

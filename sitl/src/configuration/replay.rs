@@ -49,6 +49,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ftp_root,
         ftp_write,
         signing_key,
+        accept_signing_setup,
         ready_file,
         duration,
         log: _,
@@ -91,6 +92,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("ftp-root", ftp_root.is_some()),
         ("ftp-write", ftp_write.is_some()),
         ("signing-key", signing_key.is_some()),
+        ("accept-signing-setup", accept_signing_setup.is_some()),
         ("ready-file", ready_file.is_some()),
         ("duration", duration.is_some()),
     ];
@@ -125,6 +127,7 @@ mod tests {
         ("hil-mount", "x"),
         ("log-start", "arm"),
         ("ftp-write", "true"),
+        ("accept-signing-setup", "true"),
         ("wind", "3"),
         ("list-parameters", "json"),
         ("log", "warn"),

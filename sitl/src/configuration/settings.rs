@@ -50,6 +50,8 @@ pub struct Settings {
     pub ftp_root: Option<(PathBuf, bool)>,
     /// Key to sign with.
     pub signing_key: Option<PathBuf>,
+    /// Whether a local client may set the key while there is none.
+    pub accept_signing_setup: bool,
     /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
@@ -108,6 +110,7 @@ impl Settings {
             logs: log_settings(arguments)?,
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
+            accept_signing_setup: arguments.accept_signing_setup.unwrap_or(false),
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments),
         })

@@ -2,7 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use vehicle::Severity;
 
@@ -21,17 +21,29 @@ pub struct Upkeep {
     path: PathBuf,
     /// Why the latest attempt failed; `None` if it did not.
     failure: Option<String>,
+    /// When [`Self::attempt`] last tried.
+    tried: Option<Instant>,
 }
 
 impl Upkeep {
     /// Of a file, with the name by which pilots know it.
     pub fn new(name: &'static str, path: &Path) -> Self {
-        Self { name, path: path.to_owned(), failure: None }
+        Self { name, path: path.to_owned(), failure: None, tried: None }
     }
 
     /// Whether the latest attempt failed.
     pub fn is_failing(&self) -> bool {
         self.failure.is_some()
+    }
+
+    /// Writes the file, unless that failed less than [`WRITE_PERIOD`] ago. Returns what to announce, if that is news.
+    pub fn attempt(&mut self, now: Instant, write: impl FnOnce() -> io::Result<()>) -> Option<Notice> {
+        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
+        if early && self.is_failing() {
+            return None;
+        }
+        self.tried = Some(now);
+        self.judge(write())
     }
 
     /// Takes in how an attempt ended. Returns what to announce, if that is news.
@@ -71,7 +83,31 @@ mod tests {
     use std::io::{Error, ErrorKind};
     use std::path::Path;
 
-    use super::{Severity, Upkeep};
+    use std::time::Instant;
+
+    use super::{Severity, Upkeep, WRITE_PERIOD};
+
+    #[test]
+    fn a_file_that_fails_is_tried_again_each_period_and_one_that_works_at_any_time() {
+        let mut upkeep = Upkeep::new("Parameters", Path::new("a.params"));
+        let (start, mut attempts) = (Instant::now(), 0);
+        let mut attempt = |after, works| {
+            let full = Error::from(ErrorKind::StorageFull);
+            let write = || {
+                attempts += 1;
+                if works { Ok(()) } else { Err(full) }
+            };
+            let said = upkeep.attempt(start + after, write).is_some();
+            (attempts, said)
+        };
+        let instant = WRITE_PERIOD / 10;
+        assert_eq!(attempt(instant, true), (1, false));
+        assert_eq!(attempt(2 * instant, false), (2, true), "one that works need not wait");
+        assert_eq!(attempt(3 * instant, true), (2, false), "one that fails waits");
+        assert_eq!(attempt(2 * instant + WRITE_PERIOD, false), (3, false));
+        assert_eq!(attempt(2 * instant + 2 * WRITE_PERIOD, true), (4, true));
+        assert_eq!(attempt(3 * instant + 2 * WRITE_PERIOD, true), (5, false));
+    }
 
     #[test]
     fn a_failure_is_announced_once_and_so_is_its_end() {

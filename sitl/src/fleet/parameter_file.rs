@@ -6,7 +6,7 @@ use std::time::Instant;
 use vehicle::parameters::FileFormat;
 
 use crate::failure::Failure;
-use crate::files::{FileLock, Notice, Readers, Upkeep, WRITE_PERIOD, replace};
+use crate::files::{FileLock, Notice, Readers, Upkeep, replace};
 
 /// Keeps changed parameters: at once, or as soon as the disk lets.
 #[derive(Debug)]
@@ -15,7 +15,6 @@ pub struct ParameterFile {
     upkeep: Upkeep,
     /// What the file should hold and does not.
     unsaved: Option<String>,
-    tried: Option<Instant>,
     _lock: Option<FileLock>,
 }
 
@@ -27,7 +26,7 @@ impl ParameterFile {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let lock = FileLock::claim(path)?;
         let upkeep = Upkeep::new("Parameters", path);
-        Ok(Self { path: path.to_owned(), upkeep, unsaved: None, tried: None, _lock: lock })
+        Ok(Self { path: path.to_owned(), upkeep, unsaved: None, _lock: lock })
     }
 
     /// The form in which it is written.
@@ -39,23 +38,18 @@ impl ParameterFile {
     pub fn save(&mut self, changed: Option<String>, now: Instant) -> Option<Notice> {
         self.unsaved = changed.or(self.unsaved.take());
         let text = self.unsaved.as_ref()?;
-        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
-        if early && self.upkeep.is_failing() {
-            return None;
-        }
-        self.tried = Some(now);
-        let result = replace(&self.path, text.as_bytes(), Readers::All);
-        if result.is_ok() {
+        let notice = self.upkeep.attempt(now, || replace(&self.path, text.as_bytes(), Readers::All));
+        if !self.upkeep.is_failing() {
             self.unsaved = None;
         }
-        self.upkeep.judge(result)
+        notice
     }
 
     /// Tries a last time. Returns what is missing from the file, if anything is.
     pub fn finish(&mut self) -> Option<String> {
-        self.tried = None;
-        let _told_below = self.save(None, Instant::now());
-        self.unsaved.as_ref().map(|_| self.upkeep.lacks("lacks the latest changes of parameters"))
+        let text = self.unsaved.as_ref()?;
+        let _told_below = self.upkeep.judge(replace(&self.path, text.as_bytes(), Readers::All));
+        self.upkeep.is_failing().then(|| self.upkeep.lacks("lacks the latest changes of parameters"))
     }
 }
 

@@ -15,7 +15,7 @@ use autopilot::codec::target_of;
 use vehicle::Severity;
 
 use super::Fleet;
-use crate::link::{Lost, Received};
+use crate::link::{Lost, Received, SetupRules};
 use crate::terminal::set_simulation_time;
 
 /// What one look at the links may take; a turn that has begun then is ended.
@@ -54,6 +54,9 @@ impl Fleet {
     pub(crate) fn receive(&mut self, now: Instant) {
         let start = Instant::now();
         let hubs = self.hubs.len();
+        let armed = self.members.iter().any(|member| member.autopilot.vehicle().is_armed());
+        let rules = SetupRules { without_key: self.accept_signing_setup, armed };
+        self.hubs.iter_mut().for_each(|links| links.set_setup_rules(rules));
         for _ in 0..hubs {
             let hub = self.reception.polled;
             self.reception.polled = (hub + 1) % hubs;
@@ -178,7 +181,7 @@ impl Fleet {
         let said = keeper.update(links, now);
         if said.new_key {
             let key = links.signing().key().cloned();
-            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone(), 0));
+            self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone()));
         }
         for (severity, text) in said.lines {
             self.announce(hub, severity, &text, now);

@@ -26,6 +26,8 @@ pub struct Fleet {
     pub(super) hubs: Vec<Links>,
     /// One for each hub.
     pub(super) signing: Vec<SigningKeeper>,
+    /// Whether a key may be set while there is none.
+    pub(super) accept_signing_setup: bool,
     pub(super) books: Books,
     pub(super) reception: Reception,
     /// The key's files are those of this process.
@@ -51,7 +53,7 @@ impl Fleet {
         let signing = hubs
             .iter_mut()
             .enumerate()
-            .map(|(hub, links)| SigningKeeper::new(key, hub, unix_start_us, links))
+            .map(|(hub, links)| SigningKeeper::new(key, hub, settings.accept_signing_setup, links))
             .collect::<Result<_, _>>()?;
         // A port that is taken belongs to somebody whose files these may be, too: they come after the links.
         let participants = settings.participants();
@@ -69,7 +71,8 @@ impl Fleet {
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let reception = Reception::new(hubs.len());
-        Ok(Self { members, hubs, signing, books, reception, _key_lock: key_lock })
+        let accept_signing_setup = settings.accept_signing_setup;
+        Ok(Self { members, hubs, signing, accept_signing_setup, books, reception, _key_lock: key_lock })
     }
 
     /// The vehicles.

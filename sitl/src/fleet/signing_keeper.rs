@@ -1,17 +1,15 @@
 //! Signing at the edge: the wall clock, the key files and the announcements.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use vehicle::Severity;
 
 use crate::failure::Failure;
-use crate::files::{Notice, Upkeep, WRITE_PERIOD};
+use crate::files::{Notice, Upkeep};
 use crate::link::{Links, SigningSetup};
+use crate::rarely::Rarely;
 use crate::signing::{Counts, KeyFile, Signing, timestamp};
-
-/// Rejected frames are announced this often.
-const TOLD: Duration = Duration::from_secs(5);
 
 /// What is to be said, and whether another key is used from now on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,52 +28,62 @@ struct Files {
     key: Upkeep,
     /// Whether the key in use is another than that of the file.
     new_key: bool,
-    tried: Option<Instant>,
 }
 
 /// Keeps the state of signing up to date, on the disk, too.
 #[derive(Debug)]
 pub struct SigningKeeper {
     files: Option<Files>,
-    start: Instant,
-    start_timestamp: u64,
     told: Counts,
-    told_at: Option<Instant>,
+    rejections: Rarely,
+    refusals: Rarely,
 }
 
 impl SigningKeeper {
-    /// Reads the key, if there is a file for it, and begins to sign with it.
+    /// Reads the key, if there is a file for it, and begins to sign with it. An empty file is refused unless the key may come
+    /// by SETUP_SIGNING.
     ///
     /// # Errors
     /// As [`KeyFile::open`].
-    pub fn new(path: Option<&Path>, hub: usize, unix_us: u64, links: &mut Links) -> Result<Self, Failure> {
-        let start_timestamp = timestamp(unix_us);
+    pub fn new(path: Option<&Path>, hub: usize, waits: bool, links: &mut Links) -> Result<Self, Failure> {
         let files = match path {
             Some(path) => {
                 let (key_file, key, kept) = KeyFile::open(path, hub)?;
+                if key.is_none() && !waits {
+                    let reason = "is empty; write a key of 64 hexadecimal digits into it, or add --accept-signing-setup to let a \
+                                  local client set the key";
+                    return Err(Failure::Content { path: path.to_owned(), reason: reason.to_owned() });
+                }
                 links.sign_with(Signing::new(key, kept));
                 Some(Files {
                     timestamps: Upkeep::new("Signing timestamps", key_file.timestamps()),
                     key: Upkeep::new("Signing key", path),
                     key_file,
                     new_key: false,
-                    tried: None,
                 })
             }
             None => None,
         };
-        links.signing().advance(start_timestamp);
-        Ok(Self { files, start: Instant::now(), start_timestamp, told: Counts::default(), told_at: None })
+        links.signing().set_clock(present());
+        Ok(Self {
+            files,
+            told: Counts::default(),
+            rejections: Rarely::default(),
+            refusals: Rarely::default(),
+        })
     }
 
     /// Keeps what has changed, before it takes effect, and returns what is to be said. What cannot be written is tried again each
     /// second; meanwhile signing goes on, and only a restart could forget which frames have come.
     pub fn update(&mut self, links: &mut Links, now: Instant) -> Said {
-        let since_start = now.saturating_duration_since(self.start).as_micros() as u64;
-        links.signing().advance(self.start_timestamp + since_start / 10);
+        links.signing().set_clock(present());
         let setups = links.take_setups();
-        let new_key = setups.iter().any(|setup| !matches!(setup, SigningSetup::Refused(..)));
-        let mut lines: Vec<_> = setups.iter().map(|setup| (Severity::Warning, setup.to_string())).collect();
+        let new_key = setups.iter().any(SigningSetup::is_change);
+        let mut lines: Vec<_> = setups
+            .iter()
+            .filter(|setup| setup.is_change() || self.refusals.is_due(now))
+            .map(|setup| (Severity::Warning, setup.to_string()))
+            .collect();
         if let Some(files) = &mut self.files {
             files.new_key |= new_key;
             lines.extend(files.keep(links.signing(), now));
@@ -86,12 +94,13 @@ impl SigningKeeper {
 
     /// A line about refused frames, if there are more than were told, and it is time.
     fn refused(&mut self, counts: Counts, now: Instant) -> Option<(Severity, String)> {
-        let early = self.told_at.is_some_and(|told| now.saturating_duration_since(told) < TOLD);
-        if counts == self.told || early {
+        if counts == self.told || !self.rejections.is_due(now) {
             return None;
         }
-        (self.told, self.told_at) = (counts, Some(now));
-        Some((Severity::Warning, format!("Signing: rejected so far: {counts}")))
+        let clocks = (counts.late, counts.early) != (self.told.late, self.told.early);
+        self.told = counts;
+        let hint = if clocks { "; compare the clocks" } else { "" };
+        Some((Severity::Warning, format!("Signing: rejected so far: {counts}{hint}")))
     }
 
     /// Keeps the state at an end that was asked for. Returns what is missing from the files, a sentence each.
@@ -104,39 +113,42 @@ impl SigningKeeper {
     }
 }
 
+/// The timestamp of the present, by the machine's clock as it is set now: it may be corrected while vehicles fly.
+fn present() -> u64 {
+    timestamp(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros() as u64)
+}
+
 impl Files {
     /// Keeps what has changed. Returns what to announce.
     fn keep(&mut self, signing: &mut Signing, now: Instant) -> Vec<Notice> {
-        let failing = self.timestamps.is_failing() || self.key.is_failing();
-        let early = self.tried.is_some_and(|tried| now.saturating_duration_since(tried) < WRITE_PERIOD);
-        if failing && early {
-            return Vec::new();
-        }
-        self.tried = Some(now);
+        let Self { key_file, timestamps, key, new_key } = self;
         let mut notices = Vec::new();
-        if let Some(kept) = signing.take_unkept() {
-            let result = self.key_file.keep(&kept);
-            if result.is_err() {
-                signing.keep_again();
-            }
-            notices.extend(self.timestamps.judge(result));
+        if signing.is_unkept() {
+            notices.extend(timestamps.attempt(now, || {
+                let result = signing.take_unkept().map_or(Ok(()), |kept| key_file.keep(&kept));
+                if result.is_err() {
+                    signing.keep_again();
+                }
+                result
+            }));
         }
-        notices.extend(self.keep_key(signing));
+        if *new_key {
+            notices.extend(key.attempt(now, || {
+                key_file.keep_key(signing.key())?;
+                *new_key = false;
+                Ok(())
+            }));
+        }
         notices
-    }
-
-    fn keep_key(&mut self, signing: &Signing) -> Option<Notice> {
-        if !self.new_key {
-            return None;
-        }
-        let result = self.key_file.keep_key(signing.key());
-        self.new_key = result.is_err();
-        self.key.judge(result)
     }
 
     fn finish(&mut self, signing: &Signing) -> Vec<String> {
         let _told_below = self.timestamps.judge(self.key_file.keep(&signing.at_end()));
-        let _told_below = self.keep_key(signing);
+        if self.new_key {
+            let result = self.key_file.keep_key(signing.key());
+            self.new_key = result.is_err();
+            let _told_below = self.key.judge(result);
+        }
         let timestamps = self.timestamps.is_failing().then(|| {
             self.timestamps.lacks(
                 "lacks the latest timestamps, so that frames of this run could be replayed to the next",

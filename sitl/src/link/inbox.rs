@@ -19,6 +19,7 @@ struct Piece {
     /// Whether a frame can go on in the next piece.
     stream: bool,
     arrival: u64,
+    sender: u64,
 }
 
 /// Received bytes that wait to be decoded, frame by frame.
@@ -34,6 +35,7 @@ pub struct Inbox {
     ended: bool,
     /// Of the piece that is being decoded.
     arrival: u64,
+    sender: u64,
     last_bytes: Option<Instant>,
 }
 
@@ -47,15 +49,15 @@ impl Inbox {
         CAPACITY.checked_sub(self.queued + self.decoder.waiting_bytes() + PIECE)
     }
 
-    /// Takes bytes in, which have arrived as number `arrival` of all; `stream`: whether a frame can go on in the next ones.
-    /// `false`: there is no room, and they are lost.
-    pub fn put(&mut self, bytes: Vec<u8>, stream: bool, arrival: u64, now: Instant) -> bool {
+    /// Takes bytes of a sender in, which have arrived as number `arrival` of all; `stream`: whether a frame can go on in the
+    /// next ones. `false`: there is no room, and they are lost.
+    pub fn put(&mut self, bytes: Vec<u8>, sender: u64, stream: bool, arrival: u64, now: Instant) -> bool {
         self.last_bytes = Some(now);
         if self.room_for_a_piece().is_none_or(|room| bytes.len() > room) {
             return false;
         }
         self.queued += bytes.len() + PIECE;
-        self.pieces.push_back(Piece { bytes, stream, arrival });
+        self.pieces.push_back(Piece { bytes, stream, arrival, sender });
         true
     }
 
@@ -65,19 +67,35 @@ impl Inbox {
         if self.decoding || self.is_overdue(now) { Some(self.arrival) } else { next }
     }
 
+    /// What waits of the sender that is being decoded, as an inbox of its own: its frames stay in their order.
+    pub fn split_off(&mut self) -> Self {
+        let sender = self.sender;
+        let (own, others): (VecDeque<_>, VecDeque<_>) =
+            std::mem::take(&mut self.pieces).into_iter().partition(|piece| piece.sender == sender);
+        let queued = own.iter().map(|piece| piece.bytes.len() + PIECE).sum();
+        (self.pieces, self.queued) = (others, self.queued.saturating_sub(queued));
+        Self {
+            pieces: own,
+            queued,
+            decoder: std::mem::take(&mut self.decoder),
+            decoding: std::mem::take(&mut self.decoding),
+            ..*self
+        }
+    }
+
     /// Whether the rest of a frame is waited for in vain.
     fn is_overdue(&self, now: Instant) -> bool {
         let silent = self.last_bytes.is_some_and(|last| now.saturating_duration_since(last) > SILENCE);
         silent && self.pieces.is_empty() && self.decoder.waiting_bytes() > 0
     }
 
-    /// Decodes a bounded number of bytes, and returns the frame that was found, if one was.
-    pub fn decode(&mut self, now: Instant) -> Option<Frame> {
+    /// Decodes a bounded number of bytes, and returns the frame that was found, if one was, and its sender.
+    pub fn decode(&mut self, now: Instant) -> Option<(u64, Frame)> {
         if !self.decoding {
-            if let Some(Piece { bytes, stream, arrival }) = self.pieces.pop_front() {
+            if let Some(Piece { bytes, stream, arrival, sender }) = self.pieces.pop_front() {
                 self.queued = self.queued.saturating_sub(bytes.len() + PIECE);
                 self.decoder.feed(&bytes);
-                (self.ended, self.arrival) = (!stream, arrival);
+                (self.ended, self.arrival, self.sender) = (!stream, arrival, sender);
             } else if self.is_overdue(now) {
                 self.ended = true;
             } else {
@@ -87,7 +105,7 @@ impl Inbox {
         let decoded = self.decoder.step(self.ended);
         self.decoding = decoded != Decoded::Starved;
         match decoded {
-            Decoded::Frame(frame) => Some(frame),
+            Decoded::Frame(frame) => Some((self.sender, frame)),
             Decoded::Noise | Decoded::Starved => None,
         }
     }
@@ -123,8 +141,8 @@ mod tests {
     fn a_call_decodes_one_frame() {
         let (mut inbox, now) = (Inbox::default(), Instant::now());
         assert_eq!((inbox.waiting(now), inbox.decode(now)), (None, None));
-        assert!(inbox.put(bytes().repeat(3), false, 7, now));
-        assert!(inbox.put(bytes(), false, 8, now));
+        assert!(inbox.put(bytes().repeat(3), 1, false, 7, now));
+        assert!(inbox.put(bytes(), 1, false, 8, now));
         for arrival in [7, 7, 7] {
             assert_eq!(inbox.waiting(now), Some(arrival));
             assert!(inbox.decode(now).is_some());
@@ -140,7 +158,7 @@ mod tests {
         let (mut inbox, now) = (Inbox::default(), Instant::now());
         let noise: Vec<u8> = [0xfe, 255, 0, 0, 0, 0].repeat(10_000);
         let length = noise.len();
-        assert!(inbox.put(noise, false, 0, now));
+        assert!(inbox.put(noise, 1, false, 0, now));
         let (frames, calls) = decoded(&mut inbox, now);
         assert_eq!(frames, 0);
         assert!((length / 64..length / 64 + 8).contains(&calls), "{calls}");
@@ -150,7 +168,7 @@ mod tests {
     fn what_there_is_no_room_for_is_lost_as_a_whole() {
         let (mut inbox, now) = (Inbox::default(), Instant::now());
         let datagram = vec![0; 65_507];
-        let put = |inbox: &mut Inbox, bytes: &[u8]| inbox.put(bytes.to_vec(), false, 0, now);
+        let put = |inbox: &mut Inbox, bytes: &[u8]| inbox.put(bytes.to_vec(), 1, false, 0, now);
         assert_eq!([&datagram; 3].map(|datagram| put(&mut inbox, datagram)), [true, true, false]);
         // Empty ones are bounded, too.
         let (mut inbox, mut taken) = (Inbox::default(), 0);
@@ -166,18 +184,38 @@ mod tests {
     fn a_frame_of_a_stream_comes_in_parts_and_one_that_stays_incomplete_is_given_up() {
         let (mut inbox, now) = (Inbox::default(), Instant::now());
         let (whole, rest) = (bytes(), bytes().split_off(5));
-        assert!(inbox.put(whole[..5].to_vec(), true, 0, now));
+        assert!(inbox.put(whole[..5].to_vec(), 1, true, 0, now));
         assert_eq!(decoded(&mut inbox, now).0, 0);
-        assert!(inbox.put(rest, true, 0, now));
+        assert!(inbox.put(rest, 1, true, 0, now));
         assert_eq!(decoded(&mut inbox, now).0, 1);
 
         // A lost byte: the marker of a long frame swallows a short one until it is given up.
         let message = MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA { time_unix_usec: 1, time_boot_ms: 1 });
         let long = Frame::encode(&message.into(), Version::Two, 0, (255, 190)).expect("MAVLink 2");
-        assert!(inbox.put([&long.bytes()[..3], &whole].concat(), true, 0, now));
+        assert!(inbox.put([&long.bytes()[..3], &whole].concat(), 1, true, 0, now));
         let (before, after) = (now + SILENCE, now + SILENCE * 2);
         assert_eq!(decoded(&mut inbox, before).0 + decoded(&mut inbox, after).0, 1);
         assert_eq!(inbox.waiting(after), None);
+    }
+
+    #[test]
+    fn what_waits_of_one_sender_moves_in_its_order() {
+        let (mut shared, now) = (Inbox::default(), Instant::now());
+        for (arrival, sender) in [(1, 7), (2, 8), (3, 7)] {
+            assert!(shared.put(bytes().repeat(2), sender, false, arrival, now));
+        }
+        assert_eq!(shared.decode(now).map(|(sender, _)| sender), Some(7));
+        let mut own = shared.split_off();
+        assert_eq!((own.waiting(now), shared.waiting(now)), (Some(1), Some(2)));
+        let senders = |inbox: &mut Inbox| {
+            let mut senders = Vec::new();
+            while inbox.waiting(now).is_some() {
+                senders.extend(inbox.decode(now).map(|(sender, _)| sender));
+            }
+            senders
+        };
+        assert_eq!((senders(&mut own), senders(&mut shared)), (vec![7, 7, 7], vec![8, 8]));
+        assert_eq!((own.room(), shared.room()), (CAPACITY - PIECE, CAPACITY - PIECE));
     }
 
     proptest! {
@@ -193,7 +231,7 @@ mod tests {
             let mut rest = stream.as_slice();
             for cut in cuts.iter().cycle().take(stream.len()) {
                 let (piece, behind) = rest.split_at((*cut).min(rest.len()));
-                prop_assert!(inbox.put(piece.to_vec(), true, 0, now));
+                prop_assert!(inbox.put(piece.to_vec(), 1, true, 0, now));
                 rest = behind;
             }
             let whole = FrameDecoder::default().push(&stream);

@@ -1,19 +1,22 @@
 //! All links: receiving in turns, sending, and forwarding from one peer to the others.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::time::{Duration, Instant};
 
 use autopilot::COMPONENT;
 use autopilot::codec::{Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 
+use super::allowance::Allowance;
 use super::echo::Echoes;
 use super::endpoint::LinkSpecification;
 use super::error::LinkError;
 use super::forwarding::Forwarding;
+use super::inbox::Inbox;
 use super::open::open;
 use super::peer::Peer;
-use super::signing_setup::SigningSetup;
+use super::signing_setup::{SetupRules, SigningSetup};
 use super::transport::{Event, Transport};
 use super::turns::Turns;
 use crate::signing::Signing;
@@ -61,7 +64,12 @@ impl std::fmt::Display for Lost {
 struct Link {
     transport: Box<dyn Transport>,
     peers: BTreeMap<u64, Peer>,
+    /// What senders have sent that are no peers yet.
+    strangers: Inbox,
 }
+
+/// In place of a peer's number: a turn of the strangers.
+const STRANGERS: u64 = 0;
 
 /// Links, and the vehicles behind them.
 #[derive(Debug)]
@@ -76,6 +84,7 @@ pub struct Links {
     forwarding: Forwarding,
     lost: Lost,
     signing: Signing,
+    setup_rules: SetupRules,
     setups: Vec<SigningSetup>,
 }
 
@@ -104,7 +113,11 @@ impl Links {
         let links = specifications
             .iter()
             .map(|specification| {
-                Ok(Link { transport: open(&specification.endpoint)?, peers: BTreeMap::new() })
+                Ok(Link {
+                    transport: open(&specification.endpoint)?,
+                    peers: BTreeMap::new(),
+                    strangers: Inbox::default(),
+                })
             })
             .collect::<Result<_, LinkError>>()?;
         Ok(Self::of(links, systems))
@@ -120,6 +133,7 @@ impl Links {
             forwarding: Forwarding::default(),
             lost: Lost::default(),
             signing: Signing::default(),
+            setup_rules: SetupRules::default(),
             setups: Vec::new(),
         }
     }
@@ -132,6 +146,11 @@ impl Links {
     /// What is signed with; its clock is the caller's to advance.
     pub fn signing(&mut self) -> &mut Signing {
         &mut self.signing
+    }
+
+    /// Sets who may change the key from now on.
+    pub fn set_setup_rules(&mut self, rules: SetupRules) {
+        self.setup_rules = rules;
     }
 
     /// Attempts to change the key since the last call. They are acted upon already, and neither forwarded nor returned
@@ -165,7 +184,7 @@ impl Links {
     /// sender has to wait; datagrams are always read, and lost if there is no room, so that they keep nobody else's out.
     pub fn poll(&mut self, now: Instant) {
         for (index, link) in self.links.iter_mut().enumerate() {
-            let Link { transport, peers } = link;
+            let Link { transport, peers, .. } = link;
             let room = |number| peers.get(&number).map_or(usize::MAX, |peer| peer.inbox.room());
             let events = transport.poll(now, &room);
             let stream = !transport.is_datagram();
@@ -181,12 +200,17 @@ impl Links {
                     }
                     Event::Bytes(number, bytes) => {
                         self.arrivals += 1;
-                        let inbox = &mut link.peers.entry(number).or_default().inbox;
-                        if !inbox.put(bytes, stream, self.arrivals, now) {
+                        // A stranger has no place until one of its frames is accepted.
+                        let inbox =
+                            link.peers.get_mut(&number).map_or(&mut link.strangers, |peer| &mut peer.inbox);
+                        if !inbox.put(bytes, number, stream, self.arrivals, now) {
                             self.lost.datagrams += 1;
                         }
                     }
                 }
+            }
+            for peer in link.peers.values_mut() {
+                peer.allowance.update(now);
             }
         }
     }
@@ -195,17 +219,23 @@ impl Links {
     /// turn. What the turn has cost, with all that it led to, is the caller's to charge.
     pub fn take_turn(&mut self, now: Instant, may: impl Fn(PeerId) -> bool) -> Option<Turn> {
         let waiting = self.links.iter().enumerate().flat_map(|(link, own)| {
-            own.peers.iter().filter_map(move |(number, peer)| {
-                Some((PeerId { link, number: *number }, peer.inbox.waiting(now)?))
-            })
+            let peers = own.peers.iter().map(|(number, peer)| (*number, &peer.inbox));
+            peers
+                .chain([(STRANGERS, &own.strangers)])
+                .filter_map(move |(number, inbox)| Some((PeerId { link, number }, inbox.waiting(now)?)))
         });
         let id = self.turns.next(waiting.filter(|(peer, _)| may(*peer)))?;
-        let peers = &mut self.links.get_mut(id.link)?.peers;
-        let peer = peers.get_mut(&id.number)?;
-        let frame = peer.inbox.decode(now);
-        let left = peer.departed && peer.inbox.waiting(now).is_none();
-        let received = frame.and_then(|frame| {
-            let origin = Origin { peer: id, system: frame.system(), component: frame.component() };
+        let Link { peers, strangers, .. } = self.links.get_mut(id.link)?;
+        let (decoded, left) = match peers.get_mut(&id.number) {
+            Some(peer) => {
+                let decoded = peer.inbox.decode(now);
+                (decoded, peer.departed && peer.inbox.waiting(now).is_none())
+            }
+            None => (strangers.decode(now), false),
+        };
+        let received = decoded.and_then(|(number, frame)| {
+            let peer = PeerId { link: id.link, number };
+            let origin = Origin { peer, system: frame.system(), component: frame.component() };
             let received = Received { origin, frame };
             self.is_accepted(&received, now).then_some(received)
         });
@@ -226,25 +256,60 @@ impl Links {
 
     /// Whether a frame goes on from here. What is refused teaches nothing about who sent it.
     fn is_accepted(&mut self, received: &Received, now: Instant) -> bool {
-        let news = self.is_news(received, now);
+        let news = !self.is_own(received) && !self.echoes.has(&received.frame, received.origin.peer, now);
         if if news { self.signing.verify(&received.frame).is_err() } else { self.signing.is_on() } {
             return false;
         }
-        let PeerId { link, number } = received.origin.peer;
+        let number = received.origin.peer.number;
         let ours = self.is_for_us(&received.frame);
-        let Some(link) = self.links.get_mut(link) else { return false };
-        if let Some(peer) = link.peers.get_mut(&number) {
-            peer.learn(&received.frame);
-        }
-        if received.frame.message_id() == id::SETUP_SIGNING {
-            if news && ours {
-                let setup = SigningSetup::of(&received.frame, link.transport.is_local(number));
-                setup.act(&mut self.signing, &received.frame);
-                self.setups.push(setup);
-            }
+        if !self.is_from_peer(received, now) {
             return false;
         }
+        let Some(link) = self.links.get_mut(received.origin.peer.link) else { return false };
+        if received.frame.message_id() == id::SETUP_SIGNING {
+            if news && ours {
+                let local = link.transport.is_local(number);
+                let (rules, signing) = (self.setup_rules, &mut self.signing);
+                let setup = SigningSetup::carry_out(&received.frame, local, rules, signing);
+                // A flood of refused ones says nothing new.
+                if setup.is_change() || self.setups.last() != Some(&setup) {
+                    self.setups.push(setup);
+                }
+            }
+            // A key is not remembered.
+            return false;
+        }
+        // One peer has no one to be an echo of.
+        if news && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
+            self.echoes.remember(&received.frame, received.origin.peer, now);
+        }
         news
+    }
+
+    /// Whether an accepted frame is from a peer, or makes its sender one. Peers learn from it.
+    fn is_from_peer(&mut self, received: &Received, now: Instant) -> bool {
+        let PeerId { link, number } = received.origin.peer;
+        let Some(link) = self.links.get_mut(link) else { return false };
+        let (frame, has_key) = (&received.frame, self.signing.is_on());
+        // What a radio says without a key proves nothing.
+        let proven = !has_key || frame.signature().is_some();
+        let departed = link.peers.get(&number).is_some_and(|peer| peer.departed);
+        if proven && !departed && !link.transport.confirm(number, now) {
+            return false;
+        }
+        let peer = match link.peers.entry(number) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(_) if !proven => return false,
+            Entry::Vacant(new) => {
+                let allowance = Allowance::new(link.transport.may_be_forged(number));
+                new.insert(Peer::new(allowance, link.strangers.split_off()))
+            }
+        };
+        peer.learn(frame);
+        if proven {
+            peer.allowance.hear(frame.bytes().len(), has_key, now);
+        }
+        true
     }
 
     fn is_for_us(&self, frame: &Frame) -> bool {
@@ -252,19 +317,9 @@ impl Links {
         self.systems.iter().any(|system| target.is_autopilot(*system))
     }
 
-    /// Whether a frame is neither our own nor one that has come already by another way.
-    fn is_news(&mut self, received: &Received, now: Instant) -> bool {
-        let origin = &received.origin;
-        if origin.component == COMPONENT && self.systems.contains(&origin.system) {
-            return false;
-        }
-        let known = self.echoes.has(&received.frame, origin.peer, now);
-        // One peer has no one to be an echo of, and a key is not remembered.
-        let secret = received.frame.message_id() == id::SETUP_SIGNING;
-        if !known && !secret && self.links.iter().map(|link| link.peers.len()).sum::<usize>() > 1 {
-            self.echoes.remember(&received.frame, origin.peer, now);
-        }
-        !known
+    /// Whether a frame is one of ours that has come back.
+    fn is_own(&self, received: &Received) -> bool {
+        received.origin.component == COMPONENT && self.systems.contains(&received.origin.system)
     }
 
     /// Passes a frame on to the peers that lead to its target, unless it is for one of ours alone.
@@ -276,10 +331,11 @@ impl Links {
         let from = received.origin.peer;
         let mut allowed = None;
         for (index, link) in self.links.iter_mut().enumerate() {
-            for (number, peer) in &link.peers {
+            for (number, peer) in &mut link.peers {
                 let itself = from == PeerId { link: index, number: *number };
                 // What has never spoken cannot be known not to be the sender itself, by another way.
-                if !itself && peer.has_spoken() && peer.leads_to(target.system) {
+                let wanted = !itself && peer.has_spoken() && peer.leads_to(target.system);
+                if wanted && peer.allowance.spend(received.frame.bytes().len(), false) {
                     if !*allowed.get_or_insert_with(|| self.forwarding.allows(from, now)) {
                         self.lost.forwards += 1;
                         return;
@@ -293,6 +349,7 @@ impl Links {
     /// Sends a message of one of our systems and returns it as one of its frames, for a log.
     pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<Frame> {
         let sender = (system, COMPONENT);
+        let essential = matches!(outgoing.to, Destination::Peer(_)) || outgoing.message.id() == id::HEARTBEAT;
         let mut sent = None;
         for (index, link) in self.links.iter_mut().enumerate() {
             for (number, peer) in &mut link.peers {
@@ -309,6 +366,9 @@ impl Links {
                 // Messages beyond number 255 do not exist in MAVLink 1.
                 let sequence = peer.sequences.entry(system).or_default();
                 if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
+                    if !peer.allowance.spend(frame.bytes().len(), essential) {
+                        continue;
+                    }
                     let frame = self.signing.sign(frame, index as u8);
                     *sequence = sequence.wrapping_add(1);
                     link.transport.send(*number, frame.bytes());
@@ -322,8 +382,9 @@ impl Links {
     /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
     pub fn has_room(&self, peer: PeerId) -> Option<bool> {
         let link = self.links.get(peer.link)?;
-        let connected = link.peers.get(&peer.number).is_some_and(|peer| !peer.departed);
-        connected.then(|| link.transport.has_room(peer.number))
+        let peer =
+            link.peers.get(&peer.number).filter(|peer| !peer.departed).map(|known| (known, peer.number));
+        peer.map(|(known, number)| known.allowance.is_open() && link.transport.has_room(number))
     }
 
     /// Sends what is waiting.
@@ -340,14 +401,20 @@ mod tests {
     use std::sync::{Arc, Mutex};
     use std::time::{Duration, Instant};
 
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SETUP_SIGNING_DATA, SYSTEM_TIME_DATA};
+    use mavlink::dialects::common::{
+        ATTITUDE_DATA, HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA, SETUP_SIGNING_DATA, SYSTEM_TIME_DATA,
+    };
 
-    use super::{Link, Links, Lost, Received};
-    use crate::link::SigningSetup;
+    use super::{Link, Links, Lost, Peer, Received};
+    use crate::link::inbox::Inbox;
     use crate::link::transport::{Event, Transport};
+    use crate::link::{SetupRefusal, SetupRules, SigningSetup};
     use crate::signing::{SecretKey, Signing};
     use autopilot::codec::{Frame, Message, Version};
     use autopilot::envelope::{Destination, Outgoing, PeerId};
+
+    /// What the clock shows.
+    const NOW: u64 = 50;
 
     type Bytes = Arc<Mutex<Vec<Vec<u8>>>>;
 
@@ -357,6 +424,8 @@ mod tests {
         inward: Bytes,
         outward: Bytes,
         local: bool,
+        /// Whether it has no place for peers.
+        full: bool,
     }
 
     impl Transport for Ends {
@@ -373,6 +442,14 @@ mod tests {
 
         fn is_datagram(&self) -> bool {
             true
+        }
+
+        fn confirm(&mut self, _peer: u64, _now: Instant) -> bool {
+            !self.full
+        }
+
+        fn may_be_forged(&self, _peer: u64) -> bool {
+            !self.local
         }
 
         fn is_local(&self, _peer: u64) -> bool {
@@ -392,15 +469,27 @@ mod tests {
     fn links() -> (Links, [(Bytes, Bytes); 2]) {
         let ends: [(Bytes, Bytes); 2] = Default::default();
         let of = |(inward, outward): &(Bytes, Bytes), local| Link {
-            transport: Box::new(Ends { inward: inward.clone(), outward: outward.clone(), local }),
+            transport: Box::new(Ends {
+                inward: inward.clone(),
+                outward: outward.clone(),
+                local,
+                full: false,
+            }),
             peers: BTreeMap::new(),
+            strangers: Inbox::default(),
         };
-        (Links::of(vec![of(&ends[0], true), of(&ends[1], false)], vec![1]), ends)
+        let mut links = Links::of(vec![of(&ends[0], true), of(&ends[1], false)], vec![1]);
+        links.setup_rules = SetupRules { without_key: true, armed: false };
+        links.signing.set_clock(NOW);
+        (links, ends)
     }
 
     /// All frames that have come and are accepted.
     fn receive(links: &mut Links) -> Vec<Received> {
-        let now = Instant::now();
+        receive_at(links, Instant::now())
+    }
+
+    fn receive_at(links: &mut Links, now: Instant) -> Vec<Received> {
         links.poll(now);
         std::iter::from_fn(|| links.take_turn(now, |_| true)).filter_map(|turn| turn.received).collect()
     }
@@ -415,7 +504,7 @@ mod tests {
 
     fn setup(key: u8, target_system: u8) -> Frame {
         let setup = SETUP_SIGNING_DATA {
-            initial_timestamp: 50,
+            initial_timestamp: NOW,
             target_system,
             target_component: 1,
             secret_key: [key; 32],
@@ -437,7 +526,10 @@ mod tests {
         let forwarded = near.1.lock().expect("one thread").len();
         assert_eq!(forwarded, 1);
 
-        assert_eq!(receive(&far, &setup(7, 1)), (0, vec![SigningSetup::Refused(255, 190)], false));
+        assert_eq!(
+            receive(&far, &setup(7, 1)),
+            (0, vec![SigningSetup::Refused(255, 190, SetupRefusal::NotLocal)], false)
+        );
         // For another vehicle it is not passed on, either.
         assert_eq!(receive(&near, &setup(7, 2)), (0, vec![], false));
         assert_eq!(receive(&near, &setup(7, 1)), (0, vec![SigningSetup::Set(255, 190)], true));
@@ -450,6 +542,96 @@ mod tests {
         let removal = setup(0, 1).sign(0, 60, |bytes| key.tag(bytes));
         assert_eq!(receive(&near, &removal), (0, vec![SigningSetup::Removed(255, 190)], false));
         assert!(!format!("{links:?}").contains("7, 7, 7, 7"), "the key is remembered in the open");
+    }
+
+    /// Bytes that have left by one end since the last call.
+    fn drawn(end: &(Bytes, Bytes)) -> usize {
+        end.1.lock().expect("one thread").drain(..).map(|bytes| bytes.len()).sum()
+    }
+
+    /// What is told to everyone, a thousand times: telemetry and heartbeats.
+    fn tell(links: &mut Links) {
+        let heartbeat = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
+        let attitude = Message::from(MavMessage::ATTITUDE(ATTITUDE_DATA::default()));
+        for message in [heartbeat, attitude] {
+            for _ in 0..1000 {
+                links.send(&Outgoing { to: Destination::Everyone, message: message.clone() }, 1);
+            }
+        }
+    }
+
+    #[test]
+    fn a_stranger_gets_nothing_and_an_address_from_afar_ten_times_what_it_sent() {
+        let (mut links, [near, far]) = links();
+        let start = Instant::now();
+        let put = |end: &(Bytes, Bytes), bytes: &[u8]| end.0.lock().expect("one thread").push(bytes.to_vec());
+        for end in [&near, &far] {
+            put(end, &[0xfd]);
+            put(end, &heartbeat(9).bytes()[..20]);
+        }
+        assert!(receive_at(&mut links, start).is_empty());
+        tell(&mut links);
+        assert_eq!((drawn(&near), drawn(&far), links.active_peers()), (0, 0, 0));
+        // A frame makes a peer: on this machine without a limit.
+        let frame = heartbeat(9);
+        put(&near, frame.bytes());
+        assert_eq!(receive_at(&mut links, start).len(), 1);
+        tell(&mut links);
+        assert!(drawn(&near) > 30_000);
+        let frame = heartbeat(10);
+        put(&far, frame.bytes());
+        assert_eq!(receive_at(&mut links, start).len(), 1);
+        drawn(&near);
+        // Forwarded frames count as telemetry.
+        put(&near, heartbeat(9).bytes());
+        receive_at(&mut links, start);
+        assert_eq!(drawn(&far), 0);
+        tell(&mut links);
+        let most = 10 * frame.bytes().len();
+        assert!((most - 21..=most).contains(&drawn(&far)));
+        // Whoever keeps talking gets everything, forwarded frames, too.
+        for second in 1..=3 {
+            put(&far, frame.bytes());
+            receive_at(&mut links, start + Duration::from_secs(second));
+        }
+        put(&near, heartbeat(8).bytes());
+        receive_at(&mut links, start + Duration::from_secs(3));
+        assert_eq!(drawn(&far), heartbeat(8).bytes().len());
+        tell(&mut links);
+        assert!(drawn(&far) > 30_000);
+        receive_at(&mut links, start + Duration::from_secs(9));
+        tell(&mut links);
+        assert_eq!(drawn(&far), 0);
+    }
+
+    #[test]
+    fn who_has_no_place_has_no_effect() {
+        let (mut links, [near, _]) = links();
+        links.links[0].transport =
+            Box::new(Ends { inward: near.0.clone(), outward: near.1.clone(), local: true, full: true });
+        near.0.lock().expect("one thread").push(heartbeat(9).bytes().to_vec());
+        assert!(receive_at(&mut links, Instant::now()).is_empty(), "nobody could be answered");
+        assert_eq!(links.active_peers(), 0);
+    }
+
+    /// With a key a radio may speak without one, but does not become a peer by that.
+    #[test]
+    fn with_a_key_only_signed_frames_make_peers() {
+        let (mut links, [near, _]) = links();
+        let key = SecretKey::new([7; 32]).expect("a key");
+        let mut signing = Signing::new(Some(key.clone()), Default::default());
+        signing.set_clock(NOW);
+        links.sign_with(signing);
+        let mut receive = |frame: Frame| {
+            near.0.lock().expect("one thread").push(frame.bytes().to_vec());
+            let received = receive_at(&mut links, Instant::now()).len();
+            (received, links.active_peers())
+        };
+        let radio = || frame(MavMessage::RADIO_STATUS(RADIO_STATUS_DATA::default()), 51);
+        assert_eq!(receive(radio()), (0, 0));
+        assert_eq!(receive(heartbeat(255)), (0, 0));
+        assert_eq!(receive(heartbeat(255).sign(0, NOW, |bytes| key.tag(bytes))), (1, 1));
+        assert_eq!(receive(radio()), (1, 1));
     }
 
     #[test]
@@ -487,6 +669,13 @@ mod tests {
         assert!(sent[0].timestamp < sent[1].timestamp);
     }
 
+    /// The same with a connected peer on each link.
+    fn connected() -> (Links, [(Bytes, Bytes); 2]) {
+        let (mut links, ends) = links();
+        links.links.iter_mut().for_each(|link| drop(link.peers.insert(1, Peer::default())));
+        (links, ends)
+    }
+
     fn put(end: &(Bytes, Bytes), bytes: &[u8]) {
         end.0.lock().expect("one thread").push(bytes.to_vec());
     }
@@ -510,7 +699,7 @@ mod tests {
 
     #[test]
     fn a_message_does_not_wait_behind_those_of_another_peer() {
-        let (mut links, [flood, quiet]) = links();
+        let (mut links, [flood, quiet]) = connected();
         put(&flood, &different(254, 1_000));
         links.poll(Instant::now());
         assert_eq!(served(&mut links, 3), [0; 3]);
@@ -543,7 +732,7 @@ mod tests {
 
     #[test]
     fn what_a_flood_has_forwarded_is_bounded() {
-        let (mut links, [flood, quiet]) = links();
+        let (mut links, [flood, quiet]) = connected();
         put(&quiet, heartbeat(255).bytes());
         assert_eq!(receive(&mut links).len(), 1);
         put(&flood, &different(254, 2_000));
@@ -556,19 +745,19 @@ mod tests {
 
     #[test]
     fn what_a_peer_has_sent_before_it_left_is_still_handled() {
-        let (mut links, [end, _]) = links();
+        let (mut links, [end, _]) = connected();
         put(&end, &[heartbeat(255).bytes(), heartbeat(254).bytes()].concat());
         put(&end, &[]);
         links.poll(Instant::now());
         let peer = PeerId { link: 0, number: 1 };
         assert_eq!((links.has_room(peer), links.active_peers()), (None, 0), "it has left");
         assert_eq!(receive(&mut links).len(), 2);
-        assert!(links.links.iter().all(|link| link.peers.is_empty()), "and is forgotten");
+        assert!(links.links[0].peers.is_empty(), "and is forgotten");
         // Those who come, say something and go are bounded, too.
         let now = Instant::now();
         let link = &mut links.links[0];
         for number in 0..100 {
-            link.peers.entry(number).or_default().inbox.put(vec![0], true, 0, now);
+            link.peers.entry(number).or_default().inbox.put(vec![0], number, true, 0, now);
             link.depart(number, now);
         }
         assert_eq!(link.peers.len(), super::MOST_DEPARTED);

@@ -1,5 +1,9 @@
 //! Links: transports, their peers, and forwarding between them.
 
+mod allowance;
+mod descriptors;
+#[cfg(test)]
+mod documented;
 mod echo;
 mod endpoint;
 mod error;
@@ -11,6 +15,7 @@ mod peer;
 #[cfg(unix)]
 mod serial;
 mod signing_setup;
+mod strangers;
 mod tcp;
 mod transport;
 mod turns;
@@ -19,7 +24,7 @@ mod udp;
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
 pub use links::{Links, Lost, Received, Turn};
-pub use signing_setup::SigningSetup;
+pub use signing_setup::{SetupRefusal, SetupRules, SigningSetup};
 pub(crate) use transport::is_nothing_yet;
 pub(crate) use turns::Turns;
 pub(crate) use udp::resolve;

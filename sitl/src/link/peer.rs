@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use autopilot::codec::{Frame, Version};
 
+use super::allowance::Allowance;
 use super::inbox::Inbox;
 
 /// Frames of MAVLink 1 in a row after which a peer is answered in it. Libraries that speak both begin with version 1
@@ -21,12 +22,19 @@ pub struct Peer {
     pub departed: bool,
     /// Number of the next frame to it, from each of our systems: each peer sees flows of its own.
     pub sequences: BTreeMap<u8, u8>,
+    /// What it may be sent.
+    pub allowance: Allowance,
     old_frames: u8,
     /// Systems and components behind it.
     seen: Vec<(u8, u8)>,
 }
 
 impl Peer {
+    /// One that may be sent so much, with what of its has come already.
+    pub fn new(allowance: Allowance, inbox: Inbox) -> Self {
+        Self { allowance, inbox, ..Self::default() }
+    }
+
     /// Learns version and sender from a frame.
     pub fn learn(&mut self, frame: &Frame) {
         self.old_frames = match frame.version() {

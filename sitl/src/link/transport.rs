@@ -7,7 +7,7 @@ use std::time::Instant;
 pub enum Event {
     /// A new peer.
     Opened(u64),
-    /// Bytes from a peer.
+    /// Bytes from a peer, or a datagram from a sender that has no place yet.
     Bytes(u64, Vec<u8>),
     /// A peer has gone.
     Closed(u64),
@@ -18,6 +18,16 @@ pub trait Transport: std::fmt::Debug {
     /// Events since the last call. `room` says how many bytes of a peer there is room for: of a stream no more are read,
     /// so that its sender has to wait.
     fn poll(&mut self, now: Instant, room: &dyn Fn(u64) -> usize) -> Vec<Event>;
+
+    /// A valid frame of a peer was accepted: it gets a place if it has none, and keeps it. Returns whether it has one.
+    fn confirm(&mut self, _peer: u64, _now: Instant) -> bool {
+        true
+    }
+
+    /// Whether somebody else may have sent in the name of a peer's address, to direct answers there.
+    fn may_be_forged(&self, _peer: u64) -> bool {
+        false
+    }
 
     /// Sends a whole frame to a peer. If the peer's buffer is full, the frame is lost.
     fn send(&mut self, peer: u64, bytes: &[u8]);

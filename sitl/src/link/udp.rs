@@ -1,16 +1,23 @@
 //! UDP: one socket, many peers.
+//!
+//! Whoever sends a datagram is a stranger until a valid frame of it is accepted; nothing is sent to strangers, and no peer makes room
+//! for one.
 
 use std::collections::BTreeMap;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::time::{Duration, Instant};
 
 use super::error::LinkError;
+use super::strangers::Strangers;
 use super::transport::{Event, Numbers, Transport, is_nothing_yet};
+use crate::rarely::Rarely;
 
-/// A peer that has been silent for this long is forgotten.
-const EXPIRY: Duration = Duration::from_secs(60);
-/// Peers of one socket; the one that has been silent longest makes room.
-const MOST_PEERS: usize = 32;
+/// A peer that has sent no valid frame for this long is forgotten.
+pub(super) const EXPIRY: Duration = Duration::from_secs(60);
+/// Peers of one socket. The one that has been silent longest makes room for another, if it has been silent for [`PAUSE`].
+pub(super) const MOST_PEERS: usize = 32;
+/// A silent peer keeps its place for this long, whoever else wants it.
+pub(super) const PAUSE: Duration = Duration::from_secs(5);
 /// Datagrams and bytes of one look: a flood must not keep the vehicle from flying.
 const MOST_DATAGRAMS: usize = 512;
 const MOST_BYTES: usize = 1 << 20;
@@ -30,9 +37,11 @@ pub struct Udp {
     socket: UdpSocket,
     target: Option<SocketAddr>,
     peers: BTreeMap<u64, Peer>,
+    strangers: Strangers,
     numbers: Numbers,
     fresh: Vec<Event>,
     buffer: Vec<u8>,
+    full: Rarely,
 }
 
 impl Udp {
@@ -50,33 +59,43 @@ impl Udp {
             socket,
             target,
             peers: BTreeMap::new(),
+            strangers: Strangers::default(),
             numbers: Numbers::default(),
             fresh: Vec::new(),
             buffer: vec![0; DATAGRAM],
+            full: Rarely::default(),
         };
         if let Some(address) = target {
-            udp.number_of(address, Instant::now(), true);
+            let number = udp.numbers.next();
+            udp.peers.insert(number, Peer { address, heard: Instant::now(), permanent: true });
+            udp.fresh.push(Event::Opened(number));
         }
         Ok(udp)
     }
 
-    fn number_of(&mut self, address: SocketAddr, now: Instant, permanent: bool) -> u64 {
-        if let Some((number, peer)) = self.peers.iter_mut().find(|(_, peer)| peer.address == address) {
-            peer.heard = now;
-            return *number;
+    /// The number of a peer or stranger.
+    fn number_of(&mut self, address: SocketAddr) -> u64 {
+        match self.peers.iter().find(|(_, peer)| peer.address == address) {
+            Some((number, _)) => *number,
+            None => self.strangers.number_of(address, || self.numbers.next()),
         }
-        if self.peers.len() >= MOST_PEERS {
-            let oldest =
-                self.peers.iter().filter(|(_, peer)| !peer.permanent).min_by_key(|(_, peer)| peer.heard);
-            if let Some(number) = oldest.map(|(number, _)| *number) {
-                self.peers.remove(&number);
-                self.fresh.push(Event::Closed(number));
-            }
+    }
+
+    /// Whether there is room for another peer, made by one that is silent if need be.
+    fn make_room(&mut self, address: SocketAddr, now: Instant) -> bool {
+        if self.peers.len() < MOST_PEERS {
+            return true;
         }
-        let number = self.numbers.next();
-        self.peers.insert(number, Peer { address, heard: now, permanent });
-        self.fresh.push(Event::Opened(number));
-        number
+        let silent = |peer: &Peer| !peer.permanent && now.saturating_duration_since(peer.heard) >= PAUSE;
+        let silent = self.peers.iter().filter(|(_, peer)| silent(peer));
+        let longest = silent.min_by_key(|(_, peer)| peer.heard).map(|(number, _)| *number);
+        if let Some(number) = longest {
+            self.peers.remove(&number);
+            self.fresh.push(Event::Closed(number));
+        } else if self.full.is_due(now) {
+            tracing::warn!("{}: no room for {address}: {MOST_PEERS} clients are active", self.description());
+        }
+        longest.is_some()
     }
 }
 
@@ -95,9 +114,8 @@ impl Transport for Udp {
             datagrams += 1;
             match self.socket.recv_from(&mut self.buffer) {
                 Ok((length, address)) => {
-                    let number = self.number_of(address, now, false);
-                    events.append(&mut self.fresh);
                     bytes_read += length;
+                    let number = self.number_of(address);
                     let bytes = self.buffer.get(..length).unwrap_or_default().to_vec();
                     events.push(Event::Bytes(number, bytes));
                 }
@@ -114,6 +132,23 @@ impl Transport for Udp {
             stays
         });
         events
+    }
+
+    fn confirm(&mut self, peer: u64, now: Instant) -> bool {
+        if let Some(peer) = self.peers.get_mut(&peer) {
+            peer.heard = now;
+            return true;
+        }
+        let Some(address) = self.strangers.take(peer) else { return false };
+        let room = self.make_room(address, now);
+        if room {
+            self.peers.insert(peer, Peer { address, heard: now, permanent: false });
+        }
+        room
+    }
+
+    fn may_be_forged(&self, peer: u64) -> bool {
+        self.peers.get(&peer).is_some_and(|peer| !peer.permanent) && !self.is_local(peer)
     }
 
     fn send(&mut self, peer: u64, bytes: &[u8]) {
@@ -140,5 +175,92 @@ impl Transport for Udp {
 
     fn address(&self) -> String {
         self.socket.local_addr().map_or_else(|_| "?".to_owned(), |address| address.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::UdpSocket;
+    use std::time::{Duration, Instant};
+
+    use super::{EXPIRY, Event, MOST_PEERS, PAUSE, Transport, Udp};
+
+    struct Bench {
+        udp: Udp,
+        start: Instant,
+    }
+
+    impl Bench {
+        fn new(target: Option<(&str, u16)>) -> Self {
+            let udp = Udp::open(("127.0.0.1", 0), target, "udpin:0").expect("a free port");
+            Self { udp, start: Instant::now() }
+        }
+
+        fn sender(&self) -> UdpSocket {
+            let sender = UdpSocket::bind("127.0.0.1:0").expect("a free port");
+            sender.connect(self.udp.address()).expect("an address");
+            sender
+        }
+
+        /// What happens until the bytes of a sender come: on loopback, at once.
+        fn hear(&mut self, sender: &UdpSocket, after: Duration) -> (u64, Vec<Event>) {
+            sender.send(b"?").expect("sent");
+            let mut others = Vec::new();
+            loop {
+                for event in self.udp.poll(self.start + after, &|_| usize::MAX) {
+                    match event {
+                        Event::Bytes(number, _) => return (number, others),
+                        other => others.push(other),
+                    }
+                }
+            }
+        }
+    }
+
+    fn hears(receiver: &UdpSocket) -> bool {
+        receiver.set_nonblocking(true).expect("a socket");
+        receiver.recv(&mut [0; 8]).is_ok()
+    }
+
+    #[test]
+    fn a_sender_is_a_stranger_until_it_is_confirmed() {
+        let mut bench = Bench::new(None);
+        let sender = bench.sender();
+        let (number, events) = bench.hear(&sender, Duration::ZERO);
+        assert_eq!(events, []);
+        bench.udp.send(number, b"!");
+        assert!(!hears(&sender), "nothing is sent to strangers");
+        assert!(bench.udp.confirm(number, bench.start));
+        bench.udp.send(number, b"!");
+        assert!(hears(&sender));
+        // Bytes alone do not keep its place.
+        assert_eq!(bench.hear(&sender, EXPIRY - PAUSE).0, number);
+        assert_eq!(bench.udp.poll(bench.start + EXPIRY, &|_| usize::MAX), [Event::Closed(number)]);
+        assert_ne!(bench.hear(&sender, EXPIRY).0, number);
+    }
+
+    #[test]
+    fn peers_make_room_for_peers_and_only_when_they_are_silent() {
+        let mut bench = Bench::new(Some(("127.0.0.1", 9)));
+        let senders: Vec<_> = (0..MOST_PEERS).map(|_| bench.sender()).collect();
+        let numbers: Vec<u64> = senders.iter().map(|sender| bench.hear(sender, Duration::ZERO).0).collect();
+        let (last, first) = numbers.split_last().expect("many");
+        // The target has one of the places.
+        assert!(first.iter().all(|number| bench.udp.confirm(*number, bench.start)));
+        assert!(!bench.udp.confirm(*last, bench.start), "full of active ones");
+        // Strangers come and go.
+        for _ in 0..3 {
+            bench.hear(&senders[MOST_PEERS - 1], PAUSE / 2);
+        }
+        assert_eq!(bench.udp.poll(bench.start + PAUSE / 2, &|_| usize::MAX), []);
+        let later = bench.start + PAUSE;
+        assert!(first[1..].iter().all(|number| bench.udp.confirm(*number, later)));
+        let (number, _) = bench.hear(&senders[MOST_PEERS - 1], PAUSE);
+        assert!(bench.udp.confirm(number, later));
+        assert_eq!(
+            bench.udp.poll(later, &|_| usize::MAX),
+            [Event::Closed(first[0])],
+            "the silent one, and not the target"
+        );
     }
 }

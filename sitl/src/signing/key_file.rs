@@ -115,7 +115,7 @@ mod tests {
         let (file, key, kept) = KeyFile::open(&path, 0).expect("empty");
         assert_eq!((key, kept), (None, Kept::default()));
         let key = SecretKey::new([7; 32]).expect("a key");
-        let kept = Kept { sent: 3, heard: 2, streams: [((0, 1, 2), 9)].into() };
+        let kept = Kept { sent: 3, forgotten: 2, streams: [((0, 1, 2), 9)].into() };
         file.keep_key(Some(&key)).expect("written");
         file.keep(&kept).expect("written");
         let (file, read, read_kept) = KeyFile::open(&path, 0).expect("kept");

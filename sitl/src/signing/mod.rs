@@ -13,11 +13,14 @@ mod guard;
 mod kept;
 mod key;
 mod key_file;
+mod streams;
 
-pub use guard::{Counts, Refusal, Signing};
+pub use guard::{Counts, MOST_AHEAD, Refusal, Signing};
 pub use kept::{Kept, Stream};
 pub use key::SecretKey;
 pub use key_file::KeyFile;
+#[cfg(test)]
+pub(crate) use streams::{MOST_STREAMS, NEW_STREAM_BEHIND};
 
 /// Seconds from 1970 to 2015, where timestamps begin.
 const EPOCH_UNIX_S: u64 = 1_420_070_400;

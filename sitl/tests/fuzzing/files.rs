@@ -36,7 +36,7 @@ const WORDS: [&str; 16] = [
 const PLAN: &str = include_str!("../corpus/mission.plan");
 const WAYPOINTS: &str = include_str!("../corpus/mission.waypoints");
 const TIMESTAMPS: &str =
-    "lmpc-sitl signing timestamps 1\nsent 7\nheard 19\nstream 0 255 190 5\nstream 3 1 1 19\n";
+    "lmpc-sitl signing timestamps 2\nsent 7\nforgotten 19\nstream 0 255 190 5\nstream 3 1 1 19\n";
 const CONFIGURATION: &str = "# a vehicle\nautopilot = \"ardupilot\"\nhome = \"-35.363262,149.165237,584,353\"\nspeed = \"5\"\nwind = \"4,270\"\ngusts = 1.5\n\
     seed = 7\nvehicles = 3\nformation = \"circle,6\"\nset = [\"FRAME_MASS=0.8\"]\nfault = [\"12.5:rotor1=off\"]\nnoise = \"rtk-gps\"\nkalman = true\nduration = 9.0\n";
 

@@ -24,7 +24,7 @@ pub fn forged(seed: u64) -> u64 {
     let mut guard = Signing::new(Some(key(1)), Kept::default());
     let [mut owner, mut stranger] = [1, 2].map(|byte| Signing::new(Some(key(byte)), Kept::default()));
     for signing in [&mut guard, &mut owner, &mut stranger] {
-        signing.advance(NOW);
+        signing.set_clock(NOW);
     }
     let heartbeat = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
     let mut heard: Vec<Frame> = Vec::new();

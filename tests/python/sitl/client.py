@@ -1,8 +1,10 @@
 """A pymavlink client with the words that the tests use."""
 
 import math
+import socket
 import time
 
+import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
@@ -125,3 +127,13 @@ class Client:
 def near(goal, within: float = 0.1, slow: float = 0.1):
     """Whether a LOCAL_POSITION_NED rests at a place."""
     return lambda p: math.dist((p.x, p.y, p.z), goal) < within and math.hypot(p.vx, p.vy, p.vz) < slow
+
+
+def own_address():
+    """An address of this machine that is not loopback. What is sent to it does not leave the machine."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))
+        except OSError:
+            pytest.skip("no network address")
+        return probe.getsockname()[0]

@@ -10,6 +10,7 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import common as mavlink
 
+from client import own_address
 from test_program import run
 
 KEY = bytes(range(32, 64))
@@ -113,7 +114,8 @@ def test_pymavlink_both_ways(start, connect, tmp_path):
 def test_setup_signing_from_pymavlink(start, connect, tmp_path):
     path = key_file(tmp_path, "")
     log = tmp_path / "flight.tlog"
-    vehicle = start("--signing-key", str(path), "--tlog", str(log), "--record", str(tmp_path / "record"), links=("udpin:0", "tcpin:0"))
+    vehicle = start("--signing-key", str(path), "--accept-signing-setup", "--tlog", str(log), "--record", str(tmp_path / "record"),
+                    links=("udpin:0", "tcpin:0"))
     client = connect(vehicle)
     other = connect(vehicle, 1, kind="tcp", system=252)
     client.mav.setup_signing_send(1, 1, list(KEY), 0)
@@ -130,9 +132,12 @@ def test_setup_signing_from_pymavlink(start, connect, tmp_path):
     other.mav.setup_signing_send(1, 1, [0] * 32, 0)
     assert other.connection.recv_match(type="STATUSTEXT", blocking=True, timeout=0.3) is None
     client.mav.setup_signing_send(1, 1, [0] * 32, 0)
+    client.wait("STATUSTEXT", lambda text: "refused: armed" in text.text)
+    client.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+    client.mav.setup_signing_send(1, 1, [0] * 32, 0)
     client.connection.disable_signing()
     client.wait("STATUSTEXT", lambda text: "key removed by 255" in text.text)
-    client.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+    client.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     vehicle.stop()
     assert path.read_text() == ""
     for file in (log, tmp_path / "record", vehicle.folder / "output.txt"):
@@ -141,7 +146,7 @@ def test_setup_signing_from_pymavlink(start, connect, tmp_path):
 
 def test_a_key_is_that_of_all_vehicles_each_with_its_own_streams(start, connect, tmp_path):
     path = key_file(tmp_path, "")
-    options = ("--signing-key", str(path), "--vehicles", "2", "--speed", "5")
+    options = ("--signing-key", str(path), "--accept-signing-setup", "--vehicles", "2", "--speed", "5")
     vehicle = start(*options)
     first, second = clients = [connect(vehicle, number) for number in range(2)]
     assert [client.target[0] for client in clients] == [1, 2]
@@ -184,7 +189,7 @@ def test_a_key_is_that_of_all_vehicles_each_with_its_own_streams(start, connect,
 
 
 def test_mavproxy_sets_a_key_and_flies_with_it(start, connect, tmp_path):
-    vehicle = start("--autopilot", "ardupilot", links=("tcpin:0", "udpin:0"))
+    vehicle = start("--autopilot", "ardupilot", "--accept-signing-setup", links=("tcpin:0", "udpin:0"))
     proxy = Popen(
         [sys.executable, "-m", "MAVProxy.mavproxy", f"--master=tcp:{vehicle.addresses[0]}", f"--state-basedir={tmp_path}",
          "--default-modules=signing,arm,mode,cmdlong", "--aircraft=signed"],
@@ -204,3 +209,87 @@ def test_mavproxy_sets_a_key_and_flies_with_it(start, connect, tmp_path):
         proxy.terminate()
         output, _ = proxy.communicate(timeout=10)
     assert "Sent secret_key" in output, output
+
+
+def far_address(vehicle):
+    """An address of the vehicle that is not loopback; what is sent to it does not leave this machine."""
+    return f"{own_address()}:{vehicle.addresses[0].split(':')[1]}"
+
+
+def test_a_key_that_nobody_asked_for_is_refused(start, connect, program, tmp_path):
+    """One unsigned message must not lock all pilots out."""
+    vehicle = start()
+    pilot, attacker = connect(vehicle), connect(vehicle, system=66)
+    for _ in range(100):
+        attacker.mav.setup_signing_send(1, 1, list(KEY), 0)
+    pilot.wait("STATUSTEXT", lambda text: text.text.startswith("Signing: setup by 66/0 refused: restart with"))
+    pilot.wait("STATUSTEXT", lambda text: text.text.startswith("--accept-signing-setup"))
+    pilot.arm()
+    pilot.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+    assert not pilot.wait("HEARTBEAT").get_header().incompat_flags & 1
+    # A hundred of them are one line.
+    assert vehicle.output().count("refused: restart") <= 2, vehicle.output()
+    # An empty key file is no key, unless a client may bring it.
+    path = key_file(tmp_path, "")
+    result = run(program, "--signing-key", path, "--link", "udpin:0", "--duration", 1)
+    assert result.returncode == 4 and "is empty" in result.stderr and "--accept-signing-setup" in result.stderr, result.stderr
+
+
+def test_where_and_when_a_key_may_be_set(start, connect):
+    vehicle = start("--accept-signing-setup", links=("udpin:0.0.0.0:0",))
+    near = connect(type("Loopback", (), {"addresses": [f"127.0.0.1:{vehicle.addresses[0].split(':')[1]}"]}))
+    far = connect(type("Network", (), {"addresses": [far_address(vehicle)]}), system=66, heartbeat=False)
+
+    def refused_because(client, words, timestamp=0, key=KEY):
+        # Refusals are told every five seconds.
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            client.mav.setup_signing_send(1, 1, list(key), timestamp)
+            text = near.connection.recv_match(type="STATUSTEXT", blocking=True, timeout=0.5)
+            if text is not None and words in text.text:
+                return
+        raise AssertionError(f"not said: {words}")
+
+    refused_because(far, "refused: not a local")
+    day_ahead = int((time.time() + 86400 - 1420070400) * 1e5)
+    refused_because(near, "refused: initial_timestamp", day_ahead)
+    near.arm()
+    refused_because(near, "refused: armed")
+    near.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+    near.mav.setup_signing_send(1, 1, list(KEY), int((time.time() - 1420070400) * 1e5))
+    near.wait("STATUSTEXT", lambda text: "key set by 255" in text.text)
+    signed(near.connection)
+    # Another key by who knows the present one, and no longer by anybody else.
+    other_key = bytes(32 * [9])
+    near.mav.setup_signing_send(1, 1, list(other_key), 0)
+    near.connection.disable_signing()
+    signed(near.connection, other_key)
+    near.arm()
+
+
+def test_clocks_ahead_lock_out_nobody(start, connect, tmp_path):
+    """A day, and 80 years: with the stream of an honest pilot, and with others."""
+    vehicle = start("--signing-key", str(key_file(tmp_path)))
+    pilot = connect(vehicle, heartbeat=False)
+    now = lambda: int((time.time() - 1420070400) * 1e5)  # noqa: E731
+    for ahead_s in (86400, 80 * 365 * 86400):
+        for system in (255, 250):
+            wrong = connect(vehicle, system=system, heartbeat=False)
+            signed(wrong.connection, initial_timestamp=min(now() + int(ahead_s * 1e5), (1 << 48) - 100))
+            for _ in range(5):
+                wrong.beat()
+    signed(pilot.connection, initial_timestamp=now())
+    pilot.beat()
+    pilot.wait("HEARTBEAT")
+    pilot.target = (1, 1)
+    pilot.arm()
+    assert "early; compare the clocks" in vehicle.output()
+    # Neither after a restart.
+    vehicle.stop()
+    vehicle = start("--signing-key", str(tmp_path / "signing.key"))
+    pilot = connect(vehicle, heartbeat=False)
+    signed(pilot.connection, initial_timestamp=now())
+    pilot.beat()
+    pilot.wait("HEARTBEAT")
+    pilot.target = (1, 1)
+    pilot.arm()
