@@ -10,10 +10,9 @@ pub(crate) fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     /// Squarings that the largest double needs; a matrix of them has a norm beyond it.
     const MAXIMUM_SQUARINGS: f64 = 1026.0;
     // Squares of large elements overflow: the norm of the matrix over its largest element does not.
-    let largest = matrix.amax();
-    let norm = if largest > 0.0 { largest * matrix.unscale(largest).norm() } else { 0.0 };
-    let squarings =
-        if norm > 0.5 { libm::ceil(libm::log2(norm / 0.5)).min(MAXIMUM_SQUARINGS) as u32 } else { 0 };
+    let largest = matrix.amax().max(f64::MIN_POSITIVE);
+    let norm = largest * matrix.unscale(largest).norm();
+    let squarings = libm::ceil(libm::log2(norm / 0.5)).clamp(0.0, MAXIMUM_SQUARINGS) as u32;
     let scaled = matrix * libm::ldexp(1.0, -(squarings as i32));
 
     let identity = DMatrix::identity(matrix.nrows(), matrix.ncols());
