@@ -26,3 +26,20 @@ pub const fn unknowns(inputs: usize, coefficients: usize) -> usize {
 pub(crate) fn iteration_limit(unknowns: usize, rows: usize) -> u32 {
     ITERATIONS_PER_SIZE * u32::try_from(unknowns + rows).unwrap_or(u32::MAX / ITERATIONS_PER_SIZE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{iteration_limit, unknowns};
+
+    #[test]
+    fn a_program_has_all_coefficients_and_one_slack() {
+        assert_eq!((unknowns(1, 5), unknowns(3, 25), unknowns(2, 0)), (6, 76, 1));
+    }
+
+    /// Four per unknown and row, and no overflow for programs that no memory would hold.
+    #[test]
+    fn the_iteration_limit_grows_with_the_program() {
+        assert_eq!((iteration_limit(6, 0), iteration_limit(6, 80)), (24, 344));
+        assert_eq!(iteration_limit(usize::MAX / 2, 7), u32::MAX - 3);
+    }
+}

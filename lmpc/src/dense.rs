@@ -20,3 +20,25 @@ pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
         *x -= t * y;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{dot, subtract_scaled};
+    use alloc::vec::Vec;
+
+    /// Whole numbers, whose sums are exact in any order: Σ i (i + 1) = n (n + 1)(n + 2) / 3.
+    #[test]
+    fn dot_products_of_any_length_are_exact_sums() {
+        for n in 0_u32..14 {
+            let (a, b): (Vec<f64>, Vec<f64>) = (1..=n).map(|i| (f64::from(i), f64::from(i + 1))).unzip();
+            assert_eq!(dot(&a, &b), f64::from(n * (n + 1) * (n + 2) / 3), "{n} elements");
+        }
+    }
+
+    #[test]
+    fn a_multiple_is_subtracted() {
+        let mut a = [1.0, 10.0, -4.0];
+        subtract_scaled(&mut a, &[2.0, 3.0, 5.0], 0.5);
+        assert_eq!(a, [0.0, 8.5, -6.5]);
+    }
+}

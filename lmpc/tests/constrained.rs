@@ -276,6 +276,55 @@ fn a_step_does_not_allocate() {
     assert_eq!(allocations.count_total, 0);
 }
 
+/// A free optimum that exceeds its bound by rounding alone, a billionth of 1 + |bound|, needs no solver.
+#[test]
+fn rounding_does_not_call_the_solver() {
+    let limits = [Limit::range(Quantity::Input, 1, 0..1)];
+    let design = design(&altitude_model(), 4, 0.7, 1.0, Weighting::Terminal { lambda: 1.0 });
+    let controller = LaguerreMpc::<2, 1, 1, 5>::new(&design, &limits).unwrap();
+    let active_at = |input: f64, cut: f64| {
+        let mut state =
+            ControllerState::<2, 1, 5>::new(Vector2::zeros(), Vector1::new(input), Vector1::zeros());
+        // At rest on the goal the free optimum keeps its input.
+        controller.step(&mut state, &Sample { upper: &[input - cut, f64::MAX], ..Sample::default() }).active
+    };
+    for input in [0.0, 1e6, -1e6] {
+        let rounding = 1e-9 * (1.0 + f64::abs(input));
+        assert_eq!((active_at(input, 0.5 * rounding), active_at(input, 2.0 * rounding)), (0, 1), "{input}");
+    }
+}
+
+/// Bounds that a sample does not give do not bound.
+#[test]
+fn a_missing_bound_is_none() {
+    let far = Sample { error: Vector1::new(-1000.0), ..Sample::default() };
+    let controller = altitude(Weighting::Terminal { lambda: 1.0 });
+    let free = controller.unconstrained().step(&mut ControllerState::<2, 1>::at_rest(), &far).input;
+    assert!(free.x > 10.0);
+    assert_eq!(controller.step(&mut at_rest(), &far).input, free);
+    let first_alone = controller.step(&mut at_rest(), &Sample { upper: &[0.2], ..far });
+    assert!((first_alone.input.x - 0.2).abs() < 1e-9, "{first_alone:?}");
+}
+
+/// The input and its move are those of the whole vehicle: feed-forward and feedback together.
+#[test]
+fn feed_forward_counts_towards_the_limits() {
+    let controller = altitude(Weighting::Terminal { lambda: 1.0 });
+    let far = Sample {
+        error: Vector1::new(-1000.0),
+        input_reference: Vector1::new(0.15),
+        upper: &[0.2, 0.2, 1.0, 1.0, 1e3, 1e3],
+        ..Sample::default()
+    };
+    let mut state = at_rest();
+    let step = controller.step(&mut state, &far);
+    assert!((step.input.x - 0.2).abs() < 1e-8, "{step:?}");
+    for _ in 0..10 {
+        controller.step(&mut state, &far);
+    }
+    assert!((state.applied().x - 1.0).abs() < 1e-8, "{}", state.applied().x);
+}
+
 #[test]
 fn wrong_limits_are_refused() {
     let design = design(&altitude_model(), 5, 0.8, 1.0, Weighting::Terminal { lambda: 1.0 });

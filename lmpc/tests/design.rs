@@ -231,6 +231,15 @@ proptest! {
     }
 }
 
+/// Q = 4 CᵀC and R = 9 I: the output error is the last of the states.
+#[test]
+fn output_weights_are_multiples_of_the_papers() {
+    let [(_, model), ..] = paper_plants();
+    let weights = Weights::output(&model, 4.0, 9.0).unwrap();
+    assert_eq!(*weights.q(), DMatrix::from_diagonal(&DVector::from_column_slice(&[0.0, 0.0, 4.0])));
+    assert_eq!(*weights.r(), dmatrix![9.0]);
+}
+
 #[test]
 fn violated_preconditions_are_named() {
     let [(_, model), ..] = paper_plants();

@@ -121,6 +121,39 @@ proptest! {
     }
 }
 
+/// A broken measurement is left out; a broken input leaves the estimate where it was.
+#[test]
+fn what_is_not_finite_is_left_out_of_the_prediction() {
+    let design = KalmanDesign::new(&plant(), &noise()).unwrap();
+    let predictor = KalmanPredictor::<2, 1, 1>::new(&plant(), &design).unwrap();
+    let estimate = SVector::from([0.3, -0.2]);
+    let open_loop = SVector::from([0.3 - TIME * 0.2 + TIME * TIME / 2.0 * 4.0, -0.2 + TIME * 4.0]);
+    for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let blind = predictor.predict(&estimate, &Vector1::new(4.0), &Vector1::new(broken));
+        assert!((blind - open_loop).norm() < 1e-15, "{blind}");
+        assert_eq!(predictor.predict(&estimate, &Vector1::new(broken), &Vector1::new(0.3)), estimate);
+    }
+    // A measurement as predicted corrects nothing.
+    let agreed = predictor.predict(&estimate, &Vector1::new(4.0), &Vector1::new(0.3));
+    assert!((agreed - open_loop).norm() < 1e-15);
+}
+
+#[test]
+fn a_predictor_of_other_sizes_than_its_design_is_refused() {
+    let design = KalmanDesign::new(&plant(), &noise()).unwrap();
+    let name = |error: DesignError| match error {
+        DesignError::Dimension { name, .. } => name,
+        other => panic!("{other}"),
+    };
+    assert_eq!(name(KalmanPredictor::<3, 1, 1>::new(&plant(), &design).unwrap_err()), "A");
+    assert_eq!(name(KalmanPredictor::<2, 2, 1>::new(&plant(), &design).unwrap_err()), "B");
+    assert_eq!(name(KalmanPredictor::<2, 1, 2>::new(&plant(), &design).unwrap_err()), "C");
+    let other = StateSpace::new(dmatrix![0.5], dmatrix![1.0], dmatrix![1.0]).unwrap();
+    let noise = NoiseCovariance::uncorrelated(dmatrix![1.0], dmatrix![1.0]);
+    let design = KalmanDesign::new(&other, &noise).unwrap();
+    assert_eq!(name(KalmanPredictor::<2, 1, 1>::new(&plant(), &design).unwrap_err()), "K");
+}
+
 #[test]
 fn wrong_covariances_are_refused_by_name() {
     let refused = |state, measurement, cross| {

@@ -251,6 +251,17 @@ fn a_projection_onto_a_corner_is_exact() {
     assert_eq!(solution.active, 2);
 }
 
+/// A remembered constraint that the free optimum meets exactly holds with equality, without pushing.
+#[test]
+fn a_constraint_that_is_met_without_a_push_stays_active() {
+    let program = QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &dmatrix![1.0, 0.0]).unwrap();
+    let mut warm = WarmStart::default();
+    let pushed = program.solve(&SVector::<f64, 2>::new(-2.0, 0.5), &[1.0], &mut warm, LIMIT);
+    assert_eq!((pushed.active, pushed.multipliers[0]), (1, 1.0));
+    let met = program.solve(&SVector::<f64, 2>::new(-1.0, 0.5), &[1.0], &mut warm, LIMIT);
+    assert_eq!((met.active, met.multipliers[0], met.x), (1, 0.0, SVector::<f64, 2>::new(1.0, -0.5)));
+}
+
 #[test]
 fn contradictions_are_seen() {
     // x₁ ≤ −1 and −x₁ ≤ −1; then 0 ≤ −1

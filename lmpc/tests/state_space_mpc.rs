@@ -2,7 +2,7 @@
 
 use lmpc::{
     Augmented, Controller, ControllerState, DesignError, Discretization, Dlqr, Limit, Quantity, Sample,
-    StateSpace, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Status, Weights,
+    StateSpace, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Status, Weights, spectral_radius,
 };
 use nalgebra::{DMatrix, DVector, Vector1, Vector2, dmatrix, dvector};
 use proptest::prelude::*;
@@ -186,6 +186,24 @@ fn with_the_terminal_weight_many_moves_are_the_regulator() {
             step.input.x
         );
     }
+}
+
+/// The spectral radius is that of the plant under the law as it steps: columns of the closed loop in [x; u] are what
+/// unit vectors become.
+#[test]
+fn the_spectral_radius_is_that_of_the_loop_as_it_steps() {
+    let controller = StateSpaceMpc::<2, 1, 1, 26>::new(&design(), &[]).unwrap();
+    let mut closed_loop = DMatrix::zeros(3, 3);
+    for column in 0..3 {
+        let unit = |row: usize| f64::from(row == column);
+        let x = Vector2::new(unit(0), unit(1));
+        let u = controller.step(&mut applying(unit(2)), &of_state(x)).input.x;
+        let next = advanced(x, u);
+        closed_loop.set_column(column, &dvector![next.x, next.y, u]);
+    }
+    let radius = spectral_radius("the closed loop", &closed_loop).unwrap();
+    assert!((design().spectral_radius() - radius).abs() < 1e-9, "{radius}");
+    assert!(radius > 0.5 && radius < 1.0);
 }
 
 /// A wind that the controller is told of leaves no error, whatever its integral would have had to find.

@@ -62,7 +62,7 @@ mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
     use proptest::prelude::*;
 
-    use super::{attitude_error, tilt_angles, wrapped};
+    use super::{attitude_error, tilt_angles, turned, wrapped};
 
     fn attitude(phi: f64, theta: f64, psi: f64) -> UnitQuaternion<f64> {
         UnitQuaternion::from_euler_angles(phi, theta, psi)
@@ -108,5 +108,32 @@ mod tests {
             let pointed = attitude(phi, theta, psi) * Vector3::z();
             prop_assert!((pointed - axis).norm() < 1e-12);
         }
+    }
+
+    /// Half a turn about a horizontal axis: the heading has no meaning there and counts as none.
+    #[test]
+    fn upside_down_the_whole_error_is_a_lean() {
+        for direction in [0.0, 0.7, -2.0] {
+            let axis = Vector3::new(libm::cos(direction), libm::sin(direction), 0.0);
+            let over = UnitQuaternion::from_scaled_axis(axis * core::f64::consts::PI);
+            let error = attitude_error(&UnitQuaternion::identity(), &over);
+            assert!((error - axis * core::f64::consts::PI).norm() < 1e-7, "{error}");
+        }
+    }
+
+    /// Beside a lean of a billionth a turn of any size is seen whole.
+    #[test]
+    fn a_pure_turn_is_a_turn() {
+        for turn in [-3.0, -0.1, 0.0, 2.0] {
+            let error = attitude_error(&attitude(0.0, 0.0, 0.5), &attitude(0.0, 0.0, 0.5 + turn));
+            assert!((error - Vector3::new(0.0, 0.0, turn)).norm() < 1e-12, "{error}");
+        }
+    }
+
+    #[test]
+    fn a_rotation_is_turned_by_its_axis_and_angle() {
+        let (from, by) = (attitude(0.3, -0.2, 1.1), Vector3::new(0.4, -0.5, 0.6));
+        let to = from * UnitQuaternion::from_scaled_axis(by);
+        assert!((turned(&from, &to) - by).norm() < 1e-14);
     }
 }

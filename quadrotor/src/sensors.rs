@@ -122,6 +122,36 @@ mod tests {
         assert_eq!(NoiseState::default().read(&Sensors::default(), &at_rest()), at_rest());
     }
 
+    /// One channel of noise is noise; the seed alone is not.
+    #[test]
+    fn exact_sensors_have_no_noise_in_any_channel() {
+        assert!(Sensors { seed: 7, ..Sensors::default() }.is_exact());
+        for channel in 0..4 {
+            let noise = |at: usize| if at == channel { 1e-9 } else { 0.0 };
+            let sensors = Sensors {
+                position_noise_m: noise(0),
+                velocity_noise_m_s: noise(1),
+                attitude_noise_rad: noise(2),
+                body_rate_noise_rad_s: noise(3),
+                ..Sensors::default()
+            };
+            assert!(!sensors.is_exact(), "channel {channel}");
+            assert_ne!(NoiseState::default().read(&sensors, &at_rest()), at_rest(), "channel {channel}");
+        }
+    }
+
+    /// The latest noise is that of the last reading, again and again, until the next one.
+    #[test]
+    fn the_latest_reading_can_be_seen_again() {
+        let sensors = Sensors { position_noise_m: 0.5, seed: 3, ..Sensors::default() };
+        let mut state = NoiseState::default();
+        let first = state.read(&sensors, &at_rest());
+        assert_eq!([state.latest(&sensors, &at_rest()), state.latest(&sensors, &at_rest())], [first; 2]);
+        let second = state.read(&sensors, &at_rest());
+        assert_ne!(first, second);
+        assert_eq!(state.latest(&sensors, &at_rest()), second);
+    }
+
     /// Mean, deviation and correlation from reading to reading of every channel, within five standard errors.
     #[test]
     fn noise_is_white_and_as_wide_as_asked() {

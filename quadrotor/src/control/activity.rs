@@ -63,3 +63,55 @@ impl<const P: usize> From<&Step<P>> for ControllerActivity {
         Self { status: step.status, iterations: step.iterations, active }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use lmpc::{Status, Step};
+    use nalgebra::Vector3;
+
+    use super::ControllerActivity;
+
+    fn step(active: usize) -> Step<3> {
+        Step {
+            input: Vector3::new(1.0, -2.0, 0.0),
+            increment: Vector3::zeros(),
+            integral: Vector3::zeros(),
+            status: Status::Relaxed,
+            iterations: 5,
+            active,
+        }
+    }
+
+    /// As many as limits were active, or axes cut off, whichever are more.
+    #[test]
+    fn axes_that_were_cut_off_count_as_limits() {
+        let wanted = step(0).input;
+        let active = |active: usize, applied: Vector3<f64>| {
+            let activity = ControllerActivity::of(&step(active), &wanted, &applied);
+            assert_eq!((activity.status, activity.iterations), (Status::Relaxed, 5));
+            activity.active
+        };
+        assert_eq!(active(0, wanted), 0);
+        assert_eq!(active(0, Vector3::new(0.9, -2.0, 0.0)), 1);
+        assert_eq!(active(0, Vector3::new(1.1, -1.9, 0.1)), 3);
+        assert_eq!(active(2, Vector3::new(0.9, -2.0, 0.0)), 2);
+    }
+
+    /// A billionth of 1 + |u| is rounding.
+    #[test]
+    fn rounding_cuts_nothing_off() {
+        let active = |input: f64, cut: f64| {
+            let (wanted, applied) = (Vector3::repeat(input), Vector3::new(input - cut, input, input));
+            ControllerActivity::of(&Step { input: wanted, ..step(0) }, &wanted, &applied).active
+        };
+        for input in [0.0, 1e6, -1e6] {
+            let rounding = 1e-9 * (1.0 + f64::abs(input));
+            for sign in [-1.0, 1.0] {
+                assert_eq!(
+                    (active(input, 0.5 * sign * rounding), active(input, 2.0 * sign * rounding)),
+                    (0, 1)
+                );
+            }
+        }
+    }
+}

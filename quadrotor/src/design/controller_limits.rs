@@ -149,3 +149,142 @@ pub(crate) fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
     let least = (limits.thrust_min * weight).max(weakest);
     (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
 }
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::PI;
+
+    use nalgebra::{Vector2, Vector3};
+
+    use super::{
+        altitude_bounds, altitude_limits, attitude_bounds, largest_tilt, placed, position_bounds,
+        position_limits, thrust_range_n,
+    };
+    use crate::{Airframe, Configuration, Controllers, GRAVITY_M_S2, Limits, Mixer};
+
+    /// Within the horizon, and while the predicted moves grow at most tenfold.
+    #[test]
+    fn limits_are_placed_where_the_prediction_is_sound() {
+        let mut settings = Controllers::default().altitude;
+        (settings.alpha, settings.scale, settings.prediction_horizon) = (1.0, 0.8, 6);
+        assert_eq!(placed(&settings, &[0, 3, 5, 6, 20]), [0, 3, 5]);
+        // 1.25 · 1.6 = 2: 2³ = 8 and 2⁴ = 16
+        (settings.alpha, settings.scale, settings.prediction_horizon) = (1.25, 1.6, 100);
+        assert_eq!(placed(&settings, &[0, 3, 4, 6]), [0, 3]);
+        // 10¹ is ten.
+        (settings.alpha, settings.scale) = (10.0, 1.0);
+        assert_eq!(placed(&settings, &[0, 1, 2]), [0, 1]);
+    }
+
+    /// States are bounded a sample later than inputs, the speed alone and softly.
+    #[test]
+    fn speeds_are_limited_softly_and_one_sample_later() {
+        let controllers = Controllers::default();
+        let [tilt, increment, speed]: [_; 3] = position_limits(&controllers.position).try_into().unwrap();
+        assert_eq!((tilt.directions.shape(), increment.directions.shape()), ((16, 2), (8, 2)));
+        assert_eq!(speed.directions.shape(), (16, 4));
+        assert!(speed.soft && !tilt.soft && !increment.soft);
+        for (earlier, later) in tilt.samples.iter().zip(&speed.samples) {
+            assert_eq!(earlier + 1, *later);
+        }
+        // The fifth of sixteen directions is east: of x, ẋ, y, ẏ the last one.
+        for (state, expected) in [0.0, 0.0, 0.0, 1.0].into_iter().enumerate() {
+            assert!((speed.directions[(4, state)] - expected).abs() < 1e-15);
+            assert!((speed.directions[(0, state)] - f64::from(state == 1)).abs() < 1e-15);
+        }
+        let [acceleration, speed]: [_; 2] = altitude_limits(&controllers.altitude).try_into().unwrap();
+        assert!(speed.soft && !acceleration.soft);
+        assert_eq!((acceleration.samples[0], speed.samples[0]), (0, 1));
+        assert_eq!(acceleration.samples.len(), speed.samples.len());
+    }
+
+    fn limits() -> Limits {
+        Limits {
+            tilt_rate_rad_s: 2.0,
+            speed_horizontal_m_s: 8.0,
+            speed_down_m_s: 2.0,
+            speed_up_m_s: 5.0,
+            ..Limits::default()
+        }
+    }
+
+    /// Polygons inside circles: cos(π/n) of the radius.
+    #[test]
+    fn horizontal_bounds_lie_inside_their_circles() {
+        let still = Vector2::zeros();
+        let bounds = position_bounds(&limits(), 0.5, 0.05, &still, &still);
+        assert!(bounds[..16].iter().all(|bound| (bound - 0.5 * libm::cos(PI / 16.0)).abs() < 1e-15));
+        assert!(bounds[16..24].iter().all(|bound| (bound - 2.0 * 0.05 * libm::cos(PI / 8.0)).abs() < 1e-15));
+        assert!(bounds[24..].iter().all(|bound| (bound - 8.0 * libm::cos(PI / 16.0)).abs() < 1e-14));
+        // Moving north-east at (3, 4) there are 5 less that way, 5 more the other way; 4 less east.
+        let moving = position_bounds(&limits(), 0.5, 0.05, &still, &Vector2::new(3.0, 4.0));
+        let speed = 8.0 * libm::cos(PI / 16.0);
+        for (side, along) in [(0, 3.0), (4, 4.0), (8, -3.0), (12, -4.0), (2, 7.0 / libm::sqrt(2.0))] {
+            assert!((moving[24 + side] - (speed - along)).abs() < 1e-13, "side {side}");
+        }
+        // A reference at the limit may be caught up with: by a tenth of it.
+        let fast = position_bounds(&limits(), 0.5, 0.05, &Vector2::new(6.0, -8.0), &still);
+        assert!(fast[24..].iter().all(|bound| (bound - 10.8).abs() < 1e-14));
+        // Or by 0.3 m/s.
+        let slow = Limits { speed_horizontal_m_s: 1.0, ..limits() };
+        let slow = position_bounds(&slow, 0.5, 0.05, &Vector2::new(0.0, 1.0), &still);
+        assert!(slow[24..].iter().all(|bound| (bound - 1.3).abs() < 1e-14));
+    }
+
+    /// Down is positive.
+    #[test]
+    fn vertical_bounds_leave_room_to_catch_up() {
+        let bounds = |rate: f64, moving: f64| altitude_bounds(&limits(), (-4.0, 3.0), rate, moving);
+        assert_eq!(bounds(0.0, 0.0), [3.0, 4.0, 2.0, 5.0]);
+        assert_eq!(bounds(0.0, 1.5), [3.0, 4.0, 0.5, 6.5]);
+        assert_eq!(bounds(2.0, 0.0), [3.0, 4.0, 2.3, 5.0]);
+        assert_eq!(bounds(-5.0, 0.0), [3.0, 4.0, 2.0, 5.5]);
+    }
+
+    /// m g tan θ of the weight that is left: none in free fall.
+    #[test]
+    fn the_tilt_is_bounded_by_the_thrust_that_carries() {
+        assert!((largest_tilt(0.5, 0.0) - libm::tan(0.5)).abs() < 1e-15);
+        assert!((largest_tilt(0.5, -GRAVITY_M_S2) - 2.0 * libm::tan(0.5)).abs() < 1e-15);
+        assert_eq!((largest_tilt(0.5, GRAVITY_M_S2), largest_tilt(0.5, 2.0 * GRAVITY_M_S2)), (0.0, 0.0));
+    }
+
+    /// In multiples of the weight, 6.864655 N, within what the rotors make: 0.27 N to four fifths of 21.87 N.
+    #[test]
+    fn the_thrust_is_bounded_by_settings_and_rotors() {
+        let range = |thrust_min: f64, thrust_max: f64| {
+            let mut configuration = Configuration::default();
+            (configuration.limits.thrust_min, configuration.limits.thrust_max) = (thrust_min, thrust_max);
+            thrust_range_n(&configuration)
+        };
+        let near = |range: (f64, f64), least: f64, most: f64| {
+            assert!((range.0 - least).abs() < 1e-12 && (range.1 - most).abs() < 1e-12, "{range:?}");
+        };
+        near(range(0.6, 2.0), 0.6 * 6.864_655, 2.0 * 6.864_655);
+        near(range(0.01, 3.0), 0.27, 0.8 * 21.87);
+        // A vehicle that is too heavy has one thrust left.
+        near(range(2.9, 2.0), 2.9 * 6.864_655, 2.9 * 6.864_655);
+    }
+
+    /// What four rotors can differ from the mean by, at the nearer end of their range.
+    #[test]
+    fn torques_are_bounded_by_the_rotors_that_make_them() {
+        let airframe = Airframe::default();
+        let mixer = Mixer::new(&airframe).unwrap();
+        let other = Vector3::new(0.01, -0.02, 0.003);
+        for (thrust_n, room_n) in
+            [(6.27, 6.0 / 4.0), (20.87, 1.0 / 4.0), (0.27, 0.0), (-3.0, 0.0), (21.87, 0.0), (100.0, 0.0)]
+        {
+            // Two rotors on an arm of 0.275 m; four rotors with k₂/k₁ = 6e-7/2.7e-5.
+            let most = [2.0 * 0.275 * room_n, 2.0 * 0.275 * room_n, 4.0 * room_n * 6e-7 / 2.7e-5];
+            let bounds = attitude_bounds(&airframe, &mixer, thrust_n, &other);
+            for axis in 0..3 {
+                assert!(
+                    (bounds[axis] - (most[axis] - other[axis])).abs() < 1e-12,
+                    "{thrust_n} N: {bounds:?}"
+                );
+                assert!((bounds[3 + axis] - (most[axis] + other[axis])).abs() < 1e-12, "{thrust_n} N");
+            }
+        }
+    }
+}

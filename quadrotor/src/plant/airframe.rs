@@ -84,3 +84,20 @@ impl Airframe {
         (thrust(self.rotor_speed_min_rad_s), thrust(self.rotor_speed_max_rad_s))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Airframe;
+
+    /// Four rotors of 2.7e-5 N s² at 450 rad/s lift 21.87 N, at 50 rad/s 0.27 N; the weight is 0.7 kg at 9.80665 m/s².
+    #[test]
+    fn weight_and_thrust_are_those_of_the_table() {
+        let airframe = Airframe::default();
+        assert!((airframe.weight_n() - 6.864_655).abs() < 1e-12);
+        let (weakest, strongest) = airframe.thrust_range_n();
+        assert!((weakest - 0.27).abs() < 1e-12 && (strongest - 21.87).abs() < 1e-12);
+        assert!((airframe.hover_thrust_share() - 6.864_655 / 21.87).abs() < 1e-15);
+        // √(6.864655 / 1.08e-4)
+        assert!((airframe.hover_rotor_speed_rad_s() - 252.114_6).abs() < 1e-3);
+    }
+}

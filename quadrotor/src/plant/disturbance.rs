@@ -34,3 +34,38 @@ impl Disturbance {
         checks.into_iter().find(|(_, finite)| !finite).map(|(name, _)| name)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::Disturbance;
+    use crate::Airframe;
+
+    /// A tail wind pushes, a head wind brakes: f − c (v − w), each axis with its own coefficient.
+    #[test]
+    fn drag_is_that_of_the_motion_through_the_air() {
+        let airframe = Airframe { drag_n_s_m: [0.1, 0.2, 0.4], ..Airframe::default() };
+        let disturbance = Disturbance {
+            force_n: Vector3::new(1.0, 2.0, 3.0),
+            torque_n_m: Vector3::new(0.1, 0.2, 0.3),
+            wind_m_s: Vector3::new(5.0, -5.0, 1.0),
+        };
+        let external = disturbance.external(&airframe, &Vector3::new(2.0, 5.0, -4.0));
+        let expected = Vector3::new(1.0 + 0.1 * 3.0, 2.0 - 0.2 * 10.0, 3.0 + 0.4 * 5.0);
+        assert!((external.force_n - expected).norm() < 1e-14);
+        assert_eq!(external.torque_n_m, disturbance.torque_n_m);
+    }
+
+    #[test]
+    fn the_first_component_that_is_not_finite_is_named() {
+        let mut disturbance = Disturbance::default();
+        assert_eq!(disturbance.not_finite(), None);
+        disturbance.wind_m_s.z = f64::INFINITY;
+        assert_eq!(disturbance.not_finite(), Some("wind.velocity"));
+        disturbance.torque_n_m.y = f64::NAN;
+        assert_eq!(disturbance.not_finite(), Some("disturbance.torque"));
+        disturbance.force_n.x = f64::NAN;
+        assert_eq!(disturbance.not_finite(), Some("disturbance.force"));
+    }
+}

@@ -99,3 +99,126 @@ fn footing(
     // The ground only pushes.
     Some(((stiffness * depth + damping * velocity.z).clamp(0.0, strongest), velocity))
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::{contact, is_held};
+    use crate::{Airframe, Direction, External, GRAVITY_M_S2, RigidBody, Rotor, RotorLayout};
+
+    /// Two long arms and two short ones: reach 2 and nearest 0.5 arm lengths of 0.5 m.
+    fn airframe() -> Airframe {
+        let [cw, ccw] = [Direction::Clockwise, Direction::Counterclockwise];
+        let rotors = [(2.0, 0.0, cw), (0.0, 0.5, ccw), (-2.0, 0.0, cw), (0.0, -0.5, ccw)]
+            .map(|(x, y, direction)| Rotor { x, y, direction });
+        let layout = RotorLayout { rotors };
+        Airframe { mass_kg: 2.0, arm_length_m: 0.5, layout, ..Airframe::default() }
+    }
+
+    /// Level, its feet this deep in the ground, with this velocity.
+    fn level(depth_m: f64, velocity_m_s: [f64; 3]) -> RigidBody {
+        RigidBody {
+            position_m: Vector3::new(3.0, -7.0, depth_m),
+            velocity_m_s: velocity_m_s.into(),
+            attitude: UnitQuaternion::identity().into_inner(),
+            body_rate_rad_s: Vector3::zeros(),
+        }
+    }
+
+    fn force(depth_m: f64, velocity_m_s: [f64; 3]) -> Vector3<f64> {
+        let ground = contact(&airframe(), &level(depth_m, velocity_m_s));
+        assert!(ground.torque_n_m.norm() < 1e-9 * (1.0 + ground.force_n.norm()), "level feet share a load");
+        ground.force_n
+    }
+
+    /// A critically damped spring of 50 rad/s: m ω² d + 2 m ω ḋ, which only pushes, and no foot with more than 200 g.
+    #[test]
+    fn the_ground_is_a_damped_spring() {
+        assert!((force(0.004, [0.0; 3]).z + 2.0 * 2500.0 * 0.004).abs() < 1e-12);
+        assert!((force(0.004, [0.0, 0.0, 0.03]).z + 20.0 + 2.0 * 2.0 * 50.0 * 0.03).abs() < 1e-12);
+        assert!((force(0.004, [0.0, 0.0, -0.03]).z + 20.0 - 6.0).abs() < 1e-12);
+        assert_eq!(force(0.004, [0.0, 0.0, -1.0]).z, 0.0);
+        assert_eq!(force(0.0, [0.0, 0.0, 5.0]), Vector3::zeros());
+        assert_eq!(force(-0.3, [0.0, 0.0, 5.0]), Vector3::zeros());
+        let strongest = force(0.1, [0.0, 0.0, 1e9]).z;
+        assert!((strongest + 4.0 * 200.0 * 2.0 * GRAVITY_M_S2).abs() < 1e-6, "{strongest}");
+    }
+
+    /// μ N against the slip, developed in proportion to it below 0.1 m/s.
+    #[test]
+    fn friction_opposes_the_slip() {
+        let load = 2.0 * 2500.0 * 0.004;
+        for speed in [0.02, 0.1, 3.0] {
+            let pulled = force(0.004, [0.6 * speed, -0.8 * speed, 0.0]);
+            let size = 0.7 * load * f64::min(speed / 0.1, 1.0);
+            assert!(
+                (pulled - Vector3::new(-0.6 * size, 0.8 * size, -load)).norm() < 1e-9,
+                "{speed}: {pulled}"
+            );
+        }
+    }
+
+    /// Rolled to the right about a height at which only the right foot touches: it pushes back.
+    #[test]
+    fn a_single_foot_turns_the_vehicle() {
+        let roll = 0.2;
+        let rotation = UnitQuaternion::from_euler_angles(roll, 0.0, 0.0);
+        // The right foot is 0.25 m off the middle.
+        let depth = 0.01;
+        let mut body = level(depth - 0.25 * libm::sin(roll), [0.0; 3]);
+        body.attitude = rotation.into_inner();
+        let ground = contact(&airframe(), &body);
+        let load = 0.5 * 2500.0 * depth;
+        assert!((ground.force_n - Vector3::new(0.0, 0.0, -load)).norm() < 1e-9, "{ground:?}");
+        let torque = Vector3::new(-0.25 * load * libm::cos(roll), 0.0, 0.0);
+        assert!((ground.torque_n_m - torque).norm() < 1e-9, "{ground:?}");
+        // A rate about the down axis moves that foot backwards, and friction pulls it forward.
+        body.body_rate_rad_s.z = 1.0;
+        let spun = contact(&airframe(), &body);
+        assert!((spun.force_n.x - 0.7 * load).abs() < 1e-9 && spun.torque_n_m.z < 0.0, "{spun:?}");
+    }
+
+    fn pull(force_n: f64, torque_n_m: f64) -> External {
+        External {
+            force_n: Vector3::new(0.6 * force_n, 0.8 * force_n, 1e3),
+            torque_n_m: Vector3::new(1e3, 1e3, torque_n_m),
+        }
+    }
+
+    /// Static friction holds up to |f| + |τ|/r = μ N at the nearest foot, r = 0.25 m.
+    #[test]
+    fn it_is_held_up_to_the_limit_of_force_and_torque_together() {
+        let (airframe, body) = (airframe(), level(0.004, [0.0; 3]));
+        let most = 0.7 * 2.0 * 2500.0 * 0.004;
+        for share in [-1.0, -0.5, 0.0, 0.5, 1.0_f64] {
+            let held = |scale: f64| {
+                let force_n = scale * most * (1.0 - share.abs());
+                is_held(&airframe, &body, &pull(force_n, scale * most * share * 0.25))
+            };
+            assert!(held(0.999) && !held(1.001), "{share}");
+        }
+    }
+
+    /// All feet must bear load, and slip by less than 0.1 m/s, the outermost one in a turn, 1 m off.
+    #[test]
+    fn it_is_held_only_when_it_stands_still_on_all_feet() {
+        let airframe = airframe();
+        let held = |body: &RigidBody| is_held(&airframe, body, &pull(0.0, 0.0));
+        assert!(held(&level(0.004, [0.06, 0.079, 0.0])) && !held(&level(0.004, [0.06, 0.081, 0.0])));
+        assert!(!held(&level(0.0, [0.0; 3])) && !held(&level(-2.0, [0.0; 3])));
+        // Rising faster than the ground pushes, it bears nothing.
+        assert!(!held(&level(0.004, [0.0, 0.0, -1.0])));
+        for rate in [-1.0, 1.0] {
+            let mut body = level(0.004, [0.03, 0.0, 0.0]);
+            body.body_rate_rad_s.z = 0.069 * rate;
+            assert!(held(&body));
+            body.body_rate_rad_s.z = 0.071 * rate;
+            assert!(!held(&body));
+        }
+        // Pitched by 6 mm over the 2 m from front to back, the front feet are in the air.
+        let mut body = level(0.004, [0.0; 3]);
+        body.attitude = UnitQuaternion::from_euler_angles(0.0, 0.006, 0.0).into_inner();
+        assert!(!held(&body));
+    }
+}

@@ -79,3 +79,44 @@ impl RigidBody {
             && self.attitude.coords.iter().all(|x| x.is_finite())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Quaternion, Vector3};
+
+    use super::RigidBody;
+
+    fn body() -> RigidBody {
+        RigidBody {
+            position_m: Vector3::new(1.0, 2.0, 3.0),
+            velocity_m_s: Vector3::new(4.0, 5.0, 6.0),
+            attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0),
+            body_rate_rad_s: Vector3::new(7.0, 8.0, 9.0),
+        }
+    }
+
+    #[test]
+    fn a_step_adds_a_multiple_of_each_component() {
+        let derivative = RigidBody { attitude: Quaternion::new(0.0, 2.0, 4.0, 6.0), ..body() };
+        let next = body().plus(&derivative, 0.5);
+        assert_eq!(next.position_m, Vector3::new(1.5, 3.0, 4.5));
+        assert_eq!(next.velocity_m_s, Vector3::new(6.0, 7.5, 9.0));
+        assert_eq!(next.attitude, Quaternion::new(1.0, 1.0, 2.0, 3.0));
+        assert_eq!(next.body_rate_rad_s, Vector3::new(10.5, 12.0, 13.5));
+    }
+
+    #[test]
+    fn a_motion_is_possible_when_it_is_finite_and_has_an_attitude() {
+        assert!(body().is_possible());
+        let short = |size: f64| RigidBody { attitude: Quaternion::new(0.0, 0.0, size, 0.0), ..body() };
+        assert!(short(-0.6).is_possible() && !short(0.5).is_possible() && !short(0.0).is_possible());
+        let (mut position, mut velocity, mut attitude, mut rate) = (body(), body(), body(), body());
+        position.position_m.y = f64::NAN;
+        velocity.velocity_m_s.z = f64::INFINITY;
+        attitude.attitude.w = f64::INFINITY;
+        rate.body_rate_rad_s.x = f64::NEG_INFINITY;
+        for broken in [position, velocity, attitude, rate] {
+            assert!(!broken.is_finite() && !broken.is_possible(), "{broken:?}");
+        }
+    }
+}

@@ -35,3 +35,23 @@ impl RotorFault {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::RotorFault;
+
+    #[test]
+    fn each_fault_has_its_goal() {
+        assert_eq!(RotorFault::Off.goal_rad_s(300.0, 250.0), 0.0);
+        assert_eq!(RotorFault::Stuck.goal_rad_s(300.0, 250.0), 250.0);
+        // A quarter of the thrust is half of the speed.
+        assert_eq!(RotorFault::Weak { share: 0.25 }.goal_rad_s(300.0, 250.0), 150.0);
+    }
+
+    #[test]
+    fn a_share_lies_between_nothing_and_all() {
+        assert!(RotorFault::Off.is_valid() && RotorFault::Stuck.is_valid());
+        assert!([0.0, 0.5, 1.0].into_iter().all(|share| RotorFault::Weak { share }.is_valid()));
+        assert!(![-1e-9, 1.000_001, f64::NAN].into_iter().any(|share| RotorFault::Weak { share }.is_valid()));
+    }
+}

@@ -216,3 +216,136 @@ fn sign(coordinate: f64) -> i8 {
         -1
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix4, Vector2, Vector4};
+
+    use super::{Direction, Rotor, RotorLayout};
+    use crate::ConfigurationError;
+
+    fn layout(places: [[f64; 2]; 4]) -> RotorLayout {
+        RotorLayout::alternating(places)
+    }
+
+    #[test]
+    fn rotors_are_named_after_their_places() {
+        assert_eq!(RotorLayout::plus().names(), ["front", "right", "back", "left"]);
+        assert_eq!(RotorLayout::x().names(), ["front right", "back right", "back left", "front left"]);
+        let centred = layout([[1e-12, -1e-12], [1e-8, 0.0], [0.0, -1e-8], [-1e-8, 1e-8]]);
+        assert_eq!(centred.names(), ["centre", "front", "left", "back right"]);
+    }
+
+    #[test]
+    fn reach_and_nearest_are_those_of_the_outermost_and_innermost_rotor() {
+        let uneven = layout([[3.0, 4.0], [-1.0, 0.0], [0.0, 2.0], [0.6, -0.8]]);
+        assert!((uneven.reach() - 5.0).abs() < 1e-15 && (uneven.nearest() - 1.0).abs() < 1e-15);
+    }
+
+    /// In the "+" a quarter of the thrust each, half of a torque on the two rotors of its axis, a quarter of the yaw.
+    #[test]
+    fn the_plus_frame_is_inverted_by_hand() {
+        let inverse = RotorLayout::plus().inverse_allocation().unwrap();
+        let expected = Matrix4::new(
+            0.25, 0.0, 0.5, -0.25, 0.25, -0.5, 0.0, 0.25, 0.25, 0.0, -0.5, -0.25, 0.25, 0.5, 0.0, 0.25,
+        );
+        assert!((inverse - expected).amax() < 1e-15, "{inverse}");
+    }
+
+    #[test]
+    fn every_frame_makes_the_thrust_and_torques_it_is_asked_for() {
+        let wanted = Vector4::new(4.0, 0.3, -0.2, 0.1);
+        for frame in [RotorLayout::plus(), RotorLayout::x(), RotorLayout::h(1.7)] {
+            let thrusts = frame.inverse_allocation().unwrap() * wanted;
+            let mut made = Vector4::zeros();
+            for (rotor, thrust) in frame.rotors.iter().zip(&thrusts) {
+                let drag = if rotor.direction == Direction::Clockwise { -thrust } else { *thrust };
+                // r × F of a force up, FRD
+                made += Vector4::new(*thrust, -rotor.y * thrust, rotor.x * thrust, drag);
+            }
+            assert!((made - wanted).amax() < 1e-14, "{made}");
+        }
+    }
+
+    #[test]
+    fn frames_that_cannot_hover_level_or_steer_are_refused_with_the_reason() {
+        let reason = |frame: &RotorLayout| match frame.inverse_allocation() {
+            Err(ConfigurationError::Layout { reason }) => reason,
+            other => panic!("{other:?}"),
+        };
+        let plus = RotorLayout::plus();
+        for place in [f64::NAN, f64::INFINITY] {
+            let mut frame = plus;
+            frame.rotors[2].x = place;
+            assert_eq!(reason(&frame), "a rotor's place is not finite");
+            let mut frame = plus;
+            frame.rotors[1].y = place;
+            assert_eq!(reason(&frame), "a rotor's place is not finite");
+        }
+        for offset in [-1e-8, 1e-8] {
+            let mut frame = plus;
+            frame.rotors[3].x += offset;
+            assert_eq!(reason(&frame), "the rotors' centre is not the centre of mass");
+            let mut frame = plus;
+            frame.rotors[3].y += offset;
+            assert_eq!(reason(&frame), "the rotors' centre is not the centre of mass");
+        }
+        let mut rounded = plus;
+        rounded.rotors[3].x += 1e-12;
+        assert!(rounded.inverse_allocation().is_ok());
+        for direction in [Direction::Clockwise, Direction::Counterclockwise] {
+            let mut frame = plus;
+            frame.rotors = frame.rotors.map(|rotor| Rotor { direction, ..rotor });
+            assert_eq!(reason(&frame), "as many rotors must turn one way as the other");
+        }
+        // Two rows of rotors, 2 y apart: a unit of roll takes 1/(4 y) of thrust of each.
+        let row = |y: f64| layout([[1.0, y], [-1.0, y], [-1.0, -y], [1.0, -y]]);
+        assert!(row(1.0 / 398.0).inverse_allocation().is_ok());
+        assert_eq!(reason(&row(1.0 / 402.0)), "the rotors cannot make thrust and all three torques");
+        assert_eq!(reason(&row(0.0)), "the rotors cannot make thrust and all three torques");
+    }
+
+    /// Whichever rotor is lost, the same picture: it is in front, the others follow, and the two beside it drive a spin
+    /// to the right in these axes.
+    #[test]
+    fn a_lost_rotor_is_the_front_one_of_axes_of_its_own() {
+        for frame in [RotorLayout::plus(), RotorLayout::x(), RotorLayout::h(1.4), RotorLayout::h(0.6)] {
+            for lost in 0..4 {
+                let around = frame.around(lost).unwrap();
+                let [front, right, back, left] = around.places;
+                let place = |rotor: usize| Vector2::new(frame.rotors[rotor].x, frame.rotors[rotor].y);
+                assert_eq!(front, lost);
+                assert!((place(back) + place(lost)).norm() < 1e-12);
+                assert!((place(left) + place(right)).norm() < 1e-12);
+                assert_eq!(around.mirrored, frame.rotors[lost].direction == Direction::Counterclockwise);
+                assert!((around.distance - place(lost).norm()).abs() < 1e-15);
+                assert!((around.towards * around.distance - place(lost)).norm() < 1e-15);
+                // Turned and mirrored, but neither stretched nor sheared.
+                let ahead = around.turned(&place(lost));
+                assert!((ahead - Vector2::new(around.distance, 0.0)).norm() < 1e-15, "{ahead}");
+                let beside = around.turned(&place(right));
+                assert!((beside - around.right).norm() < 1e-15 && beside.y > 0.0, "{beside}");
+                assert!((beside.norm() - place(right).norm()).abs() < 1e-15);
+                assert!((beside.dot(&ahead) - place(right).dot(&place(lost))).abs() < 1e-15);
+                let across = place(lost).x * place(right).y - place(lost).y * place(right).x;
+                assert_eq!(across < 0.0, around.mirrored, "right of a clockwise rotor, left of another");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_without_opposite_pairs_have_no_such_axes() {
+        let plus = RotorLayout::plus();
+        assert!(plus.around(4).is_err());
+        let mut other_ways = plus;
+        other_ways.rotors[2].direction = Direction::Counterclockwise;
+        other_ways.rotors[1].direction = Direction::Clockwise;
+        let mut sides_turn_apart = plus;
+        sides_turn_apart.rotors[1].direction = Direction::Clockwise;
+        let mut bent = plus;
+        bent.rotors[1].x = 0.1;
+        for (frame, lost) in [(other_ways, 0), (sides_turn_apart, 0), (bent, 0), (bent, 1)] {
+            assert!(matches!(frame.around(lost), Err(ConfigurationError::Layout { .. })), "{frame:?}");
+        }
+    }
+}
