@@ -3,7 +3,6 @@
 use std::collections::VecDeque;
 
 use mavlink::dialects::common::MavProtocolCapability;
-use vehicle::Severity;
 use vehicle::identity::Identity;
 use vehicle::plan::PlanKind;
 
@@ -11,7 +10,7 @@ use super::message::{DATA, Nak, Reply, Request, opcode};
 use super::sessions::{Client, Content, Sessions};
 use super::{plan_pack, root};
 use crate::codec::checksum::Checksum;
-use crate::codec::{Frame, command_name, id};
+use crate::codec::{Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::file_store::Access;
@@ -169,8 +168,7 @@ impl FileServer {
 fn take_plan(context: &mut Context, kind: PlanKind, bytes: &[u8]) -> Result<(), Nak> {
     let items = plan_pack::unpack(bytes, kind);
     items.and_then(|items| context.vehicle.set_plan(kind, items)).map_err(|fault| {
-        let reason = fault.described(context.vehicle.identity(), command_name);
-        context.say(Severity::Warning, &format!("{} rejected: {reason}", kind.name()));
+        context.reject_plan(kind.name(), &fault);
         Nak::Fail
     })
 }

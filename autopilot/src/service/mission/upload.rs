@@ -329,7 +329,7 @@ impl Uploads {
         let Some(upload) = &self.receiving else { return };
         let name = upload.kind.name();
         self.finish(context, Err(fault.code));
-        context.say(Severity::Warning, &format!("{name} rejected: {}", answer::described(context, fault)));
+        context.reject_plan(name, fault);
     }
 
     fn finish(&mut self, context: &mut Context, answer: Result<u32, FaultCode>) {
