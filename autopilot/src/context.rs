@@ -7,7 +7,7 @@ use vehicle::{Severity, Vehicle};
 
 use crate::codec::command_name;
 use crate::envelope::LinkProfile;
-use crate::file_store::FileStore;
+use crate::file_work::FileWorker;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::stream::{Component, StreamTable};
@@ -22,8 +22,8 @@ pub struct Context {
     pub parameters: Parameters,
     /// What is to be sent.
     pub outbox: Outbox,
-    /// Files that clients can reach.
-    pub files: Box<dyn FileStore>,
+    /// Does the work on files that clients can reach.
+    pub files: Box<dyn FileWorker>,
     /// Messages that can be asked for.
     pub streams: StreamTable,
     /// Capabilities of all services together.

@@ -2,6 +2,7 @@
 
 mod common;
 
+use autopilot::file_work::Immediate;
 use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::*;
@@ -332,7 +333,7 @@ fn files_arrive_whole_over_a_lossy_channel() {
         std::fs::write(root.join("noise"), &content).expect("written");
         let mut lossy = Lossy::new(seed);
         let files = Disk::open(None, Some(&(root.clone(), true))).expect("a folder");
-        lossy.bench.autopilot.share(Box::new(files));
+        lossy.bench.autopilot.share(Box::new(Immediate(files)));
         ask(&mut lossy, 10, OPEN, 12, 0, b"/files/noise").expect("it is there");
         let mut got: Vec<Option<u8>> = vec![None; content.len()];
         let mut sequence = 100;
