@@ -9,7 +9,8 @@ use vehicle::{Severity, Vehicle, VehicleSettings};
 use crate::codec::{Frame, target_of};
 use crate::context::Context;
 use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
-use crate::file_store::{FileStore, Nothing};
+use crate::file_store::Nothing;
+use crate::file_work::{FileWorker, Immediate};
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::registry::Registry;
@@ -41,7 +42,7 @@ impl Autopilot {
             parameters: Parameters::new(settings, &vehicle, system_id, speed),
             vehicle,
             outbox: Outbox::new(system_id),
-            files: Box::new(Nothing),
+            files: Box::new(Immediate(Nothing)),
             streams: services.streams(),
             capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
@@ -96,14 +97,15 @@ impl Autopilot {
     }
 
     /// Gives clients files to reach. They change nothing of the flight.
-    pub fn share(&mut self, store: Box<dyn FileStore>) {
-        self.context.files = store;
+    pub fn share(&mut self, files: Box<dyn FileWorker>) {
+        self.context.files = files;
     }
 
-    /// Sends up to this many messages of logs that are being downloaded, to peers that have room for them (`None`: the
-    /// peer is gone). How fast they go is a matter of links and wall clocks, not of the flight.
-    pub fn send_logs(&mut self, messages: usize, has_room: impl Fn(PeerId) -> Option<bool>) {
-        self.services.transfer(&mut self.context, messages, &has_room);
+    /// Goes on with long answers (lists, downloads, files): sends as many messages as each service's pace allows in `turns` turns, to
+    /// peers that have room for them (`None`: the peer is gone). How fast they go is a matter of links, disks and wall clocks, not of
+    /// the flight. Call it after received messages and from time to time, even if `turns` is zero.
+    pub fn transfer(&mut self, turns: usize, has_room: impl Fn(PeerId) -> Option<bool>) {
+        self.services.transfer(&mut self.context, turns, &has_room);
     }
 
     /// Tells everyone what has happened around the vehicle. It changes nothing of the flight.

@@ -2,10 +2,12 @@
 
 use mavlink::dialects::common::MavProtocolCapability;
 use vehicle::identity::Identity;
+use vehicle::plan::PlanFault;
 use vehicle::{Severity, Vehicle};
 
+use crate::codec::command_name;
 use crate::envelope::LinkProfile;
-use crate::file_store::FileStore;
+use crate::file_work::FileWorker;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::stream::{Component, StreamTable};
@@ -20,8 +22,8 @@ pub struct Context {
     pub parameters: Parameters,
     /// What is to be sent.
     pub outbox: Outbox,
-    /// Files that clients can reach.
-    pub files: Box<dyn FileStore>,
+    /// Does the work on files that clients can reach.
+    pub files: Box<dyn FileWorker>,
     /// Messages that can be asked for.
     pub streams: StreamTable,
     /// Capabilities of all services together.
@@ -49,5 +51,12 @@ impl Context {
     /// Sends a line for the pilot to everyone, unless it was said a moment ago.
     pub fn say(&mut self, severity: Severity, text: &str) {
         self.outbox.say(self.vehicle.time_us(), severity, text);
+    }
+
+    /// Tells everyone that a plan is rejected, with the number of the item, the name of its command and the reason. `name` is that
+    /// of the kind of plan.
+    pub fn reject_plan(&mut self, name: &str, fault: &PlanFault) {
+        let reason = fault.described(self.identity(), command_name);
+        self.say(Severity::Warning, &format!("{name} rejected: {reason}"));
     }
 }

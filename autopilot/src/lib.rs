@@ -19,12 +19,15 @@ pub mod codec;
 mod context;
 pub mod envelope;
 pub mod file_store;
+pub mod file_work;
 mod outbox;
+mod parameter_metadata;
 mod parameters;
 #[allow(deprecated)] // Clients still use what the dialect calls deprecated.
 pub mod service;
 mod status_text;
 mod stream;
+mod turns;
 
 pub use autopilot::Autopilot;
 pub use codec::COMPONENT;

@@ -1,10 +1,13 @@
 //! The parameters of a running vehicle: their table, and what they are read from and written to.
 
+use std::sync::OnceLock;
+
 use quadrotor::ConfigurationError;
 use vehicle::parameters::{Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Value};
 use vehicle::{Refusal, Vehicle, VehicleSettings};
 
 use crate::codec::parameter_hash;
+use crate::parameter_metadata::ParameterMetadata;
 
 /// All parameters, with those of their values that the vehicle does not keep.
 #[derive(Debug)]
@@ -15,6 +18,8 @@ pub struct Parameters {
     settings: VehicleSettings,
     initial: Vec<Value>,
     changed: bool,
+    /// Made when it is asked for first.
+    metadata: OnceLock<ParameterMetadata>,
 }
 
 impl Parameters {
@@ -27,6 +32,7 @@ impl Parameters {
             settings: settings.clone(),
             initial: Vec::new(),
             changed: false,
+            metadata: OnceLock::new(),
         };
         parameters.initial = parameters.all(vehicle).map(|(_, value)| value).collect();
         parameters
@@ -57,9 +63,9 @@ impl Parameters {
         self.speed = speed;
     }
 
-    /// Values as they were at the start, in the order of the table.
-    pub fn initial(&self) -> &[Value] {
-        &self.initial
+    /// Files that describe them.
+    pub fn metadata(&self) -> &ParameterMetadata {
+        self.metadata.get_or_init(|| ParameterMetadata::new(&self.table, &self.initial))
     }
 
     /// What the table reads.

@@ -92,6 +92,7 @@ fn fly(
         let expected = fleet.keep_in_step(now);
         fleet.keep_links_alive(now);
         fleet.keep_logs(now);
+        fleet.transfer(now);
         fleet.flush();
         status.update(now, fleet.time_us(), || of_fleet(fleet));
         if !behind {

@@ -2,6 +2,7 @@
 
 mod common;
 
+use autopilot::file_work::Immediate;
 use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::*;
@@ -300,6 +301,71 @@ fn quotas_hold_and_say_so() {
     assert_eq!(open(&mut bench, 14, 0), Ok(()));
 }
 
+/// Bytes as `du --apparent-size` counts them, and 4096 for each file and folder.
+fn measured(folder: &std::path::Path) -> u64 {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+    entries
+        .map(|entry| {
+            let metadata = entry.metadata().expect("metadata");
+            let below = if metadata.is_dir() { measured(&entry.path()) } else { metadata.len() };
+            4096 + below
+        })
+        .sum()
+}
+
+/// The quota is that of what is really there: at any depth, and of open files without a name.
+#[cfg(unix)]
+#[test]
+fn nothing_escapes_the_quota() {
+    const QUOTA: u64 = 64 << 20;
+    let (_place, root) = shared();
+    let mut client = Client::sharing(&root, true);
+    // Folders go down to the limit and no deeper, whether made there or moved there.
+    let mut path = "/files".to_owned();
+    while client.on(MAKE_FOLDER, &format!("{path}/d")).is_ok() {
+        path += "/d";
+    }
+    assert_eq!(path.matches("/d").count(), 32);
+    client.on(MAKE_FOLDER, "/files/e").expect("room");
+    client.on(MAKE_FOLDER, "/files/e/e").expect("room");
+    let halfway = &path[..path.len() - 2];
+    assert_eq!(client.on(RENAME, &format!("/files/e\0{halfway}/e")), Err(FAIL), "it would be too deep");
+    assert_eq!(client.on(RENAME, &format!("/files/e/e\0{halfway}/e")), Ok(vec![]));
+    // What others have put deeper is counted: the folder is looked at again after a quarter of a second.
+    let deep = root.join("x/".repeat(60));
+    std::fs::create_dir_all(&deep).expect("folders");
+    std::fs::File::create(deep.join("sparse")).and_then(|file| file.set_len(20 << 20)).expect("a file");
+    std::thread::sleep(std::time::Duration::from_millis(260));
+    // As much as there is room for, by writing and by truncation.
+    let free = QUOTA - measured(&root);
+    let mut left = free;
+    for name in ["a", "b", "c"] {
+        let file = format!("{halfway}/{name}");
+        client.on(CREATE, &file).expect("room for an entry");
+        left -= 4096;
+        let size = left.min(16 << 20);
+        assert_eq!(client.ask(TRUNCATE, size as u32, file.as_bytes()), Ok(vec![]), "{name}: {size}");
+        left -= size;
+    }
+    assert_eq!((left, measured(&root)), (0, QUOTA));
+    assert_eq!(client.on(CREATE, "/files/more"), Err(ERRNO));
+    assert_eq!(client.on(MAKE_FOLDER, "/files/more"), Err(ERRNO));
+    client.on(OPEN_TO_WRITE, &format!("{halfway}/c")).expect("there");
+    let size =
+        std::fs::metadata(root.join(halfway.trim_start_matches("/files/")).join("c")).expect("there").len();
+    assert_eq!(client.ask(WRITE, size as u32, b"x"), Err(ERRNO));
+    // Removed but open: its place is not free before it is closed.
+    client.on(REMOVE, &format!("{halfway}/c")).expect("removed");
+    assert_eq!(measured(&root), QUOTA - 4096 - size);
+    assert_eq!(client.on(CREATE, "/files/more"), Err(ERRNO));
+    assert_eq!(client.ask(WRITE, size as u32, b"x"), Err(ERRNO));
+    client.ask(RESET, 0, &[]).expect("closed");
+    client.on(CREATE, "/files/more").expect("room again");
+    assert_eq!(client.ask(TRUNCATE, size as u32, b"/files/more"), Ok(vec![]));
+    assert_eq!(client.ask(TRUNCATE, size as u32 + 1, b"/files/more"), Err(ERRNO));
+    assert_eq!(measured(&root), QUOTA);
+}
+
 /// Asks until it is answered.
 fn ask(
     lossy: &mut Lossy,
@@ -332,7 +398,7 @@ fn files_arrive_whole_over_a_lossy_channel() {
         std::fs::write(root.join("noise"), &content).expect("written");
         let mut lossy = Lossy::new(seed);
         let files = Disk::open(None, Some(&(root.clone(), true))).expect("a folder");
-        lossy.bench.autopilot.share(Box::new(files));
+        lossy.bench.autopilot.share(Box::new(Immediate(files)));
         ask(&mut lossy, 10, OPEN, 12, 0, b"/files/noise").expect("it is there");
         let mut got: Vec<Option<u8>> = vec![None; content.len()];
         let mut sequence = 100;

@@ -3,6 +3,7 @@
 mod common;
 
 use autopilot::codec::Message;
+use autopilot::file_work::Immediate;
 use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::{Client, PROTECTED, REMOVE, noise};
@@ -65,7 +66,9 @@ fn logs_arrive_whole_over_a_lossy_channel() {
     for seed in 1..=4 {
         let (_place, folder, contents) = logs();
         let mut lossy = Lossy::new(seed);
-        lossy.bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+        // Two pieces a millisecond.
+        lossy.bench.turns = 2;
+        lossy.bench.autopilot.share(Box::new(Immediate(Disk::open(Some(&folder), None).expect("a folder"))));
         // As clients do: ask again until all have come.
         let mut listed = std::collections::BTreeMap::new();
         while listed.len() < contents.len() {
@@ -88,8 +91,6 @@ fn logs_arrive_whole_over_a_lossy_channel() {
                 lossy.send(request_log(id, ask.0, ask.1));
                 let mut silent_ms = 0;
                 while silent_ms < 150 {
-                    // Two pieces a millisecond, to a peer that is there.
-                    lossy.bench.autopilot.send_logs(2, |_| Some(true));
                     let pieces = pieces(lossy.step());
                     silent_ms = if pieces.is_empty() { silent_ms + 1 } else { 0 };
                     for piece in pieces {
@@ -116,7 +117,7 @@ fn ids_are_those_of_the_autopilot() {
     for (identity, first) in [(Identity::Px4, 0), (Identity::ArduPilot, 1)] {
         let (_place, folder, contents) = logs();
         let mut bench = Bench::new(identity);
-        bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+        bench.autopilot.share(Box::new(Immediate(Disk::open(Some(&folder), None).expect("a folder"))));
         bench.send(list_logs());
         let listed = entries(std::mem::take(&mut bench.heard));
         let ids: Vec<u16> = listed.iter().map(|entry| entry.id).collect();
@@ -125,8 +126,6 @@ fn ids_are_those_of_the_autopilot() {
         let mut piece = |id| {
             bench.heard.clear();
             bench.send(request_log(id, 0, 90));
-            bench.autopilot.send_logs(1, |_| Some(true));
-            bench.listen();
             pieces(std::mem::take(&mut bench.heard)).remove(0)
         };
         assert_eq!(piece(first).data, contents[0][..90]);
@@ -142,10 +141,11 @@ fn ids_are_those_of_the_autopilot() {
 fn a_download_waits_for_room_and_ends_when_told() {
     let (place, folder, contents) = logs();
     let mut bench = Bench::new(Identity::Px4);
-    bench.autopilot.share(Box::new(Disk::open(Some(&folder), None).expect("a folder")));
+    bench.turns = 0;
+    bench.autopilot.share(Box::new(Immediate(Disk::open(Some(&folder), None).expect("a folder"))));
     let sent = |bench: &mut Bench, most: usize, room: Option<bool>| {
         bench.heard.clear();
-        bench.autopilot.send_logs(most, |_| room);
+        bench.autopilot.transfer(most, |_| room);
         bench.listen();
         pieces(std::mem::take(&mut bench.heard))
     };
@@ -160,14 +160,14 @@ fn a_download_waits_for_room_and_ends_when_told() {
     // The end of a file of whole pieces is an empty one, and so is what is not there.
     bench.send(request_log(1, 0, u32::MAX));
     assert_eq!(sent(&mut bench, 10, Some(true)).iter().map(|piece| piece.count).collect::<Vec<_>>(), [90, 0]);
-    bench.heard.clear();
     bench.send(request_log(77, 0, 90));
-    assert_eq!(pieces(std::mem::take(&mut bench.heard))[0].count, 0);
+    assert_eq!(sent(&mut bench, 10, Some(true)).iter().map(|piece| piece.count).collect::<Vec<_>>(), [0]);
     // Who is gone gets nothing more, not even when it comes back.
     bench.send(request_log(0, 0, u32::MAX));
     assert!(sent(&mut bench, 10, None).is_empty());
     assert!(sent(&mut bench, 10, Some(true)).is_empty());
     // FTP reads them, too, and removes none.
+    bench.turns = 10_000;
     let mut client = Client { bench, sequence: 0 };
     assert_eq!(client.list("/logs").expect("a list").len(), 3);
     assert_eq!(client.read("/logs/flight_00002_id1.ulg"), Ok(contents[1].clone()));

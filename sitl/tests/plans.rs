@@ -313,6 +313,40 @@ fn a_silent_client_is_asked_again_and_then_given_up() {
     assert!(!client.bench.heard.iter().any(|message| request_of(message).is_some()));
 }
 
+/// An upload that is begun again and again, that asks for what is not its turn, or that creeps, gives way to another client.
+#[test]
+fn an_upload_that_does_not_get_on_gives_way() {
+    let plan = items(PlanKind::Mission, 40);
+    let item = |index: usize| item_message(PlanKind::Mission, index, plan[index], true);
+    let other = Origin { peer: PeerId { link: 0, number: 2 }, system: 254, component: 190 };
+    for (manner, gives_way) in
+        [("begins again", true), ("hurries", true), ("creeps", true), ("gets on", false)]
+    {
+        let mut client = Client::new();
+        client.send(count_message(PlanKind::Mission, 40));
+        // Five times a second for 16 s.
+        for turn in 0..80 {
+            match manner {
+                "begins again" => drop(client.send(count_message(PlanKind::Mission, 40))),
+                "hurries" => drop(client.send(item(20))),
+                "creeps" if turn % 20 == 0 => drop(client.send(item(turn / 20))),
+                "gets on" if turn % 3 == 0 => drop(client.send(item(turn / 3))),
+                _ => {}
+            }
+            client.bench.fly(0.2);
+        }
+        client.bench.heard.clear();
+        let begin = Frame::encode(&count_message(PlanKind::Mission, 1).into(), Version::Two, 1, (254, 190));
+        client.bench.autopilot.receive(&other, &begin.expect("a frame"));
+        client.bench.listen();
+        let begun = client.bench.heard.iter().any(|message| request_of(message) == Some(0));
+        assert_eq!(begun, gives_way, "{manner}");
+        let cancelled = MavMissionResult::MAV_MISSION_OPERATION_CANCELLED as u8;
+        let denied = MavMissionResult::MAV_MISSION_DENIED as u8;
+        assert_eq!(result(&client.bench.heard), Some(if gives_way { cancelled } else { denied }), "{manner}");
+    }
+}
+
 #[test]
 fn a_client_can_cancel_and_another_waits_for_its_turn() {
     let mut client = Client::new();

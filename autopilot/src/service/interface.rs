@@ -104,12 +104,12 @@ pub trait Service: Debug + Send {
     /// Called at the end of each tick: sends what is due regularly.
     fn stream(&mut self, _context: &mut Context) {}
 
-    /// Sends up to `messages` messages of long downloads to peers whose link has room (`None`: the peer is gone). Called at the
-    /// pace of links and the wall clock, not of the flight.
+    /// Goes on with long answers: sends as many messages as this service allows itself in `turns` turns, about 2500 of which make a
+    /// second of the wall clock, to peers whose link has room (`None`: the peer is gone), one peer after the other.
     fn transfer(
         &mut self,
         _context: &mut Context,
-        _messages: usize,
+        _turns: usize,
         _has_room: &dyn Fn(PeerId) -> Option<bool>,
     ) {
     }

@@ -1,5 +1,7 @@
 //! The parameter protocol.
 
+use std::collections::BTreeMap;
+
 use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA};
 use vehicle::identity::Identity;
 use vehicle::parameters::Value;
@@ -8,7 +10,8 @@ use vehicle::{Refusal, Severity};
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Encoding, Frame, id};
 use crate::context::Context;
-use crate::envelope::{Destination, Origin};
+use crate::envelope::{Destination, Origin, PeerId};
+use crate::turns::Turns;
 
 /// Name under which clients request the hash, and with which QGroundControl confirms its cache.
 const HASH_CHECK: &str = "_HASH_CHECK";
@@ -17,9 +20,22 @@ const NO_INDEX: u16 = u16::MAX;
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u16)];
 
+/// What a peer gets next of a list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// The hash over all parameters.
+    Hash,
+    /// A parameter.
+    Index(usize),
+}
+
 /// Lists, reads and changes parameters.
-#[derive(Clone, Copy, Debug)]
-pub struct ParameterProtocol;
+#[derive(Clone, Debug, Default)]
+pub struct ParameterProtocol {
+    /// Lists that are being sent, one for each peer.
+    lists: BTreeMap<PeerId, Next>,
+    turns: Turns,
+}
 
 impl Service for ParameterProtocol {
     fn messages(&self) -> &'static [u32] {
@@ -42,24 +58,60 @@ impl Service for ParameterProtocol {
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         match frame.message_id() {
             id::PARAM_REQUEST_READ => request_read(context, origin, frame),
-            id::PARAM_REQUEST_LIST => request_list(context, origin),
-            _ => set(context, origin, frame),
+            id::PARAM_REQUEST_LIST => self.request_list(context, origin),
+            _ => self.set(context, origin, frame),
         }
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
         storage(context, command).map(|()| Progress::Done)
     }
+
+    fn transfer(&mut self, context: &mut Context, turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
+        self.lists.retain(|peer, _| has_room(*peer).is_some());
+        for _ in 0..turns {
+            let ready = self.lists.keys().copied().filter(|peer| has_room(*peer) == Some(true));
+            let Some(peer) = self.turns.next(ready) else { return };
+            self.send_next(context, peer);
+        }
+    }
 }
 
-/// PARAM_REQUEST_LIST: the hash first, so that a client with a valid cache can stop, then everything.
-fn request_list(context: &mut Context, origin: &Origin) {
-    let to = Destination::Peer(origin.peer);
-    if !context.identity().is_ardupilot() {
-        send_hash(context, to);
+impl ParameterProtocol {
+    /// PARAM_REQUEST_LIST: the hash first, so that a client with a valid cache can stop, then everything. A second request of a peer
+    /// begins again.
+    fn request_list(&mut self, context: &Context, origin: &Origin) {
+        let next = if context.identity().is_ardupilot() { Next::Index(0) } else { Next::Hash };
+        self.lists.insert(origin.peer, next);
     }
-    for index in 0..context.parameters.table().entries().len() {
-        send_value(context, index, to);
+
+    /// Sends the next message of a list.
+    fn send_next(&mut self, context: &mut Context, peer: PeerId) {
+        let Some(next) = self.lists.get_mut(&peer) else { return };
+        let to = Destination::Peer(peer);
+        let following = match *next {
+            Next::Hash => {
+                send_hash(context, to);
+                0
+            }
+            Next::Index(index) => {
+                send_value(context, index, to);
+                index + 1
+            }
+        };
+        *next = Next::Index(following);
+        if following >= context.parameters.table().entries().len() {
+            self.lists.remove(&peer);
+        }
+    }
+
+    /// PARAM_SET. The client with a valid cache sets the hash: it needs no more of the list.
+    fn set(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        if frame.payload().name(6) == HASH_CHECK {
+            self.lists.remove(&origin.peer);
+        } else {
+            set(context, origin, frame);
+        }
     }
 }
 
@@ -83,10 +135,6 @@ fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
 fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let name = payload.name(6);
-    if name == HASH_CHECK {
-        // "Stop sending": the list is out already.
-        return;
-    }
     let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
     let result = context.parameters.set(&name, value, &mut context.vehicle);
     if let Some(index) = context.parameters.table().index_of(&name) {

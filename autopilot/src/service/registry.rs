@@ -23,7 +23,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::identification::Identification),
         Box::new(super::component_metadata::ComponentMetadata),
         Box::new(super::time_synchronization::TimeSynchronization),
-        Box::new(super::parameter::ParameterProtocol),
+        Box::new(super::parameter::ParameterProtocol::default()),
         Box::new(super::custom_mode::CustomModes),
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
@@ -122,14 +122,14 @@ impl Registry {
         self.each(|service| service.stream(context));
     }
 
-    /// Sends up to `messages` messages of long downloads.
+    /// Goes on with long answers.
     pub fn transfer(
         &mut self,
         context: &mut Context,
-        messages: usize,
+        turns: usize,
         has_room: &dyn Fn(PeerId) -> Option<bool>,
     ) {
-        self.each(|service| service.transfer(context, messages, has_room));
+        self.each(|service| service.transfer(context, turns, has_room));
     }
 }
 

@@ -13,6 +13,9 @@ const SUFFIX: &str = ".ulg";
 /// Files that may get the next number before it is this program's.
 const MOST_TAKEN: u32 = 1000;
 
+/// Logs that are removed where a new one begins.
+const MOST_AT_ONCE: usize = 8;
+
 #[derive(Debug, Default)]
 struct State {
     next: u32,
@@ -73,9 +76,8 @@ impl LogFolder {
                 self.names()?.into_iter().filter_map(|name| Some((number(&name)?, name))).collect();
             logs.sort();
             let surplus = (logs.len() + 1).saturating_sub(most.max(1));
-            for (_, name) in logs.iter().filter(|(_, name)| !state.current.contains(name)).take(surplus) {
-                std::fs::remove_file(self.path.join(name))?;
-            }
+            let over = logs.iter().filter(|(_, name)| !state.current.contains(name));
+            remove(over.take(surplus).map(|(_, name)| self.path.join(name)).collect())?;
             for _ in 0..MOST_TAKEN {
                 let name = format!("{PREFIX}{:05}_id{system_id}{SUFFIX}", state.next);
                 state.next = state.next.saturating_add(1);
@@ -102,6 +104,21 @@ impl LogFolder {
     pub fn is_over(&self, name: &str) -> bool {
         number(name).is_some() && !self.with(|state| state.current.contains(name))
     }
+}
+
+/// Removes files: a few at once, many in a thread of their own, because a vehicle is about to fly.
+fn remove(mut paths: Vec<PathBuf>) -> io::Result<()> {
+    let later = paths.split_off(paths.len().min(MOST_AT_ONCE));
+    paths.iter().try_for_each(std::fs::remove_file)?;
+    if later.is_empty() {
+        return Ok(());
+    }
+    let work = move || {
+        if let Some(error) = later.iter().find_map(|path| std::fs::remove_file(path).err()) {
+            tracing::warn!("old flight logs not removed: {error}");
+        }
+    };
+    std::thread::Builder::new().name("old logs".to_owned()).spawn(work).map(drop)
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Files: folders that clients can reach and nothing leads out of, and files of our own that are written while vehicles fly.
 //!
 //! ```text
-//!  autopilot::FileStore ◄── Disk: `logs`, `files` ──► cap-std: a folder and what is below it, nothing else
+//!  autopilot::FileWorker ◄── FileThread: jobs of clients, away from the flights
+//!                               └─► Disk: `logs`, `files` ──► cap-std: a folder and what is below it, nothing else
 //!
 //!  record, traffic log, flight log ──► Spool (bytes wait for a full disk) ─┐
 //!  parameters, signing timestamps, key ──► replace (all or nothing) ───────┴─► Upkeep: announced once, told at the end
@@ -17,6 +18,8 @@ mod mount;
 mod replace;
 mod spool;
 mod upkeep;
+mod usage;
+mod worker;
 
 pub use disk::Disk;
 pub use lock::FileLock;
@@ -27,3 +30,4 @@ pub use spool::Spool;
 #[cfg(test)]
 pub(crate) use spool::tests::SmallDisk;
 pub use upkeep::{Notice, Upkeep, WRITE_PERIOD, reason};
+pub use worker::FileThread;

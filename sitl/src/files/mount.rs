@@ -1,22 +1,17 @@
 //! One folder of the disk, and the files below it.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::UNIX_EPOCH;
 
 use autopilot::file_store::{Access, FileError, Listed, OpenFile};
 use cap_std::ambient_authority;
 use cap_std::fs::{Dir, File, OpenOptions};
 
-/// Bytes of the largest file that a client may write.
-const LARGEST_FILE: u64 = 16 << 20;
-/// Bytes of all files together.
-const QUOTA: u64 = 64 << 20;
-/// Files and folders; each is counted as this many bytes, too.
-const ENTRY: u64 = 4096;
-/// Folders within folders that are counted.
+use super::usage::{ENTRY, LARGEST_FILE, Usage};
+
+/// Folders within folders that a client may make.
 const DEEPEST: usize = 32;
 /// Bytes of a name that a client may give.
 const LONGEST_NAME: usize = 128;
@@ -26,15 +21,15 @@ const LONGEST_NAME: usize = 128;
 pub struct Mount {
     folder: Dir,
     writable: bool,
-    used: Arc<AtomicU64>,
+    usage: Usage,
 }
 
 /// An open file of a folder.
 #[derive(Debug)]
 struct MountedFile {
-    file: File,
-    writable: bool,
-    used: Arc<AtomicU64>,
+    file: Arc<File>,
+    /// The folder and what is used of it, if the file may be written.
+    grows: Option<(Dir, Usage)>,
 }
 
 impl Mount {
@@ -44,16 +39,7 @@ impl Mount {
     /// When it is no folder that can be read.
     pub fn open(path: &Path, writable: bool) -> io::Result<Self> {
         let folder = Dir::open_ambient_dir(path, ambient_authority())?;
-        let mount = Self { folder, writable, used: Arc::default() };
-        mount.count();
-        Ok(mount)
-    }
-
-    /// Counts what is there.
-    fn count(&self) {
-        if self.writable {
-            self.used.store(bytes_in(&self.folder, DEEPEST), Ordering::Relaxed);
-        }
+        Ok(Self { folder, writable, usage: Usage::default() })
     }
 
     /// What is in a folder, by name.
@@ -83,89 +69,115 @@ impl Mount {
 
     pub(super) fn open_file(&self, path: &str, access: Access) -> Result<Box<dyn OpenFile>, FileError> {
         let mut options = OpenOptions::new();
-        match access {
-            Access::Read => options.read(true),
-            Access::Create | Access::Write => {
-                self.check_new(path)?;
-                options.read(true).write(true).create(true)
+        let is_new = access != Access::Read && !self.folder.exists(path);
+        if access == Access::Read {
+            options.read(true);
+        } else {
+            self.check_name(path)?;
+            if is_new {
+                self.usage.grow(&self.folder, ENTRY)?;
             }
-        };
+            options.read(true).write(true).create(true);
+        }
         #[cfg(unix)]
         {
             use cap_std::fs::OpenOptionsExt;
-            // A pipe that nobody writes to must not keep the vehicle from flying.
+            // A pipe that nobody writes to must not keep others waiting.
             options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
         }
-        let file = self.folder.open_with(path, &options).map_err(meaning)?;
-        if !file.metadata().map_err(meaning)?.is_file() {
+        let file = self.folder.open_with(path, &options).map_err(meaning).inspect_err(|_| {
+            if is_new {
+                self.usage.shrink(ENTRY);
+            }
+        })?;
+        let metadata = file.metadata().map_err(meaning)?;
+        if !metadata.is_file() {
             return Err(FileError::NotFound);
         }
         if access == Access::Create {
             file.set_len(0).map_err(meaning)?;
+            self.usage.shrink(metadata.len());
         }
-        if access != Access::Read {
-            self.count();
-        }
-        Ok(Box::new(MountedFile { file, writable: access != Access::Read, used: Arc::clone(&self.used) }))
+        let file = Arc::new(file);
+        self.usage.watch(&file);
+        let grows = match access {
+            Access::Read => None,
+            _ => Some((self.folder.try_clone().map_err(meaning)?, self.usage.clone())),
+        };
+        Ok(Box::new(MountedFile { file, grows }))
     }
 
-    /// Whether a path may be written.
-    fn check_new(&self, path: &str) -> Result<(), FileError> {
+    fn check_writable(&self) -> Result<(), FileError> {
+        if self.writable { Ok(()) } else { Err(FileError::Protected) }
+    }
+
+    /// Whether a path may be given to something.
+    fn check_name(&self, path: &str) -> Result<(), FileError> {
+        self.check_writable()?;
         let name = path.rsplit('/').next().unwrap_or_default();
-        if !self.writable {
-            Err(FileError::Protected)
-        } else if name.is_empty() || name.len() > LONGEST_NAME || name.chars().any(char::is_control) {
+        let deep = path.split('/').count() > DEEPEST;
+        if name.is_empty() || name.len() > LONGEST_NAME || name.chars().any(char::is_control) || deep {
             Err(FileError::Failed)
-        } else if !self.folder.exists(path) && self.used.load(Ordering::Relaxed) + ENTRY > QUOTA {
-            Err(FileError::NoSpace)
         } else {
             Ok(())
         }
     }
 
-    /// Does something to what is there.
-    fn change(&self, work: impl FnOnce(&Dir) -> io::Result<()>) -> Result<(), FileError> {
-        if !self.writable {
-            return Err(FileError::Protected);
-        }
-        let result = work(&self.folder).map_err(meaning);
-        self.count();
-        result
-    }
-
     pub(super) fn remove_file(&self, path: &str) -> Result<(), FileError> {
-        self.change(|folder| folder.remove_file(path))
+        self.check_writable()?;
+        let metadata = self.folder.symlink_metadata(path).map_err(meaning)?;
+        self.folder.remove_file(path).map_err(meaning)?;
+        let bytes = if metadata.is_file() { metadata.len() } else { 0 };
+        self.usage.shrink(ENTRY + bytes);
+        Ok(())
     }
 
     pub(super) fn create_folder(&self, path: &str) -> Result<(), FileError> {
-        self.check_new(path)?;
-        self.change(|folder| folder.create_dir(path))
+        self.check_name(path)?;
+        self.usage.grow(&self.folder, ENTRY)?;
+        self.folder.create_dir(path).map_err(meaning).inspect_err(|_| self.usage.shrink(ENTRY))
     }
 
     pub(super) fn remove_folder(&self, path: &str) -> Result<(), FileError> {
-        self.change(|folder| folder.remove_dir(path))
+        self.check_writable()?;
+        self.folder.remove_dir(path).map_err(meaning)?;
+        self.usage.shrink(ENTRY);
+        Ok(())
     }
 
     pub(super) fn rename(&self, from: &str, to: &str) -> Result<(), FileError> {
-        self.check_new(to)?;
+        self.check_name(to)?;
         if self.folder.symlink_metadata(to).is_ok() {
             return Err(FileError::Exists);
         }
-        self.change(|folder| folder.rename(from, folder, to))
+        // What is below a folder goes deeper with it.
+        let room = DEEPEST.saturating_sub(to.split('/').count());
+        let moved = self.folder.symlink_metadata(from).map_err(meaning)?;
+        if moved.is_dir() && is_deeper(&self.folder, from, room) {
+            return Err(FileError::Failed);
+        }
+        self.folder.rename(from, &self.folder, to).map_err(meaning)
     }
 
     pub(super) fn truncate(&self, path: &str, size: u64) -> Result<(), FileError> {
-        if !self.writable {
-            return Err(FileError::Protected);
-        }
+        self.check_writable()?;
         let metadata = self.folder.metadata(path).map_err(meaning)?;
         if !metadata.is_file() {
             return Err(FileError::NotFound);
         }
-        reserve(&self.used, metadata.len(), size)?;
+        if size > LARGEST_FILE {
+            return Err(FileError::NoSpace);
+        }
         let mut options = OpenOptions::new();
         options.write(true);
-        self.change(|folder| folder.open_with(path, &options)?.set_len(size))
+        let file = self.folder.open_with(path, &options).map_err(meaning)?;
+        let growth = size.saturating_sub(metadata.len());
+        if growth > 0 {
+            self.usage.grow(&self.folder, growth)?;
+        }
+        file.set_len(size).map_err(meaning).inspect_err(|_| self.usage.shrink(growth))?;
+        self.usage.shrink(metadata.len().saturating_sub(size));
+        Ok(())
     }
 
     /// Removes the files that have one of some names, whoever may write here.
@@ -181,10 +193,11 @@ impl OpenFile for MountedFile {
 
     fn read_at(&mut self, offset: u64, into: &mut [u8]) -> Result<usize, FileError> {
         use std::io::{Read, Seek, SeekFrom};
-        self.file.seek(SeekFrom::Start(offset)).map_err(meaning)?;
+        let mut file = self.file.as_ref();
+        file.seek(SeekFrom::Start(offset)).map_err(meaning)?;
         let mut read = 0;
         while let Some(rest) = into.get_mut(read..).filter(|rest| !rest.is_empty()) {
-            match self.file.read(rest) {
+            match file.read(rest) {
                 Ok(0) => break,
                 Ok(length) => read += length,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
@@ -196,40 +209,35 @@ impl OpenFile for MountedFile {
 
     fn write_at(&mut self, offset: u64, bytes: &[u8]) -> Result<(), FileError> {
         use std::io::{Seek, SeekFrom, Write};
-        if !self.writable {
-            return Err(FileError::Protected);
-        }
+        let (folder, usage) = self.grows.as_ref().ok_or(FileError::Protected)?;
         let size = self.size()?;
-        reserve(&self.used, size, size.max(offset.saturating_add(bytes.len() as u64)))?;
-        self.file.seek(SeekFrom::Start(offset)).map_err(meaning)?;
-        self.file.write_all(bytes).map_err(meaning)
+        let end = offset.saturating_add(bytes.len() as u64);
+        if end > LARGEST_FILE {
+            return Err(FileError::NoSpace);
+        }
+        if end > size {
+            usage.grow_file(folder, &self.file, end - size)?;
+        }
+        let mut file = self.file.as_ref();
+        file.seek(SeekFrom::Start(offset)).map_err(meaning)?;
+        file.write_all(bytes).map_err(meaning)
     }
 }
 
-/// Counts the growth of a file, if there is room for it.
-fn reserve(used: &AtomicU64, size: u64, wanted: u64) -> Result<(), FileError> {
-    let growth = wanted.saturating_sub(size);
-    if wanted > LARGEST_FILE || used.load(Ordering::Relaxed).saturating_add(growth) > QUOTA {
-        return Err(FileError::NoSpace);
-    }
-    used.fetch_add(growth, Ordering::Relaxed);
-    Ok(())
-}
-
-/// Links are not followed: what they lead to is counted where it is.
-fn bytes_in(folder: &Dir, depth: usize) -> u64 {
-    let Ok(entries) = folder.entries() else { return 0 };
-    let of = |entry: cap_std::fs::DirEntry| {
-        let below = match entry.file_type() {
-            Ok(kind) if kind.is_dir() && depth > 0 => {
-                entry.open_dir().map_or(0, |below| bytes_in(&below, depth - 1))
+/// Whether there are folders within folders below a folder, more than so many of them.
+fn is_deeper(folder: &Dir, path: &str, most: usize) -> bool {
+    let mut folders = vec![(PathBuf::from(path), most)];
+    while let Some((path, most)) = folders.pop() {
+        let Ok(entries) = folder.read_dir(&path) else { continue };
+        for entry in entries.flatten() {
+            match (most.checked_sub(1), entry.file_type()) {
+                (None, _) => return true,
+                (Some(most), Ok(kind)) if kind.is_dir() => folders.push((path.join(entry.file_name()), most)),
+                _ => {}
             }
-            Ok(kind) if kind.is_file() => entry.metadata().map_or(0, |metadata| metadata.len()),
-            _ => 0,
-        };
-        ENTRY + below
-    };
-    entries.flatten().map(of).fold(0, u64::saturating_add)
+        }
+    }
+    false
 }
 
 /// What a client needs to know of an error. What may not be reached is not told apart from what is not there.

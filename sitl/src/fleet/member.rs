@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
+use autopilot::file_work::FileWorker;
 use vehicle::Mode;
 use vehicle::parameters::Speed;
 
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
-use crate::files::Disk;
 use crate::flight_log::FlightLog;
 use crate::record::{Digest, Participant};
 use crate::terminal::set_simulation_time;
@@ -18,10 +18,10 @@ use crate::terminal::set_simulation_time;
 /// A client must hear a heartbeat this often, however slow simulation time is.
 const HEARTBEAT: Duration = Duration::from_millis(1_100);
 
-/// Messages of logs that are downloaded, per second of the wall clock: 225 kB.
-const LOG_MESSAGES_PER_S: f64 = 2_500.0;
+/// Turns of long answers per second of the wall clock: as many messages of a list as clients can read.
+const TURNS_PER_S: f64 = 2_500.0;
 /// Of one look at the links.
-const MOST_LOG_MESSAGES: u64 = 50;
+const MOST_TURNS: u64 = 50;
 
 /// A vehicle, what is known of its flight, and where it is reached.
 #[derive(Debug)]
@@ -36,7 +36,9 @@ pub struct Member {
     parameters: Option<ParameterFile>,
     log: Option<FlightLog>,
     started: Instant,
-    log_messages: u64,
+    /// Turns so far, and those that are left now.
+    turns: u64,
+    pub(super) turns_left: u64,
 }
 
 impl Member {
@@ -59,13 +61,14 @@ impl Member {
             parameters,
             log: None,
             started: Instant::now(),
-            log_messages: 0,
+            turns: 0,
+            turns_left: 0,
         })
     }
 
     /// Gives clients files to reach, and the flight a log.
-    pub(super) fn keep(mut self, files: Disk, log: Option<FlightLog>) -> Self {
-        self.autopilot.share(Box::new(files));
+    pub(super) fn keep(mut self, files: Box<dyn FileWorker>, log: Option<FlightLog>) -> Self {
+        self.autopilot.share(files);
         self.log = log;
         self
     }
@@ -136,15 +139,19 @@ impl Member {
         (std::mem::replace(told, heard) != heard).then_some(heard)
     }
 
-    /// What is logged reaches the disk. How many messages of logs may be sent to those who download them.
-    pub(super) fn keep_log(&mut self, now: Instant) -> u64 {
+    /// What is logged reaches the disk.
+    pub(super) fn keep_log(&mut self, now: Instant) {
         if let Some(log) = &mut self.log {
             log.keep_up(&mut self.autopilot, now);
         }
+    }
+
+    /// Counts the turns of long answers that are due.
+    pub(super) fn count_turns(&mut self, now: Instant) {
         let elapsed_s = now.saturating_duration_since(self.started).as_secs_f64();
-        let allowed = (elapsed_s * LOG_MESSAGES_PER_S) as u64;
-        let news = allowed.saturating_sub(std::mem::replace(&mut self.log_messages, allowed));
-        news.min(MOST_LOG_MESSAGES)
+        let due = (elapsed_s * TURNS_PER_S) as u64;
+        let news = due.saturating_sub(std::mem::replace(&mut self.turns, due));
+        self.turns_left = (self.turns_left + news).min(MOST_TURNS);
     }
 
     /// Ends its files. Returns what is missing from them, a sentence each.

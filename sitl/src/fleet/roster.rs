@@ -1,7 +1,7 @@
 //! All vehicles with their links: messages go to those that they are for.
 
 use std::ops::Range;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use autopilot::codec::id;
 use autopilot::envelope::{Destination, Outgoing};
@@ -15,9 +15,12 @@ use super::reception::Reception;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
 use crate::failure::Failure;
-use crate::files::{Disk, FileLock, LogFolder};
+use crate::files::{Disk, FileLock, FileThread, LogFolder};
 use crate::flight_log::FlightLog;
 use crate::link::Links;
+
+/// Longest time of one look that long answers may take.
+const LONGEST_TRANSFER: Duration = Duration::from_millis(1);
 
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]
@@ -30,6 +33,10 @@ pub struct Fleet {
     pub(super) accept_signing_setup: bool,
     pub(super) books: Books,
     pub(super) reception: Reception,
+    /// Does the work of clients on files.
+    _files: FileThread,
+    /// The vehicle whose long answers go on next.
+    next_transfer: usize,
     /// The key's files are those of this process.
     _key_lock: Option<FileLock>,
 }
@@ -59,20 +66,27 @@ impl Fleet {
         let participants = settings.participants();
         let books = Books::open(settings, participants.clone(), unix_start_us)?;
         // The vehicles last: they introduce themselves, and then nothing is in the way any more.
-        let members = participants
-            .iter()
-            .zip(&settings.vehicles)
-            .map(|(participant, own)| {
-                let files = Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?;
+        let files = FileThread::new(Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?);
+        let members = (0..)
+            .zip(participants.iter().zip(&settings.vehicles))
+            .map(|(number, (participant, own))| {
                 let parameters = own.parameters.as_deref().map(ParameterFile::open).transpose()?;
                 let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
-                Ok(member.keep(files, log).keep_step(settings.lockstep))
+                Ok(member.keep(files.desk(number), log).keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
-        let reception = Reception::new(hubs.len());
-        let accept_signing_setup = settings.accept_signing_setup;
-        Ok(Self { members, hubs, signing, accept_signing_setup, books, reception, _key_lock: key_lock })
+        Ok(Self {
+            members,
+            signing,
+            accept_signing_setup: settings.accept_signing_setup,
+            books,
+            reception: Reception::new(hubs.len()),
+            hubs,
+            _files: files,
+            next_transfer: 0,
+            _key_lock: key_lock,
+        })
     }
 
     /// The vehicles.
@@ -149,11 +163,14 @@ impl Fleet {
     }
 
     /// Sends what a vehicle has to say. A changed parameter is in the file before anybody hears of it.
-    pub(super) fn send(&mut self, number: usize, now: Instant) {
-        let Some(member) = self.members.get_mut(number) else { return };
+    /// Returns whether there was anything.
+    pub(super) fn send(&mut self, number: usize, now: Instant) -> bool {
+        let Some(member) = self.members.get_mut(number) else { return false };
         member.save_parameters(now);
-        let Some(links) = self.hubs.get_mut(member.hub) else { return };
-        for outgoing in member.autopilot.take_outgoing() {
+        let Some(links) = self.hubs.get_mut(member.hub) else { return false };
+        let all = member.autopilot.take_outgoing();
+        let any = !all.is_empty();
+        for outgoing in all {
             if outgoing.message.id() == id::HEARTBEAT {
                 member.last_heartbeat = now;
             }
@@ -166,6 +183,7 @@ impl Fleet {
                 self.books.traffic(member.time_us(), &frame);
             }
         }
+        any
     }
 
     /// Heartbeats where simulation time is too slow for them.
@@ -183,7 +201,7 @@ impl Fleet {
         }
     }
 
-    /// What is logged reaches the disk, and what is downloaded the links.
+    /// What is logged reaches the disk.
     pub(crate) fn keep_logs(&mut self, now: Instant) {
         for (severity, text) in self.books.keep_up(&self.members, now) {
             for number in 0..self.members.len() {
@@ -192,15 +210,31 @@ impl Fleet {
                 self.send(number, now);
             }
         }
-        for number in 0..self.members.len() {
-            let Some(member) = self.members.get_mut(number) else { continue };
-            for _ in 0..member.keep_log(now) {
-                let (Some(member), hubs) = (self.members.get_mut(number), &self.hubs) else { break };
-                let hub = member.hub;
-                member.autopilot.send_logs(1, |peer| hubs.get(hub).and_then(|links| links.has_room(peer)));
-                self.send(number, now);
+        self.members.iter_mut().for_each(|member| member.keep_log(now));
+    }
+
+    /// Goes on with long answers: lists, downloads, files. All vehicles together get a small share of the time.
+    pub(crate) fn transfer(&mut self, now: Instant) {
+        let start = Instant::now();
+        self.members.iter_mut().for_each(|member| member.count_turns(now));
+        let mut idle = 0;
+        // Whoever has nothing to send is asked once, too: it hears who is gone, and takes in what the disk has answered.
+        while idle < self.members.len() {
+            let number = self.next_transfer % self.members.len();
+            self.next_transfer = number + 1;
+            let (Some(member), hubs) = (self.members.get_mut(number), &self.hubs) else { return };
+            let turns = member.turns_left.min(1);
+            let hub = member.hub;
+            let has_room = |peer| hubs.get(hub).and_then(|links| links.has_room(peer));
+            member.autopilot.transfer(turns as usize, has_room);
+            member.turns_left -= turns;
+            idle = if self.send(number, now) && turns > 0 { 0 } else { idle + 1 };
+            if start.elapsed() > LONGEST_TRANSFER {
+                return;
             }
         }
+        // Turns that nobody needs are not saved up.
+        self.members.iter_mut().for_each(|member| member.turns_left = 0);
     }
 
     /// Sends what waits in the links.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use autopilot::codec::Message;
+use autopilot::file_work::Immediate;
 use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
 use sitl::files::Disk;
 use vehicle::identity::Identity;
@@ -91,7 +92,7 @@ pub struct Client {
 impl Client {
     pub fn of(files: Disk) -> Self {
         let mut bench = Bench::new(Identity::Px4);
-        bench.autopilot.share(Box::new(files));
+        bench.autopilot.share(Box::new(Immediate(files)));
         Self { bench, sequence: 0 }
     }
 

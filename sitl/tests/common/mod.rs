@@ -28,6 +28,8 @@ pub fn settings(identity: Identity) -> VehicleSettings {
 pub struct Bench {
     pub autopilot: Autopilot,
     pub heard: Vec<Message>,
+    /// Turns of long answers at each look: more than any of them needs, if the test does not say otherwise.
+    pub turns: usize,
     sequence: u8,
 }
 
@@ -45,7 +47,7 @@ impl Bench {
         let links = [LinkProfile::Ground];
         let autopilot =
             Autopilot::new(settings, 1, Speed::Factor(1.0), &links, unix_us).expect("valid settings");
-        let mut bench = Self { autopilot, heard: Vec::new(), sequence: 0 };
+        let mut bench = Self { autopilot, heard: Vec::new(), turns: 10_000, sequence: 0 };
         bench.listen();
         bench
     }
@@ -73,6 +75,7 @@ impl Bench {
     }
 
     pub fn listen(&mut self) {
+        self.autopilot.transfer(self.turns, |_| Some(true));
         self.heard.extend(self.autopilot.take_outgoing().into_iter().map(|outgoing| outgoing.message));
     }
 

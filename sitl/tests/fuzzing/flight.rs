@@ -3,6 +3,7 @@
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, FrameDecoder};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
+use autopilot::file_work::Immediate;
 use sitl::configuration::{Arguments, Conventions, Settings};
 use sitl::files::{Disk, LogFolder};
 use sitl::record::Digest;
@@ -18,8 +19,8 @@ const PIECES: usize = 600;
 const WARM_UP: usize = 200;
 /// What a case may hold more at its end than after that, bytes: some plans and open files.
 const GROWTH: i64 = 256 * 1024;
-/// LOG_DATA in a tick.
-const LOG_MESSAGES: usize = 1;
+/// Turns of long answers in a tick.
+const TURNS: usize = 1;
 /// What the decoder may hold: less than the longest frame.
 const LONGEST_FRAME: usize = 280;
 /// Flies one case: bytes of all kinds, in streams and datagrams, from many peers. Panics if the vehicle does, if its flight
@@ -97,7 +98,7 @@ impl Target {
         let logs = LogFolder::open(&folder.path().join("logs")).expect("a folder");
         std::fs::write(logs.path().join("flight_00001_id1.ulg"), [7; 20_000]).expect("written");
         let disk = Disk::open(Some(&logs), Some(&(shared, true))).expect("folders");
-        autopilot.share(Box::new(disk));
+        autopilot.share(Box::new(Immediate(disk)));
         Self { autopilot, stream: FrameDecoder::default(), frames: 0, _folder: folder }
     }
 
@@ -117,7 +118,7 @@ impl Target {
     fn tick(&mut self) {
         self.autopilot.tick().expect("the flight goes on");
         // As much as a link of 460800 baud takes.
-        self.autopilot.send_logs(LOG_MESSAGES, |_| Some(true));
+        self.autopilot.transfer(TURNS, |_| Some(true));
         drop(self.autopilot.take_outgoing());
     }
 

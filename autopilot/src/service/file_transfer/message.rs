@@ -41,6 +41,8 @@ pub enum Nak {
     Fail,
     /// The file system's own number: no space.
     NoSpace,
+    /// The file system's own number: too much is being worked on.
+    Busy,
     /// The data are not what the request needs.
     InvalidDataSize,
     /// No file is open under this number.
@@ -63,9 +65,12 @@ impl Nak {
     fn data(self) -> Vec<u8> {
         /// ENOSPC.
         const NO_SPACE: u8 = 28;
+        /// EBUSY.
+        const BUSY: u8 = 16;
         match self {
             Self::Fail => vec![1],
             Self::NoSpace => vec![2, NO_SPACE],
+            Self::Busy => vec![2, BUSY],
             Self::InvalidDataSize => vec![3],
             Self::InvalidSession => vec![4],
             Self::NoSessionsAvailable => vec![5],
@@ -138,6 +143,9 @@ impl Request {
         }
     }
 }
+
+/// System and component of a client.
+pub type Client = (u8, u8);
 
 /// An answer.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,9 +1,24 @@
 //! MAVLink FTP: files that are made when they are read, and those of a store.
+//!
+//! ```text
+//!  FileServer ──► PlanUploads: packed plans, which change the flight, at once
+//!      │
+//!      ├─ job ──► Desk, away from the flight: open files, listings, what was answered lately ──► FileStore
+//!      │
+//!      └◄─ replies ── Pending: sent in the order of the requests, as fast as links take them
+//! ```
 
+mod answered;
+mod content;
+mod desk;
+mod job;
+mod listing;
 mod message;
 mod parameter_pack;
+mod pending;
 mod plan_pack;
 mod plan_text;
+mod plan_upload;
 mod root;
 mod server;
 mod sessions;

@@ -16,10 +16,8 @@ use super::message::Nak;
 use super::parameter_pack;
 use super::plan_pack;
 use super::plan_text;
-use super::sessions::Content;
 use crate::context::Context;
-use crate::file_store::{Access, Listed};
-use crate::service::component_metadata;
+use crate::file_store::{FileStore, Listed};
 
 /// Folders of files that are made, and their files.
 const MADE: [(&str, &[&str]); 4] = [
@@ -50,66 +48,44 @@ pub fn writable(path: &str) -> Result<String, Nak> {
     if is_made(&path) { Err(Nak::FileProtected) } else { Ok(path) }
 }
 
-/// Opens a file.
-pub fn open(context: &mut Context, path: &str, access: Access) -> Result<Content, Nak> {
-    if access != Access::Read {
-        if let Some(kind) = plan_pack::kind_of(&plain(path)?) {
-            return Ok(Content::Received(kind, Vec::new()));
-        }
-        let path = writable(path)?;
-        return Ok(Content::Stored(context.files.open(&path, access)?));
-    }
+/// The bytes of a file that is made when it is read, if the path is that of one.
+pub fn made_file(context: &Context, path: &str) -> Option<Vec<u8>> {
+    let name = plain(path).ok()?;
     // ArduPilot's clients put options behind a question mark.
-    let name = plain(path)?;
     let name = name
         .strip_prefix("@PARAM/param.pck")
         .filter(|rest| rest.starts_with('?'))
         .map_or(name.as_str(), |_| "@PARAM/param.pck");
     if let Some(kind) = plan_pack::kind_of(name) {
-        return Ok(Content::Made(plan_pack::pack(context, kind)));
+        return Some(plan_pack::pack(context, kind));
     }
-    let made = match name {
+    Some(match name {
         "@PARAM/param.pck" => parameter_pack::pack(context),
-        "metadata/general.json" => component_metadata::general(&context.parameters),
-        "metadata/parameters.json" => component_metadata::parameters(&context.parameters),
+        "metadata/general.json" => context.parameters.metadata().general.clone(),
+        "metadata/parameters.json" => context.parameters.metadata().parameters.clone(),
         "plans/mission.waypoints" => plan_text::render(&context.vehicle, PlanKind::Mission),
         "plans/fence.waypoints" => plan_text::render(&context.vehicle, PlanKind::Fence),
         "plans/rally.waypoints" => plan_text::render(&context.vehicle, PlanKind::Rally),
-        other => return Ok(Content::Stored(context.files.open(other, Access::Read)?)),
-    };
-    Ok(Content::Made(made))
+        _ => return None,
+    })
 }
 
-/// What is in a folder, from an entry on, as far as one message holds.
-pub fn list(context: &mut Context, path: &str, from: u32, room: usize) -> Result<Vec<u8>, Nak> {
-    let path = plain(path)?;
-    let entries: Vec<Vec<u8>> = match MADE.iter().find(|(folder, _)| *folder == path) {
-        Some((folder, names)) => {
-            let mut entries = Vec::new();
-            for name in *names {
-                let size = open(context, &format!("{folder}/{name}"), Access::Read)?.size()?;
-                entries.push(format!("F{name}\t{size}\0").into_bytes());
-            }
-            entries
-        }
-        None => {
-            let made = if path.is_empty() { &MADE[..] } else { &[] };
-            let made = made.iter().map(|(folder, _)| format!("D{folder}\0").into_bytes());
-            made.chain(context.files.list(&path)?.iter().map(|listed| entry(listed, room))).collect()
-        }
+/// The entries of a folder of such files, if the path is that of one.
+pub fn made_folder(context: &Context, path: &str) -> Option<Vec<Vec<u8>>> {
+    let path = plain(path).ok()?;
+    let (folder, names) = MADE.iter().find(|(folder, _)| *folder == path)?;
+    let entry = |name: &&str| {
+        let size = made_file(context, &format!("{folder}/{name}")).map_or(0, |bytes| bytes.len());
+        format!("F{name}\t{size}\0").into_bytes()
     };
-    let rest = entries.get(from as usize..).unwrap_or_default();
-    if rest.is_empty() {
-        return Err(Nak::EndOfFile);
-    }
-    let mut data = Vec::new();
-    for entry in rest {
-        if data.len() + entry.len() > room {
-            break;
-        }
-        data.extend_from_slice(entry);
-    }
-    Ok(data)
+    Some(names.iter().map(entry).collect())
+}
+
+/// The entries of a folder of the store; the root has those of the made folders, too.
+pub fn list(store: &dyn FileStore, path: &str, room: usize) -> Result<Vec<Vec<u8>>, Nak> {
+    let made = if path.is_empty() { &MADE[..] } else { &[] };
+    let made = made.iter().map(|(folder, _)| format!("D{folder}\0").into_bytes());
+    Ok(made.chain(store.list(path)?.iter().map(|listed| entry(listed, room))).collect())
 }
 
 /// One entry. What does not fit, or would be taken for more than one, is skipped but counted.

@@ -1,10 +1,8 @@
 //! MISSION_ACK, and lines for the pilot.
 
 use mavlink::dialects::common::{MISSION_ACK_DATA, MavMessage, MavMissionResult, MavMissionType};
-use vehicle::Severity;
 use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 
-use crate::codec::command_name;
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 
@@ -59,16 +57,11 @@ pub fn refused(context: &mut Context, origin: &Origin, mission_type: u8, code: F
     send(context, origin, mission_type, result_of(code), 0);
 }
 
-/// A fault with the number of its item and the name of its command.
-pub fn described(context: &Context, fault: &PlanFault) -> String {
-    fault.described(context.vehicle.identity(), command_name)
-}
-
 /// It is refused, and the pilot is told why.
 pub fn refused_aloud(context: &mut Context, origin: &Origin, mission_type: u8, fault: &PlanFault) {
     refused(context, origin, mission_type, fault.code);
     let name = PlanKind::of(mission_type).map_or("Plan", PlanKind::name);
-    context.say(Severity::Warning, &format!("{name} rejected: {}", described(context, fault)));
+    context.reject_plan(name, fault);
 }
 
 #[cfg(test)]

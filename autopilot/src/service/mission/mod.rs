@@ -16,6 +16,7 @@ mod answer;
 mod download;
 mod progress;
 mod protocol;
+mod reservation;
 mod upload;
 
 pub use protocol::Missions;

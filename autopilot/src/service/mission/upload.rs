@@ -8,6 +8,7 @@ use vehicle::parameters::Speed;
 use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind, check};
 
 use super::answer;
+use super::reservation::Reservation;
 use crate::codec::{Frame, MissionItemMessage};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
@@ -28,6 +29,7 @@ const REMEMBERED_US: u64 = 10_000_000;
 pub struct Uploads {
     receiving: Option<Upload>,
     finished: Option<Finished>,
+    reservation: Reservation,
 }
 
 /// An upload under way.
@@ -107,6 +109,7 @@ impl Uploads {
         if self.is_copy(context, origin, kind, frame.sequence()) {
             return;
         }
+        self.give_way(context, origin);
         if self.denied(context, origin, number) {
             return;
         }
@@ -116,6 +119,7 @@ impl Uploads {
             answer::refused_aloud(context, origin, number, &fault);
             return;
         }
+        self.reservation.begin(origin.peer, context.vehicle.time_us());
         self.receiving = Some(Upload {
             origin: *origin,
             kind,
@@ -143,6 +147,18 @@ impl Uploads {
                 && time_us - finished.time_us < REMEMBERED_US
         });
         under_way || over
+    }
+
+    /// Ends an upload that does not get on, or is begun again and again, when another client wants to upload.
+    fn give_way(&mut self, context: &mut Context, origin: &Origin) {
+        let (time_us, pace) = (context.vehicle.time_us(), pace(context));
+        let gives_way = self.receiving.as_ref().is_some_and(|upload| {
+            upload.origin != *origin && self.reservation.must_yield(upload.items.len(), time_us, pace)
+        });
+        if gives_way {
+            let reason = "upload took too long while another client was waiting";
+            self.fail(context, &PlanFault::of_plan(FaultCode::Cancelled, reason));
+        }
     }
 
     /// Refuses what would disturb somebody else's upload.
@@ -272,6 +288,7 @@ impl Uploads {
             .is_some_and(|upload| upload.origin == *origin && upload.kind.number() == number);
         if own && result != MavMissionResult::MAV_MISSION_ACCEPTED as u8 {
             self.receiving = None;
+            self.reservation.end(false, context.vehicle.time_us());
             let name = PlanKind::of(number).map_or("Plan", PlanKind::name);
             context.say(Severity::Info, &format!("{name} upload cancelled by the client"));
         }
@@ -288,11 +305,13 @@ impl Uploads {
                 return;
             }
         };
+        self.give_way(context, origin);
         if self.denied(context, origin, number) {
             return;
         }
         // Whoever clears has given its own upload up.
         self.receiving = None;
+        self.reservation.end(true, context.vehicle.time_us());
         for kind in kinds {
             if let Err(fault) = context.vehicle.set_plan(kind, Vec::new()) {
                 answer::refused_aloud(context, origin, number, &fault);
@@ -305,11 +324,7 @@ impl Uploads {
     /// Asks again for what has not come, and gives up in the end. The client lives by the wall clock: when simulation time runs
     /// faster, it has as many seconds of its own.
     pub fn update(&mut self, context: &mut Context) {
-        let pace = match context.parameters.speed() {
-            Speed::Paused => 1.0,
-            Speed::Factor(factor) => factor.max(1.0),
-            Speed::Max => FULL_SPEED,
-        };
+        let pace = pace(context);
         let Some(upload) = &mut self.receiving else { return };
         let silent_us = context.vehicle.time_us() - upload.asked_us;
         if silent_us < (RETRY_US * pace) as u64 {
@@ -329,17 +344,27 @@ impl Uploads {
         let Some(upload) = &self.receiving else { return };
         let name = upload.kind.name();
         self.finish(context, Err(fault.code));
-        context.say(Severity::Warning, &format!("{name} rejected: {}", answer::described(context, fault)));
+        context.reject_plan(name, fault);
     }
 
     fn finish(&mut self, context: &mut Context, answer: Result<u32, FaultCode>) {
         let time_us = context.vehicle.time_us();
         let Some(upload) = self.receiving.take() else { return };
+        self.reservation.end(answer.is_ok(), time_us);
         let Upload { origin, kind, begun_by, .. } = upload;
         // With the plan taken over, its items have left the upload.
         let last = if answer.is_ok() { upload.end.checked_sub(1) } else { Some(upload.next()) };
         self.finished = Some(Finished { origin, kind, begun_by, last, answer, time_us });
         repeat(context, &origin, kind.number(), answer);
+    }
+}
+
+/// How much faster simulation time may run than the clients' clocks.
+fn pace(context: &Context) -> f64 {
+    match context.parameters.speed() {
+        Speed::Paused => 1.0,
+        Speed::Factor(factor) => factor.max(1.0),
+        Speed::Max => FULL_SPEED,
     }
 }
 

@@ -1,7 +1,7 @@
 //! One vehicle and its clients.
 
 use autopilot::codec::{Frame, Version};
-use autopilot::envelope::LinkProfile;
+use autopilot::envelope::{Destination, LinkProfile};
 use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
@@ -21,6 +21,8 @@ use super::watch::{self, Stays, Watch};
 const SYSTEMS: [u8; 3] = [255, 254, 253];
 /// How often the topics of the flight log are looked at, µs.
 const LOG_PERIOD_US: u64 = 100_000;
+/// Turns of long answers in a tick.
+const TURNS: usize = 10;
 /// A.h; nobody changes batteries in an hour of flights.
 const BATTERY_AH: f64 = 200.0;
 
@@ -82,6 +84,12 @@ impl Site {
             if now_us.is_multiple_of(LOG_PERIOD_US) {
                 self.log(figures);
             }
+            let clients = &self.clients;
+            self.autopilot.transfer(TURNS, |peer| {
+                let is_there =
+                    clients.iter().flatten().any(|client| client.is_meant(Destination::Peer(peer)));
+                is_there.then_some(true)
+            });
             for outgoing in self.autopilot.take_outgoing() {
                 self.sequence = self.sequence.wrapping_add(1);
                 let sender = (self.autopilot.system_id(), COMPONENT);

@@ -1,12 +1,13 @@
-//! Which messages a link gets, and how often.
+//! Requests for messages that a link gets regularly.
 
 use mavlink::dialects::common::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
-use vehicle::{Refusal, TICK_US};
+use vehicle::Refusal;
 
-use super::{CommandEntry, Outcome, Progress, Service};
+use super::schedule::Schedule;
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
-use crate::envelope::{Destination, Origin};
+use crate::envelope::{Destination, Origin, PeerId};
+use crate::service::{CommandEntry, Outcome, Progress, Service};
 use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;
@@ -15,46 +16,8 @@ const SET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16;
 const COMMANDS: &[CommandEntry] =
     &[CommandEntry::question(GET_MESSAGE_INTERVAL), CommandEntry::action(SET_MESSAGE_INTERVAL)];
 
-/// Longest interval, µs: what MESSAGE_INTERVAL can tell.
-const LONGEST_US: u64 = i32::MAX as u64;
-
-/// A message that a link gets regularly.
-#[derive(Clone, Copy, Debug)]
-struct Regular {
-    stream: &'static Stream,
-    interval_us: u64,
-    due_us: u64,
-}
-
-/// The messages of one link, in the order in which they were asked for.
-#[derive(Clone, Debug, Default)]
-struct Schedule(Vec<Regular>);
-
-impl Schedule {
-    /// Interval of a message, µs, if the link gets it.
-    fn interval_us(&self, id: u32) -> Option<u64> {
-        self.0.iter().find(|regular| regular.stream.id == id).map(|regular| regular.interval_us)
-    }
-
-    fn set(&mut self, stream: &'static Stream, interval_us: Option<u64>, time_us: u64) {
-        self.0.retain(|regular| regular.stream.id != stream.id);
-        if let Some(interval_us) = interval_us {
-            let interval_us = interval_us.clamp(TICK_US, LONGEST_US);
-            self.0.push(Regular { stream, interval_us, due_us: time_us });
-        }
-    }
-
-    /// Messages that are due. Their times are multiples of the interval, so that a rate holds exactly on average.
-    fn due(&mut self, time_us: u64, mut send: impl FnMut(&'static Stream)) {
-        for regular in self.0.iter_mut().filter(|regular| regular.due_us <= time_us) {
-            send(regular.stream);
-            regular.due_us += regular.interval_us;
-            if regular.due_us <= time_us {
-                regular.due_us = time_us + regular.interval_us;
-            }
-        }
-    }
-}
+/// Messages per second of simulation that a link carries at most.
+const MOST_PER_S: f64 = 4_000.0;
 
 /// The schedules of all links.
 #[derive(Clone, Debug, Default)]
@@ -75,11 +38,7 @@ impl Service for MessageIntervals {
     fn start(&mut self, context: &mut Context) {
         let time_us = context.vehicle.time_us();
         for profile in &context.links {
-            let mut schedule = Schedule::default();
-            for stream in context.streams.iter() {
-                schedule.set(stream, stream.default_interval_us(*profile), time_us);
-            }
-            self.links.push(schedule);
+            self.links.push(Schedule::new(*profile, context.streams.iter(), time_us));
         }
     }
 
@@ -93,6 +52,14 @@ impl Service for MessageIntervals {
             _ => self.set(context, origin, command)?,
         }
         Ok(Progress::Done)
+    }
+
+    /// Rates return to what others want when whoever wanted them is gone.
+    fn transfer(&mut self, context: &mut Context, _turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
+        let time_us = context.vehicle.time_us();
+        for schedule in &mut self.links {
+            schedule.forget(|peer| has_room(peer).is_none(), time_us);
+        }
     }
 
     /// Sends what is due on every link.
@@ -123,7 +90,13 @@ impl MessageIntervals {
             0.0 => context.links.get(link).and_then(|profile| stream.default_interval_us(*profile)),
             interval_us => (interval_us > 0.0).then_some(interval_us as u64),
         };
-        schedule.set(stream, interval_us, context.vehicle.time_us());
+        let per_s = schedule.per_s_with(stream, interval_us);
+        if per_s > MOST_PER_S {
+            return Err(Refusal::denied(format!(
+                "Message interval denied: {per_s:.0} messages/s on this link; at most {MOST_PER_S}"
+            )));
+        }
+        schedule.set(origin.peer, stream, interval_us, context.vehicle.time_us());
         Ok(())
     }
 
@@ -152,10 +125,12 @@ impl MessageIntervals {
         let payload = frame.payload();
         let (rate_hz, number, start) = (payload.u16(0), payload.u8(4), payload.u8(5) != 0);
         let Some(schedule) = self.links.get_mut(origin.peer.link) else { return };
-        let interval_us = (start && rate_hz > 0).then(|| 1_000_000 / u64::from(rate_hz));
+        // All streams of the table at this interval are what a link carries.
+        let least_us = (context.streams.iter().count() as f64 * 1e6 / MOST_PER_S) as u64;
+        let interval_us = (start && rate_hz > 0).then(|| (1_000_000 / u64::from(rate_hz)).max(least_us));
         for group in Group::ALL.into_iter().filter(|group| number == 0 || number == *group as u8) {
             for stream in context.streams.iter().filter(|stream| stream.group == Some(group)) {
-                schedule.set(stream, interval_us, context.vehicle.time_us());
+                schedule.set(origin.peer, stream, interval_us, context.vehicle.time_us());
             }
         }
     }
