@@ -22,11 +22,11 @@ use crate::terminal::set_simulation_time;
 /// The vehicles of a run and the hubs that they are behind.
 #[derive(Debug)]
 pub struct Fleet {
-    members: Vec<Member>,
+    pub(super) members: Vec<Member>,
     hubs: Vec<Links>,
     /// One for each hub.
     signing: Vec<SigningKeeper>,
-    books: Books,
+    pub(super) books: Books,
     /// The key's files are those of this process.
     _key_lock: Option<FileLock>,
 }
@@ -96,9 +96,8 @@ impl Fleet {
                 let target = target_of(&received.frame).system;
                 let mut logged = false;
                 for number in 0..self.members.len() {
-                    let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
-                        continue;
-                    };
+                    let heard = |member: &&mut Member| member.hub == hub && member.loss().is_none();
+                    let Some(member) = self.members.get_mut(number).filter(heard) else { continue };
                     let time_us = member.time_us();
                     set_simulation_time(time_us);
                     if !std::mem::replace(&mut logged, true) {
@@ -204,13 +203,14 @@ impl Fleet {
         }
     }
 
-    /// A tick of one vehicle.
-    pub(super) fn tick(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
-        if let Some(member) = self.members.get_mut(number) {
-            member.tick(now)?;
+    /// A tick of one vehicle, unless its simulation has ended.
+    pub(super) fn tick(&mut self, number: usize, now: Instant) {
+        let flying = |member: &&mut Member| member.loss().is_none();
+        let Some(member) = self.members.get_mut(number).filter(flying) else { return };
+        match member.tick(now) {
+            Ok(()) => self.send(number, now),
+            Err(error) => self.lose(number, error, now),
         }
-        self.send(number, now);
-        Ok(())
     }
 
     pub(super) fn member_mut(&mut self, number: usize) -> Option<&mut Member> {
@@ -220,6 +220,11 @@ impl Fleet {
     /// Sends what a vehicle has to say. A changed parameter is in the file before anybody hears of it.
     pub(super) fn send(&mut self, number: usize, now: Instant) {
         let Some(member) = self.members.get_mut(number) else { return };
+        if member.loss().is_some() {
+            // Nobody hears of it any more.
+            drop(member.autopilot.take_outgoing());
+            return;
+        }
         member.save_parameters(now);
         let Some(links) = self.hubs.get_mut(member.hub) else { return };
         for outgoing in member.autopilot.take_outgoing() {
