@@ -9,7 +9,8 @@ use std::sync::atomic::AtomicBool;
 
 use autopilot::codec::{Frame, id};
 use clap::Parser;
-use mavlink::dialects::common::MavState;
+use mavlink::MessageData;
+use mavlink::dialects::common::{MavState, STATUSTEXT_DATA};
 use quadrotor::SimulationError;
 use seal::sealed;
 use sitl::configuration::{Arguments, Settings};
@@ -112,7 +113,7 @@ fn clients_are_told_once_and_hear_no_more() {
     assert!(before.iter().all(|state| *state == MavState::MAV_STATE_STANDBY as u8), "{states:?}");
     assert!(states.len() as u64 <= 4 + lost_us / 1_000_000, "{states:?}");
     assert_eq!(frames.last().map(Frame::message_id), Some(id::HEARTBEAT));
-    let texts = frames.iter().filter(|frame| frame.message_id() == id::STATUSTEXT);
+    let texts = frames.iter().filter(|frame| frame.message_id() == STATUSTEXT_DATA::ID);
     let texts: Vec<String> = texts.map(|frame| frame.payload().name(1)).collect();
     assert!(texts.iter().any(|text| text.starts_with("Simulation")), "{texts:?}");
     assert!(sent_by(1, folder.path()).len() > frames.len());
