@@ -3,6 +3,7 @@
 #[path = "common/seal.rs"]
 mod seal;
 
+use std::net::UdpSocket;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -100,7 +101,10 @@ fn one_of_a_fleet_is_lost_and_the_others_fly_the_same_flights() {
 #[test]
 fn clients_are_told_once_and_hear_no_more() {
     let folder = tempfile::tempdir().expect("a folder");
-    let summary = flown(settings("--vehicles 2 --ports shared", folder.path()));
+    let client = UdpSocket::bind("127.0.0.1:0").expect("a free port");
+    let address = client.local_addr().expect("it is bound");
+    let line = format!("--vehicles 2 --ports shared --link udpout:{address}");
+    let summary = flown(settings(&line, folder.path()));
     let lost_us = summary.flights[1].time_us;
     let frames = sent_by(2, folder.path());
     let states: Vec<u8> = frames
