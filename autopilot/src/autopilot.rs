@@ -83,6 +83,13 @@ impl Autopilot {
         self.context.outbox.send(Destination::Everyone, heartbeat::message(&self.context.vehicle));
     }
 
+    /// Tells everyone that the simulation has failed and nothing will follow: a text, and a last heartbeat with
+    /// MAV_STATE_FLIGHT_TERMINATION.
+    pub fn give_up(&mut self) {
+        self.context.say(Severity::Critical, "Simulation failed: vehicle lost");
+        self.context.outbox.send(Destination::Everyone, heartbeat::last_message(&self.context.vehicle));
+    }
+
     /// A message of the table of streams, to one client, beside the regular ones.
     pub fn report(&mut self, id: u32, to: PeerId) {
         let stream = self.context.streams.get(id);

@@ -59,10 +59,13 @@ impl Clock {
             && (0.0..=LONGEST_US).contains(&self.microseconds(self.communication_point_s))
     }
 
-    /// Where a step from `point_s` over `step_s` ends.
-    pub fn step(&self, point_s: f64, step_s: f64) -> Result<StepEnd, CallError> {
+    /// Where a step from `point_s` over `step_s`, at most `longest_s`, ends.
+    pub fn step(&self, point_s: f64, step_s: f64, longest_s: f64) -> Result<StepEnd, CallError> {
         if !(step_s.is_finite() && step_s > 0.0) {
             return Err(CallError::StepSize { step_s });
+        }
+        if step_s > longest_s * (1.0 + TOLERANCE) {
+            return Err(CallError::StepTooLong { step_s, longest_s });
         }
         let expected_s = self.communication_point_s;
         let scale_s =
@@ -100,12 +103,14 @@ mod tests {
     use super::Clock;
     use crate::error::CallError;
 
+    const LONGEST_S: f64 = 1e3;
+
     fn clock(start_s: f64, stop_s: Option<f64>) -> Clock {
         Clock::new(start_s, stop_s).expect("usable times")
     }
 
     fn stepped(clock: &mut Clock, point_s: f64, step_s: f64) -> u64 {
-        let end = clock.step(point_s, step_s).expect("a legal step");
+        let end = clock.step(point_s, step_s, LONGEST_S).expect("a legal step");
         clock.advance_to(&end);
         end.time_us
     }
@@ -157,24 +162,39 @@ mod tests {
     #[test]
     fn stop_time_has_the_same_tolerance() {
         let clock = clock(0.0, Some(1.0));
-        assert!(clock.step(0.0, 1.0 + 1e-12).is_ok());
-        assert!(matches!(clock.step(0.0, 1.001), Err(CallError::PastStop { .. })));
-        assert!(Clock::new(0.0, Some(f64::INFINITY)).expect("no stop").step(0.0, 1e6).is_ok());
+        assert!(clock.step(0.0, 1.0 + 1e-12, LONGEST_S).is_ok());
+        assert!(matches!(clock.step(0.0, 1.001, LONGEST_S), Err(CallError::PastStop { .. })));
+        assert!(Clock::new(0.0, Some(f64::INFINITY)).expect("no stop").step(0.0, 1e3, LONGEST_S).is_ok());
+    }
+
+    /// A call takes as long as the step that it asks for, and cannot be interrupted.
+    #[test]
+    fn long_steps_are_refused_with_the_longest_one() {
+        let mut clock = clock(0.0, None);
+        for step_s in [LONGEST_S * 1.001, 1e9, f64::MAX] {
+            let refusal = clock.step(0.0, step_s, LONGEST_S);
+            assert_eq!(refusal, Err(CallError::StepTooLong { step_s, longest_s: LONGEST_S }));
+        }
+        // An importer's t + h may have rounding errors.
+        assert_eq!(stepped(&mut clock, 0.0, LONGEST_S * (1.0 + 1e-12)), 1_000_000_000);
     }
 
     #[test]
     fn nonsense_is_refused() {
         let clock = clock(0.0, None);
         for step_s in [0.0, -0.1, f64::NAN, f64::INFINITY] {
-            assert!(matches!(clock.step(0.0, step_s), Err(CallError::StepSize { .. })), "{step_s}");
+            assert!(
+                matches!(clock.step(0.0, step_s, LONGEST_S), Err(CallError::StepSize { .. })),
+                "{step_s}"
+            );
         }
         for point_s in [0.1, -0.1, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert!(
-                matches!(clock.step(point_s, 0.1), Err(CallError::CommunicationPoint { .. })),
+                matches!(clock.step(point_s, 0.1, LONGEST_S), Err(CallError::CommunicationPoint { .. })),
                 "{point_s}"
             );
         }
-        assert!(matches!(clock.step(0.0, 1e300), Err(CallError::Time { .. })));
+        assert!(matches!(clock.step(0.0, 1e300, f64::MAX), Err(CallError::Time { .. })));
         assert!(Clock::new(f64::NAN, None).is_err());
         assert!(Clock::new(f64::INFINITY, None).is_err());
         assert!(Clock::new(1.0, Some(0.5)).is_err());

@@ -52,12 +52,19 @@ pub(crate) enum CallError {
     StopBeforeStart { start_s: f64, stop_s: f64 },
     #[error("communicationStepSize = {step_s:?}; must be a positive number")]
     StepSize { step_s: f64 },
+    #[error(
+        "communicationStepSize = {step_s:?}; must be at most {longest_s:?} s, because a step cannot be interrupted: \
+         divide it into shorter steps"
+    )]
+    StepTooLong { step_s: f64, longest_s: f64 },
     #[error("currentCommunicationPoint = {given_s:?}; expected {expected_s:?}, where the last step ended")]
     CommunicationPoint { given_s: f64, expected_s: f64 },
     #[error("the step ends at {end_s:?}, after stopTime = {stop_s:?}")]
     PastStop { end_s: f64, stop_s: f64 },
     #[error("unknown log category {name:?}; the model description lists them all")]
     UnknownCategory { name: String },
+    #[error("{name} is {value}, not a finite number")]
+    NotFinite { name: &'static str, value: f64 },
     /// Information that this library never provides, in the terms of the interface.
     #[error("{0}")]
     NoAnswer(String),
@@ -82,8 +89,8 @@ impl CallError {
     }
 
     /// A run of `M` that cannot continue.
-    pub fn of_step<M: Model>(error: M::Error) -> Self {
-        Self::Step { run: M::IDENTITY.words.run, message: error.to_string() }
+    pub fn of_step<M: Model>(message: String) -> Self {
+        Self::Step { run: M::IDENTITY.words.run, message }
     }
 
     /// Its severity.

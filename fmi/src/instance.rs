@@ -2,6 +2,7 @@
 
 use crate::clock::Clock;
 use crate::error::CallError;
+use crate::finite_values::{check_calculated, check_outputs};
 use crate::input_derivative::{Extrapolated, InputDerivative};
 use crate::lifecycle::Phase;
 use crate::logger::Logger;
@@ -76,6 +77,7 @@ impl<M: Model> Instance<M> {
     /// Builds the run, which checks that the values are consistent. If it fails, initialization mode continues and other
     /// values can be set.
     pub fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
+        check_outputs::<M>(self.outputs()?)?;
         let message = self.model()?.initialized();
         self.phase = Phase::StepComplete;
         self.logger.event(&message);
@@ -102,7 +104,9 @@ impl<M: Model> Instance<M> {
 
     /// Advances from one communication point to the next. Input derivatives apply to this step only.
     pub fn do_step(&mut self, point_s: f64, step_s: f64) -> Result<(), CallError> {
-        let end = self.clock.step(point_s, step_s).inspect_err(|_| self.last_step_failed = true)?;
+        let longest_s = M::IDENTITY.longest_step_s;
+        let end =
+            self.clock.step(point_s, step_s, longest_s).inspect_err(|_| self.last_step_failed = true)?;
         self.outputs = None;
         let derivatives = std::mem::take(&mut self.derivatives);
         let model = built(&mut self.model, &self.settings)?;
@@ -113,6 +117,9 @@ impl<M: Model> Instance<M> {
             let signal = Extrapolated::<M> { inputs, derivatives: &derivatives, begin_us: model.time_us() };
             model.advance_to(end.time_us, &|time_us| signal.at(time_us))
         };
+        let outcome = outcome.map_err(|error| error.to_string()).and_then(|()| {
+            check_outputs::<M>(self.outputs.insert(model.outputs())).map_err(|error| error.to_string())
+        });
         match outcome {
             Ok(()) => {
                 self.clock.advance_to(&end);
@@ -170,7 +177,11 @@ impl<M: Model> Instance<M> {
     pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
         if self.phase == Phase::StepComplete {
             if settings.parameters != self.settings.parameters {
-                self.model()?.retune(&settings.parameters).map_err(CallError::of_model)?;
+                retune(
+                    built(&mut self.model, &self.settings)?,
+                    &self.settings.parameters,
+                    &settings.parameters,
+                )?;
                 self.outputs = None;
                 self.logger.event(M::IDENTITY.words.retuned);
             }
@@ -201,7 +212,21 @@ fn built<'a, M: Model>(
 ) -> Result<&'a mut M, CallError> {
     let there = match model.take() {
         Some(there) => there,
-        None => Box::new(M::new(&settings.parameters, &settings.inputs).map_err(CallError::of_model)?),
+        None => {
+            let new = M::new(&settings.parameters, &settings.inputs).map_err(CallError::of_model)?;
+            check_calculated(&new)?;
+            Box::new(new)
+        }
     };
     Ok(model.insert(there))
+}
+
+/// Applies tunable parameters: all of them or, on an error, none.
+fn retune<M: Model>(model: &mut M, old: &M::Parameters, new: &M::Parameters) -> Result<(), CallError> {
+    let before = model.state();
+    model.retune(new).map_err(CallError::of_model)?;
+    check_calculated(model).or_else(|error| {
+        *model = M::from_state(old, &before).map_err(CallError::of_model)?;
+        Err(error)
+    })
 }

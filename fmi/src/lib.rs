@@ -14,6 +14,7 @@ mod clock;
 pub mod description;
 mod error;
 mod finite;
+mod finite_values;
 pub mod fmi2;
 mod guard;
 mod identity;

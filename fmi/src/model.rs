@@ -63,11 +63,11 @@ pub trait Model: Sized + 'static {
     /// microsecond add up. `inputs` returns the inputs at a time in µs; call it for any time within the step.
     ///
     /// # Errors
-    /// When the run fails. The instance is then in the state "error", in which outputs can still be read: they are
+    /// When the run fails: it cannot be continued, or a number is no longer finite. The instance is then in the state "error", in which outputs can still be read: they are
     /// those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
-    /// The outputs at the current time.
+    /// The outputs at the current time. An output that is not finite ends the run.
     fn outputs(&self) -> Self::Outputs;
 
     /// Applies new values of tunable parameters during the run; the others are unchanged.
@@ -114,6 +114,9 @@ pub struct Identity {
     pub date: &'static str,
     /// The default experiment of the description.
     pub default_experiment: Experiment,
+    /// The longest communication step that is accepted, s. A call of `DoStep` cannot be interrupted, so this bounds the
+    /// time that it takes.
+    pub longest_step_s: f64,
     /// How saved states begin.
     pub saved_state: SavedStateFormat,
     /// Terms for log messages about the model.

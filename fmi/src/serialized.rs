@@ -86,7 +86,7 @@ mod tests {
         let mut lag = Lag::new(&settings.parameters, &settings.inputs).expect("the defaults are valid");
         lag.advance_to(1_234_567, &|_| settings.inputs.clone()).expect("it goes on");
         let mut clock = Clock::default();
-        let end = clock.step(0.0, 1.234_567).expect("a legal step");
+        let end = clock.step(0.0, 1.234_567, 10.0).expect("a legal step");
         clock.advance_to(&end);
         Snapshot {
             phase: Phase::StepComplete,

@@ -1,6 +1,7 @@
 //! Getting and setting the values of variables.
 
 use crate::error::CallError;
+use crate::finite_values::finite;
 use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
 use crate::instance::Instance;
 use crate::lifecycle::Phase;
@@ -89,8 +90,8 @@ impl<M: Model> Instance<M> {
         Ok(match &variable.role {
             Role::Input(field) => field.get(&self.settings.inputs),
             Role::Parameter { field, .. } => field.get(&self.settings.parameters),
-            Role::CalculatedParameter { get, .. } => Value::Real(get(self.model()?)),
-            Role::Output { signal, .. } => signal.get(self.outputs()?),
+            Role::CalculatedParameter { get, .. } => finite(variable, Value::Real(get(self.model()?)))?,
+            Role::Output { signal, .. } => finite(variable, signal.get(self.outputs()?))?,
         })
     }
 }

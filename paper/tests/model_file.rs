@@ -3,16 +3,7 @@
 use paper::ModelFile;
 
 /// The paper's altitude model with its N, a and α; SciPy's `solve_discrete_are` gives the regulator's gain.
-const ALTITUDE: &str = "
-a = [[1.0, 0.05], [0.0, 1.0]]
-b = [[0.0], [0.05]]
-c = [[1.0, 0.0]]
-r = [[1.0]]
-terms = [5]
-scale = [0.8187]
-prediction_horizon = 100
-alpha = 1.2
-";
+const ALTITUDE: &str = include_str!("altitude.toml");
 
 #[test]
 fn scipy_val_altitude_gain() {

@@ -7,16 +7,7 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 /// The paper's altitude model (9) with its N, a and α.
-const ALTITUDE: &str = "
-a = [[1.0, 0.05], [0.0, 1.0]]
-b = [[0.0], [0.05]]
-c = [[1.0, 0.0]]
-r = [[1.0]]
-terms = [5]
-scale = [0.8187]
-prediction_horizon = 100
-alpha = 1.2
-";
+const ALTITUDE: &str = include_str!("altitude.toml");
 
 /// A file of its own for each test.
 fn model(name: &str, text: &str) -> PathBuf {

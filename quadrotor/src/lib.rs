@@ -154,6 +154,7 @@ pub use outputs::Outputs;
 pub use plant::airframe::{Airframe, GRAVITY_M_S2};
 pub use plant::disturbance::Disturbance;
 pub use plant::dynamics::Plant;
+pub use plant::overload::Overload;
 pub use plant::plant_inputs::{Actuation, PlantInputs};
 pub use plant::plant_state::PlantState;
 pub use plant::rigid_body::{External, RigidBody};

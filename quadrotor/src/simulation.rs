@@ -143,8 +143,9 @@ impl Simulation {
                 break;
             }
             let plant = self.plant_at(next_us);
-            if !plant.is_finite() {
-                return Err(SimulationError::Diverged { time_us: next_us });
+            if plant.has_diverged() {
+                let overload = self.world.overload(&self.configuration().airframe);
+                return Err(SimulationError::Diverged { time_us: next_us, overload });
             }
             self.world.plant = plant;
             self.world.event_us = next_us;

@@ -1,8 +1,10 @@
 //! What can happen to a flight.
 
+use core::fmt;
+
 use thiserror::Error;
 
-use crate::ControlError;
+use crate::{ControlError, Overload};
 
 /// Why a flight could not go on.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -27,12 +29,23 @@ pub enum SimulationError {
         /// Time asked for.
         requested_us: u64,
     },
-    /// The state has left the range of finite numbers.
-    #[error("the state is no longer finite at {time_us} µs")]
+    /// The state has left the range of numbers: see [`PlantState::has_diverged`](crate::PlantState::has_diverged).
+    #[error("the motion has diverged at {time_us} µs{}", Because(.overload.as_ref()))]
     Diverged {
         /// When.
         time_us: u64,
+        /// What the rotors could not counter then, if anything: the probable cause.
+        overload: Option<Overload>,
     },
+}
+
+/// The end of a sentence about an overload.
+struct Because<'a>(Option<&'a Overload>);
+
+impl fmt::Display for Because<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.map_or(Ok(()), |overload| write!(formatter, "; {overload}"))
+    }
 }
 
 impl From<ControlError> for SimulationError {

@@ -7,7 +7,8 @@ use crate::control::instants::LATEST_US;
 use crate::schedule::next_point_us;
 use crate::sensors::NoiseState;
 use crate::{
-    Configuration, ConfigurationError, Disturbance, Inputs, PlantInputs, PlantState, RigidBody, RotorFault,
+    Airframe, Configuration, ConfigurationError, Disturbance, Inputs, Overload, PlantInputs, PlantState,
+    RigidBody, RotorFault,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -59,6 +60,11 @@ impl World {
         self.estimate = inputs.estimate;
     }
 
+    /// What acts on the plant and is stronger than its rotors.
+    pub(crate) fn overload(&self, airframe: &Airframe) -> Option<Overload> {
+        self.disturbance.overload(airframe)
+    }
+
     /// What acts on the plant under these rotor commands, rad/s. Disarmed, broken rotors come to rest as all do.
     pub(crate) fn plant_inputs(&self, command_rad_s: [f64; 4], armed: bool) -> PlantInputs {
         PlantInputs {
@@ -84,8 +90,8 @@ impl SimulationState {
         if sample_us < event_us || sample_us > point_us {
             return wrong("its controllers do not sample when they would");
         }
-        if !self.world.plant.is_finite() {
-            return wrong("its plant is not finite");
+        if self.world.plant.has_diverged() {
+            return wrong("its plant is not finite, or beyond what a vehicle can reach");
         }
         self.control.check(configuration)
     }

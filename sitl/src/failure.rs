@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use quadrotor::{ConfigurationError, SimulationError};
 use vehicle::parameters::{ParameterFileError, SetError};
 
+use crate::fleet::Loss;
 use crate::link::LinkError;
 
 /// One line for the user, and an exit code.
@@ -76,9 +77,23 @@ pub enum Failure {
         /// Digest of the replayed flight.
         replayed: u64,
     },
-    /// The state of the simulation is no longer finite.
+    /// The simulation of the only vehicle cannot go on.
     #[error("the simulation failed: {0}")]
     Simulation(#[from] SimulationError),
+    /// The simulation of vehicles of a fleet could not go on; the others flew to their end.
+    #[error("the simulation failed: {}", .0.iter().map(Loss::to_string).collect::<Vec<_>>().join("; "))]
+    Lost(Vec<Loss>),
+    /// The replayed flight of a vehicle goes on where the recorded one failed.
+    #[error(
+        "the replayed flight of system {system_id} goes on at {:.3} s, where the recorded simulation failed",
+        *time_us as f64 / 1e6
+    )]
+    FliesOn {
+        /// The vehicle.
+        system_id: u8,
+        /// Simulation time of the recorded failure, µs.
+        time_us: u64,
+    },
     /// The handlers of signals.
     #[error("cannot handle signals: {0}")]
     Signals(io::Error),
@@ -98,11 +113,11 @@ impl Failure {
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Simulation(_) | Self::Signals(_) => 1,
+            Self::Simulation(_) | Self::Lost(_) | Self::Signals(_) => 1,
             Self::Value { .. } | Self::Usage(_) | Self::Configuration(_) | Self::Set(_) => 2,
             Self::Link(_) => 3,
             Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } | Self::Incomplete(_) => 4,
-            Self::Differs { .. } => 5,
+            Self::Differs { .. } | Self::FliesOn { .. } => 5,
         }
     }
 }

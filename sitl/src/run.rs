@@ -8,6 +8,7 @@ use vehicle::{Notice, Severity};
 
 use crate::configuration::{Arguments, Settings, check_replay, file, parameter_list};
 use crate::failure::Failure;
+use crate::fleet::Loss;
 use crate::hil::{HilSettings, Simulator};
 use crate::ready;
 use crate::record::{RecordEnd, Replayed, replay};
@@ -40,7 +41,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             let session = Session::new(settings.clone())?;
             say(banner(&settings, session.fleet()).trim_end());
             log(&settings.notes);
-            session.run(&stop)?
+            session.run(&stop)
         }
     };
     let wall_s = summary.wall.as_secs_f64();
@@ -53,7 +54,16 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             flight.digest
         ));
     }
-    if summary.incomplete.is_empty() { Ok(()) } else { Err(Failure::Incomplete(summary.incomplete)) }
+    outcome(summary.losses, summary.incomplete)
+}
+
+/// What the program ends with: a failed simulation goes before incomplete files.
+fn outcome(losses: Vec<Loss>, incomplete: Vec<String>) -> Result<(), Failure> {
+    if losses.is_empty() {
+        return if incomplete.is_empty() { Ok(()) } else { Err(Failure::Incomplete(incomplete)) };
+    }
+    incomplete.iter().for_each(|lacking| tracing::warn!("{lacking}"));
+    Err(Failure::Lost(losses))
 }
 
 /// A line about a replayed flight.
@@ -61,6 +71,7 @@ fn told(replayed: &Replayed) -> String {
     let Replayed { flight, end, verified_us } = replayed;
     let end = match end {
         RecordEnd::Complete => "the same flight".to_owned(),
+        RecordEnd::Failure => "the same flight; its simulation fails there, as recorded".to_owned(),
         RecordEnd::Limit => {
             "the same flight as far as it was recorded; the record ends at its size limit".to_owned()
         }

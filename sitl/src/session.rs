@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::configuration::Settings;
 use crate::failure::Failure;
-use crate::fleet::{Clock, Fleet};
+use crate::fleet::{Clock, Fleet, Member};
 use crate::ready;
 use crate::summary::{Flight, Summary};
 use crate::terminal::{StatusLine, of_fleet};
@@ -42,20 +42,13 @@ impl Session {
         &self.fleet
     }
 
-    /// Flies until it is told to stop, or the asked time is over, and ends the files however the flight went.
-    ///
-    /// # Errors
-    /// [`Failure`] of the simulation.
-    pub fn run(self, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
+    /// Flies until it is told to stop, the asked time is over, or no vehicle is left, and ends the files however the flights
+    /// went.
+    pub fn run(self, stop: &Arc<AtomicBool>) -> Summary {
         let Self { settings, mut fleet } = self;
         let start = Instant::now();
-        let flown = fly(&settings, &mut fleet, start, stop);
+        fly(&settings, &mut fleet, start, stop);
         let (members, incomplete) = fleet.finish();
-        if let Err(failure) = flown {
-            // The failure is what the program ends with.
-            incomplete.iter().for_each(|lacking| tracing::warn!("{lacking}"));
-            return Err(failure);
-        }
         let flights = members
             .iter()
             .map(|member| Flight {
@@ -64,17 +57,13 @@ impl Session {
                 digest: member.digest().value(),
             })
             .collect();
-        Ok(Summary { wall: start.elapsed(), flights, incomplete })
+        let losses = members.iter().filter_map(Member::loss).collect();
+        Summary { wall: start.elapsed(), flights, losses, incomplete }
     }
 }
 
-/// Flies until it is told to stop, or the asked time is over.
-fn fly(
-    settings: &Settings,
-    fleet: &mut Fleet,
-    start: Instant,
-    stop: &Arc<AtomicBool>,
-) -> Result<(), Failure> {
+/// Flies until it is told to stop, the asked time is over, or no vehicle is left.
+fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<AtomicBool>) {
     let mut clocks: Vec<Clock> = settings
         .clocks()
         .into_iter()
@@ -82,12 +71,14 @@ fn fly(
         .collect();
     let mut status = StatusLine::new(start);
     let several = clocks.len() as u32;
-    while !stop.load(Ordering::Relaxed) && !clocks.iter().all(Clock::is_over) {
+    while !stop.load(Ordering::Relaxed) && !clocks.iter().all(|clock| clock.is_over(fleet)) {
         fleet.receive(Instant::now());
         let now = Instant::now();
         let mut behind = false;
-        for clock in clocks.iter_mut().filter(|clock| !clock.is_over()) {
-            behind |= clock.advance(fleet, now, several)?;
+        for clock in &mut clocks {
+            if !clock.is_over(fleet) {
+                behind |= clock.advance(fleet, now, several);
+            }
         }
         let expected = fleet.keep_in_step(now);
         fleet.keep_links_alive(now);
@@ -100,5 +91,4 @@ fn fly(
         }
     }
     status.clear();
-    Ok(())
 }

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crate::fleet::Loss;
+
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
@@ -9,6 +11,8 @@ pub struct Summary {
     pub wall: Duration,
     /// The flight of each vehicle.
     pub flights: Vec<Flight>,
+    /// Vehicles whose simulation failed before the end.
+    pub losses: Vec<Loss>,
     /// What is missing from files, a sentence each.
     pub incomplete: Vec<String>,
 }

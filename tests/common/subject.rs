@@ -41,6 +41,8 @@ pub struct Sample {
     pub contradiction: (&'static str, f64, f64),
     /// Values with which a run breaks within 5 s.
     pub breaking: Reals,
+    /// The longest communication step, s.
+    pub longest_step: f64,
     /// What may be set together in a run.
     pub good: Reals,
     /// What may not be set in a run.
@@ -99,13 +101,8 @@ const CLOSED_LOOP: Sample = Sample {
     initial: ("initial.position.x", 2.0, "position.x"),
     contradiction: ("limits.acceleration.horizontal", 15.0, 2.0),
     // A torque that no body of this size survives.
-    breaking: &[
-        ("airframe.inertia.x", 1e-6),
-        ("airframe.inertia.y", 2e-6),
-        ("airframe.inertia.z", 5e-6),
-        ("disturbance.torque.x", 1e3),
-        ("disturbance.torque.y", 1e3),
-    ],
+    breaking: &[("disturbance.torque.z", 1e3)],
+    longest_step: 3600.0,
     good: &[
         ("reference.position.x", 1.0),
         ("limits.jerk.vertical", 5.0),
@@ -167,6 +164,7 @@ const LAG: Sample = Sample {
     initial: ("limit", 20.0, "limit"),
     contradiction: ("gain", 60.0, 3.0),
     breaking: &[("u", 10.0), ("gain", 50.0)],
+    longest_step: 1800.0,
     good: &[("u", 3.0), ("gain", 1.5), ("time_constant", 0.7)],
     bad: &[("u", f64::NAN), ("gain", 1e3), ("limit", 20.0), ("y", 1.0)],
     eventful: Eventful {

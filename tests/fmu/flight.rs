@@ -4,7 +4,7 @@ use quadrotor::{Configuration, ControllerKind, ControllerStatus, Inputs, Outputs
 
 use crate::closed_loop;
 use crate::common::instance::Instance;
-use crate::common::library::OK;
+use crate::common::library::{ERROR, OK};
 
 /// The engine's outputs in the order of the description, by name; reals before all others.
 fn bits(outputs: &Outputs) -> Vec<u64> {
@@ -202,4 +202,43 @@ fn set(instance: &mut Instance, inputs: &Inputs) {
     let yaw = [("reference.yaw", reference.yaw_rad), ("reference.yaw_rate", reference.yaw_rate_rad_s)];
     assert_eq!(instance.set_real(&yaw), OK);
     assert_eq!(instance.set_boolean(&[("armed", inputs.armed)]), OK);
+}
+
+/// Each continuous input at both ends of its range, for a flight of 5 s, and beyond it.
+#[test]
+fn any_input_is_flown_refused_or_ends_the_flight_by_name() {
+    let subject = closed_loop();
+    let inputs = subject.description.variables.iter();
+    let inputs = inputs.filter(|variable| variable.causality == "input" && variable.value_type == "Real");
+    let mut ended = Vec::new();
+    for input in inputs {
+        for value in ["min", "max"].map(|end| input.number(end).expect("inputs have ranges")) {
+            let mut instance = Instance::initialized(subject, &[], &[]);
+            for beyond in [value * 1.001, value.signum() * 1e300, f64::NAN] {
+                assert_eq!(instance.set_real(&[(&input.name, beyond)]), ERROR);
+                let text = instance.log.last().text;
+                assert!(text.contains(&format!("{} = {beyond:?}", input.name)), "{text}");
+            }
+            assert_eq!(instance.set_real(&[(&input.name, value)]), OK);
+            let mut step = 0;
+            while step < 50 && instance.do_step(f64::from(step) * 0.1, 0.1) == OK {
+                step += 1;
+            }
+            // Those that can be read at all are.
+            assert!(
+                instance.outputs().into_iter().all(|bits| f64::from_bits(bits).is_finite()),
+                "{}",
+                input.name
+            );
+            if step < 50 {
+                let text = instance.log.last().text;
+                assert!(text.contains("the flight cannot continue: the motion has diverged at "), "{text}");
+                let cause = format!("{} = {value:?} N·m exceeds what the rotors can counter", input.name);
+                assert!(text.contains(&cause), "{text}");
+                ended.push(input.name.as_str());
+            }
+        }
+    }
+    // 1000 N·m turn the vehicle by more than a revolution in an integration step.
+    assert_eq!(ended, ["x", "x", "y", "y", "z", "z"].map(|axis| format!("disturbance.torque.{axis}")));
 }

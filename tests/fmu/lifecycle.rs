@@ -138,6 +138,49 @@ fn reset_from_everywhere_gives_a_fresh_instance(subject: &'static Subject) {
     assert_eq!(flown(&mut instance), fresh);
 }
 
+/// What ends one run does not end the next.
+fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'static Subject) {
+    let flown = |instance: &mut Instance| {
+        instance.initialize();
+        instance.fly(0.0, 0.1, 10);
+        instance.outputs()
+    };
+    let fresh = flown(&mut Instance::new(subject));
+    let mut instance = Instance::new(subject);
+    for _ in 0..2 {
+        assert_eq!(instance.set_real(subject.sample.breaking), OK);
+        instance.initialize();
+        let mut time = 0.0;
+        while instance.do_step(time, 0.1) == OK {
+            time += 0.1;
+            assert!(time < 10.0, "it does not break");
+        }
+        let text = instance.log.last().text;
+        assert!(text.contains(&format!("the {} cannot continue", subject.sample.run)), "{text}");
+        let (mut status, mut ended) = (OK, 9);
+        // SAFETY: the instance is alive and all pointers are valid.
+        unsafe {
+            assert_eq!((subject.library.get_status)(instance.component, 0, &mut status), OK);
+            assert_eq!((subject.library.get_boolean_status)(instance.component, 3, &mut ended), OK);
+        }
+        assert_eq!((status, ended, instance.time()), (ERROR, 0, time));
+        let finite = |bits: u64| f64::from_bits(bits).is_finite();
+        assert!(instance.outputs().into_iter().all(finite));
+        // What FMI does not allow in this state is refused and harms nothing.
+        assert_eq!(instance.do_step(time, 0.1), ERROR);
+        assert_eq!(instance.terminate(), ERROR);
+        instance.log.take();
+        assert_eq!(instance.reset(), OK);
+        assert_eq!(flown(&mut instance), fresh);
+        assert_eq!(instance.terminate(), OK);
+        assert_eq!(instance.reset(), OK);
+    }
+    assert_eq!(instance.set_real(subject.sample.breaking), OK);
+    instance.initialize();
+    assert_eq!(instance.do_step(0.0, 10.0), ERROR);
+    // And now it is freed.
+}
+
 fn status_functions_answer_what_they_can(subject: &'static Subject) {
     let mut instance = Instance::initialized(subject, &[], &[]);
     instance.fly(0.0, 0.25, 2);
@@ -179,5 +222,6 @@ for_each_model! {
     setup_is_not_needed_and_may_be_repeated,
     impossible_times_are_refused,
     reset_from_everywhere_gives_a_fresh_instance,
+    after_a_failed_step_values_can_be_read_and_reset_starts_again,
     status_functions_answer_what_they_can,
 }

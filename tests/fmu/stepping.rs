@@ -121,6 +121,24 @@ fn wrong_steps_are_refused_and_change_nothing(subject: &'static Subject) {
     assert_eq!(instance.do_step(0.5, 0.1), OK);
 }
 
+/// A call cannot be interrupted, so the longest step bounds the time that it takes.
+fn steps_beyond_the_longest_are_refused_and_change_nothing(subject: &'static Subject) {
+    let longest = subject.sample.longest_step;
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    let before = instance.outputs();
+    for step in [longest * 1.001, 1e5, 1e9] {
+        assert_eq!(instance.do_step(0.0, step), ERROR, "{step}");
+        let text = instance.log.last().text;
+        assert!(
+            text.contains(&format!("{step:?}")) && text.contains(&format!("at most {longest:?} s")),
+            "{text}"
+        );
+        assert_eq!((instance.time(), instance.outputs()), (0.0, before.clone()));
+    }
+    assert_eq!(instance.do_step(0.0, longest), OK, "{:?}", instance.log.take());
+    assert_eq!(instance.time(), longest);
+}
+
 fn stop_time_is_respected_within_the_tolerance(subject: &'static Subject) {
     let ready = || {
         let mut instance = Instance::new(subject);
@@ -165,6 +183,7 @@ for_each_model! {
     any_split_gives_the_same_run,
     accumulated_time_is_accepted,
     wrong_steps_are_refused_and_change_nothing,
+    steps_beyond_the_longest_are_refused_and_change_nothing,
     stop_time_is_respected_within_the_tolerance,
     outputs_do_not_depend_on_inputs_at_a_communication_point,
 }

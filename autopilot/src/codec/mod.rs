@@ -30,5 +30,5 @@ pub use mission_item::MissionItemMessage;
 pub use parameter_value::{Encoding, parameter_hash};
 pub use payload::Payload;
 pub use position_target::{SetPositionTarget, TargetPosition};
-pub use scale::{boot_ms, centimetres_per_second, floats, millimetres, scaled_degrees};
+pub use scale::{boot_ms, boot_us, centimetres_per_second, floats, millimetres, scaled_degrees};
 pub use target::{COMPONENT, Target, target_of};

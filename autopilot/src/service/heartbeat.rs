@@ -48,6 +48,14 @@ pub fn message(vehicle: &Vehicle) -> MavMessage {
     MavMessage::HEARTBEAT(data(vehicle))
 }
 
+/// The heartbeat of a vehicle that will send no other.
+pub fn last_message(vehicle: &Vehicle) -> MavMessage {
+    MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        system_status: MavState::MAV_STATE_FLIGHT_TERMINATION,
+        ..data(vehicle)
+    })
+}
+
 /// Its fields: other messages have some of them, too.
 pub fn data(vehicle: &Vehicle) -> HEARTBEAT_DATA {
     HEARTBEAT_DATA {

@@ -1,6 +1,6 @@
 //! Statuses that an importer can ask for.
 
-use super::types::{DO_STEP_STATUS, Status, StatusKind};
+use super::types::{DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, PENDING_STATUS, Status, StatusKind, TERMINATED};
 use crate::error::CallError;
 use crate::instance::Instance;
 use crate::model::Model;
@@ -16,5 +16,11 @@ pub(super) fn step_status<M: Model>(instance: &Instance<M>, kind: StatusKind) ->
 
 /// There is no such status, or it is of another type.
 pub(super) fn no_status(kind: StatusKind) -> CallError {
-    CallError::NoAnswer(format!("status kind {kind} is not available"))
+    CallError::NoAnswer(match kind {
+        DO_STEP_STATUS => "fmi2DoStepStatus is read by fmi2GetStatus".to_owned(),
+        PENDING_STATUS => "fmi2PendingStatus is not available: no step is ever pending".to_owned(),
+        LAST_SUCCESSFUL_TIME => "fmi2LastSuccessfulTime is read by fmi2GetRealStatus".to_owned(),
+        TERMINATED => "fmi2Terminated is read by fmi2GetBooleanStatus".to_owned(),
+        _ => format!("unknown status kind {kind}; must be 0 to 3"),
+    })
 }

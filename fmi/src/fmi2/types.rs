@@ -51,6 +51,8 @@ pub enum Status {
 pub type StatusKind = c_int;
 /// `fmi2DoStepStatus`
 pub const DO_STEP_STATUS: StatusKind = 0;
+/// `fmi2PendingStatus`
+pub const PENDING_STATUS: StatusKind = 1;
 /// `fmi2LastSuccessfulTime`
 pub const LAST_SUCCESSFUL_TIME: StatusKind = 2;
 /// `fmi2Terminated`

@@ -15,6 +15,8 @@ pub(super) const IDENTITY: Identity = Identity {
     // The flight and a rest, in half of the outer controllers' sample time: a multiple of it is a communication
     // point, too.
     default_experiment: Experiment { stop_time_s: 20.0, step_size_s: 0.025 },
+    // An hour; it takes seconds.
+    longest_step_s: 3600.0,
     saved_state: SavedStateFormat { magic: *b"LMPCQRST", version: 3 },
     words: Words {
         run: "flight",

@@ -73,6 +73,14 @@ impl Estimator {
         }
     }
 
+    fn is_finite(&self) -> bool {
+        let disturbances =
+            self.disturbance_m_s2.iter().chain(&self.disturbance_rad_s2).chain(&self.shortfall_m_s2);
+        self.body.is_possible()
+            && self.answer_z_m_s2.is_finite()
+            && disturbances.chain(&self.rotor_speed_rad_s).all(|number| number.is_finite())
+    }
+
     /// Acceleration beside the commanded one, NED, m/s²: what thrust and gravity do not explain, and what the
     /// vehicle falls short of its commands in the long run.
     pub(crate) fn disturbance_m_s2(&self) -> Vector3<f64> {
@@ -156,6 +164,10 @@ impl Estimator {
         }
         self.body.attitude = (rotation * UnitQuaternion::from_scaled_axis(angle)).into_inner();
         self.time_us = time_us + period_us;
+        if !self.is_finite() {
+            // A tumbling beyond all models has led it out of the numbers: the measurement is all there is.
+            *self = Self::new(&configuration.sensors, measured, self.rotor_speed_rad_s, self.time_us);
+        }
     }
 }
 

@@ -4,6 +4,7 @@ pub(crate) mod airframe;
 pub(crate) mod disturbance;
 pub(crate) mod dynamics;
 pub(crate) mod ground;
+pub(crate) mod overload;
 pub(crate) mod plant_inputs;
 pub(crate) mod plant_state;
 pub(crate) mod rigid_body;

@@ -6,6 +6,11 @@ use serde::{Deserialize, Serialize};
 use crate::plant::rigid_body::RigidBody;
 use crate::{Airframe, InitialState};
 
+/// Largest magnitude of the numbers of a vehicle in motion, SI units.
+const LARGEST: f64 = 1e12;
+/// Largest body rate, rad/s: ten radians in an integration step, whose result means nothing any more.
+const FASTEST: f64 = 1e4;
+
 /// Rigid body and rotor speeds, or their time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlantState {
@@ -52,8 +57,14 @@ impl PlantState {
         Self { body: RigidBody { attitude, ..self.body }, ..*self }
     }
 
-    /// Whether it has stayed within the range of numbers.
-    pub fn is_finite(&self) -> bool {
-        self.body.is_finite() && self.rotor_speed_rad_s.iter().all(|speed| speed.is_finite())
+    /// Whether a number is not finite or far beyond what any vehicle reaches, so that the motion that follows from it would
+    /// soon not be finite either: 10⁴ rad/s of a body rate, 10¹² in SI units of all others.
+    pub fn has_diverged(&self) -> bool {
+        let RigidBody { position_m, velocity_m_s, attitude, body_rate_rad_s } = &self.body;
+        let mut numbers =
+            position_m.iter().chain(velocity_m_s).chain(&attitude.coords).chain(&self.rotor_speed_rad_s);
+        // NaN is in no range.
+        let within = |most: f64| move |number: &f64| (-most..=most).contains(number);
+        !(numbers.all(within(LARGEST)) && body_rate_rad_s.iter().all(within(FASTEST)))
     }
 }

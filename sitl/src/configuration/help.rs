@@ -109,7 +109,7 @@ Files:
 
 Exit codes:
   0  ended as asked
-  1  the simulation failed
+  1  the simulation of a vehicle failed; the others flew to the end
   2  a flag, value or environment variable is wrong
   3  a port or device cannot be used
   4  a file cannot be used or is incomplete

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use vehicle::VehicleSettings;
-use vehicle::parameters::{Entry, ParameterTable, ParameterValues, SPEED_PARAMETER, SetError, Speed, parse};
+use vehicle::parameters::{ParameterTable, ParameterValues, SetError, Speed, parse};
 
 use super::text_file::read_text;
 use crate::failure::Failure;
@@ -50,7 +50,7 @@ pub(super) fn set_parameters(
             setting.split_once('=').ok_or_else(|| wrong(format!("expected NAME=VALUE, got `{setting}`")))?;
         let name = name.trim();
         let entry = table.require(name).map_err(unknown)?;
-        if let Some(flag) = own_flag(entry) {
+        if let Some(flag) = entry.flag() {
             return Err(wrong(format!("{name} has a flag of its own: {flag}")));
         }
         table.set_checked(name, table.number(name, value)?, &mut values)?;
@@ -63,15 +63,6 @@ pub(super) fn set_parameters(
 
 fn wrong(reason: String) -> Failure {
     Failure::Value { name: "--set".to_owned(), reason }
-}
-
-/// The flag of a parameter that belongs to a run, not to the vehicle.
-fn own_flag(entry: &Entry) -> Option<&'static str> {
-    match entry.id {
-        SPEED_PARAMETER => Some("--speed"),
-        "MAV_SYS_ID" | "SYSID_THISMAV" => Some("--system-id"),
-        _ => None,
-    }
 }
 
 /// Where nothing similar is known, the list helps.

@@ -60,6 +60,13 @@ impl Books {
         }
     }
 
+    /// The simulation of a member has failed in the tick that follows.
+    pub fn failure(&mut self, member: usize, time_us: u64, digest: Digest) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.failure(member, time_us, digest);
+        }
+    }
+
     /// Stops a record that has reached its size limit, before anything more is recorded.
     pub fn keep_size(&mut self, members: &[Member]) {
         if let Some(recorder) = self.recorder.as_mut().filter(|recorder| recorder.is_full()) {
@@ -96,7 +103,8 @@ impl Books {
     }
 }
 
-/// Number, time and digest of each.
+/// Number, time and digest of each that flies.
 fn flights(members: &[Member]) -> impl Iterator<Item = (usize, u64, Digest)> {
-    members.iter().enumerate().map(|(number, member)| (number, member.time_us(), member.digest()))
+    let flying = members.iter().enumerate().filter(|(_, member)| member.loss().is_none());
+    flying.map(|(number, member)| (number, member.time_us(), member.digest()))
 }

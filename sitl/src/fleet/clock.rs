@@ -6,8 +6,7 @@ use std::time::{Duration, Instant};
 use vehicle::TICK_US;
 use vehicle::parameters::Speed;
 
-use super::Fleet;
-use crate::failure::Failure;
+use super::{Fleet, Member};
 use crate::pace::Pace;
 
 /// The links are looked at this often at least.
@@ -29,17 +28,20 @@ impl Clock {
         Self { pace: Pace::new(speed, now, 0), speed, members, time_us: 0, end_us }
     }
 
-    /// Whether it has come to its end.
-    pub fn is_over(&self) -> bool {
+    /// Whether it has come to its end, or nobody flies by it any more.
+    pub fn is_over(&self, fleet: &Fleet) -> bool {
+        let lost = |member: &Member| member.loss().is_some();
+        self.has_ended()
+            || fleet.members().get(self.members.clone()).is_none_or(|members| members.iter().all(lost))
+    }
+
+    fn has_ended(&self) -> bool {
         self.end_us.is_some_and(|end_us| self.time_us >= end_us)
     }
 
     /// Flies its vehicles on to where simulation time should be, for about a share of a burst. Whether it is still
     /// behind after that.
-    ///
-    /// # Errors
-    /// [`Failure`] of the simulation.
-    pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> Result<bool, Failure> {
+    pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> bool {
         self.agree_on_speed(fleet, now);
         let limit_us = fleet.limit_us(self.members.clone());
         match self.pace.goal_us(self.speed, now, self.time_us) {
@@ -63,40 +65,39 @@ impl Clock {
         }
     }
 
-    fn tick(&mut self, fleet: &mut Fleet, now: Instant) -> Result<(), Failure> {
+    fn tick(&mut self, fleet: &mut Fleet, now: Instant) {
         for number in self.members.clone() {
-            fleet.tick(number, now)?;
+            fleet.tick(number, now);
         }
         self.time_us += TICK_US;
-        Ok(())
     }
 
-    fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration) -> Result<bool, Failure> {
+    fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration) -> bool {
         let start = Instant::now();
-        while self.time_us + TICK_US <= goal_us && !self.is_over() {
-            self.tick(fleet, start)?;
+        while self.time_us + TICK_US <= goal_us && !self.has_ended() {
+            self.tick(fleet, start);
             if start.elapsed() > longest {
-                return Ok(true);
+                return true;
             }
         }
-        Ok(false)
+        false
     }
 
     /// As fast as possible, but no further than a limit.
-    fn fly_for(&mut self, fleet: &mut Fleet, limit_us: u64, longest: Duration) -> Result<bool, Failure> {
+    fn fly_for(&mut self, fleet: &mut Fleet, limit_us: u64, longest: Duration) -> bool {
         let start = Instant::now();
-        while start.elapsed() < longest && !self.is_over() {
+        while start.elapsed() < longest && !self.has_ended() {
             // Asking the clock costs more than a tick.
             for _ in 0..16 {
                 if self.time_us + TICK_US > limit_us {
-                    return Ok(false);
+                    return false;
                 }
-                if self.is_over() {
+                if self.has_ended() {
                     break;
                 }
-                self.tick(fleet, start)?;
+                self.tick(fleet, start);
             }
         }
-        Ok(true)
+        true
     }
 }

@@ -5,10 +5,12 @@ use std::time::{Duration, Instant};
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
 use autopilot::file_work::FileWorker;
+use quadrotor::SimulationError;
 use vehicle::Mode;
 use vehicle::parameters::Speed;
 
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
+use super::loss::Loss;
 use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
 use crate::flight_log::FlightLog;
@@ -39,6 +41,10 @@ pub struct Member {
     /// Turns so far, and those that are left now.
     turns: u64,
     pub(super) turns_left: u64,
+    /// Why its simulation has ended before the run, if it has.
+    loss: Option<Loss>,
+    /// What is missing from files that have ended already, a sentence each.
+    lacking: Vec<String>,
 }
 
 impl Member {
@@ -63,6 +69,8 @@ impl Member {
             started: Instant::now(),
             turns: 0,
             turns_left: 0,
+            loss: None,
+            lacking: Vec::new(),
         })
     }
 
@@ -111,7 +119,10 @@ impl Member {
     }
 
     /// One tick on.
-    pub(super) fn tick(&mut self, now: Instant) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`SimulationError`]: the flight cannot go on; its time is still that of the last good tick.
+    pub(super) fn tick(&mut self, now: Instant) -> Result<(), SimulationError> {
         set_simulation_time(self.time_us());
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
@@ -119,6 +130,21 @@ impl Member {
             log.tick(&mut self.autopilot, now);
         }
         Ok(())
+    }
+
+    /// Why its simulation has ended before the run, if it has.
+    pub fn loss(&self) -> Option<Loss> {
+        self.loss
+    }
+
+    /// Its simulation has ended: so do its files, and nothing waits for it any more.
+    pub(super) fn end(&mut self, loss: Loss, now: Instant) {
+        if let Some(log) = &mut self.log {
+            // What its clients were told last.
+            log.tick(&mut self.autopilot, now);
+        }
+        self.lacking = self.finish();
+        (self.loss, self.lockstep, self.ground_station) = (Some(loss), None, None);
     }
 
     /// Takes in who is there.
@@ -156,12 +182,12 @@ impl Member {
 
     /// Ends its files. Returns what is missing from them, a sentence each.
     pub(super) fn finish(&mut self) -> Vec<String> {
-        let mut lacking = Vec::new();
-        if let Some(log) = &mut self.log {
+        let mut lacking = std::mem::take(&mut self.lacking);
+        if let Some(mut log) = self.log.take() {
             log.finish(&mut self.autopilot);
             lacking.append(&mut log.take_lacking());
         }
-        lacking.extend(self.parameters.as_mut().and_then(ParameterFile::finish));
+        lacking.extend(self.parameters.take().and_then(|mut file| file.finish()));
         lacking
     }
 

@@ -6,12 +6,14 @@
 //!               or each its own  digest      or each its own
 //! ```
 //!
-//! Vehicles do not interact: the flight of each depends only on its own messages and their simulation times.
+//! Vehicles do not interact: the flight of each depends only on its own messages and their simulation times. One whose
+//! simulation fails ends alone.
 
 mod books;
 mod clock;
 mod held;
 mod lockstep;
+mod loss;
 mod member;
 mod parameter_file;
 mod reception;
@@ -20,5 +22,6 @@ mod signing_keeper;
 
 pub use clock::Clock;
 pub use lockstep::{LockstepPhase, LockstepSettings};
+pub use loss::Loss;
 pub use member::Member;
 pub use roster::Fleet;

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use autopilot::codec::target_of;
 use vehicle::Severity;
 
-use super::Fleet;
+use super::{Fleet, Member};
 use crate::link::{Lost, Received, SetupRules};
 use crate::terminal::set_simulation_time;
 
@@ -125,9 +125,8 @@ impl Fleet {
         let target = target_of(&received.frame).system;
         let mut logged = false;
         for number in 0..self.members.len() {
-            let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
-                continue;
-            };
+            let heard = |member: &&mut Member| member.hub == hub && member.loss().is_none();
+            let Some(member) = self.members.get_mut(number).filter(heard) else { continue };
             let time_us = member.time_us();
             set_simulation_time(time_us);
             if !std::mem::replace(&mut logged, true) {

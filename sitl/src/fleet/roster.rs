@@ -149,13 +149,16 @@ impl Fleet {
         expected
     }
 
-    /// A tick of one vehicle.
-    pub(super) fn tick(&mut self, number: usize, now: Instant) -> Result<(), Failure> {
-        if let Some(member) = self.members.get_mut(number) {
-            member.tick(now)?;
+    /// A tick of one vehicle, unless its simulation has ended.
+    pub(super) fn tick(&mut self, number: usize, now: Instant) {
+        let flying = |member: &&mut Member| member.loss().is_none();
+        let Some(member) = self.members.get_mut(number).filter(flying) else { return };
+        match member.tick(now) {
+            Ok(()) => {
+                self.send(number, now);
+            }
+            Err(error) => self.lose(number, error, now),
         }
-        self.send(number, now);
-        Ok(())
     }
 
     pub(super) fn member_mut(&mut self, number: usize) -> Option<&mut Member> {
@@ -166,6 +169,11 @@ impl Fleet {
     /// Returns whether there was anything.
     pub(super) fn send(&mut self, number: usize, now: Instant) -> bool {
         let Some(member) = self.members.get_mut(number) else { return false };
+        if member.loss().is_some() {
+            // Nobody hears of it any more.
+            drop(member.autopilot.take_outgoing());
+            return false;
+        }
         member.save_parameters(now);
         let Some(links) = self.hubs.get_mut(member.hub) else { return false };
         let all = member.autopilot.take_outgoing();

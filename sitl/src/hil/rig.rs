@@ -117,8 +117,8 @@ impl Rig {
             let h_s = TICK_US as f64 / 1e6;
             self.state = self.plant.step(&self.state, &self.inputs(wind_m_s), h_s);
             self.time_us += TICK_US;
-            if !self.state.is_finite() {
-                return Err(SimulationError::Diverged { time_us: self.time_us });
+            if self.state.has_diverged() {
+                return Err(SimulationError::Diverged { time_us: self.time_us, overload: None });
             }
             self.digest.update_with(self.time_us, &self.state);
             motion = self.motion(&wind_m_s);

@@ -95,7 +95,7 @@ impl Simulator {
             }
         }
         status.clear();
-        Ok(Summary { wall: start.elapsed(), flights, incomplete: Vec::new() })
+        Ok(Summary { wall: start.elapsed(), flights, losses: Vec::new(), incomplete: Vec::new() })
     }
 
     fn serve(

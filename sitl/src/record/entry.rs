@@ -29,6 +29,8 @@ pub enum Event {
     End(u64),
     /// The flight went on, but the record has reached its size limit; the digest of the flight so far.
     Limit(u64),
+    /// The simulation of the vehicle failed in the tick that follows; the digest of the flight so far.
+    Failure(u64),
 }
 
 impl Event {
@@ -40,6 +42,7 @@ impl Event {
             Self::State(_) => "state",
             Self::End(_) => "end",
             Self::Limit(_) => "limit",
+            Self::Failure(_) => "failure",
         }
     }
 }
@@ -53,7 +56,7 @@ impl fmt::Display for Entry {
                 frame.bytes().iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
             }
             Event::GroundStation(heard) => write!(formatter, "{}", u8::from(*heard)),
-            Event::State(digest) | Event::End(digest) | Event::Limit(digest) => {
+            Event::State(digest) | Event::End(digest) | Event::Limit(digest) | Event::Failure(digest) => {
                 write!(formatter, "{digest:016x}")
             }
         }
@@ -83,6 +86,7 @@ impl Entry {
             "state" => Event::State(digest()?),
             "end" => Event::End(digest()?),
             "limit" => Event::Limit(digest()?),
+            "failure" => Event::Failure(digest()?),
             _ => return None,
         };
         words.next().is_none().then_some(Self { time_us, vehicle, event })
@@ -113,6 +117,7 @@ mod tests {
             Event::State(7),
             Event::End(u64::MAX),
             Event::Limit(0),
+            Event::Failure(1),
         ] {
             let entry = Entry { time_us: 250_000, vehicle: 3, event };
             let text = entry.to_string();

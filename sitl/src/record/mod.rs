@@ -9,6 +9,7 @@
 //! state TIME_US VEHICLE DIGEST CRC          once per second of the wall clock: the digest of the flight so far
 //! end TIME_US VEHICLE DIGEST CRC            the end of the flight
 //! limit TIME_US VEHICLE DIGEST CRC          instead of the end: the record has reached its size limit
+//! failure TIME_US VEHICLE DIGEST CRC        instead of the end: the simulation of the vehicle failed in the next tick
 //! ```
 //!
 //! Vehicles are numbered from zero in the order of the header; times are those of each one's own clock. CRC is the CRC-32 (zlib's) of

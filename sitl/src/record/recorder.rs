@@ -78,6 +78,11 @@ impl Recorder {
         self.entry(vehicle, time_us, Event::End(digest.value()));
     }
 
+    /// Records that the simulation of a vehicle failed in the tick after a time, µs.
+    pub fn failure(&mut self, vehicle: usize, time_us: u64, digest: Digest) {
+        self.entry(vehicle, time_us, Event::Failure(digest.value()));
+    }
+
     /// Whether it has reached its size limit and [`Self::stop`] is due.
     pub fn is_full(&self) -> bool {
         self.stopped.is_none() && self.spool.bytes() >= self.most_bytes

@@ -23,6 +23,8 @@ pub enum RecordEnd {
     Complete,
     /// At the size limit of the record.
     Limit,
+    /// With the tick in which the simulation failed.
+    Failure,
     /// Before the flight: the program was killed, or its disk was full.
     #[default]
     Cut,
@@ -43,7 +45,7 @@ pub struct Replayed {
 /// record is checked first.
 ///
 /// # Errors
-/// [`Failure::Differs`] at the first digest that differs; [`Failure`] when the file cannot be read, is not a record or is damaged.
+/// [`Failure::Differs`] at the first digest that differs, [`Failure::FliesOn`] where only the recorded simulation failed; [`Failure`] when the file cannot be read, is not a record or is damaged.
 pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
     let survey = Survey::of(path)?;
     let mut reader = Reader::open(path)?;
@@ -92,7 +94,7 @@ impl Survey {
                 return Err(Failure::Content { path: path.to_owned(), reason });
             }
             *last_us = entry.time_us;
-            *over = matches!(entry.event, Event::End(_) | Event::Limit(_));
+            *over = matches!(entry.event, Event::End(_) | Event::Limit(_) | Event::Failure(_));
             survey.entries += 1;
         }
         Ok(survey)
@@ -194,7 +196,22 @@ impl Flown {
                 self.compare(entry.time_us, digest)?;
                 self.end = RecordEnd::Limit;
             }
+            Event::Failure(digest) => {
+                self.compare(entry.time_us, digest)?;
+                self.fail()?;
+            }
         }
+        Ok(())
+    }
+
+    /// The tick in which the recorded simulation failed.
+    fn fail(&mut self) -> Result<(), Failure> {
+        let (system_id, time_us) = (self.system_id, self.autopilot.vehicle().time_us());
+        let Err(error) = self.autopilot.tick() else {
+            return Err(Failure::FliesOn { system_id, time_us });
+        };
+        tracing::info!("system {system_id}: {error}");
+        self.end = RecordEnd::Failure;
         Ok(())
     }
 

@@ -43,15 +43,21 @@ fn of_one(member: &Member) -> Vec<Segment> {
 
 /// How many are in which state, and the weakest battery.
 fn of_many(members: &[Member]) -> Vec<Segment> {
-    let vehicles = || members.iter().map(|member| member.autopilot().vehicle());
+    let lost = members.iter().filter(|member| member.loss().is_some()).count();
+    let flying = || members.iter().filter(|member| member.loss().is_none());
+    let vehicles = || flying().map(|member| member.autopilot().vehicle());
     let armed = vehicles().filter(|vehicle| vehicle.is_armed()).count();
     let mut modes = BTreeMap::new();
     for vehicle in vehicles() {
         *modes.entry(vehicle.identity().mode_name(vehicle.mode())).or_insert(0) += 1;
     }
     let modes: Vec<String> = modes.into_iter().map(|(mode, count)| format!("{count} {mode}")).collect();
+    let state = match lost {
+        0 => format!("{armed} of {} armed", members.len()),
+        _ => format!("{armed} of {} armed, {lost} lost", members.len()),
+    };
     vec![
-        Segment::new(STATE, format!("{armed} of {} armed", members.len())),
+        Segment::new(STATE, state),
         Segment::new(PLACE, modes.join(", ")),
         battery(vehicles().map(|vehicle| vehicle.battery_remaining()).fold(1.0, f64::min)),
     ]

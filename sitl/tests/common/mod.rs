@@ -8,6 +8,7 @@ pub mod ftp_client;
 pub mod mission_flight;
 pub mod plan_client;
 pub mod recording;
+pub mod seal;
 
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};

@@ -9,6 +9,7 @@ use vehicle::VehicleSettings;
 use vehicle::parameters::Speed;
 
 use super::Bench;
+use super::seal::sealed;
 
 /// A vehicle whose every received frame goes into a record.
 pub struct Recording {
@@ -121,16 +122,4 @@ impl Record {
         let replayed = self.changed(from, to);
         assert!(matches!(replayed, Err(Failure::Differs { .. })), "{from}: {replayed:?}");
     }
-}
-
-/// A record with right checksums: each line ends with the CRC-32 of all bytes before it.
-pub fn sealed(text: &str) -> String {
-    let mut sealed = String::new();
-    for line in text.lines() {
-        let content = line.rsplit_once(' ').map_or(line, |(content, _)| content);
-        sealed.push_str(&format!("{content} "));
-        let checksum = crc32fast::hash(sealed.as_bytes());
-        sealed.push_str(&format!("{checksum:08x}\n"));
-    }
-    sealed
 }

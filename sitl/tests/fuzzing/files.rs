@@ -11,6 +11,7 @@ use sitl::signing::{Kept, SecretKey};
 use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, render};
 
 use super::bytes::Bytes;
+use super::seal::sealed;
 
 /// Ticks that a vehicle from a file flies.
 const TICKS: usize = 50;
@@ -136,18 +137,6 @@ fn recorded(path: &Path) {
     recorder.ground_station(0, 300_000, true);
     recorder.end(0, 400_000, Digest::default());
     assert_eq!(recorder.finish(), None);
-}
-
-/// A record with right checksums: each line ends with the CRC-32 of all bytes before it.
-fn sealed(text: &str) -> String {
-    let mut sealed = String::new();
-    for line in text.lines() {
-        let content = line.rsplit_once(' ').map_or(line, |(content, _)| content);
-        sealed.push_str(&format!("{content} "));
-        let checksum = crc32fast::hash(sealed.as_bytes());
-        sealed.push_str(&format!("{checksum:08x}\n"));
-    }
-    sealed
 }
 
 /// A text after some edits, still UTF-8.

@@ -3,6 +3,8 @@
 mod bytes;
 mod files;
 mod flight;
+#[path = "../common/seal.rs"]
+mod seal;
 mod signatures;
 mod simulator;
 

@@ -81,6 +81,7 @@ impl Model for Lag {
         generation_tool: "the tests",
         date: "2026-11-21T00:00:00Z",
         default_experiment: Experiment { stop_time_s: 5.0, step_size_s: 0.05 },
+        longest_step_s: 1800.0,
         saved_state: SavedStateFormat { magic: *b"LAGSTATE", version: 1 },
         words: Words::GENERAL,
     };

@@ -97,9 +97,9 @@ FAILING = [f"{name} not written" for name in ("Record", "Traffic log", "Flight l
 AGAIN = [f"{name} written again" for name in ("Record", "Traffic log", "Flight log", "Parameters", "Signing timestamps")]
 
 
-def test_a_disk_that_is_full_for_a_while_costs_nothing(program, launch, tmp_path):
+def flies_on_a_full_disk(program, launch, files):
+    """The process, and a client that has been told of every file and sees the vehicle fly on."""
     start, client_of = launch
-    files = paths(tmp_path)
     process, address = start([program], *flags(files))
     client = fly(client_of, address)
     # From now on no file grows: what the system says is the same as with a full disk, but for the reason.
@@ -107,6 +107,12 @@ def test_a_disk_that_is_full_for_a_while_costs_nothing(program, launch, tmp_path
     client.mav.param_set_send(1, 1, b"MIS_TAKEOFF_ALT", 3.5, 9)
     said(client, *FAILING)
     still_flies(client)
+    return process, client
+
+
+def test_a_disk_that_is_full_for_a_while_costs_nothing(program, launch, tmp_path):
+    files = paths(tmp_path)
+    process, client = flies_on_a_full_disk(program, launch, files)
     assert not files["--parameters"].exists()
     resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (UNLIMITED, UNLIMITED))
     said(client, *AGAIN)
@@ -123,14 +129,8 @@ def test_a_disk_that_is_full_for_a_while_costs_nothing(program, launch, tmp_path
 
 
 def test_a_disk_that_stays_full_is_named_at_the_end(program, launch, tmp_path):
-    start, client_of = launch
     files = paths(tmp_path)
-    process, address = start([program], *flags(files))
-    client = fly(client_of, address)
-    resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (64, UNLIMITED))
-    client.mav.param_set_send(1, 1, b"MIS_TAKEOFF_ALT", 3.5, 9)
-    said(client, *FAILING)
-    still_flies(client)
+    process, _ = flies_on_a_full_disk(program, launch, files)
     output = ended(process, 4)
     last = output.splitlines()[-1]
     assert last.startswith("lmpc-sitl: the flight ended as asked, but files are incomplete: "), output

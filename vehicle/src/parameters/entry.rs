@@ -55,6 +55,15 @@ impl Entry {
         matches!(self.source, Source::Loop(_) | Source::Conduct(..))
     }
 
+    /// The flag of the program that sets a parameter of the run, rather than of the vehicle.
+    pub fn flag(&self) -> Option<&'static str> {
+        match self.source {
+            Source::SystemId => Some("--system-id"),
+            Source::Speed => Some("--speed"),
+            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust => None,
+        }
+    }
+
     /// Whether a name means this parameter: its MAVLink name, the former or the dotted one.
     pub(super) fn has_name(&self, name: &str) -> bool {
         self.id == name || self.former == Some(name) || self.dotted() == Some(name)

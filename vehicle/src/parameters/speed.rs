@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use super::value::within;
+
 /// Pace of simulation time against the wall clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
@@ -16,6 +18,8 @@ pub enum Speed {
     Max,
 }
 
+/// Slowest factor that can be asked for; below it there is [`Speed::Paused`].
+const SLOWEST: f64 = 0.01;
 /// Fastest factor that can be asked for; beyond it there is [`Speed::Max`].
 const FASTEST: f64 = 1000.0;
 /// The parameter's value for [`Speed::Max`].
@@ -38,7 +42,7 @@ impl Speed {
         } else if value == MAX {
             Some(Self::Max)
         } else {
-            (0.01..=FASTEST).contains(&value).then_some(Self::Factor(value))
+            within(SLOWEST, FASTEST, value).map(Self::Factor)
         }
     }
 }

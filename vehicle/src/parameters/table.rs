@@ -262,12 +262,55 @@ mod tests {
         }
     }
 
-    /// Clients have single precision, in which a bound may lie a little beyond itself.
+    /// Clients and files have single precision, in which a bound may lie a little beyond itself. What they set there is
+    /// accepted, is the bound itself, and is read back as they wrote it, over the protocol and from a file.
     #[test]
-    fn bounds_can_be_set_by_clients() {
+    fn both_ends_of_every_range_can_be_set_in_single_precision() {
+        for identity in [Identity::Px4, Identity::ArduPilot] {
+            let table = ParameterTable::new(identity);
+            let mut rounded_outwards = 0;
+            for entry in table.entries() {
+                let described = entry.describe();
+                let named = described.names.iter().map(|named| f64::from(named.value));
+                let mut ends = vec![described.range.minimum, described.range.maximum];
+                if !described.names.is_empty() {
+                    ends = named.collect();
+                }
+                if entry.id == "SIM_SPEEDUP" {
+                    ends.push(0.01);
+                }
+                for end in ends.into_iter().filter(|_| !described.read_only) {
+                    let sent = end as f32;
+                    let beyond = f64::from(sent) < described.range.minimum
+                        || f64::from(sent) > described.range.maximum;
+                    rounded_outwards += usize::from(beyond);
+                    let (_, start) = defaults();
+                    let mut values = start;
+                    let what = format!("{} = {end}", entry.id);
+                    table.set(entry.id, f64::from(sent), &mut values).expect(&what);
+                    let got = table.find(entry.id).expect("there").value(&values);
+                    assert_eq!(got.number() as f32, sent, "{what}");
+                    // As a parameter file has it.
+                    let mut again = start;
+                    let number = table.number(entry.id, &got.to_string()).expect(&what);
+                    table.set(entry.id, number, &mut again).expect(&what);
+                    assert_eq!(again, values, "{what}");
+                    // A little further is refused.
+                    let step = 1e-5 * end.abs().max(1e-5);
+                    let further = if end == described.range.maximum { end + step } else { end - step };
+                    if described.names.is_empty()
+                        && !described.whole
+                        && end != 0.01
+                        && entry.id != "SIM_SPEEDUP"
+                    {
+                        assert!(table.set(entry.id, further, &mut values).is_err(), "{what}: {further}");
+                    }
+                }
+            }
+            assert!(rounded_outwards > 10, "{identity:?}: this test needs bounds that round outwards");
+        }
         let (table, mut values) = defaults();
         assert_eq!(table.set("LIM_TILT", f64::from(1.2_f32), &mut values), Ok(Change::ClosedLoop));
-        assert_eq!(values.configuration.limits.tilt_rad, 1.2);
-        assert_eq!(table.set("BAT_LOW_THR", f64::from(0.9_f32), &mut values), Ok(Change::Conduct));
+        assert_eq!(values.configuration.limits.tilt_rad, 1.2, "the bound itself");
     }
 }

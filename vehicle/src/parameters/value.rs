@@ -42,11 +42,9 @@ impl Display for Value {
 /// A number within a range, `None` if it is outside. Clients and files have single precision: what rounds to a bound there is
 /// that bound.
 pub(super) fn within(minimum: f64, maximum: f64, value: f64) -> Option<f64> {
+    let bound = [minimum, maximum].into_iter().find(|bound| *bound as f32 == value as f32);
     // NaN is in no range.
-    if (minimum..=maximum).contains(&value) {
-        return Some(value);
-    }
-    [minimum, maximum].into_iter().find(|bound| *bound as f32 == value as f32)
+    bound.or_else(|| (minimum..=maximum).contains(&value).then_some(value))
 }
 
 #[cfg(test)]
@@ -57,6 +55,8 @@ mod tests {
     fn a_bound_in_single_precision_is_the_bound() {
         assert_eq!(within(0.05, 1.2, f64::from(1.2_f32)), Some(1.2));
         assert!(f64::from(1.2_f32) > 1.2);
+        assert_eq!(within(0.0, 0.9, f64::from(0.9_f32)), Some(0.9));
+        assert!(f64::from(0.9_f32) < 0.9);
         for outside in [1.200_001, 0.049_99, f64::NAN, f64::INFINITY] {
             assert_eq!(within(0.05, 1.2, outside), None);
         }

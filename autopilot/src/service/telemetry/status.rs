@@ -8,7 +8,7 @@ use mavlink::dialects::common::{
 use vehicle::fence::Breach;
 use vehicle::{BATTERY_CELLS, LandedState, Vehicle};
 
-use crate::codec::boot_ms;
+use crate::codec::{boot_ms, boot_us};
 
 /// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
 pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
@@ -117,7 +117,7 @@ pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
         outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
-        time_usec: outputs.time_us as u32,
+        time_usec: boot_us(outputs.time_us),
         servo1_raw,
         servo2_raw,
         servo3_raw,
