@@ -76,9 +76,11 @@ impl<M: Model> Instance<M> {
     /// Builds the run, which checks that the values are consistent. If it fails, initialization mode continues and other
     /// values can be set.
     pub fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
-        let message = self.model()?.initialized();
+        let model = self.model()?;
+        let (message, warnings) = (model.initialized(), model.warnings());
         self.phase = Phase::StepComplete;
         self.logger.event(&message);
+        warnings.iter().for_each(|warning| self.logger.warning(warning));
         Ok(())
     }
 
@@ -170,9 +172,14 @@ impl<M: Model> Instance<M> {
     pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
         if self.phase == Phase::StepComplete {
             if settings.parameters != self.settings.parameters {
-                self.model()?.retune(&settings.parameters).map_err(CallError::of_model)?;
+                let model = self.model()?;
+                let known = model.warnings();
+                model.retune(&settings.parameters).map_err(CallError::of_model)?;
+                let warnings = model.warnings();
                 self.outputs = None;
                 self.logger.event(M::IDENTITY.words.retuned);
+                let new = warnings.iter().filter(|warning| !known.contains(warning));
+                new.for_each(|warning| self.logger.warning(warning));
             }
         } else {
             self.model = None;

@@ -81,6 +81,10 @@ impl Model for ClosedLoop {
         Ok(self.0.restore(*state)?)
     }
 
+    fn warnings(&self) -> Vec<String> {
+        self.0.control().stability().warnings().iter().map(ToString::to_string).collect()
+    }
+
     fn initialized(&self) -> String {
         let reports = self.0.design().reports();
         let radii = reports.map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
