@@ -12,7 +12,7 @@ fn greatest(errors: &[(f64, f64)], from_s: f64, to_s: f64) -> f64 {
     within.map(|(_, error)| error.abs()).fold(0.0, f64::max)
 }
 
-/// Decay rate of one error of a flight to a goal a hundredth of a millimetre away, over whole oscillations.
+/// Decay rate of one error of a flight to a goal a hundredth of a micrometre away, over whole oscillations.
 fn measured_decay_1_s(
     configuration: &Configuration,
     error: impl Fn(&Outputs) -> f64,
@@ -21,7 +21,7 @@ fn measured_decay_1_s(
 ) -> f64 {
     let mut errors = Vec::new();
     let design = designed(configuration).expect("a design");
-    fly(design, &towards([1e-5, 1e-5, -1e-5], 1e-5), to_s, 1_000, |outputs| {
+    fly(design, &towards([1e-8, 1e-8, -1e-8], 1e-8), to_s, 1_000, |outputs| {
         errors.push((outputs.time_us as f64 / 1e6, error(outputs)));
     });
     let cycle_s = if frequency_rad_s > 0.0 { core::f64::consts::PI / frequency_rad_s } else { 0.5 };
@@ -99,7 +99,7 @@ fn small_deviations_grow_as_the_report_says() {
         change(&mut configuration);
         let judged = designed(&configuration).expect("a design").stability.loops()[index];
         assert!(!judged.is_stable(), "{name}: {judged:?}");
-        // To three thousand times a hundredth of a millimetre: limits are still far away.
+        // To three thousand times a hundredth of a micrometre: limits are still far away.
         let window = (-4.0 / judged.decay_rate_1_s, -8.0 / judged.decay_rate_1_s);
         let measured = measured_decay_1_s(&configuration, error, judged.frequency_rad_s, window);
         assert!((measured / judged.decay_rate_1_s - 1.0).abs() < 0.1, "{name}: {measured} {judged:?}");
