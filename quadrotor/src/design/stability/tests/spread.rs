@@ -7,7 +7,7 @@ use crate::{Configuration, ControllerKind, Sensors};
 #[test]
 fn noise_spreads_tilt_position_and_height_as_the_report_says() {
     for (kind, output_feedback) in
-        [(ControllerKind::Lmpc, false), (ControllerKind::Lmpc, true), (ControllerKind::Dlqr, true)]
+        [(ControllerKind::Lmpc, false), (ControllerKind::Lmpc, true), (ControllerKind::Dlqr, false)]
     {
         let mut configuration = Configuration::default();
         configuration.controllers.kind = kind;
