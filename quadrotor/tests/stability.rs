@@ -7,6 +7,8 @@ use quadrotor::{
     Configuration, ConfigurationError, ControllerKind, Simulation, StabilityReport, StabilityWarning,
 };
 
+type Change = fn(&mut Configuration);
+
 fn refused(change: impl Fn(&mut Configuration)) -> String {
     let mut configuration = Configuration::default();
     change(&mut configuration);
@@ -48,7 +50,7 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
 
 #[test]
 fn noise_that_no_flight_survives_is_refused_by_its_source() {
-    let cases: [(&str, fn(&mut Configuration)); 4] = [
+    let cases: [(&str, Change); 4] = [
         ("sensor.position_noise = 10 m", |configuration| configuration.sensors.position_noise_m = 10.0),
         ("sensor.velocity_noise = 10 m/s", |configuration| configuration.sensors.velocity_noise_m_s = 10.0),
         ("sensor.attitude_noise = 0.5 rad", |configuration| configuration.sensors.attitude_noise_rad = 0.5),

@@ -6,6 +6,10 @@ use std::vec::Vec;
 use super::flight::{designed, fly, towards};
 use crate::{Configuration, ControllerKind, Outputs};
 
+/// One number of the outputs.
+type Seen = fn(&Outputs) -> f64;
+type Change = fn(&mut Configuration);
+
 /// Greatest magnitude of an error within a part of a flight.
 fn greatest(errors: &[(f64, f64)], from_s: f64, to_s: f64) -> f64 {
     let within = errors.iter().filter(|(time_s, _)| (from_s..to_s).contains(time_s));
@@ -53,7 +57,7 @@ fn small_deviations_decay_as_the_report_says() {
                 configuration.controllers.mass_factor = mass_factor;
                 let report = designed(&configuration).expect("a design").stability;
                 let [_, _, yaw, _, _, altitude] = report.loops();
-                let cases: [(_, fn(&Outputs) -> f64, _); 2] = [
+                let cases: [(_, Seen, _); 2] = [
                     (yaw, |outputs| outputs.yaw_error_rad, (3.0, 8.0)),
                     (altitude, |outputs| outputs.tracking_error_m.z, (4.0, 10.0)),
                 ];
@@ -73,7 +77,7 @@ fn small_deviations_decay_as_the_report_says() {
 /// Unstable loops grow at the predicted rate, whichever of them it is and whatever the reason.
 #[test]
 fn small_deviations_grow_as_the_report_says() {
-    let changes: [(&str, fn(&mut Configuration), usize, fn(&Outputs) -> f64); 4] = [
+    let changes: [(&str, Change, usize, Seen); 4] = [
         ("rotor lag", |c| c.airframe.rotor_time_constant_s = 0.3, 4, |outputs| outputs.attitude_rad.x),
         (
             "position weight",
