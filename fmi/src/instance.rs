@@ -78,9 +78,11 @@ impl<M: Model> Instance<M> {
     /// values can be set.
     pub fn exit_initialization_mode(&mut self) -> Result<(), CallError> {
         check_outputs::<M>(self.outputs()?)?;
-        let message = self.model()?.initialized();
+        let model = self.model()?;
+        let (message, warnings) = (model.initialized(), model.warnings());
         self.phase = Phase::StepComplete;
         self.logger.event(&message);
+        warnings.iter().for_each(|warning| self.logger.warning(warning));
         Ok(())
     }
 
@@ -177,13 +179,14 @@ impl<M: Model> Instance<M> {
     pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
         if self.phase == Phase::StepComplete {
             if settings.parameters != self.settings.parameters {
-                retune(
-                    built(&mut self.model, &self.settings)?,
-                    &self.settings.parameters,
-                    &settings.parameters,
-                )?;
+                let known = self.model()?.warnings();
+                let model = built(&mut self.model, &self.settings)?;
+                retune(model, &self.settings.parameters, &settings.parameters)?;
+                let warnings = model.warnings();
                 self.outputs = None;
                 self.logger.event(M::IDENTITY.words.retuned);
+                let new = warnings.iter().filter(|warning| !known.contains(warning));
+                new.for_each(|warning| self.logger.warning(warning));
             }
         } else {
             self.model = None;

@@ -12,7 +12,7 @@ use crate::model::Words;
 pub(crate) enum Category {
     /// Events in the life of the instance.
     Events = 1,
-    /// Ignored requests.
+    /// Ignored requests and doubtful parameters.
     Warning = 2,
     /// Information that is not available.
     Discard = 4,
@@ -43,7 +43,7 @@ impl Category {
     fn description(self, words: &Words) -> &'static str {
         match self {
             Self::Events => words.events,
-            Self::Warning => "Ignored requests",
+            Self::Warning => "Ignored requests and doubtful parameters",
             Self::Discard => "Information that is not available",
             Self::Error => words.errors,
             Self::Fatal => "Internal errors; always logged",

@@ -89,6 +89,12 @@ pub trait Model: Sized + 'static {
         Ok(())
     }
 
+    /// What its user should know about the parameters, which are accepted: a sentence each. They are logged as warnings when
+    /// initialization ends, and when a change of parameters adds some.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The message that is logged when initialization ends.
     fn initialized(&self) -> String {
         "initialized".to_owned()

@@ -48,6 +48,7 @@ pub struct LmpcDesign {
     dlqr: Dlqr,
     closed_loop: DMatrix<f64>,
     spectral_radius: f64,
+    condition_number: f64,
     model: Augmented,
     bases: Vec<LaguerreBasis>,
     alpha: f64,
@@ -85,6 +86,10 @@ impl LmpcDesign {
                 condition: condition_number(prediction.omega()),
             })?;
         let coefficient_gain = factor.solve(prediction.psi());
+        let condition_number = condition_number(prediction.omega());
+        if !condition_number.is_finite() {
+            return Err(DesignError::IllConditioned { condition: condition_number });
+        }
         let first_move = InputBasis::new(bases).row();
         let gain = &first_move * &coefficient_gain;
 
@@ -102,6 +107,7 @@ impl LmpcDesign {
             dlqr,
             closed_loop,
             spectral_radius,
+            condition_number,
             model: model.clone(),
             bases: bases.to_vec(),
             alpha: cost.alpha,
@@ -161,8 +167,8 @@ impl LmpcDesign {
         self.spectral_radius
     }
 
-    /// Condition number of Ω.
+    /// Condition number of Ω, finite.
     pub fn condition_number(&self) -> f64 {
-        condition_number(self.prediction.omega())
+        self.condition_number
     }
 }

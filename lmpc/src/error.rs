@@ -1,6 +1,18 @@
 //! What can be wrong with a design.
 
+use core::fmt::{Display, Formatter, Result as FormatResult};
+
 use thiserror::Error;
+
+/// A number of any size, for a person.
+struct Magnitude(f64);
+
+impl Display for Magnitude {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> FormatResult {
+        let Self(value) = self;
+        if value.is_finite() { write!(formatter, "{value:.0e}") } else { formatter.write_str("above 1e16") }
+    }
+}
 
 /// A violated precondition of a design, one variant each, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -137,7 +149,8 @@ pub enum DesignError {
     },
     /// The quadratic form Ω cannot be factored.
     #[error(
-        "Ω is not positive definite in floating point (condition number {condition:e}); use fewer terms, a smaller scale, a longer horizon, or exponential weighting (alpha > 1)"
+        "the matrix Omega is singular in floating point (condition number {}); use fewer terms, a smaller scale, lambda = 1, a longer horizon, or exponential weighting (alpha > 1)",
+        Magnitude(*condition)
     )]
     IllConditioned {
         /// Condition number of Ω.

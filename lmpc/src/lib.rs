@@ -95,5 +95,6 @@ pub use state_feedback::StateFeedback;
 pub use state_space::{Discretization, StateSpace};
 pub use state_space_mpc::StateSpaceMpc;
 pub use state_space_mpc_design::{StateSpaceMpcDesign, StateSpaceMpcWeights};
+pub use stein::solve_stein;
 pub use step::{Status, Step};
 pub use weighting::{Weighting, Weights};

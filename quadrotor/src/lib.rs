@@ -28,7 +28,8 @@
 //! State is apart from it and is plain data to copy, save and restore: [`PlantState`], [`ControlState`],
 //! [`SimulationState`].
 //!
-//! **Errors.** A configuration that cannot fly is refused with a [`ConfigurationError`]. In flight, inputs or measurements
+//! **Errors.** A configuration that cannot fly is refused with a [`ConfigurationError`]: a [`StabilityReport`] judges the
+//! closed loop as a whole, and warns of one that flies badly. In flight, inputs or measurements
 //! that are not finite are refused with a [`ControlError`] or [`SimulationError`]; the state then is the one before the
 //! refused sample. Nothing panics.
 //!
@@ -138,6 +139,11 @@ pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
 pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
+pub use design::stability::cause::Cause;
+pub use design::stability::loop_stability::{LoopStability, Spread};
+pub use design::stability::noise_effect::NoiseEffect;
+pub use design::stability::stability_report::StabilityReport;
+pub use design::stability::stability_warning::StabilityWarning;
 pub use guidance::attitude_target::AttitudeTarget;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]

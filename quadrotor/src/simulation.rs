@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::attitude::wrapped;
+use crate::design::loop_design::LoopDesign;
 use crate::schedule::next_point_us;
 use crate::sensors::SimulatedSensors;
 use crate::simulation_state::{SimulationState, World};
@@ -26,13 +27,18 @@ impl Simulation {
     /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
     /// controller cannot be designed.
     pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
-        let mut world = World::new(configuration, inputs);
-        let control = ControlLoop::new(
-            configuration,
-            &inputs.control(),
-            &mut sensors(&configuration.sensors, &mut world),
-            0,
-        )?;
+        Self::with_design(LoopDesign::new(configuration)?, inputs)
+    }
+
+    /// The same, with a finished design.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Measurement`].
+    pub(crate) fn with_design(design: LoopDesign, inputs: &Inputs) -> Result<Self, ConfigurationError> {
+        let mut world = World::new(&design.configuration, inputs);
+        let noise = design.configuration.sensors;
+        let mut sensors = sensors(&noise, &mut world);
+        let control = ControlLoop::with_design(design, &inputs.control(), &mut sensors, 0)?;
         Ok(Self::of(control, world))
     }
 

@@ -182,3 +182,60 @@ fn every_name_and_the_names_of_values_are_taken_at_the_start() {
         assert_eq!(settings.vehicles[0].vehicle.configuration.controllers.kind, kind, "{line}");
     }
 }
+
+/// What would lose the vehicle is refused with its cause, in flight and on the ground, and leaves it as it is; what flies badly
+/// is warned about once.
+#[test]
+fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    let before = answers(&mut bench, read("ROTOR_TIME_CONST"));
+    let heard = answers(&mut bench, set("ROTOR_TIME_CONST", 0.3));
+    assert_eq!(heard.iter().map(|told| told.param_value).collect::<Vec<_>>(), [before[0].param_value]);
+    let text = bench.texts().concat();
+    assert!(text.starts_with("ROTOR_TIME_CONST: the roll loop is unstable: errors double every"), "{text}");
+    assert!(
+        text.contains("airframe.rotor.time_constant = 0.3") && text.contains("stable with 0.03 s"),
+        "{text}"
+    );
+    let text = {
+        answers(&mut bench, set("FRAME_INERTIA_X", 1e-5));
+        bench.texts().concat()
+    };
+    assert!(text.contains("airframe.inertia.x") && text.contains("must be at least"), "{text}");
+    bench.fly(3.0);
+    assert!(bench.is_near([0.0, 0.0, bench.position()[2]]), "{:?}", bench.position());
+
+    // Accepted, and told why it is doubtful.
+    answers(&mut bench, set("SENS_RATE_NOISE", 0.9));
+    let text = bench.texts().concat();
+    assert!(text.starts_with("SENS_RATE_NOISE: measurement noise"), "{text}");
+    bench.heard.clear();
+    answers(&mut bench, set("LIM_SPEED_HORIZ", 5.0));
+    assert_eq!(bench.texts(), Vec::<String>::new());
+}
+
+/// Settings of the command line and of a file are judged together, in any order; what does not fly names its place.
+#[test]
+fn settings_at_the_start_are_judged_as_a_whole() {
+    let small = "--set airframe.inertia.x=0.002 --set airframe.inertia.y=0.002 --set airframe.inertia.z=0.004 \
+                 --set controller.attitude.increment_weight.phi=8000 --set controller.attitude.increment_weight.theta=8000 \
+                 --set controller.attitude.increment_weight.psi=200000";
+    let resolved = settings(small).expect("together they fly");
+    assert_eq!(resolved.vehicles[0].vehicle.configuration.airframe.inertia_kg_m2, [0.002, 0.002, 0.004]);
+
+    let refused = settings("--set airframe.rotor.time_constant=0.5").expect_err("unstable");
+    assert!(
+        refused.starts_with("--set: airframe.rotor.time_constant: the roll loop is unstable"),
+        "{refused}"
+    );
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.params");
+    std::fs::write(&path, "LIM_TILT 0.5\nFRAME_INERTIA_X 0.00001\n").expect("written");
+    let refused = settings(&format!("--parameters {}", path.display())).expect_err("lost");
+    assert!(refused.contains("a.params: line 2: FRAME_INERTIA_X: airframe.inertia.x"), "{refused}");
+    assert!(refused.contains("must be at least"), "{refused}");
+
+    let warned = settings("--set sensor.attitude_noise=0.15").expect("flies");
+    assert!(warned.notes.iter().any(|note| note.text.contains("measurement noise")), "{:?}", warned.notes);
+}

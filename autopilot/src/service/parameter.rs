@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA};
+use quadrotor::StabilityWarning;
 use vehicle::identity::Identity;
 use vehicle::parameters::Value;
 use vehicle::{Refusal, Severity};
@@ -136,6 +137,7 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let name = payload.name(6);
     let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
+    let known = stability_warnings(context);
     let result = context.parameters.set(&name, value, &mut context.vehicle);
     if let Some(index) = context.parameters.table().index_of(&name) {
         let listed = context.parameters.table().entries().get(index).is_some_and(|entry| entry.id == name);
@@ -151,6 +153,16 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
         let text = error.to_string().replace("°–", "–").replace('–', " to ").replace('°', " deg");
         context.say(Severity::Warning, &text);
     }
+    for warning in stability_warnings(context) {
+        if !known.contains(&warning) {
+            context.say(Severity::Warning, &format!("{name}: {warning}"));
+        }
+    }
+}
+
+/// What is worth a warning about the vehicle's closed loop.
+fn stability_warnings(context: &Context) -> Vec<StabilityWarning> {
+    context.vehicle.simulation().control().stability().warnings().to_vec()
 }
 
 /// Sends a parameter that something else than PARAM_SET has changed.

@@ -81,9 +81,39 @@ impl Model for ClosedLoop {
         Ok(self.0.restore(*state)?)
     }
 
+    fn warnings(&self) -> Vec<String> {
+        self.0.control().stability().warnings().iter().map(ToString::to_string).collect()
+    }
+
     fn initialized(&self) -> String {
         let reports = self.0.design().reports();
         let radii = reports.map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
         format!("initialized; spectral radii of the closed loops: {}", radii.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fmi::Model;
+    use quadrotor::{Configuration, Inputs};
+
+    use super::ClosedLoop;
+
+    #[test]
+    fn doubtful_parameters_are_warned_about_and_hopeless_ones_refused() {
+        let mut configuration = Configuration::default();
+        let mut model = ClosedLoop::new(&configuration, &Inputs::default()).expect("flies");
+        assert_eq!(model.warnings(), Vec::<String>::new());
+        configuration.sensors.attitude_noise_rad = 0.15;
+        model.retune(&configuration).expect("flies");
+        assert!(model.warnings().iter().any(|warning| warning.starts_with("measurement noise")));
+        configuration.sensors.attitude_noise_rad = 0.5;
+        let refused = model.retune(&configuration).expect_err("lost").to_string();
+        assert!(refused.starts_with("sensor.attitude_noise = 0.5 rad is too much noise"), "{refused}");
+        // Ω singular in floating point was a condition number of +inf.
+        configuration = Configuration::default();
+        configuration.controllers.attitude.lambda = 0.8;
+        let refused = ClosedLoop::new(&configuration, &Inputs::default()).err().expect("refused").to_string();
+        assert!(refused.starts_with("cannot design the attitude controller"), "{refused}");
     }
 }

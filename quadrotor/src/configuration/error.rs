@@ -3,7 +3,13 @@
 use lmpc::DesignError;
 use thiserror::Error;
 
-use crate::{Quantity, ValueRange};
+use alloc::string::ToString;
+
+use crate::{Cause, NoiseEffect, Quantity, ValueRange};
+
+/// What helps against instability when no parameter alone is to blame.
+const REMEDY: &str =
+    "lower the loop's output weight, raise its increment weight, or lower airframe.rotor.time_constant";
 
 /// Why a configuration was refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -64,6 +70,29 @@ pub enum ConfigurationError {
         part: &'static str,
         /// Why not.
         source: DesignError,
+    },
+    /// The closed loop is not stable, with the rotors' lag and the sampling that the controllers' models do not have.
+    #[error(
+        "the {name} loop is unstable: errors double every {doubling_s:.2} s; {}",
+        cause.as_ref().map_or_else(|| REMEDY.to_string(), Cause::to_string)
+    )]
+    Unstable {
+        /// "roll", "pitch", "yaw", "north", "east" or "altitude".
+        name: &'static str,
+        /// Time in which an error doubles, s.
+        doubling_s: f64,
+        /// The value that is most likely to blame, if one alone is.
+        cause: Option<Cause>,
+    },
+    /// Measurement noise with which the vehicle cannot be controlled.
+    #[error("{name} = {value} is too much noise: {effect}; lower it")]
+    Noise {
+        /// Public name of the parameter with the greatest part in it.
+        name: &'static str,
+        /// Its value.
+        value: Quantity,
+        /// What it does.
+        effect: NoiseEffect,
     },
     /// The rotors are not laid out as those of a quadrotor.
     #[error("airframe.layout cannot be flown: {reason}")]

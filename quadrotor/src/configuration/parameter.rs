@@ -84,6 +84,16 @@ pub struct Choice {
 }
 
 impl Access {
+    /// Gives one configuration the value that another one has here.
+    pub(crate) fn copy(&self, from: &Configuration, to: &mut Configuration) {
+        match *self {
+            Self::Real { get, set, .. } => set(to, get(from)),
+            Self::Integer { get, set, .. } => set(to, get(from)),
+            Self::Enumeration { get, set, .. } => set(to, get(from)),
+            Self::Boolean { get, set } => set(to, get(from)),
+        }
+    }
+
     /// Whether both configurations have the same value here.
     pub(crate) fn same(&self, one: &Configuration, other: &Configuration) -> bool {
         match *self {

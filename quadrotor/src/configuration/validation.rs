@@ -48,7 +48,8 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     }
     // The roll and pitch torques in hover must be able to follow the tilt commands, at half their pace at least.
     let [jx, jy, _] = airframe.inertia_kg_m2;
-    let [roll_n_m, pitch_n_m, _] = Mixer::new(airframe)?.largest_torques_n_m(airframe.weight_n() / 4.0);
+    let largest_n_m = Mixer::new(airframe)?.largest_torques_n_m(airframe.weight_n() / 4.0);
+    let [roll_n_m, pitch_n_m, _] = largest_n_m;
     let strongest_n_m = roll_n_m.min(pitch_n_m);
     let followed = 2.0 * strongest_n_m / jx.max(jy);
     if limits.tilt_acceleration_rad_s2 > followed {
@@ -60,8 +61,73 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
             reason: "the rotors give airframe.inertia half of that in hover",
         });
     }
+    validate_inertia(&airframe.inertia_kg_m2)?;
+    validate_spin(configuration, largest_n_m)?;
     validate_start(configuration)?;
     validate_sample_times(&configuration.controllers)
+}
+
+/// Two moments of inertia may differ by so many times the third one.
+const MOST_GYROSCOPIC: f64 = 100.0;
+
+/// A small moment of inertia beside two that differ makes each turn about the other axes throw the vehicle about: ω × Jω. Of
+/// a rigid body the difference is at most the third moment; flights are lost from 110 times that on.
+fn validate_inertia([x, y, z]: &[f64; 3]) -> Result<(), ConfigurationError> {
+    for (name, value, difference) in [
+        ("airframe.inertia.x", *x, libm::fabs(y - z)),
+        ("airframe.inertia.y", *y, libm::fabs(x - z)),
+        ("airframe.inertia.z", *z, libm::fabs(x - y)),
+    ] {
+        let least = difference / MOST_GYROSCOPIC;
+        if value < least {
+            return Err(ConfigurationError::Inconsistent {
+                name,
+                value: Quantity { value, unit: "kg*m^2" },
+                relation: "at least",
+                limit: rounded_up(least, "kg*m^2"),
+                reason: "the other two moments of inertia differ by a hundred times that; change them first",
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Angular rate, rad/s, that the largest torques in hover may spin the vehicle up to within a sample of the attitude
+/// controller. Flights are lost from 40 rad/s on, whatever the weights: torques then saturate in turn from sample to sample.
+const MOST_SPIN_RAD_S: f64 = 30.0;
+
+/// The rotors must not spin the vehicle up faster than the attitude controller looks.
+fn validate_spin(configuration: &Configuration, torques_n_m: [f64; 3]) -> Result<(), ConfigurationError> {
+    let airframe = &configuration.airframe;
+    let sample_time_s = configuration.controllers.attitude.sample_time_s();
+    let names = ["airframe.inertia.x", "airframe.inertia.y", "airframe.inertia.z"];
+    for ((name, value), torque_n_m) in names.into_iter().zip(airframe.inertia_kg_m2).zip(torques_n_m) {
+        let least = torque_n_m * sample_time_s / MOST_SPIN_RAD_S;
+        if value >= least {
+            continue;
+        }
+        // No propeller's drag has a longer arm than its lift.
+        let drags =
+            airframe.torque_coefficient_n_m_s2 > airframe.thrust_coefficient_n_s2 * airframe.arm_length_m;
+        if name == "airframe.inertia.z" && drags {
+            let value_drag = airframe.torque_coefficient_n_m_s2;
+            return Err(ConfigurationError::Inconsistent {
+                name: "airframe.rotor.torque_coefficient",
+                value: Quantity { value: value_drag, unit: "N*m*s^2" },
+                relation: "at most",
+                limit: rounded_down(value_drag * value / least, "N*m*s^2"),
+                reason: "more spins the vehicle by over 30 rad/s within one controller.attitude.sample_time",
+            });
+        }
+        return Err(ConfigurationError::Inconsistent {
+            name,
+            value: Quantity { value, unit: "kg*m^2" },
+            relation: "at least",
+            limit: rounded_up(least, "kg*m^2"),
+            reason: "with less the rotors spin it by over 30 rad/s within one controller.attitude.sample_time",
+        });
+    }
+    Ok(())
 }
 
 /// A flight over ground starts above it, in the attitude that it starts with.
@@ -98,6 +164,12 @@ fn validate_sample_times(controllers: &Controllers) -> Result<(), ConfigurationE
 fn rounded_down(value: f64, unit: &'static str) -> Quantity {
     let scale = libm::pow(10.0, 3.0 - libm::floor(libm::log10(value)));
     Quantity { value: libm::floor(value * scale) / scale, unit }
+}
+
+/// The same, from above.
+fn rounded_up(value: f64, unit: &'static str) -> Quantity {
+    let scale = libm::pow(10.0, 3.0 - libm::floor(libm::log10(value)));
+    Quantity { value: libm::ceil(value * scale) / scale, unit }
 }
 
 /// What describes the start of a flight must not differ between two configurations of it.

@@ -15,7 +15,7 @@ use crate::{CascadeDesign, Configuration, Limits};
 const BRAKING_SHARE: f64 = 0.5;
 
 /// Time over which steps of the reference's rate are spread, s: those of the position controller.
-const SMOOTHING_S: f64 = 0.05;
+pub(crate) const SMOOTHING_S: f64 = 0.05;
 
 /// What is known of the vehicle's rotation, measured or estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use crate::control::control_inputs::{ControlInputs, ControlSignal};
 use crate::control::control_state::ControlState;
 use crate::control::measurement::Instruments;
 use crate::design::loop_design::LoopDesign;
-use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody};
+use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody, StabilityReport};
 
 /// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
 ///
@@ -46,15 +46,27 @@ impl ControlLoop {
     ///
     /// # Errors
     /// [`ConfigurationError`] when a value is out of range, values contradict one another, a controller cannot be designed,
-    /// or the first measurement is not finite.
+    /// the closed loop is unstable or shaken by noise, or the first measurement is not finite.
     pub fn new(
         configuration: &Configuration,
         inputs: &ControlInputs,
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<Self, ConfigurationError> {
-        let design = LoopDesign::new(configuration)?;
-        let state = ControlState::new(configuration, inputs, instruments, time_us)?;
+        Self::with_design(LoopDesign::new(configuration)?, inputs, instruments, time_us)
+    }
+
+    /// The same, with a finished design.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Measurement`].
+    pub(crate) fn with_design(
+        design: LoopDesign,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Result<Self, ConfigurationError> {
+        let state = ControlState::new(&design.configuration, inputs, instruments, time_us)?;
         Ok(Self { design, state })
     }
 
@@ -78,6 +90,11 @@ impl ControlLoop {
     /// The cascade's controllers.
     pub fn design(&self) -> &CascadeDesign {
         &self.design.cascade
+    }
+
+    /// How the closed loop behaves about hover, and what is worth a warning.
+    pub fn stability(&self) -> &StabilityReport {
+        &self.design.stability
     }
 
     /// The state, to be looked at or saved.

@@ -12,6 +12,17 @@ use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_r
 /// Time over which the vehicle's falling short of its commands is averaged, s.
 const SHORTFALL_S: f64 = 0.3;
 
+/// Share of the difference between a rotor's speed and its command that is left after a time:
+/// ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ).
+pub(crate) fn lag_kept(configuration: &Configuration, time_s: f64) -> f64 {
+    libm::exp(-time_s / configuration.airframe.rotor_time_constant_s)
+}
+
+/// Share of a new shortfall that enters the average in a time.
+pub(crate) fn shortfall_share(time_s: f64) -> f64 {
+    1.0 - libm::exp(-time_s / SHORTFALL_S)
+}
+
 /// What was commanded for the time until the next sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Command {
@@ -120,8 +131,7 @@ impl Estimator {
         let airframe = &configuration.airframe;
         let before = self.rotor_speed_rad_s;
         let command_rad_s = &command.rotor_speed_rad_s;
-        // ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ)
-        let kept = libm::exp(-design.sample_time_s / airframe.rotor_time_constant_s);
+        let kept = lag_kept(configuration, design.sample_time_s);
         self.rotor_speed_rad_s = core::array::from_fn(|rotor| {
             command_rad_s[rotor] + (before[rotor] - command_rad_s[rotor]) * kept
         });
@@ -136,8 +146,8 @@ impl Estimator {
         let commanded = command.acceleration_m_s2.unwrap_or(acceleration);
         self.answer_z_m_s2 = commanded.z + (self.answer_z_m_s2 - commanded.z) * kept;
         let answer = Vector3::new(commanded.x, commanded.y, self.answer_z_m_s2);
-        let share = 1.0 - libm::exp(-design.sample_time_s / SHORTFALL_S);
-        self.shortfall_m_s2 += (acceleration - answer - self.shortfall_m_s2) * share;
+        self.shortfall_m_s2 +=
+            (acceleration - answer - self.shortfall_m_s2) * shortfall_share(design.sample_time_s);
         // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;

@@ -54,6 +54,11 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         matches!(self, Self::Incremental(_))
     }
 
+    /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
+    pub(crate) fn sees_deviation_alone(&self) -> bool {
+        matches!(self, Self::StateSpace(_))
+    }
+
     /// The part of a reference's motion that its limits of states do not count: those of a state-space MPC bound
     /// the deviation from the reference instead of the state.
     pub(crate) fn uncounted(&self, reference: &SVector<f64, P>) -> SVector<f64, P> {

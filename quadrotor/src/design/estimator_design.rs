@@ -14,7 +14,7 @@ const MODEL_NOISE: (f64, f64) = (0.3, 3.0);
 const WANDERING: (f64, f64) = (0.3, 3.0);
 
 /// One axis: position or angle, its rate, and the acceleration that the model does not explain.
-type Axis = KalmanPredictor<3, 1, 1>;
+pub(crate) type Axis = KalmanPredictor<3, 1, 1>;
 
 /// The predictors of one axis of translation and of one of rotation, at the attitude controller's sample
 /// time.

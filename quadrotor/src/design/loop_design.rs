@@ -3,6 +3,8 @@
 use crate::configuration::validation::same_start;
 use crate::design::cascade_design::CascadeDesign;
 use crate::design::rotor_loss_design::RotorLossDesign;
+use crate::design::stability::stability_report::StabilityReport;
+use crate::design::stability::verdict::judged;
 use crate::{Configuration, ConfigurationError};
 
 /// A configuration and the controllers designed from it.
@@ -11,25 +13,25 @@ pub(crate) struct LoopDesign {
     pub(crate) configuration: Configuration,
     pub(crate) cascade: CascadeDesign,
     pub(crate) rotor_loss: RotorLossDesign,
+    pub(crate) stability: StabilityReport,
 }
 
 impl LoopDesign {
-    /// Checks the configuration and designs its controllers.
+    /// Checks the configuration, designs its controllers and judges the closed loop.
     ///
     /// # Errors
-    /// Those of [`CascadeDesign::new`].
+    /// Those of [`StabilityReport::new`].
     pub(crate) fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
-        Ok(Self {
-            configuration: *configuration,
-            cascade: CascadeDesign::new(configuration)?,
-            rotor_loss: RotorLossDesign::new(configuration),
-        })
+        let cascade = CascadeDesign::new(configuration)?;
+        let stability = judged(configuration, &cascade, None)?;
+        let rotor_loss = RotorLossDesign::new(configuration);
+        Ok(Self { configuration: *configuration, cascade, rotor_loss, stability })
     }
 
     /// The design for another configuration of the same flight. What does not depend on the change is taken over from this one.
     ///
     /// # Errors
-    /// [`ConfigurationError::Fixed`] when a parameter of the start differs, and those of [`CascadeDesign::new`].
+    /// [`ConfigurationError::Fixed`] when a parameter of the start differs, and those of [`StabilityReport::new`].
     pub(crate) fn changed(&self, configuration: &Configuration) -> Result<Self, ConfigurationError> {
         same_start(&self.configuration, configuration)?;
         let mut cascade = self.cascade.clone();
@@ -39,6 +41,11 @@ impl LoopDesign {
         } else {
             RotorLossDesign::new(configuration)
         };
-        Ok(Self { configuration: *configuration, cascade, rotor_loss })
+        let stability = if StabilityReport::is_same(&self.configuration, configuration) {
+            self.stability.clone()
+        } else {
+            judged(configuration, &cascade, Some(&self.configuration))?
+        };
+        Ok(Self { configuration: *configuration, cascade, rotor_loss, stability })
     }
 }

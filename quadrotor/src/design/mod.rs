@@ -10,3 +10,4 @@ pub(crate) mod loop_design;
 pub(crate) mod reduced_attitude;
 pub(crate) mod rotor_loss_design;
 pub(crate) mod side_force;
+pub(crate) mod stability;

@@ -50,7 +50,7 @@ impl HilSettings {
         let Ok(Endpoint::TcpIn { host, port }) = link.map(|link| link.endpoint) else {
             return Err(wrong("hil", format!("invalid address `{address}`; use [HOST:]PORT")));
         };
-        let (vehicle, note) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
+        let (vehicle, notes) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
         Ok(Self {
             host,
             port,
@@ -60,7 +60,7 @@ impl HilSettings {
             speed,
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments),
-            notes: note.into_iter().collect(),
+            notes,
         })
     }
 }

@@ -88,11 +88,11 @@ impl Settings {
             let parameters = arguments.parameters.as_deref();
             let parameters =
                 parameters.map(|path| if count > 1 { of_system(path, system_id) } else { path.to_owned() });
-            let (vehicle, note) = vehicle(arguments, number, count, parameters.as_deref())?;
+            let (vehicle, notes) = vehicle(arguments, number, count, parameters.as_deref())?;
             let hub = if shared { 0 } else { number };
             let warning = wind_hold::warning(&vehicle.configuration, &vehicle.wind);
             let own = MemberSettings { system_id, vehicle, hub, parameters };
-            Ok((own, note.into_iter().chain(warning).collect()))
+            Ok((own, notes.into_iter().chain(warning).collect()))
         };
         let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
@@ -236,7 +236,7 @@ pub(super) fn vehicle(
     number: usize,
     count: usize,
     parameters: Option<&Path>,
-) -> Result<(VehicleSettings, Option<Notice>), Failure> {
+) -> Result<(VehicleSettings, Vec<Notice>), Failure> {
     let system_id = first_system_id(arguments).saturating_add(u8::try_from(number).unwrap_or(u8::MAX));
     let identity: Identity = arguments.autopilot.unwrap_or_default().into();
     let home = arguments.home.unwrap_or_default();
@@ -270,13 +270,13 @@ pub(super) fn vehicle(
         wind_drag::provide(&mut vehicle.configuration);
     }
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
-    let note = if windy { wind_drag::note(&vehicle.configuration, &chosen) } else { None };
+    let note = if windy { wind_drag::note(&vehicle.configuration, &chosen.names) } else { None };
     if let Some(path) = mission_of(arguments, system_id) {
         let frame = LocalFrame::new(vehicle.origin);
         let home_m = Vector3::from(vehicle.configuration.initial.position_m);
         vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
     }
-    Ok((vehicle, note))
+    Ok((vehicle, note.into_iter().chain(chosen.warnings).collect()))
 }
 
 /// Parameters that flags name: those of the noise, then `--set`.

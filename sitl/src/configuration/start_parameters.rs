@@ -2,13 +2,23 @@
 
 use std::path::Path;
 
-use vehicle::VehicleSettings;
+use quadrotor::StabilityWarning;
 use vehicle::parameters::{ParameterTable, ParameterValues, SetError, Speed, parse};
+use vehicle::{Notice, Severity, VehicleSettings};
 
 use super::text_file::read_text;
 use crate::failure::Failure;
 
-/// Sets the parameters of the file, then those that are named as `NAME=VALUE`, and returns the MAVLink names of all of them.
+/// What setting parameters has led to.
+#[derive(Debug, Default)]
+pub(super) struct ChosenParameters {
+    /// Their MAVLink names.
+    pub(super) names: Vec<&'static str>,
+    /// What to tell the user about the vehicle that has them.
+    pub(super) warnings: Vec<Notice>,
+}
+
+/// Sets the parameters of the file, then those that are named as `NAME=VALUE`.
 ///
 /// # Errors
 /// [`Failure`] of a file that cannot be used, or of the first value with which the vehicle cannot fly.
@@ -16,7 +26,7 @@ pub(super) fn set_parameters(
     settings: &mut VehicleSettings,
     file: Option<&Path>,
     named: &[String],
-) -> Result<Vec<&'static str>, Failure> {
+) -> Result<ChosenParameters, Failure> {
     let text = match file {
         Some(path) if path.exists() => Some((path, read_text(path)?)),
         // It will be written when a parameter changes: better now than in flight is said that it cannot be.
@@ -27,9 +37,9 @@ pub(super) fn set_parameters(
         }
         _ => None,
     };
-    let mut set = Vec::new();
+    let mut chosen = ChosenParameters::default();
     if text.is_none() && named.is_empty() {
-        return Ok(set);
+        return Ok(chosen);
     }
     let table = ParameterTable::new(settings.identity);
     // Pace and system id are no matter of a file.
@@ -41,10 +51,10 @@ pub(super) fn set_parameters(
     };
     values.check()?;
     if let Some((path, text)) = &text {
-        let in_file = parse(text, &table, &mut values)
+        chosen.names = parse(text, &table, &mut values)
             .map_err(|source| Failure::Parameters { path: (*path).to_owned(), source })?;
-        set.extend(in_file);
     }
+    let mut settings_by_name = Vec::new();
     for setting in named {
         let (name, value) =
             setting.split_once('=').ok_or_else(|| wrong(format!("expected NAME=VALUE, got `{setting}`")))?;
@@ -53,12 +63,16 @@ pub(super) fn set_parameters(
         if let Some(flag) = entry.flag() {
             return Err(wrong(format!("{name} has a flag of its own: {flag}")));
         }
-        table.set_checked(name, table.number(name, value)?, &mut values)?;
-        set.push(entry.id);
+        settings_by_name.push((name, table.number(name, value)?));
+        chosen.names.push(entry.id);
     }
+    table.set_together(&settings_by_name, &mut values).map_err(|(_, error)| error)?;
+    let warning =
+        |warning: &StabilityWarning| Notice { severity: Severity::Warning, text: warning.to_string() };
+    chosen.warnings = values.check()?.warnings().iter().map(warning).collect();
     settings.conduct = values.conduct;
     settings.configuration = values.configuration;
-    Ok(set)
+    Ok(chosen)
 }
 
 fn wrong(reason: String) -> Failure {

@@ -148,6 +148,47 @@ impl ParameterTable {
         *values = changed;
         Ok(change)
     }
+
+    /// Sets several parameters, name and value each, for a vehicle that is still to be made. They are judged as a whole, so that
+    /// values which only fit together may come in any order.
+    ///
+    /// # Errors
+    /// The place of the first setting that cannot be kept, and why; some of the others may be set then.
+    pub fn set_together(
+        &self,
+        settings: &[(&str, f64)],
+        values: &mut ParameterValues,
+    ) -> Result<(), (usize, SetError)> {
+        let mut together = *values;
+        for (place, (name, value)) in settings.iter().enumerate() {
+            self.set(name, *value, &mut together).map_err(|error| (place, error))?;
+        }
+        if together.configuration == values.configuration || together.check().is_ok() {
+            *values = together;
+            return Ok(());
+        }
+        // Not all of them: in turn, until none is accepted any more, to find out which one does not fit.
+        let mut waiting: Vec<usize> = (0..settings.len()).collect();
+        loop {
+            let before = waiting.len();
+            let mut first = None;
+            waiting.retain(|place| {
+                let set = settings.get(*place).map(|(name, value)| self.set_checked(name, *value, values));
+                match set {
+                    Some(Err(error)) => {
+                        first.get_or_insert((*place, error));
+                        true
+                    }
+                    _ => false,
+                }
+            });
+            match first {
+                None => return Ok(()),
+                Some(error) if waiting.len() == before => return Err(error),
+                Some(_) => {}
+            }
+        }
+    }
 }
 
 /// `None` if the parameter cannot have the value; nothing has changed then.

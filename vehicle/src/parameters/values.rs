@@ -1,6 +1,6 @@
 //! What the parameters are parameters of, as plain data.
 
-use quadrotor::{CascadeDesign, Configuration, ConfigurationError};
+use quadrotor::{Configuration, ConfigurationError, StabilityReport};
 
 use super::Speed;
 use crate::vehicle::Conduct;
@@ -20,11 +20,12 @@ pub struct ParameterValues {
 }
 
 impl ParameterValues {
-    /// Whether a closed loop can be built with these values.
+    /// Whether a closed loop can be built with these values, and how it flies.
     ///
     /// # Errors
-    /// [`ConfigurationError`] when values contradict one another or a controller cannot be designed.
-    pub fn check(&self) -> Result<(), ConfigurationError> {
-        CascadeDesign::new(&self.configuration).map(drop)
+    /// [`ConfigurationError`] when values contradict one another, a controller cannot be designed, or the vehicle would be
+    /// lost.
+    pub fn check(&self) -> Result<StabilityReport, ConfigurationError> {
+        StabilityReport::new(&self.configuration)
     }
 }

@@ -13,8 +13,7 @@ struct Waiting {
 
 /// Sets every parameter of a file's text and returns their MAVLink names. Lines are `NAME VALUE`, `NAME,VALUE`, `NAME = VALUE` or
 /// QGroundControl's five columns, with any name of a parameter and any name of a value. What belongs to a single run (system id,
-/// pace) is left out. The parameters are set in turn until none is refused any more, so that values which only fit together may
-/// come in any order.
+/// pace) is left out. The parameters are judged as a whole, so that values which only fit together may come in any order.
 ///
 /// # Errors
 /// [`ParameterFileError`] of the first line that cannot be set; those before and behind it may be set then.
@@ -41,21 +40,10 @@ pub fn parse(
             waiting.push(Waiting { line, id: entry.id, value });
         }
     }
-    let named = waiting.iter().map(|setting| setting.id).collect();
-    loop {
-        let before = waiting.len();
-        let mut first = None;
-        waiting.retain(|Waiting { line, id, value }| match table.set_checked(id, *value, values) {
-            Ok(_) => false,
-            Err(source) => {
-                first.get_or_insert(ParameterFileError::Refused { line: *line, source });
-                true
-            }
-        });
-        match first {
-            None => return Ok(named),
-            Some(error) if waiting.len() == before => return Err(error),
-            Some(_) => {}
-        }
-    }
+    let settings: Vec<_> = waiting.iter().map(|setting| (setting.id, setting.value)).collect();
+    table.set_together(&settings, values).map_err(|(place, source)| ParameterFileError::Refused {
+        line: waiting.get(place).map_or(0, |setting| setting.line),
+        source,
+    })?;
+    Ok(waiting.iter().map(|setting| setting.id).collect())
 }

@@ -1,0 +1,87 @@
+//! What a controller does with small signals.
+
+use lmpc::{ControllerState, Sample};
+use nalgebra::SVector;
+
+use crate::control::tracking_law::TrackingLaw;
+
+/// The gains of one channel of a [`TrackingLaw`] without active limits, found from its answers to unit signals: they
+/// are those of the code that flies, whatever the kind of controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LinearLaw {
+    /// On the increments of the output and of its rate.
+    increment: [f64; 2],
+    /// On the deviations of the output and of its rate.
+    deviation: [f64; 2],
+    /// On the output error.
+    error: f64,
+    /// On the feedback of the sample before.
+    held: f64,
+    /// On the estimated disturbance.
+    disturbance: f64,
+}
+
+/// What one channel of a controller is told at a sample: small signals about hover.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ChannelSample {
+    /// Output and rate since the sample before.
+    pub(crate) increment: [f64; 2],
+    /// Output and rate less their references.
+    pub(crate) deviation: [f64; 2],
+    /// Feedback of the sample before.
+    pub(crate) held: f64,
+    /// Estimated disturbance, in units of the input.
+    pub(crate) disturbance: f64,
+}
+
+impl LinearLaw {
+    /// Of each channel: the channels of a cascade's controller do not act on one another.
+    pub(crate) fn of<const N: usize, const P: usize, const S: usize, const L: usize>(
+        law: &TrackingLaw<N, P, S, L>,
+    ) -> [Self; P] {
+        let answer = |held: f64, sample: Sample<'_, N, P, P>| {
+            let mut state = ControllerState::new(SVector::zeros(), SVector::repeat(held), SVector::zeros());
+            law.step(&mut state, &sample).input
+        };
+        // Even states are outputs, odd ones their rates.
+        let unit = |odd: usize| SVector::from_fn(|state, _| if state % 2 == odd { 1.0 } else { 0.0 });
+        let deviation = [0, 1].map(|odd| answer(0.0, Sample { deviation: unit(odd), ..Sample::default() }));
+        let (increment, error) = if law.sees_deviation_alone() {
+            ([SVector::zeros(); 2], SVector::zeros())
+        } else {
+            (
+                [0, 1].map(|odd| answer(0.0, Sample { increment: unit(odd), ..Sample::default() })),
+                answer(0.0, Sample { error: SVector::repeat(1.0), ..Sample::default() }),
+            )
+        };
+        let held = answer(1.0, Sample::default());
+        let disturbance = answer(0.0, Sample { disturbance: SVector::repeat(1.0), ..Sample::default() });
+        core::array::from_fn(|channel| Self {
+            increment: increment.map(|input| input[channel]),
+            deviation: deviation.map(|input| input[channel]),
+            error: error[channel],
+            held: held[channel],
+            disturbance: disturbance[channel],
+        })
+    }
+
+    /// The same law for an input in other units, of which one of the old ones has `scale`.
+    pub(crate) fn scaled(&self, scale: f64) -> Self {
+        Self {
+            increment: self.increment.map(|gain| gain * scale),
+            deviation: self.deviation.map(|gain| gain * scale),
+            error: self.error * scale,
+            ..*self
+        }
+    }
+
+    /// The feedback of a sample.
+    pub(crate) fn feedback(&self, sample: &ChannelSample) -> f64 {
+        let sum = |gains: &[f64; 2], values: &[f64; 2]| gains[0] * values[0] + gains[1] * values[1];
+        sum(&self.increment, &sample.increment)
+            + sum(&self.deviation, &sample.deviation)
+            + self.error * sample.deviation[0]
+            + self.held * sample.held
+            + self.disturbance * sample.disturbance
+    }
+}

@@ -1,0 +1,242 @@
+//! How the closed loop behaves about hover, and what that says of a flight.
+
+use alloc::vec::Vec;
+use core::f64::consts::LN_2;
+
+use lmpc::DesignError;
+use nalgebra::Vector3;
+
+use crate::design::controller_limits::attitude_bounds;
+use crate::design::stability::linear_law::LinearLaw;
+use crate::design::stability::loop_stability::{LoopStability, Seen};
+use crate::design::stability::moving_axis::{Moving, MovingAxis};
+use crate::design::stability::small_signal::Reading;
+use crate::design::stability::stability_warning::StabilityWarning;
+use crate::design::stability::tilting_loop::TiltingLoop;
+use crate::design::stability::turning_axis::{Turning, TurningAxis};
+use crate::design::stability::turning_loop::TurningLoop;
+use crate::design::stability::verdict::judged;
+use crate::design::stability::vertical_loop::{self, VerticalLoop};
+use crate::{CascadeDesign, Configuration, ConfigurationError, GRAVITY_M_S2, Sensors};
+
+/// A loop whose least damped mode has less than this damping ratio swings: after a disturbance it takes seven oscillations
+/// for one to fade to a hundredth.
+const LEAST_DAMPING: f64 = 0.1;
+/// A loop whose slowest mode takes longer than this, s, to fade to a third is slow.
+const SLOW_S: f64 = 10.0;
+/// Without the torque that the attitude reference needs, errors must take this long, s, to double at least: flights in
+/// which they take less are lost as soon as torques saturate, and few others.
+const UNAIDED_S: f64 = 0.5;
+/// With fewer standard deviations of the tilt than this within limits.tilt the user is warned.
+const WARNED_TILT_DEVIATIONS: f64 = 6.0;
+/// Moments of inertia that miss the triangle inequality by no more than this share are taken for rounded.
+const INERTIA_TOLERANCE: f64 = 0.5;
+
+/// How the closed loop behaves about hover: with its sampled controllers at their two rates, the rotors' lag, and the
+/// estimator that feeds them, each as it flies, without active limits.
+///
+/// A control loop is only made, or changed, with a configuration that has one: unstable loops and noise that no flight
+/// survives are refused.
+///
+/// ```
+/// use quadrotor::{Configuration, ConfigurationError, StabilityReport};
+///
+/// let mut configuration = Configuration::default();
+/// let report = StabilityReport::new(&configuration)?;
+/// assert!(report.loops().iter().all(|each| each.is_stable()));
+/// assert!(report.warnings().is_empty());
+///
+/// // Rotors that answer ten times later than those that the attitude controller was tuned for.
+/// configuration.airframe.rotor_time_constant_s = 0.3;
+/// let refused = StabilityReport::new(&configuration);
+/// assert!(matches!(refused, Err(ConfigurationError::Unstable { name: "roll", .. })));
+/// # Ok::<(), ConfigurationError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityReport {
+    loops: [LoopStability; 6],
+    /// North and east once more, without the torque that the attitude reference needs.
+    unaided: Option<[LoopStability; 2]>,
+    warnings: Vec<StabilityWarning>,
+}
+
+impl StabilityReport {
+    /// Checks a configuration, designs its controllers and judges the closed loop.
+    ///
+    /// # Errors
+    /// Every variant of [`ConfigurationError`] but `Fixed`.
+    pub fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
+        judged(configuration, &CascadeDesign::new(configuration)?, None)
+    }
+
+    /// Of the controllers of a configuration, whatever it says.
+    ///
+    /// # Errors
+    /// [`DesignError::NotFinite`], [`DesignError::Eigenvalues`].
+    pub(crate) fn of(configuration: &Configuration, design: &CascadeDesign) -> Result<Self, DesignError> {
+        let noise = reading(&configuration.sensors);
+        let laws = LinearLaw::of(&design.attitude);
+        let axes = [0, 1, 2].map(|axis| TurningAxis::new(configuration, design, &laws, axis));
+        let turning = |name, axis| {
+            let seen = Seen { angle: Some(Turning::ANGLE), position: None, command: Turning::COMMAND };
+            LoopStability::of(name, &TurningLoop::new(configuration, axis)?, &noise, seen)
+        };
+        let [roll, pitch, yaw] = axes;
+        let tilting = |axes: [TurningAxis; 2]| horizontal(configuration, design, axes, &noise);
+        let [north, east] = tilting([roll, pitch])?;
+        let unaided = roll
+            .has_feed_forward()
+            .then(|| tilting([roll, pitch].map(|axis| axis.without_feed_forward())))
+            .transpose()?;
+        let [down] = LinearLaw::of(&design.altitude);
+        let vertical = VerticalLoop::new(configuration, MovingAxis::new(configuration, design, down))?;
+        let seen =
+            Seen { angle: None, position: Some(vertical_loop::POSITION), command: vertical_loop::COMMAND };
+        let altitude = LoopStability::of("altitude", &vertical, &noise, seen)?;
+        let loops =
+            [turning("roll", roll)?, turning("pitch", pitch)?, turning("yaw", yaw)?, north, east, altitude];
+        let mut report = Self { loops, unaided, warnings: Vec::new() };
+        report.warnings = report.all_warnings(configuration, design);
+        Ok(report)
+    }
+
+    /// Whether a report of one configuration is, but for limits, that of another one with the same controllers.
+    pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
+        let dynamics = |configuration: &Configuration| {
+            let sensors = Sensors { seed: 0, ..configuration.sensors };
+            (configuration.airframe, configuration.controllers, sensors, configuration.limits.tilt_rad)
+        };
+        dynamics(one) == dynamics(other)
+    }
+
+    /// Roll, pitch, yaw, north, east, altitude.
+    pub fn loops(&self) -> &[LoopStability; 6] {
+        &self.loops
+    }
+
+    /// What the user should know of a configuration that flies.
+    pub fn warnings(&self) -> &[StabilityWarning] {
+        &self.warnings
+    }
+
+    /// The first loop that loses the vehicle, from the inner ones outwards: one that is unstable, or that is soon without the
+    /// torque that its attitude reference needs, of which any saturation takes a part.
+    pub(crate) fn unstable(&self) -> Option<&LoopStability> {
+        let unaided = self.unaided.iter().flatten().filter(|each| each.decay_rate_1_s * UNAIDED_S < -LN_2);
+        self.loops.iter().filter(|each| !each.is_stable()).chain(unaided).next()
+    }
+
+    /// Standard deviation of the tilt about one axis under the measurement noise, rad.
+    pub(crate) fn tilt_spread_rad(&self) -> f64 {
+        let [_, _, _, north, east, _] = &self.loops;
+        [north, east]
+            .into_iter()
+            .filter_map(|each| each.spread)
+            .map(|spread| spread.angle_rad)
+            .fold(0.0, f64::max)
+    }
+
+    /// Standard deviations of the commanded roll and pitch torques as multiples of the largest ones in hover.
+    pub(crate) fn torque_shares(
+        &self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+    ) -> [(&'static str, f64); 2] {
+        let airframe = &configuration.airframe;
+        let most =
+            attitude_bounds(&design.mixer, (airframe.weight_n(), airframe.weight_n()), &Vector3::zeros());
+        let [roll, pitch, _, north, east, _] = &self.loops;
+        [(roll, east, 0), (pitch, north, 1)].map(|(turning, tilting, axis)| {
+            let commands = [turning, tilting].into_iter().filter_map(|each| each.spread);
+            let acceleration = commands.map(|spread| spread.command).fold(0.0, f64::max);
+            (turning.name, acceleration * airframe.inertia_kg_m2[axis] / most[axis])
+        })
+    }
+
+    /// The larger of these.
+    pub(crate) fn torque_share(&self, configuration: &Configuration, design: &CascadeDesign) -> f64 {
+        self.torque_shares(configuration, design).into_iter().map(|(_, share)| share).fold(0.0, f64::max)
+    }
+
+    fn all_warnings(&self, configuration: &Configuration, design: &CascadeDesign) -> Vec<StabilityWarning> {
+        let mut warnings: Vec<_> =
+            implausible_inertia(&configuration.airframe.inertia_kg_m2).into_iter().collect();
+        let unaided = self.unaided.iter().flatten().filter(|each| !each.is_stable());
+        warnings.extend(unaided.map(|each| StabilityWarning::SlowAttitude { name: each.name }));
+        for each in &self.loops {
+            if each.damping_ratio < LEAST_DAMPING {
+                warnings.push(StabilityWarning::Swings {
+                    name: each.name,
+                    damping_ratio: each.damping_ratio,
+                    frequency_rad_s: each.frequency_rad_s,
+                });
+            } else if each.decay_rate_1_s * SLOW_S < 1.0 {
+                warnings.push(StabilityWarning::Slow {
+                    name: each.name,
+                    time_constant_s: 1.0 / each.decay_rate_1_s,
+                });
+            }
+        }
+        let (tilt_rad, limit_rad) = (self.tilt_spread_rad(), configuration.limits.tilt_rad);
+        if WARNED_TILT_DEVIATIONS * tilt_rad > limit_rad {
+            warnings.push(StabilityWarning::Shaken { tilt_rad, limit_rad });
+        }
+        let saturated =
+            self.torque_shares(configuration, design).into_iter().filter(|(_, share)| *share > 1.0);
+        warnings.extend(saturated.map(|(name, share)| StabilityWarning::Saturated { name, share }));
+        warnings
+    }
+}
+
+/// Standard deviations of the readings of each axis.
+fn reading(sensors: &Sensors) -> Reading {
+    // Position and attitude are all that the Kalman predictor reads.
+    let read = |deviation: f64| if sensors.output_feedback { 0.0 } else { deviation };
+    Reading {
+        position: sensors.position_noise_m,
+        velocity: read(sensors.velocity_noise_m_s),
+        angle: sensors.attitude_noise_rad,
+        rate: read(sensors.body_rate_noise_rad_s),
+    }
+}
+
+/// The position loops north and east, at any heading: each over the roll and the pitch axis.
+fn horizontal(
+    configuration: &Configuration,
+    design: &CascadeDesign,
+    [roll, pitch]: [TurningAxis; 2],
+    noise: &Reading,
+) -> Result<[LoopStability; 2], DesignError> {
+    let [north, east] = LinearLaw::of(&design.position);
+    // (14): ẍ = −g θ, ÿ = g φ
+    let north = MovingAxis::new(configuration, design, north.scaled(-GRAVITY_M_S2));
+    let east = MovingAxis::new(configuration, design, east.scaled(GRAVITY_M_S2));
+    let seen = Seen {
+        angle: Some(Turning::ANGLE),
+        position: Some(Turning::SIZE + Moving::POSITION),
+        command: Turning::COMMAND,
+    };
+    let over = |name, axis, moving, turning| {
+        LoopStability::of(name, &TiltingLoop::new(configuration, axis, moving, turning)?, noise, seen)
+    };
+    let worst = |name, axis, moving| {
+        let over_pitch = over(name, axis, moving, pitch)?;
+        if roll == pitch { Ok(over_pitch) } else { Ok(over_pitch.worse(over(name, axis, moving, roll)?)) }
+    };
+    let [drag_x, drag_y, _] = configuration.airframe.drag_n_s_m;
+    let north_loop = worst("north", 0, north)?;
+    let east_loop = if north == east && drag_x == drag_y {
+        LoopStability { name: "east", ..north_loop }
+    } else {
+        worst("east", 1, east)?
+    };
+    Ok([north_loop, east_loop])
+}
+
+/// A warning about moments of inertia that no rigid body has: each is at most the sum of the other two.
+fn implausible_inertia(inertia_kg_m2: &[f64; 3]) -> Option<StabilityWarning> {
+    let [x, y, z] = *inertia_kg_m2;
+    let largest = x.max(y).max(z);
+    let others = x + y + z - largest;
+    (largest > (1.0 + INERTIA_TOLERANCE) * others).then_some(StabilityWarning::Inertia { x, y, z })
+}

@@ -1,0 +1,58 @@
+//! Whether a vehicle can be flown with a configuration.
+
+use core::f64::consts::LN_2;
+
+use crate::design::stability::cause::Cause;
+use crate::design::stability::noise_effect::NoiseEffect;
+use crate::design::stability::stability_report::StabilityReport;
+use crate::{CascadeDesign, Configuration, ConfigurationError};
+
+/// So many standard deviations of the tilt must stay within limits.tilt.
+const TILT_DEVIATIONS: f64 = 3.0;
+/// Torque commands may spread over so many times what the rotors can make: beyond it, what noise asks for about one axis
+/// leaves nothing to control the other one with.
+const MOST_TORQUE_SHARE: f64 = 4.0;
+
+/// The report of a configuration with which the vehicle can be flown. `flown` is the configuration that flew before, if
+/// there is one.
+///
+/// # Errors
+/// [`ConfigurationError::Unstable`], [`ConfigurationError::Noise`], [`ConfigurationError::Design`].
+pub(crate) fn judged(
+    configuration: &Configuration,
+    design: &CascadeDesign,
+    flown: Option<&Configuration>,
+) -> Result<StabilityReport, ConfigurationError> {
+    let report = report(configuration, design)?;
+    if let Some(each) = report.unstable() {
+        let default = Configuration::default();
+        return Err(ConfigurationError::Unstable {
+            name: each.name,
+            doubling_s: LN_2 / -each.decay_rate_1_s,
+            cause: Cause::of(configuration, flown.into_iter().chain([&default])),
+        });
+    }
+    let (tilt_rad, limit_rad) = (report.tilt_spread_rad(), configuration.limits.tilt_rad);
+    let share = report.torque_share(configuration, design);
+    let effect = if TILT_DEVIATIONS * tilt_rad > limit_rad {
+        NoiseEffect::Tilt { tilt_rad, limit_rad }
+    } else if share > MOST_TORQUE_SHARE {
+        NoiseEffect::Torque { share }
+    } else {
+        return Ok(report);
+    };
+    let (name, value) = effect.loudest_source(configuration, design)?;
+    Err(ConfigurationError::Noise { name, value, effect })
+}
+
+/// The report of a configuration, whatever it says.
+///
+/// # Errors
+/// [`ConfigurationError::Design`].
+pub(crate) fn report(
+    configuration: &Configuration,
+    design: &CascadeDesign,
+) -> Result<StabilityReport, ConfigurationError> {
+    StabilityReport::of(configuration, design)
+        .map_err(|source| ConfigurationError::Design { part: "closed loop", source })
+}
