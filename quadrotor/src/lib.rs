@@ -139,11 +139,12 @@ pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, position_model};
 pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]
 pub use guidance::heading_shaper::HeadingShaper;
 #[cfg(feature = "shaper")]
-pub use guidance::motion_profile::{Motion, MotionProfile};
+pub use guidance::motion_profile::{Motion, MotionExtremes, MotionProfile};
 pub use guidance::position_reference::PositionReference;
 #[cfg(feature = "shaper")]
 pub use guidance::state_to_state::AxisLimits;

@@ -90,6 +90,21 @@ impl Guidance {
         Heading::of(&self.reference(time_us))
     }
 
+    /// Whether the way that is tracked at `time_us` is within limits: a plan keeps them, and its acceleration fits them. A
+    /// reference that is passed on is another's plan: only its acceleration is looked at.
+    pub fn fits(&self, limits: &Limits, time_us: u64) -> bool {
+        /// What rounding makes of an acceleration at its limit.
+        const ROUNDING: f64 = 1.0 + 1e-6;
+        let acceleration = self.reference(time_us).acceleration_m_s2;
+        let small = acceleration.xy().norm() <= ROUNDING * limits.acceleration_horizontal_m_s2
+            && acceleration.z.abs() <= ROUNDING * limits.acceleration_vertical_m_s2;
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => small && shaper.keeps_limits(),
+            Self::Direct(_) => small,
+        }
+    }
+
     /// What is tracked at `time_us`.
     pub fn reference(&self, time_us: u64) -> PositionReference {
         match self {

@@ -2,10 +2,17 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::motion::approach;
 use super::proposal::Proposal;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::steering::SteeringKind;
+
+/// Below this height, m, the vehicle sinks with its speed of landing.
+const SLOW_M: f64 = 2.0;
+/// By how much it sinks faster per metre above that, 1/s, as far as a share of the vertical acceleration can brake it.
+const SLOWING_PER_S: f64 = 0.4;
+const BRAKING_SHARE: f64 = 0.5;
 
 /// Share of the weight per error of the sink rate, s/m.
 const SINK_GAIN: f64 = 0.5;
@@ -28,8 +35,10 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let height_m = -situation.outputs.setpoint.position_m.z;
     let slow = situation.conduct.land_speed_m_s;
     // Slower towards the ground, within what the shaper is allowed.
-    let fastest = situation.limits().speed_down_m_s.max(slow);
-    let speed = (slow + 0.4 * (height_m - 2.0)).clamp(slow, fastest);
+    let limits = situation.braking_limits();
+    let fastest = limits.speed_down_m_s.max(slow);
+    let braking_m_s2 = BRAKING_SHARE * limits.acceleration_vertical_m_s2;
+    let speed = (slow + approach(height_m - SLOW_M, SLOWING_PER_S, braking_m_s2)).clamp(slow, fastest);
     let [x, y] = match above {
         Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
         None => [AxisTarget::HOLD; 2],

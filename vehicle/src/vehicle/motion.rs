@@ -19,6 +19,10 @@ const BRAKING_SHARE: f64 = 0.3;
 /// An error below this, m or rad, counts as none once it rests.
 const ARRIVED: f64 = 1e-6;
 
+/// A difference of speed that does not matter, m/s, and one of the yaw rate, rad/s.
+const SMALL_M_S: f64 = 0.05;
+const SMALL_RAD_S: f64 = 0.02;
+
 /// The moving reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
@@ -82,6 +86,61 @@ impl Motion {
             }
         }
         self.turn(limits, dt_s);
+    }
+
+    /// Whether it can go on within lower limits and neither run past a place nor past a velocity that it is asked for. What is
+    /// under way ends within the limits that it began with.
+    pub fn fits(&self, limits: &Limits) -> bool {
+        self.fits_horizontally(limits) && self.fits_vertically(limits) && self.turn_fits(limits)
+    }
+
+    fn fits_horizontally(&self, limits: &Limits) -> bool {
+        let speed = limits.speed_horizontal_m_s;
+        let strongest = limits.acceleration_horizontal_m_s2;
+        let velocity = self.state.velocity_m_s.xy();
+        let wanted = Vector2::from_fn(|axis, _| {
+            self.wanted_m_s(axis, (speed, speed), strongest).unwrap_or(velocity[axis])
+        });
+        let missing = wanted.cap_magnitude(speed) - velocity;
+        let acceleration = self.state.acceleration_m_s2.xy();
+        let towards = acceleration.try_normalize(0.0).map_or(0.0, |direction| missing.dot(&direction));
+        acceleration_fits(acceleration.norm(), towards, strongest, limits.jerk_horizontal_m_s3)
+            && (0..2).all(|axis| self.can_brake(axis, wanted[axis]))
+    }
+
+    fn fits_vertically(&self, limits: &Limits) -> bool {
+        const DOWN: usize = 2;
+        let (fastest, strongest) =
+            ((limits.speed_up_m_s, limits.speed_down_m_s), limits.acceleration_vertical_m_s2);
+        let velocity = self.state.velocity_m_s[DOWN];
+        let wanted = self.wanted_m_s(DOWN, fastest, strongest).unwrap_or(velocity);
+        let acceleration = self.state.acceleration_m_s2[DOWN];
+        let missing = wanted.clamp(-fastest.0, fastest.1) - velocity;
+        let towards = missing * acceleration.signum();
+        acceleration_fits(acceleration.abs(), towards, strongest, limits.jerk_vertical_m_s3)
+            && self.can_brake(DOWN, wanted)
+    }
+
+    /// Whether an axis is no faster on its way to a place than it would come to it, m/s.
+    fn can_brake(&self, axis: usize, wanted_m_s: f64) -> bool {
+        let velocity = self.state.velocity_m_s[axis];
+        let to_a_place = matches!(self.set_point.axes[axis], AxisTarget::Position(_));
+        !to_a_place || velocity.abs() <= wanted_m_s.abs() + SMALL_M_S && velocity * wanted_m_s >= -SMALL_M_S
+    }
+
+    fn turn_fits(&self, limits: &Limits) -> bool {
+        let rate = self.state.yaw_rate_rad_s;
+        let left = |angle: f64| wrapped(angle - self.state.yaw_rad);
+        let coming = |angle: f64| {
+            approach(left(angle), POSITION_RATE, BRAKING_SHARE * limits.yaw_acceleration_rad_s2).abs()
+        };
+        match self.set_point.yaw {
+            YawTarget::Track(..) => true,
+            YawTarget::Hold => rate.abs() <= SMALL_RAD_S,
+            YawTarget::Rate(wanted) => (rate - wanted).abs() <= SMALL_RAD_S,
+            YawTarget::Angle(angle) => rate.abs() <= coming(angle) + SMALL_RAD_S,
+            YawTarget::Follow(angle, wanted) => (rate - wanted).abs() <= coming(angle) + SMALL_RAD_S,
+        }
     }
 
     fn settle(&mut self, axis: usize, goal: f64) {
@@ -190,8 +249,14 @@ pub fn wrapped(angle_rad: f64) -> f64 {
     angle_rad - TURN * libm::floor(angle_rad / TURN + 0.5)
 }
 
+/// Whether an acceleration is within its limit, and can be taken out with a jerk before the velocity changes by more than is
+/// missing in its direction.
+pub fn acceleration_fits(acceleration: f64, missing: f64, strongest: f64, jerk: f64) -> bool {
+    acceleration <= strongest && acceleration * acceleration / (2.0 * jerk) <= missing.max(SMALL_M_S)
+}
+
 /// Speed towards a goal at a distance: proportional when near, what a deceleration brakes in time when far.
-fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
+pub fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
     let linear_end = deceleration / (rate * rate);
     let distance = way.abs();
     let speed = if distance <= linear_end {
