@@ -49,6 +49,14 @@ impl CommandLimits {
         self.until_us = time_us.saturating_add((braking_s * 1e6) as u64);
     }
 
+    /// Those that the reference keeps, and those that its motion began with.
+    pub fn of_references(&self, configuration: &Configuration) -> EasedLimits {
+        let kept = Configuration { limits: *self.limits.kept(), ..*configuration };
+        let mut limits = EasedLimits::new(&kept.flyable_limits());
+        limits.want(&configuration.flyable_limits());
+        limits
+    }
+
     /// Looks whether the motion fits the wanted limits.
     pub fn watch(
         &mut self,
@@ -60,8 +68,9 @@ impl CommandLimits {
         if self.limits.wanted() == self.limits.kept() {
             return;
         }
-        let flyable = configuration.flyable_limits();
-        let fits = guidance.fits(&flyable, time_us);
+        let of_references = self.of_references(configuration);
+        let flyable = *of_references.wanted();
+        let fits = guidance.fits(&flyable, of_references.kept(), time_us);
         let reference = guidance.reference(time_us);
         let returns = || {
             can_brake(&reference, body, &flyable)

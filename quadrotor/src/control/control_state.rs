@@ -190,7 +190,8 @@ impl ControlState {
         self.engage |= law != self.law && self.law != ControlLaw::Cascade;
         self.law = law;
         if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            self.guidance = self.guidance.switched(&configuration.flyable_limits(), shaping, time_us);
+            self.guidance =
+                self.guidance.switched(&self.limits.of_references(configuration), shaping, time_us);
         }
         if inputs.armed && (!self.armed || self.engage) {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;

@@ -93,10 +93,10 @@ impl HeadingShaper {
         if self.keeps_limits() {
             return plan_yaw(now, goal, self.limits.wanted()).map(|profile| (profile, true));
         }
-        let largest = plan_yaw(now, goal, &self.limits.largest());
+        let as_before = plan_yaw(now, goal, self.limits.kept());
         let bar = match same {
             Some(_) => beyond(&self.profile, self.elapsed_s(time_us)),
-            None => excess(now, goal, &largest?, &self.limits.largest())?,
+            None => excess(now, goal, &as_before?, self.limits.kept())?,
         };
         let plan = |limits: &Limits| {
             let profile = plan_yaw(now, goal, limits)?;
@@ -108,8 +108,8 @@ impl HeadingShaper {
         if same == Some(false) {
             return plan(self.limits.wanted()).map(|profile| (profile, true));
         }
-        let swings_no_farther = || largest.filter(|_| same.is_none()).map(|profile| (profile, false));
-        self.limits.least(plan).or_else(swings_no_farther)
+        let as_before = as_before.filter(|_| same.is_none()).map(|profile| (profile, false));
+        self.limits.least(plan).or(as_before)
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
+use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
 use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
@@ -59,7 +60,7 @@ impl Guidance {
     }
 
     /// A reference, shaped or not, that goes on from where this one is.
-    pub fn switched(&self, limits: &Limits, shaping: bool, time_us: u64) -> Self {
+    pub fn switched(&self, limits: &EasedLimits, shaping: bool, time_us: u64) -> Self {
         let now = self.reference(time_us);
         #[cfg(feature = "shaper")]
         if shaping {
@@ -91,17 +92,31 @@ impl Guidance {
     }
 
     /// Whether the way that is tracked at `time_us` is within limits: a plan keeps them, and its acceleration fits them. A
-    /// reference that is passed on is another's plan: only its acceleration is looked at.
-    pub fn fits(&self, limits: &Limits, time_us: u64) -> bool {
+    /// reference that is passed on is another's plan: it may take its acceleration out with the jerk of the limits before.
+    pub fn fits(&self, limits: &Limits, before: &Limits, time_us: u64) -> bool {
         /// What rounding makes of an acceleration at its limit.
         const ROUNDING: f64 = 1.0 + 1e-6;
+        /// An acceleration that counts as none, m/s².
+        const NONE_M_S2: f64 = 0.1;
         let acceleration = self.reference(time_us).acceleration_m_s2;
         let small = acceleration.xy().norm() <= ROUNDING * limits.acceleration_horizontal_m_s2
             && acceleration.z.abs() <= ROUNDING * limits.acceleration_vertical_m_s2;
         match self {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => small && shaper.keeps_limits(),
-            Self::Direct(_) => small,
+            Self::Direct(_) => {
+                let taken_out = |acceleration_m_s2: f64, jerk: f64, jerk_before: f64| {
+                    jerk >= jerk_before || acceleration_m_s2 <= NONE_M_S2
+                };
+                let (now, then) = (limits, before);
+                small
+                    && taken_out(
+                        acceleration.xy().norm(),
+                        now.jerk_horizontal_m_s3,
+                        then.jerk_horizontal_m_s3,
+                    )
+                    && taken_out(acceleration.z.abs(), now.jerk_vertical_m_s3, then.jerk_vertical_m_s3)
+            }
         }
     }
 

@@ -52,11 +52,13 @@ impl Shaper {
     }
 
     /// A shaper that takes over a moving reference and brings it to rest.
-    pub fn moving(reference: &PositionReference, limits: &Limits, time_us: u64) -> Self {
+    pub fn moving(reference: &PositionReference, eased: &EasedLimits, time_us: u64) -> Self {
+        let limits = eased.wanted();
         let at_rest = Self::at_rest(&reference.position_m, reference.yaw_rad, limits, time_us);
         let mut shaper = Self {
             plan: WayPlan::going_on(reference),
-            heading: HeadingShaper::moving(&Heading::of(reference), limits, time_us),
+            limits: *eased,
+            heading: HeadingShaper::moving(&Heading::of(reference), eased.kept(), time_us),
             // None that can be asked for: the update below always plans.
             goal: PositionReference { velocity_m_s: Vector3::repeat(f64::NAN), ..at_rest.goal },
             ..at_rest
@@ -121,9 +123,11 @@ impl Shaper {
         if self.keeps_limits() {
             return WayPlan::new(now, &goal, self.limits.wanted()).map(|plan| (plan, true));
         }
-        let largest = WayPlan::new(now, &goal, &self.limits.largest())?;
-        let bar = largest.excursion(0.0);
-        self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar)).or(Some((largest, false)))
+        // As the motion would have gone on, with its speeds, too, if it stays nearer to its way so.
+        let as_before = WayPlan::new(now, &goal, self.limits.kept())?;
+        let bar = as_before.excursion(0.0);
+        let plan = self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar));
+        plan.or(Some((as_before, false)))
     }
 
     /// A plan to the same goal within other limits, and whether it is within the wanted ones. `None` if the present plan is to

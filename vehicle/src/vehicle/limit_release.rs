@@ -9,8 +9,8 @@ use super::steering::{Steering, SteeringKind};
 
 /// How often that is looked at, µs.
 const PERIOD_US: u64 = 20_000;
-/// So much lower, m, a stop is lower than another one.
-const LOWER_M: f64 = 0.01;
+/// A stop that is less than this, m, from another one is as safe.
+const FARTHER_M: f64 = 0.05;
 
 /// Whether limits have been lowered and the motion can keep them from now on: its acceleration can be taken out within them, and a
 /// stop within them is as safe as one within the limits that it began with.
@@ -36,13 +36,14 @@ fn takes_acceleration_out(situation: &Situation, limits: &Limits) -> bool {
         && acceleration_fits(vertical, 0.0, limits.acceleration_vertical_m_s2, limits.jerk_vertical_m_s3)
 }
 
-/// Whether a stop within limits leads neither into the ground nor through the fence, unless any stop does.
+/// Whether a stop within limits leads neither into the ground nor through the fence, unless it ends where any stop does.
 fn stops_as_safely(situation: &Situation, wanted: &Limits) -> bool {
     let largest = situation.braking_limits();
-    let [lower_m, higher_m] = [wanted, &largest].map(|limits| stopping_place_m(situation, limits).z);
-    let grounded = lower_m > LOWER_M && lower_m > higher_m + LOWER_M;
+    let [later_m, sooner_m] = [wanted, &largest].map(|limits| stopping_place_m(situation, limits));
+    if (later_m - sooner_m).norm() < FARTHER_M {
+        return true;
+    }
+    let grounded = later_m.z > 0.0;
     let bounded = situation.fence().is_some_and(|fence| fence.bounds());
-    let breaches =
-        || breach_ahead(situation, wanted).is_some() && breach_ahead(situation, &largest).is_none();
-    !(grounded || bounded && breaches())
+    !(grounded || bounded && breach_ahead(situation, wanted).is_some())
 }

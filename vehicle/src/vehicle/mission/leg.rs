@@ -171,6 +171,11 @@ impl Leg {
         self.corner = corner;
     }
 
+    /// All of it is planned within the limits that hold.
+    pub fn release_limits(&mut self) {
+        self.limits.release();
+    }
+
     /// Whether it can be flown within limits from the motion that it begins with.
     pub fn is_flyable(&self, limits: &Limits) -> bool {
         match self.phase {
@@ -220,7 +225,8 @@ impl Leg {
             self.corner = None;
             within(self)
         });
-        if let Some((_, true)) = found {
+        // Behind a corner the legs count with the limits that it was planned within.
+        if self.corner.is_none() && matches!(found, Some((_, true))) {
             self.limits.release();
         }
         let straight = found.map(|(straight, _)| straight);

@@ -91,7 +91,14 @@ impl<'a> Route<'a> {
                 };
                 // Limits that have been lowered hold from where the motion out of the turn can keep them.
                 let within = |limits: &Limits| Some(leg(limits)).filter(|leg| leg.is_flyable(limits));
-                turn.limits(self.limits).least(within).map_or_else(|| leg(self.limits), |(leg, _)| leg)
+                match turn.limits(self.limits).least(within) {
+                    Some((mut leg, true)) => {
+                        leg.release_limits();
+                        leg
+                    }
+                    Some((leg, false)) => leg,
+                    None => leg(self.limits),
+                }
             }
             None => {
                 let start = Start::settled(reference, self.limits, is_at_rest(reference));
