@@ -16,15 +16,21 @@ const TRACKING_M: f64 = 0.1;
 /// How long a motion fits lower limits before they hold, µs: commands that are still on the move end within it.
 const SETTLED_US: u64 = 1_000_000;
 
+/// How many times the longest braking is waited for until a reference that is passed on fits as it moves.
+const PATIENCE: u64 = 3;
+
 /// The limits that commands keep.
 ///
 /// Lower limits hold once the motion fits them: when the reference does, and the vehicle can come to its reference within them.
-/// A reference that is passed on as it comes may never fit; then they hold after the time of the longest braking.
+/// A reference that is passed on as it comes may never rest: after the time of the longest braking it is enough that it fits as it
+/// moves, and after a multiple of that time they hold in any case.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CommandLimits {
     limits: EasedLimits,
-    /// When the wanted limits hold in any case, µs.
-    until_us: u64,
+    /// From when on a reference that is passed on may fit while it moves, µs.
+    moving_from_us: u64,
+    /// When the wanted limits hold whatever reference is passed on, µs.
+    latest_us: u64,
     /// Since when the motion has fitted the wanted limits, µs.
     fits_since_us: Option<u64>,
 }
@@ -32,7 +38,7 @@ pub(crate) struct CommandLimits {
 impl CommandLimits {
     /// Limits that hold.
     pub fn new(limits: &Limits) -> Self {
-        Self { limits: EasedLimits::new(limits), until_us: 0, fits_since_us: None }
+        Self { limits: EasedLimits::new(limits), moving_from_us: 0, latest_us: 0, fits_since_us: None }
     }
 
     /// Other limits are wanted from `time_us` on.
@@ -46,7 +52,14 @@ impl CommandLimits {
         let fastest = kept.speed_horizontal_m_s.max(kept.speed_up_m_s).max(kept.speed_down_m_s);
         let weakest = kept.acceleration_horizontal_m_s2.min(kept.acceleration_vertical_m_s2);
         let braking_s = fastest / (BRAKING_SHARE * weakest);
-        self.until_us = time_us.saturating_add((braking_s * 1e6) as u64);
+        let braking_us = (braking_s * 1e6) as u64;
+        self.moving_from_us = time_us.saturating_add(braking_us);
+        self.latest_us = self.moving_from_us.saturating_add(PATIENCE.saturating_mul(braking_us));
+    }
+
+    /// Whether lower limits do not hold yet.
+    pub fn is_eased(&self) -> bool {
+        self.limits.is_eased()
     }
 
     /// Those that the reference keeps, and those that its motion began with.
@@ -65,12 +78,11 @@ impl CommandLimits {
         body: &RigidBody,
         time_us: u64,
     ) {
-        if self.limits.wanted() == self.limits.kept() {
+        if !self.is_eased() {
             return;
         }
-        let of_references = self.of_references(configuration);
-        let flyable = *of_references.wanted();
-        let fits = guidance.fits(&flyable, of_references.kept(), time_us);
+        let flyable = configuration.flyable_limits();
+        let fits = guidance.fits(&flyable, time_us >= self.moving_from_us, time_us);
         let reference = guidance.reference(time_us);
         let returns = || {
             can_brake(&reference, body, &flyable)
@@ -78,7 +90,7 @@ impl CommandLimits {
         };
         self.fits_since_us = (fits && returns()).then(|| self.fits_since_us.unwrap_or(time_us));
         let settled = self.fits_since_us.is_some_and(|since_us| time_us - since_us >= SETTLED_US);
-        let late = time_us >= self.until_us && (fits || !guidance.is_shaped());
+        let late = time_us >= self.latest_us && (fits || !guidance.is_shaped());
         if settled || late {
             self.limits.release();
             self.fits_since_us = None;

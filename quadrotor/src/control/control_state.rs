@@ -116,6 +116,11 @@ impl ControlState {
         self.next_us = self.clocks(controllers).first_instant_us(self.next_us);
     }
 
+    /// Whether limits have been lowered that the present motion cannot keep yet.
+    pub fn is_easing(&self) -> bool {
+        self.limits.is_eased()
+    }
+
     /// The next instant at which it samples, µs.
     pub fn next_us(&self) -> u64 {
         self.next_us

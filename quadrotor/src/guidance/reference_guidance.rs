@@ -92,31 +92,20 @@ impl Guidance {
     }
 
     /// Whether the way that is tracked at `time_us` is within limits: a plan keeps them, and its acceleration fits them. A
-    /// reference that is passed on is another's plan: it may take its acceleration out with the jerk of the limits before.
-    pub fn fits(&self, limits: &Limits, before: &Limits, time_us: u64) -> bool {
+    /// reference that is passed on is another's plan, which may brake as before until it rests, unless `moving` ones fit, too.
+    pub fn fits(&self, limits: &Limits, moving: bool, time_us: u64) -> bool {
         /// What rounding makes of an acceleration at its limit.
         const ROUNDING: f64 = 1.0 + 1e-6;
-        /// An acceleration that counts as none, m/s².
-        const NONE_M_S2: f64 = 0.1;
-        let acceleration = self.reference(time_us).acceleration_m_s2;
+        /// A reference slower than this, m/s, rests.
+        const RESTS_M_S: f64 = 0.1;
+        let now = self.reference(time_us);
+        let acceleration = now.acceleration_m_s2;
         let small = acceleration.xy().norm() <= ROUNDING * limits.acceleration_horizontal_m_s2
             && acceleration.z.abs() <= ROUNDING * limits.acceleration_vertical_m_s2;
         match self {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => small && shaper.keeps_limits(),
-            Self::Direct(_) => {
-                let taken_out = |acceleration_m_s2: f64, jerk: f64, jerk_before: f64| {
-                    jerk >= jerk_before || acceleration_m_s2 <= NONE_M_S2
-                };
-                let (now, then) = (limits, before);
-                small
-                    && taken_out(
-                        acceleration.xy().norm(),
-                        now.jerk_horizontal_m_s3,
-                        then.jerk_horizontal_m_s3,
-                    )
-                    && taken_out(acceleration.z.abs(), now.jerk_vertical_m_s3, then.jerk_vertical_m_s3)
-            }
+            Self::Direct(_) => small && (moving || now.velocity_m_s.norm() <= RESTS_M_S),
         }
     }
 

@@ -136,7 +136,8 @@ impl Vehicle {
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
-        if is_fitting(&self.situation()) {
+        let easing = self.closed_loop.simulation().control().state().is_easing();
+        if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
         }
         let (situation, parts) = self.situation_and_machines();
