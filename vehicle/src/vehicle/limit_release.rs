@@ -14,6 +14,7 @@ const FARTHER_M: f64 = 0.05;
 
 /// Whether limits have been lowered and the motion can keep them from now on: its acceleration can be taken out within them, and a
 /// stop within them is as safe as one within the limits that it began with.
+///
 /// Only a reference without a plan is judged by its present motion: a plan of larger limits, in which the closed loop is easing,
 /// may have no acceleration now and need them later.
 pub fn is_fitting(situation: &Situation, easing: bool) -> bool {

@@ -60,6 +60,7 @@ enum Phase {
 
 /// How a leg goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // One of them is returned a tick.
 pub enum LegProgress {
     /// It is flown.
     Flying,
