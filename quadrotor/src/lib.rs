@@ -145,11 +145,12 @@ pub use design::stability::noise_effect::NoiseEffect;
 pub use design::stability::stability_report::StabilityReport;
 pub use design::stability::stability_warning::StabilityWarning;
 pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]
 pub use guidance::heading_shaper::HeadingShaper;
 #[cfg(feature = "shaper")]
-pub use guidance::motion_profile::{Motion, MotionProfile};
+pub use guidance::motion_profile::{Motion, MotionExtremes, MotionProfile};
 pub use guidance::position_reference::PositionReference;
 #[cfg(feature = "shaper")]
 pub use guidance::state_to_state::AxisLimits;

@@ -242,3 +242,25 @@ fn any_input_is_flown_refused_or_ends_the_flight_by_name() {
     // 1000 N·m turn the vehicle by more than a revolution in an integration step.
     assert_eq!(ended, ["x", "x", "y", "y", "z", "z"].map(|axis| format!("disturbance.torque.{axis}")));
 }
+
+/// A jerk limit that is lowered while the vehicle comes down holds as far as the descent can keep it: at 1 m/s³ from the first
+/// second on it would end in the ground.
+#[test]
+fn a_lowered_limit_leads_no_flight_past_its_goal() {
+    let subject = closed_loop();
+    for (goal_z_m, jerk_m_s3) in [(-3.0, 1.0), (-20.0, 0.4)] {
+        let start = [("initial.position.z", -10.0), ("reference.position.z", goal_z_m)];
+        let level = [("reference.position.x", 0.0), ("reference.position.y", 0.0)];
+        let mut instance = Instance::initialized(subject, &[start, level].concat(), &[]);
+        instance.fly(0.0, 0.1, 10);
+        assert_eq!(instance.set_real(&[("limits.jerk.vertical", jerk_m_s3)]), OK);
+        let mut beyond_m: f64 = 0.0;
+        for step in 10..400 {
+            instance.fly(0.1 * f64::from(step), 0.1, 1);
+            let z_m = instance.real("position.z");
+            beyond_m = beyond_m.max((z_m - goal_z_m) * (goal_z_m + 10.0).signum());
+        }
+        assert!(beyond_m < 0.02, "{beyond_m} m past {goal_z_m} m");
+        assert!((instance.real("position.z") - goal_z_m).abs() < 0.01);
+    }
+}

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
+use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::{Command, Estimator};
 use crate::control::instants::{Clocks, LATEST_US, Phases};
@@ -27,6 +28,8 @@ pub struct ControlState {
     /// Whether reference and controllers take over the vehicle anew at the next sample.
     engage: bool,
     guidance: Guidance,
+    /// Limits of the commands.
+    limits: CommandLimits,
     estimator: Estimator,
     cascade: Cascade,
     /// Commanded speeds of the rotors while armed, rad/s.
@@ -67,6 +70,7 @@ impl ControlState {
             law: inputs.target.law(),
             engage: false,
             guidance,
+            limits: CommandLimits::new(&configuration.limits),
             estimator: estimator(configuration, &first, time_us),
             cascade,
             rotor_command_rad_s: start.rotor_speed_rad_s,
@@ -97,7 +101,11 @@ impl ControlState {
         let controllers = &after.configuration.controllers;
         if self.armed {
             self.cascade.hand_over(before, after);
+            self.limits.change(&after.configuration.limits, self.next_us);
             self.estimator.hand_over(before, after);
+        }
+        if !self.armed {
+            self.limits = CommandLimits::new(&after.configuration.limits);
         }
         // Nothing is under way on the ground that a phase would be kept for.
         self.phases = if self.armed {
@@ -106,6 +114,11 @@ impl ControlState {
             Phases::default()
         };
         self.next_us = self.clocks(controllers).first_instant_us(self.next_us);
+    }
+
+    /// Whether limits have been lowered that the present motion cannot keep yet.
+    pub fn is_easing(&self) -> bool {
+        self.limits.is_eased()
     }
 
     /// The next instant at which it samples, µs.
@@ -182,7 +195,8 @@ impl ControlState {
         self.engage |= law != self.law && self.law != ControlLaw::Cascade;
         self.law = law;
         if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            self.guidance = self.guidance.switched(&configuration.limits, shaping, time_us);
+            self.guidance =
+                self.guidance.switched(&self.limits.of_references(configuration), shaping, time_us);
         }
         if inputs.armed && (!self.armed || self.engage) {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
@@ -191,6 +205,7 @@ impl ControlState {
             self.rotor_command_rad_s = start.rotor_speed_rad_s;
         }
         if inputs.armed && !self.armed {
+            self.limits = CommandLimits::new(&configuration.limits);
             let first = instruments.read(time_us).checked(time_us)?;
             self.estimator = estimator(configuration, &first, time_us);
         }
@@ -253,11 +268,14 @@ impl ControlState {
         due: Due,
         time_us: u64,
     ) {
-        let (configuration, cascade) = (&design.configuration, &design.cascade);
-        let (controllers, limits) = (&configuration.controllers, &configuration.limits);
+        let cascade = &design.cascade;
+        let limits = &design.configuration.flyable_limits();
         if due.position || due.altitude {
             self.guidance.sample(reference, limits, time_us);
+            self.limits.watch(&design.configuration, &self.guidance, &seen.body, time_us);
         }
+        let configuration = &self.limits.in_force(&design.configuration);
+        let controllers = &configuration.controllers;
         if due.position {
             // Commands ramp up to the input until the next sample.
             let setpoint = self.guidance.setpoint(time_us, controllers.position.sample_time_us);
@@ -297,7 +315,7 @@ fn engaged(
 ) -> (Guidance, Cascade) {
     let (_, _, psi) = body.rotation().euler_angles();
     (
-        Guidance::new(&configuration.limits, shaping, &body.position_m, psi, time_us),
+        Guidance::new(&configuration.flyable_limits(), shaping, &body.position_m, psi, time_us),
         Cascade::new(body, time_us),
     )
 }

@@ -38,9 +38,11 @@ impl Governor {
 
     /// [`Governor::seen`] of a vector: its direction is kept.
     pub(crate) fn seen_vector<const D: usize>(&self, error: &SVector<f64, D>) -> SVector<f64, D> {
-        let size = error.norm();
+        // The square of a finite number can be infinite.
+        let unit = error.amax().max(1.0);
+        let size = unit * (error / unit).norm();
         let seen = self.seen(size);
-        if seen < size { error * (seen / size) } else { *error }
+        if seen < size { error / unit * (seen / (size / unit)) } else { *error }
     }
 }
 

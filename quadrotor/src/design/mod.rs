@@ -4,6 +4,7 @@ pub(crate) mod capacities;
 pub(crate) mod cascade_design;
 pub(crate) mod controller_limits;
 pub(crate) mod estimator_design;
+pub(crate) mod flyable_limits;
 pub mod limited_samples;
 pub(crate) mod linear_models;
 pub(crate) mod loop_design;

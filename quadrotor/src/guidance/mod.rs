@@ -1,6 +1,7 @@
 //! From what the vehicle is asked for to the set-points that the controllers track.
 
 pub(crate) mod attitude_target;
+pub(crate) mod eased_limits;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
@@ -15,3 +16,5 @@ pub(crate) mod setpoint;
 pub(crate) mod shaper;
 #[cfg(feature = "shaper")]
 pub(crate) mod state_to_state;
+#[cfg(feature = "shaper")]
+pub(crate) mod way_plan;

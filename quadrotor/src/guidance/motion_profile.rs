@@ -33,6 +33,45 @@ impl Motion {
     }
 }
 
+impl Motion {
+    /// When the velocity or the acceleration passes zero under constant jerk, s; negative before now.
+    fn turns_s(&self) -> [Option<f64>; 3] {
+        let Self { velocity: v, acceleration: a, jerk: j, .. } = *self;
+        if j == 0.0 {
+            return [(a != 0.0).then(|| -v / a), None, None];
+        }
+        let root = libm::sqrt(a * a - 2.0 * j * v);
+        [-a / j, (-a + root) / j, (-a - root) / j].map(|turn_s| turn_s.is_finite().then_some(turn_s))
+    }
+}
+
+/// Ranges of a motion along one axis, each from the lowest to the highest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionExtremes {
+    /// Of the position.
+    pub position: [f64; 2],
+    /// Of the velocity.
+    pub velocity: [f64; 2],
+}
+
+impl MotionExtremes {
+    fn of(motion: &Motion) -> Self {
+        Self { position: [motion.position; 2], velocity: [motion.velocity; 2] }
+    }
+
+    fn widen(&mut self, motion: &Motion) {
+        let widen = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+        self.position = widen(self.position, motion.position);
+        self.velocity = widen(self.velocity, motion.velocity);
+    }
+
+    /// How far the position leaves the way between two places, on either side.
+    pub fn beyond(&self, from: f64, to: f64) -> f64 {
+        let [low, high] = self.position;
+        (from.min(to) - low).max(high - from.max(to)).max(0.0)
+    }
+}
+
 /// Most pieces that a profile can have: two to brake into the limits, seven of the jerk-limited profile,
 /// and the one that goes on for ever.
 const PIECES: usize = 10;
@@ -59,6 +98,14 @@ impl MotionProfile {
         }
     }
 
+    /// The same motion elsewhere.
+    pub(crate) fn moved(mut self, by: f64) -> Self {
+        for (_, motion) in &mut self.pieces {
+            motion.position += by;
+        }
+        self
+    }
+
     /// When the last piece begins, s: from then on the velocity stays as it is.
     pub fn duration_s(&self) -> f64 {
         self.last().0
@@ -69,17 +116,22 @@ impl MotionProfile {
         self.last().1
     }
 
-    /// The lowest velocity on the way.
-    pub fn lowest_velocity(&self) -> f64 {
+    /// The ranges of position and velocity from `time_s` on until the last piece begins.
+    pub fn extremes_from(&self, time_s: f64) -> MotionExtremes {
+        let mut extremes = MotionExtremes::of(&self.at(time_s));
         let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);
-        let within = used.iter().zip(used.iter().skip(1)).flat_map(|((start_s, motion), (end_s, _))| {
-            let duration_s = end_s - start_s;
-            // Where the acceleration passes zero.
-            let turn_s = -motion.acceleration / motion.jerk;
-            let turns = (turn_s > 0.0 && turn_s < duration_s).then(|| motion.after(turn_s).velocity);
-            [Some(motion.velocity), turns].into_iter().flatten()
-        });
-        within.fold(self.end().velocity, f64::min)
+        for ((start_s, motion), (end_s, end)) in used.iter().zip(used.iter().skip(1)) {
+            if *end_s <= time_s {
+                continue;
+            }
+            extremes.widen(end);
+            for turn_s in motion.turns_s().into_iter().flatten() {
+                if turn_s > (time_s - start_s).max(0.0) && turn_s < end_s - start_s {
+                    extremes.widen(&motion.after(turn_s));
+                }
+            }
+        }
+        extremes
     }
 
     fn last(&self) -> &(f64, Motion) {

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
+use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
 use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
@@ -59,7 +60,7 @@ impl Guidance {
     }
 
     /// A reference, shaped or not, that goes on from where this one is.
-    pub fn switched(&self, limits: &Limits, shaping: bool, time_us: u64) -> Self {
+    pub fn switched(&self, limits: &EasedLimits, shaping: bool, time_us: u64) -> Self {
         let now = self.reference(time_us);
         #[cfg(feature = "shaper")]
         if shaping {
@@ -88,6 +89,24 @@ impl Guidance {
             direct.sample_yaw(reference, limits, time_us);
         }
         Heading::of(&self.reference(time_us))
+    }
+
+    /// Whether the way that is tracked at `time_us` is within limits: a plan keeps them, and its acceleration fits them. A
+    /// reference that is passed on is another's plan, which may brake as before until it rests, unless `moving` ones fit, too.
+    pub fn fits(&self, limits: &Limits, moving: bool, time_us: u64) -> bool {
+        /// What rounding makes of an acceleration at its limit.
+        const ROUNDING: f64 = 1.0 + 1e-6;
+        /// A reference slower than this, m/s, rests.
+        const RESTS_M_S: f64 = 0.1;
+        let now = self.reference(time_us);
+        let acceleration = now.acceleration_m_s2;
+        let small = acceleration.xy().norm() <= ROUNDING * limits.acceleration_horizontal_m_s2
+            && acceleration.z.abs() <= ROUNDING * limits.acceleration_vertical_m_s2;
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => small && shaper.keeps_limits(),
+            Self::Direct(_) => small && (moving || now.velocity_m_s.norm() <= RESTS_M_S),
+        }
     }
 
     /// What is tracked at `time_us`.

@@ -1,39 +1,38 @@
 //! The jerk-limited reference shaper.
 //!
-//! The profiles are time-optimal for third-order limits from any state to any state. This file chooses the axes and their limits.
+//! The profiles are time-optimal for third-order limits from any state to any state. This file decides when to plan, and under
+//! which limits.
 
-use nalgebra::{Rotation2, Vector2, Vector3};
-use rsruckig::prelude::ControlInterface;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
 use crate::guidance::heading_shaper::HeadingShaper;
-use crate::guidance::motion_profile::{Motion, MotionProfile};
-use crate::guidance::state_to_state::StateToState;
+use crate::guidance::way_plan::{Excursion, WayPlan};
 use crate::{Limits, PositionReference};
-
-/// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
-const STRAIGHT: [f64; 2] = [0.98, 0.198];
-/// Both when the motion is not along that line: the largest square inside the circle.
-const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
 
 /// A goal that moves by less than this, m, is followed as it is, without a new plan: the controllers handle steps of that size,
 /// and a goal that trembles does not make the profile tremble.
 const SMALL_M: f64 = 0.01;
 
-/// A plan from one state to the goal, as profiles over time.
+/// Plans reach as far as this along each axis, m: beyond it the solver runs out of digits. It is more than the longest way of
+/// braking within the ranges of the limits, 13 km, and a plan to a farther goal is renewed on the way.
+const FARTHEST_M: f64 = 20_000.0;
+/// What is left of such a plan when it is renewed, m.
+const RENEWED_M: f64 = 15_000.0;
+
+/// A plan from one state to the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shaper {
     start_us: u64,
     /// The goal that was planned for; its heading is that of `heading`.
     goal: PositionReference,
-    limits: Limits,
+    /// The limits of the plan; kept ones until the motion fits those that are wanted.
+    limits: EasedLimits,
     /// How far the present goal is from the planned one, m.
     offset_m: Vector3<f64>,
-    /// Direction of the first horizontal axis, rad from north.
-    bearing_rad: f64,
-    /// Along the bearing, across it to the right, down.
-    axes: [MotionProfile; 3],
+    plan: WayPlan,
     /// The heading is planned by itself: one that keeps turning does not disturb the way.
     heading: HeadingShaper,
 }
@@ -41,32 +40,25 @@ pub struct Shaper {
 impl Shaper {
     /// A shaper that rests in one place since `time_us`.
     pub fn at_rest(position_m: &Vector3<f64>, yaw_rad: f64, limits: &Limits, time_us: u64) -> Self {
-        let rest = |position| MotionProfile::constant(Motion::at(position));
+        let rest = PositionReference::goal((*position_m).into(), yaw_rad);
         Self {
             start_us: time_us,
-            goal: PositionReference::goal((*position_m).into(), yaw_rad),
-            limits: *limits,
+            goal: rest,
+            limits: EasedLimits::new(limits),
             offset_m: Vector3::zeros(),
-            bearing_rad: 0.0,
-            axes: [rest(position_m.x), rest(position_m.y), rest(position_m.z)],
-            heading: HeadingShaper::moving(&Heading { yaw_rad, yaw_rate_rad_s: 0.0 }, time_us),
+            plan: WayPlan::going_on(&rest),
+            heading: HeadingShaper::moving(&Heading { yaw_rad, yaw_rate_rad_s: 0.0 }, limits, time_us),
         }
     }
 
     /// A shaper that takes over a moving reference and brings it to rest.
-    pub fn moving(reference: &PositionReference, limits: &Limits, time_us: u64) -> Self {
+    pub fn moving(reference: &PositionReference, eased: &EasedLimits, time_us: u64) -> Self {
+        let limits = eased.wanted();
         let at_rest = Self::at_rest(&reference.position_m, reference.yaw_rad, limits, time_us);
-        let motion = |axis: usize| {
-            MotionProfile::constant(Motion {
-                position: reference.position_m[axis],
-                velocity: reference.velocity_m_s[axis],
-                acceleration: reference.acceleration_m_s2[axis],
-                jerk: 0.0,
-            })
-        };
         let mut shaper = Self {
-            axes: [motion(0), motion(1), motion(2)],
-            heading: HeadingShaper::moving(&Heading::of(reference), time_us),
+            plan: WayPlan::going_on(reference),
+            limits: *eased,
+            heading: HeadingShaper::moving(&Heading::of(reference), eased.kept(), time_us),
             // None that can be asked for: the update below always plans.
             goal: PositionReference { velocity_m_s: Vector3::repeat(f64::NAN), ..at_rest.goal },
             ..at_rest
@@ -82,96 +74,117 @@ impl Shaper {
 
     /// The shaped reference at `time_us`.
     pub fn reference(&self, time_us: u64) -> PositionReference {
-        let time_s = seconds(self.start_us, time_us);
-        let motions = self.axes.map(|axis| axis.at(time_s));
+        let now = self.plan.at(self.elapsed_s(time_us));
         let Heading { yaw_rad, yaw_rate_rad_s } = self.heading.heading(time_us);
-        let turn = Rotation2::new(self.bearing_rad);
-        let world = |part: fn(&Motion) -> f64| {
-            let [along, across, down] = motions.each_ref().map(part);
-            let horizontal = turn * Vector2::new(along, across);
-            Vector3::new(horizontal.x, horizontal.y, down)
-        };
-        PositionReference {
-            position_m: world(|motion| motion.position) + self.offset_m,
-            velocity_m_s: world(|motion| motion.velocity),
-            acceleration_m_s2: world(|motion| motion.acceleration),
-            yaw_rad,
-            yaw_rate_rad_s,
-        }
+        PositionReference { position_m: now.position_m + self.offset_m, yaw_rad, yaw_rate_rad_s, ..now }
     }
 
     /// Plans anew if the goal or the limits have changed, and only the heading if only that has. A problem that has no
-    /// solution leaves the old plan in force.
+    /// solution leaves the old plan in force, and so do lower limits as long as the motion cannot keep them.
     pub fn update(&mut self, goal: &PositionReference, limits: &Limits, time_us: u64) {
+        self.heading.update(&Heading::of(goal), limits, time_us);
+        let changed = of_way(self.limits.wanted()) != of_way(limits);
+        self.limits.want(limits);
         let moved = goal.position_m - self.goal.position_m;
         let same_way = goal.velocity_m_s == self.goal.velocity_m_s && moved.norm() <= SMALL_M;
-        if same_way && *limits == self.limits {
+        if same_way && !changed && self.keeps_limits() && !self.is_to_be_renewed(time_us) {
             self.offset_m = moved;
-            self.heading.update(&Heading::of(goal), limits, time_us);
             return;
         }
         let now = self.reference(time_us);
-        let way = (goal.position_m - now.position_m).xy();
-        let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
-        let mut heading = self.heading;
-        let turns = heading.plan(&Heading::of(goal), limits, time_us);
-        if let (Some(axes), true) = (plan_position(&now, goal, limits, bearing_rad), turns) {
-            *self = Self {
-                start_us: time_us,
-                goal: *goal,
-                limits: *limits,
-                offset_m: Vector3::zeros(),
-                bearing_rad,
-                axes,
-                heading,
-            };
+        let plan = if same_way { self.eased(&now, goal, changed, time_us) } else { self.towards(&now, goal) };
+        let Some((plan, as_wanted)) = plan else { return };
+        if as_wanted {
+            self.limits.release();
         }
+        (self.start_us, self.goal, self.offset_m, self.plan) = (time_us, *goal, Vector3::zeros(), plan);
+    }
+
+    /// Whether the plan keeps the limits that are wanted.
+    pub fn keeps_limits(&self) -> bool {
+        of_way(self.limits.wanted()) == of_way(self.limits.kept())
+    }
+
+    fn elapsed_s(&self, time_us: u64) -> f64 {
+        time_us.saturating_sub(self.start_us) as f64 / 1e6
+    }
+
+    /// Whether a plan that ends before its goal has come near its end.
+    fn is_to_be_renewed(&self, time_us: u64) -> bool {
+        let end_m = self.plan.end_m();
+        let left_m = (end_m - self.plan.at(self.elapsed_s(time_us)).position_m).amax();
+        left_m < RENEWED_M && (self.goal.position_m - end_m).amax() > SMALL_M
+    }
+
+    /// A plan to another goal, and whether it is within the wanted limits: as far as it does not leave its way farther than the
+    /// kept ones would.
+    fn towards(&self, now: &PositionReference, goal: &PositionReference) -> Option<(WayPlan, bool)> {
+        let goal = within_reach(now, goal);
+        if self.keeps_limits() {
+            return WayPlan::new(now, &goal, self.limits.wanted()).map(|plan| (plan, true));
+        }
+        // As the motion would have gone on, with its speeds, too, if it stays nearer to its way so.
+        let as_before = WayPlan::new(now, &goal, self.limits.kept())?;
+        let bar = as_before.excursion(0.0);
+        let plan = self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar));
+        plan.or(Some((as_before, false)))
+    }
+
+    /// A plan to the same goal within other limits, and whether it is within the wanted ones. `None` if the present plan is to
+    /// be flown on: the wanted limits would lead farther off the way. Between them is looked for only once.
+    fn eased(
+        &self,
+        now: &PositionReference,
+        goal: &PositionReference,
+        changed: bool,
+        time_us: u64,
+    ) -> Option<(WayPlan, bool)> {
+        let goal = within_reach(now, goal);
+        if self.keeps_limits() {
+            return WayPlan::new(now, &goal, self.limits.wanted()).map(|plan| (plan, true));
+        }
+        let bar = self.plan.excursion(self.elapsed_s(time_us));
+        if !changed {
+            return self.good_plan(now, &goal, self.limits.wanted(), &bar).map(|plan| (plan, true));
+        }
+        self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar))
+    }
+
+    /// A plan within limits that is as good as another one within the kept limits.
+    fn good_plan(
+        &self,
+        now: &PositionReference,
+        goal: &PositionReference,
+        limits: &Limits,
+        bar: &Excursion,
+    ) -> Option<WayPlan> {
+        WayPlan::new(now, goal, limits)
+            .filter(|plan| plan.is_as_good_as(bar, self.limits.wanted(), self.limits.kept()))
     }
 }
 
-fn seconds(since_us: u64, time_us: u64) -> f64 {
-    time_us.saturating_sub(since_us) as f64 / 1e6
+/// The limits of the way.
+fn of_way(limits: &Limits) -> [f64; 7] {
+    [
+        limits.speed_horizontal_m_s,
+        limits.speed_up_m_s,
+        limits.speed_down_m_s,
+        limits.acceleration_horizontal_m_s2,
+        limits.acceleration_vertical_m_s2,
+        limits.jerk_horizontal_m_s3,
+        limits.jerk_vertical_m_s3,
+    ]
 }
 
-/// Along the bearing, across it and down, from a state to a goal.
-fn plan_position(
-    from: &PositionReference,
-    goal: &PositionReference,
-    limits: &Limits,
-    bearing_rad: f64,
-) -> Option<[MotionProfile; 3]> {
-    let turn = Rotation2::new(-bearing_rad);
-    let local = |world: &Vector3<f64>| {
-        let horizontal = turn * world.xy();
-        [horizontal.x, horizontal.y, world.z]
-    };
-    // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT and TURNING.
-    let across = |vector: &Vector3<f64>, limit: f64| local(vector)[1].abs() / limit;
-    let straight = across(&from.velocity_m_s, limits.speed_horizontal_m_s) <= STRAIGHT[1]
-        && across(&from.acceleration_m_s2, limits.acceleration_horizontal_m_s2) <= STRAIGHT[1];
-    let shares = if straight { STRAIGHT } else { TURNING };
-    let limit = |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
-
-    let max_velocity = limit(limits.speed_horizontal_m_s, limits.speed_down_m_s);
-    let mut min_velocity = max_velocity.map(|speed| -speed);
-    min_velocity[2] = -limits.speed_up_m_s;
-    let target_velocity = local(&goal.velocity_m_s);
-    StateToState {
-        interface: ControlInterface::Position,
-        from: core::array::from_fn(|axis| Motion {
-            position: local(&from.position_m)[axis],
-            velocity: local(&from.velocity_m_s)[axis],
-            acceleration: local(&from.acceleration_m_s2)[axis],
-            jerk: 0.0,
-        }),
-        target_position: local(&goal.position_m),
-        target_velocity: core::array::from_fn(|axis| {
-            target_velocity[axis].clamp(min_velocity[axis], max_velocity[axis])
-        }),
-        max_velocity,
-        min_velocity,
-        max_acceleration: limit(limits.acceleration_horizontal_m_s2, limits.acceleration_vertical_m_s2),
-        max_jerk: limit(limits.jerk_horizontal_m_s3, limits.jerk_vertical_m_s3),
+/// The goal, or a place to rest at on the straight line to it if it is farther away than a plan reaches.
+fn within_reach(now: &PositionReference, goal: &PositionReference) -> PositionReference {
+    // In units in which no difference of finite numbers is infinite.
+    let unit_m = goal.position_m.amax().max(now.position_m.amax()).max(1.0);
+    let way = goal.position_m / unit_m - now.position_m / unit_m;
+    let reach = FARTHEST_M / unit_m;
+    if way.amax() <= reach {
+        return *goal;
     }
-    .solve()
+    let position_m = now.position_m + way * (FARTHEST_M / way.amax());
+    PositionReference { velocity_m_s: Vector3::zeros(), position_m, ..*goal }
 }

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use quadrotor::{
-    Configuration, ConfigurationError, Disturbance, Inputs, Outputs, RigidBody, RotorFault, Simulation,
-    SimulationError,
+    Configuration, ConfigurationError, Disturbance, EasedLimits, Inputs, Outputs, RigidBody, RotorFault,
+    Simulation, SimulationError,
 };
 
 use super::steering::Steering;
@@ -13,6 +13,8 @@ use crate::world::{Wind, WindSettings};
 #[derive(Debug)]
 pub struct ClosedLoop {
     simulation: Simulation,
+    /// Limits of the references that the vehicle makes.
+    limits: EasedLimits,
     wind: Wind,
     wind_m_s: Vector3<f64>,
 }
@@ -40,12 +42,23 @@ impl ClosedLoop {
     pub fn new(configuration: &Configuration, wind: WindSettings) -> Result<Self, ConfigurationError> {
         let inputs = Inputs { armed: false, ..Inputs::default() };
         let simulation = Simulation::new(configuration, &inputs)?;
-        Ok(Self { simulation, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
+        let limits = EasedLimits::new(&configuration.flyable_limits());
+        Ok(Self { simulation, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
     }
 
     /// The engine.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// The limits that references keep, and the larger ones that the present motion began with.
+    pub fn limits(&self) -> &EasedLimits {
+        &self.limits
+    }
+
+    /// Lets lower limits hold: the motion can keep them.
+    pub fn release_limits(&mut self) {
+        self.limits.release();
     }
 
     /// Velocity of the air, NED, m/s.
@@ -65,7 +78,7 @@ impl ClosedLoop {
     ) -> Result<(), SimulationError> {
         let time_us = conditions.outputs.time_us;
         let dt_s = duration_us as f64 / 1e6;
-        let asked = steering.apply(&self.simulation, conditions.outputs, dt_s);
+        let asked = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
         let inputs = Inputs {
             disturbance: Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() },
@@ -82,6 +95,8 @@ impl ClosedLoop {
     /// # Errors
     /// [`ConfigurationError`]; nothing has changed then.
     pub fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
-        self.simulation.reconfigure(configuration)
+        self.simulation.reconfigure(configuration)?;
+        self.limits.want(&configuration.flyable_limits());
+        Ok(())
     }
 }

@@ -2,10 +2,20 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::motion::approach;
 use super::proposal::Proposal;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::steering::SteeringKind;
+
+/// Below this height, m, the vehicle sinks with its speed of landing.
+const SLOW_M: f64 = 2.0;
+/// By how much it sinks faster per metre above that, 1/s, as far as a share of the vertical acceleration and jerk can brake it.
+const SLOWING_PER_S: f64 = 0.4;
+const BRAKING_SHARE: f64 = 0.5;
+/// By how much the reference may be faster while it brakes, m/s: a reference that follows a speed with deceleration a and jerk j
+/// is a²/(2 j) behind.
+const LATE_M_S: f64 = 0.3;
 
 /// Share of the weight per error of the sink rate, s/m.
 const SINK_GAIN: f64 = 0.5;
@@ -28,8 +38,13 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let height_m = -situation.outputs.setpoint.position_m.z;
     let slow = situation.conduct.land_speed_m_s;
     // Slower towards the ground, within what the shaper is allowed.
-    let fastest = situation.limits().speed_down_m_s.max(slow);
-    let speed = (slow + 0.4 * (height_m - 2.0)).clamp(slow, fastest);
+    let limits = situation.braking_limits();
+    let fastest = limits.speed_down_m_s.max(slow);
+    let jerk_m_s3 = limits.jerk_vertical_m_s3;
+    let braking_m_s2 =
+        (BRAKING_SHARE * limits.acceleration_vertical_m_s2).min(libm::sqrt(2.0 * jerk_m_s3 * LATE_M_S));
+    let slowing_per_s = SLOWING_PER_S.min(libm::sqrt(BRAKING_SHARE * jerk_m_s3 / fastest));
+    let speed = (slow + approach(height_m - SLOW_M, slowing_per_s, braking_m_s2)).clamp(slow, fastest);
     let [x, y] = match above {
         Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
         None => [AxisTarget::HOLD; 2],

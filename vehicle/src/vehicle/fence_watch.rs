@@ -1,6 +1,7 @@
 //! The vehicle within its fence: refusing what leads out of it, and seeing a breach before it happens.
 
 use nalgebra::Vector3;
+use quadrotor::Limits;
 
 use super::motion::Motion;
 use super::notice::Refusal;
@@ -16,8 +17,8 @@ const MARGIN_M: f64 = 0.5;
 /// How often the way to a stop is predicted, µs, and in which steps, s.
 const PREDICTION_PERIOD_US: u64 = 20_000;
 const STEP_S: f64 = 0.02;
-/// Longest stop, s.
-const LONGEST_STOP_S: f64 = 10.0;
+/// Longest stop that is predicted, s.
+const LONGEST_STOP_S: f64 = 120.0;
 /// Slower than this, m/s, it stands.
 const STANDING_M_S: f64 = 0.1;
 
@@ -56,7 +57,7 @@ impl FenceWatch {
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
         let predicts = bounded && situation.conduct.failsafe.fence_ahead;
-        let ahead = || if predicts { breach_ahead(situation) } else { None };
+        let ahead = || if predicts { breach_ahead(situation, &situation.braking_limits()) } else { None };
         self.record.now = here.or_else(ahead);
         self.record.is_ahead = here.is_none() && self.record.now.is_some();
         here.filter(|_| was_ahead)
@@ -70,9 +71,9 @@ impl FenceWatch {
     }
 }
 
-/// What of the fence the vehicle cannot help breaching.
-fn breach_ahead(situation: &Situation) -> Option<Breach> {
-    let stopping_m = stopping_place_m(situation);
+/// What of the fence the vehicle cannot help breaching when it brakes within limits.
+pub(super) fn breach_ahead(situation: &Situation, limits: &Limits) -> Option<Breach> {
+    let stopping_m = stopping_place_m(situation, limits);
     let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
     // It stops on its way, around the next corner if need be.
     let mut from_m = situation.outputs.position_m;
@@ -88,9 +89,9 @@ fn breach_ahead(situation: &Situation) -> Option<Breach> {
     })
 }
 
-/// Where the vehicle comes to rest if it brakes now: the reference moves as that of the hold mode. On its way to a goal that is
+/// Where the vehicle comes to rest, NED, m, if it brakes now, within limits: the reference moves as that of the hold mode. On its way to a goal that is
 /// not beyond the goal, where the shaper stops.
-fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
+pub(super) fn stopping_place_m(situation: &Situation, limits: &Limits) -> Vector3<f64> {
     let position_m = situation.outputs.position_m;
     let steering = situation.steering;
     if !situation.armed || steering.kind() == SteeringKind::Idle {
@@ -103,7 +104,7 @@ fn stopping_place_m(situation: &Situation) -> Vector3<f64> {
     let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
     let mut braking = Motion::from(motion, PositionSetPoint::HOLD, 0);
     for _ in 0..(LONGEST_STOP_S / STEP_S) as usize {
-        braking.step(situation.limits(), STEP_S);
+        braking.step(limits, STEP_S);
         motion = braking.reference(0);
         if motion.velocity_m_s.norm() < STANDING_M_S {
             break;

@@ -50,6 +50,7 @@ mod home;
 mod injection;
 mod landed;
 mod landing;
+mod limit_release;
 mod machines;
 mod manual_control;
 mod mission;

@@ -4,7 +4,7 @@
 //! Places alone go through the shaper of the closed loop, which plans ahead. This generator has no plan; it can be
 //! told something else on each axis at any time.
 
-use libm::{copysign, sqrt};
+use libm::{cbrt, copysign, sqrt};
 use nalgebra::{Vector2, Vector3};
 use quadrotor::{Limits, PositionReference};
 
@@ -16,8 +16,18 @@ const VELOCITY_RATE: f64 = 6.0;
 const POSITION_RATE: f64 = 0.8;
 /// Share of the acceleration limit that braking before a position counts on; the jerk limit takes the rest.
 const BRAKING_SHARE: f64 = 0.3;
+/// By how much a velocity may be behind while it brakes, m/s: with deceleration a and jerk j it is a²/(2 j) behind.
+const LATE_M_S: f64 = 0.1;
+/// Jerk that closes a position error of this size, m, with a rate r is r³ times it.
+const JERK_PER_RATE: f64 = 2.0;
 /// An error below this, m or rad, counts as none once it rests.
 const ARRIVED: f64 = 1e-6;
+
+/// A difference of speed that does not matter, m/s, and one of the yaw rate, rad/s.
+const SMALL_M_S: f64 = 0.05;
+const SMALL_RAD_S: f64 = 0.02;
+/// An acceleration that counts as none, m/s².
+const SMALL_M_S2: f64 = 0.1;
 
 /// The moving reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +94,67 @@ impl Motion {
         self.turn(limits, dt_s);
     }
 
+    /// Whether it can go on within lower limits and neither run past a place nor past a velocity that it is asked for. What is
+    /// under way ends within the limits that it began with.
+    pub fn fits(&self, limits: &Limits) -> bool {
+        self.fits_horizontally(limits) && self.fits_vertically(limits) && self.turn_fits(limits)
+    }
+
+    fn fits_horizontally(&self, limits: &Limits) -> bool {
+        let speed = limits.speed_horizontal_m_s;
+        let strongest = limits.acceleration_horizontal_m_s2;
+        let velocity = self.state.velocity_m_s.xy();
+        let wanted = Vector2::from_fn(|axis, _| {
+            self.wanted_m_s(axis, (speed, speed), (strongest, limits.jerk_horizontal_m_s3))
+                .unwrap_or(velocity[axis])
+        });
+        let missing = wanted.cap_magnitude(speed) - velocity;
+        let acceleration = self.state.acceleration_m_s2.xy();
+        let stopping = (0..2).any(|axis| self.set_point.axes[axis] == AxisTarget::HOLD)
+            && acceleration.norm() > SMALL_M_S2
+            && velocity.norm() > SMALL_M_S;
+        let towards = acceleration.try_normalize(0.0).map_or(0.0, |direction| missing.dot(&direction));
+        !stopping
+            && acceleration_fits(acceleration.norm(), towards, strongest, limits.jerk_horizontal_m_s3)
+            && (0..2).all(|axis| self.can_brake(axis, wanted[axis]))
+    }
+
+    fn fits_vertically(&self, limits: &Limits) -> bool {
+        const DOWN: usize = 2;
+        let (fastest, strongest) =
+            ((limits.speed_up_m_s, limits.speed_down_m_s), limits.acceleration_vertical_m_s2);
+        let velocity = self.state.velocity_m_s[DOWN];
+        let wanted =
+            self.wanted_m_s(DOWN, fastest, (strongest, limits.jerk_vertical_m_s3)).unwrap_or(velocity);
+        let acceleration = self.state.acceleration_m_s2[DOWN];
+        let missing = wanted.clamp(-fastest.0, fastest.1) - velocity;
+        let towards = missing * acceleration.signum();
+        acceleration_fits(acceleration.abs(), towards, strongest, limits.jerk_vertical_m_s3)
+            && self.can_brake(DOWN, wanted)
+    }
+
+    /// Whether an axis is no faster on its way to a place than it would come to it, m/s.
+    fn can_brake(&self, axis: usize, wanted_m_s: f64) -> bool {
+        let velocity = self.state.velocity_m_s[axis];
+        let to_a_place = matches!(self.set_point.axes[axis], AxisTarget::Position(_));
+        !to_a_place || velocity.abs() <= wanted_m_s.abs() + SMALL_M_S && velocity * wanted_m_s >= -SMALL_M_S
+    }
+
+    fn turn_fits(&self, limits: &Limits) -> bool {
+        let rate = self.state.yaw_rate_rad_s;
+        let left = |angle: f64| wrapped(angle - self.state.yaw_rad);
+        let coming = |angle: f64| {
+            approach(left(angle), POSITION_RATE, BRAKING_SHARE * limits.yaw_acceleration_rad_s2).abs()
+        };
+        match self.set_point.yaw {
+            YawTarget::Track(..) => true,
+            YawTarget::Hold => rate.abs() <= SMALL_RAD_S,
+            YawTarget::Rate(wanted) => (rate - wanted).abs() <= SMALL_RAD_S,
+            YawTarget::Angle(angle) => rate.abs() <= coming(angle) + SMALL_RAD_S,
+            YawTarget::Follow(angle, wanted) => (rate - wanted).abs() <= coming(angle) + SMALL_RAD_S,
+        }
+    }
+
     fn settle(&mut self, axis: usize, goal: f64) {
         let rests = self.state.velocity_m_s[axis].abs() < 1e-4;
         if rests && (goal - self.state.position_m[axis]).abs() < ARRIVED {
@@ -94,11 +165,12 @@ impl Motion {
     }
 
     /// Velocity that an axis wants, m/s, one that is given as it is; `None` if its acceleration is given or it follows a trajectory.
-    fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), acceleration: f64) -> Option<f64> {
+    fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), (acceleration, jerk): (f64, f64)) -> Option<f64> {
+        let deceleration = (BRAKING_SHARE * acceleration).min(sqrt(2.0 * jerk * LATE_M_S));
+        let rate = POSITION_RATE.min(cbrt(jerk / JERK_PER_RATE));
         Some(match self.set_point.axes[axis] {
             AxisTarget::Position(goal) => {
-                approach(goal - self.state.position_m[axis], POSITION_RATE, BRAKING_SHARE * acceleration)
-                    .clamp(-fastest.0, fastest.1)
+                approach(goal - self.state.position_m[axis], rate, deceleration).clamp(-fastest.0, fastest.1)
             }
             AxisTarget::Velocity(velocity) => velocity,
             AxisTarget::Acceleration(_) | AxisTarget::Track { .. } => return None,
@@ -108,8 +180,9 @@ impl Motion {
     fn accelerate_horizontally(&mut self, limits: &Limits, dt_s: f64) {
         let fastest = limits.speed_horizontal_m_s;
         let strongest = limits.acceleration_horizontal_m_s2;
-        let wanted: [Option<f64>; 2] =
-            core::array::from_fn(|axis| self.wanted_m_s(axis, (fastest, fastest), strongest));
+        let wanted: [Option<f64>; 2] = core::array::from_fn(|axis| {
+            self.wanted_m_s(axis, (fastest, fastest), (strongest, limits.jerk_horizontal_m_s3))
+        });
         let velocity = self.state.velocity_m_s.xy();
         // The limits are those of the vehicle in its plane, not of an axis: it goes slower, not elsewhere.
         let target =
@@ -133,7 +206,7 @@ impl Motion {
         const DOWN: usize = 2;
         let fastest = (limits.speed_up_m_s, limits.speed_down_m_s);
         let (strongest, jerk) = (limits.acceleration_vertical_m_s2, limits.jerk_vertical_m_s3);
-        let Some(wanted) = self.wanted_m_s(DOWN, fastest, strongest) else {
+        let Some(wanted) = self.wanted_m_s(DOWN, fastest, (strongest, limits.jerk_vertical_m_s3)) else {
             self.push(DOWN, fastest, strongest, jerk, dt_s);
             return;
         };
@@ -190,8 +263,14 @@ pub fn wrapped(angle_rad: f64) -> f64 {
     angle_rad - TURN * libm::floor(angle_rad / TURN + 0.5)
 }
 
+/// Whether an acceleration is within its limit, and can be taken out with a jerk before the velocity changes by more than is
+/// missing in its direction.
+pub fn acceleration_fits(acceleration: f64, missing: f64, strongest: f64, jerk: f64) -> bool {
+    acceleration <= strongest && acceleration * acceleration / (2.0 * jerk) <= missing.max(SMALL_M_S)
+}
+
 /// Speed towards a goal at a distance: proportional when near, what a deceleration brakes in time when far.
-fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
+pub fn approach(way: f64, rate: f64, deceleration: f64) -> f64 {
     let linear_end = deceleration / (rate * rate);
     let distance = way.abs();
     let speed = if distance <= linear_end {

@@ -23,9 +23,10 @@ impl PathSteering {
         after_m: [Vector3<f64>; 2],
         now: &PositionReference,
         yaw_rad: f64,
+        limits: &Limits,
         time_us: u64,
     ) -> Self {
-        let heading = HeadingShaper::moving(&Heading::of(now), time_us);
+        let heading = HeadingShaper::moving(&Heading::of(now), limits, time_us);
         Self { flight, after_m, heading, goal: Heading { yaw_rad, yaw_rate_rad_s: 0.0 } }
     }
 

@@ -134,7 +134,8 @@ impl<'a> Proposal<'a> {
     /// Steers along a piece of a way, with the corners of the way after it, NED, m. The heading goes on.
     pub fn fly_along(&mut self, situation: &Situation, flight: PieceFlight, after_m: [Vector3<f64>; 2]) {
         let now = &situation.outputs.setpoint;
-        let begin = |yaw_rad| PathSteering::new(flight, after_m, now, yaw_rad, situation.time_us);
+        let begin =
+            |yaw_rad| PathSteering::new(flight, after_m, now, yaw_rad, situation.limits(), situation.time_us);
         let path = match self.steering() {
             Steering::Path(path) => path.onto(flight, after_m),
             Steering::Goal(goal) => begin(goal.yaw_rad),

@@ -1,7 +1,7 @@
 //! A vehicle made by hand, for tests of single machines.
 
 use nalgebra::Vector3;
-use quadrotor::{Activity, Configuration, Outputs, PositionReference};
+use quadrotor::{Activity, Configuration, EasedLimits, Outputs, PositionReference};
 
 use super::conduct::Conduct;
 use super::home::Home;
@@ -21,6 +21,7 @@ pub struct Scene {
     pub identity: Identity,
     pub conduct: Conduct,
     pub configuration: Configuration,
+    pub limits: EasedLimits,
     pub zones: Zones,
     pub rally_points: Vec<Place>,
     /// Known and true.
@@ -50,6 +51,7 @@ impl Scene {
             identity: Identity::Px4,
             conduct: Conduct::new(false),
             configuration,
+            limits: EasedLimits::new(&configuration.limits),
             zones: Zones::default(),
             rally_points: Vec::new(),
             outputs: Outputs {
@@ -123,6 +125,7 @@ impl Scene {
             identity: self.identity,
             conduct: &self.conduct,
             configuration: &self.configuration,
+            limits: &self.limits,
             frame: &self.frame,
             zones: &self.zones,
             rally_points: &self.rally_points,

@@ -1,7 +1,7 @@
 //! What the machines see of the vehicle: a read-only view of one moment.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, Limits, Outputs};
+use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 
 use super::conduct::Conduct;
 use super::home::Home;
@@ -30,6 +30,8 @@ pub struct Situation<'a> {
     pub conduct: &'a Conduct,
     /// The closed loop's configuration, with the limits that are in force.
     pub configuration: &'a Configuration,
+    /// Limits that references keep, and larger ones that the present motion began with.
+    pub limits: &'a EasedLimits,
     /// The local frame.
     pub frame: &'a LocalFrame,
     /// The zones of the fence plan.
@@ -81,9 +83,14 @@ pub struct Situation<'a> {
 }
 
 impl<'a> Situation<'a> {
-    /// Limits that are in force.
+    /// Limits that references keep.
     pub fn limits(&self) -> &'a Limits {
-        &self.configuration.limits
+        self.limits.wanted()
+    }
+
+    /// Limits with which the present motion may brake: lower ones hold only once it can keep them.
+    pub fn braking_limits(&self) -> Limits {
+        self.limits.largest()
     }
 
     /// So many seconds from now, µs.

@@ -21,6 +21,7 @@ use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
 use super::landing::Landing;
+use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
@@ -133,8 +134,12 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Looks at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
+    /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        let easing = self.closed_loop.simulation().control().state().is_easing();
+        if is_fitting(&self.situation(), easing) {
+            self.closed_loop.release_limits();
+        }
         let (situation, parts) = self.situation_and_machines();
         let crossed = parts.fence.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
@@ -229,6 +234,7 @@ fn situation<'a>(
         identity: setup.identity(),
         conduct,
         configuration: simulation.configuration(),
+        limits: closed_loop.limits(),
         frame: setup.frame(),
         zones: plans.zones(),
         rally_points: plans.rally_points(),

@@ -1,7 +1,7 @@
 //! What the closed loop is told, tick by tick.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use quadrotor::{AttitudeTarget, Inputs, Outputs, PositionReference, Simulation};
+use quadrotor::{AttitudeTarget, EasedLimits, Inputs, Outputs, PositionReference, Simulation};
 
 use super::motion::{Motion, at_rest};
 use super::path_steering::PathSteering;
@@ -164,7 +164,13 @@ impl Steering {
     }
 
     /// What the closed loop is asked for in the tick that begins now.
-    pub fn apply(&mut self, simulation: &Simulation, outputs: &Outputs, dt_s: f64) -> Inputs {
+    pub fn apply(
+        &mut self,
+        simulation: &Simulation,
+        limits: &EasedLimits,
+        outputs: &Outputs,
+        dt_s: f64,
+    ) -> Inputs {
         let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
         let lost_rotor = self.lost_rotor().filter(|rotor| can_fly_without(simulation, *rotor));
         let along = |reference, shaping| Inputs { reference, shaping, lost_rotor, ..Inputs::default() };
@@ -192,13 +198,10 @@ impl Steering {
             }
             Self::Descent { reference, .. } => along(*reference, None),
             Self::Goal(goal) => along(*goal, Some(true)),
-            Self::Path(path) => {
-                let limits = &simulation.configuration().limits;
-                along(path.reference(limits, outputs.time_us), Some(false))
-            }
+            Self::Path(path) => along(path.reference(limits.wanted(), outputs.time_us), Some(false)),
             Self::Motion(motion) => {
                 let reference = motion.reference(outputs.time_us);
-                motion.step(&simulation.configuration().limits, dt_s);
+                motion.step(&limits.largest(), dt_s);
                 along(reference, Some(false))
             }
         }

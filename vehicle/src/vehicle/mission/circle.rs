@@ -73,7 +73,10 @@ impl Circle {
         let fastest = libm::sqrt(CENTRIPETAL * a * self.radius_m).min(limits.speed_horizontal_m_s);
         // Slow enough to come to rest at the end, and never so slow that it does not come there.
         let wanted = libm::sqrt(2.0 * tangential * left_m).min(fastest).max(0.01);
-        let change = (wanted - self.speed_m_s).clamp(-1.1 * tangential * dt_s, tangential * dt_s);
+        // Within lower limits than it began with it brakes as it must to come to rest at the end.
+        let needed = self.speed_m_s * self.speed_m_s / (2.0 * left_m);
+        let braking = (1.1 * tangential).max(needed);
+        let change = (wanted - self.speed_m_s).clamp(-braking * dt_s, tangential * dt_s);
         self.speed_m_s += change;
         self.flown_rad += self.speed_m_s / self.radius_m * dt_s;
         Some(self.set_point(change / dt_s))

@@ -11,7 +11,7 @@
 //! through the shaper.
 
 use nalgebra::Vector3;
-use quadrotor::{Limits, PositionReference};
+use quadrotor::{EasedLimits, Limits, PositionReference};
 
 use super::super::situation::Situation;
 use super::super::trajectory::{Piece, PieceFlight, Straight};
@@ -22,6 +22,8 @@ use super::path::{Corner, Start};
 pub struct Turn {
     corner: Corner,
     start_us: u64,
+    /// The limits that its leg was planned within.
+    limits: EasedLimits,
 }
 
 impl Turn {
@@ -32,6 +34,13 @@ impl Turn {
     /// Motion at its end.
     pub fn end(&self) -> PositionReference {
         self.flight().end()
+    }
+
+    /// The limits that hold now, and those that its leg was planned within.
+    pub fn limits(&self, wanted: &Limits) -> EasedLimits {
+        let mut limits = self.limits;
+        limits.want(wanted);
+        limits
     }
 }
 
@@ -51,6 +60,7 @@ enum Phase {
 
 /// How a leg goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // One of them is returned a tick.
 pub enum LegProgress {
     /// It is flown.
     Flying,
@@ -80,6 +90,8 @@ pub struct Leg {
     /// Acceptance radius of its end, m.
     pub radius_m: f64,
     corner: Option<Corner>,
+    /// The limits that hold, and larger ones that it began with as long as it needs them.
+    limits: EasedLimits,
     phase: Phase,
 }
 
@@ -109,8 +121,9 @@ impl Leg {
         [from_m, to_m]: [Vector3<f64>; 2],
         radius_m: f64,
         corner: Option<Corner>,
+        wanted: &Limits,
     ) -> Self {
-        Self { from_m, to_m, radius_m, corner, phase: Phase::Leaving(turn) }
+        Self { from_m, to_m, radius_m, corner, limits: turn.limits(wanted), phase: Phase::Leaving(turn) }
     }
 
     /// A leg that begins with a reference: straight at rest, and joined from any motion.
@@ -120,11 +133,12 @@ impl Leg {
         radius_m: f64,
         corner: Option<Corner>,
     ) -> Self {
-        let mut leg = Self { from_m, to_m, radius_m, corner, phase: Phase::Joining };
+        let limits = EasedLimits::new(situation.limits());
+        let mut leg = Self { from_m, to_m, radius_m, corner, limits, phase: Phase::Joining };
         let reference = &situation.outputs.setpoint;
         if is_at_rest(reference) {
             let rest = PositionReference::goal(reference.position_m.into(), reference.yaw_rad);
-            leg.phase = leg.straight(&rest, situation.time_us, situation.limits());
+            leg.phase = leg.straight(&rest, situation.time_us);
         }
         leg
     }
@@ -140,12 +154,34 @@ impl Leg {
         }
     }
 
-    /// Plans again from the present motion, with another corner.
+    /// Plans again from the present motion within other limits, with another corner. What cannot keep them is flown as planned.
     pub fn replan(&mut self, corner: Option<Corner>, situation: &Situation) {
+        let limits = situation.limits();
+        self.limits.want(limits);
+        let other = Self { corner, ..*self };
+        self.phase = match self.phase {
+            Phase::Straight(flight) => {
+                let now = flight.at(situation.time_us);
+                let Some(straight) = other.straight_within(&now, limits) else { return };
+                Phase::Straight(PieceFlight { piece: Piece::Straight(straight), start_us: situation.time_us })
+            }
+            Phase::Leaving(turn) if other.straight_within(&turn.end(), limits).is_none() => return,
+            unchanged => unchanged,
+        };
+        self.limits.release();
         self.corner = corner;
-        if let Phase::Straight(flight) = self.phase {
-            let now = flight.at(situation.time_us);
-            self.phase = self.straight(&now, situation.time_us, situation.limits());
+    }
+
+    /// All of it is planned within the limits that hold.
+    pub fn release_limits(&mut self) {
+        self.limits.release();
+    }
+
+    /// Whether it can be flown within limits from the motion that it begins with.
+    pub fn is_flyable(&self, limits: &Limits) -> bool {
+        match self.phase {
+            Phase::Leaving(turn) => self.straight_within(&turn.end(), limits).is_some(),
+            _ => true,
         }
     }
 
@@ -171,16 +207,31 @@ impl Leg {
         PositionReference { velocity_m_s, ..PositionReference::goal(position_m.into(), 0.0) }
     }
 
-    /// Along the line from a motion on it; a corner that cannot be passed after that is given up.
-    fn straight(&mut self, from: &PositionReference, start_us: u64, limits: &Limits) -> Phase {
-        let plan = |leg: &Self| {
-            let PositionReference { position_m, velocity_m_s, .. } = leg.joint();
-            Straight::new(from, &position_m, &velocity_m_s, limits)
-        };
-        let straight = plan(self).or_else(|| {
+    /// Along the line from a motion on it, within limits; `None` if it cannot end where and as it is to.
+    fn straight_within(&self, from: &PositionReference, limits: &Limits) -> Option<Straight> {
+        self.any_straight(from, limits).filter(|straight| !straight.leaves_its_way())
+    }
+
+    /// As [`Leg::straight_within`], and one that runs past its end as well.
+    fn any_straight(&self, from: &PositionReference, limits: &Limits) -> Option<Straight> {
+        let PositionReference { position_m, velocity_m_s, .. } = self.joint();
+        Straight::new(from, &position_m, &velocity_m_s, limits)
+    }
+
+    /// Along the line from a motion on it, within the least of its limits that do; a corner that cannot be passed after that is
+    /// given up.
+    fn straight(&mut self, from: &PositionReference, start_us: u64) -> Phase {
+        let within = |leg: &Self| leg.limits.least(|limits| leg.straight_within(from, limits));
+        let found = within(self).or_else(|| {
             self.corner = None;
-            plan(self)
+            within(self)
         });
+        // Behind a corner the legs count with the limits that it was planned within.
+        if self.corner.is_none() && matches!(found, Some((_, true))) {
+            self.limits.release();
+        }
+        let straight = found.map(|(straight, _)| straight);
+        let straight = straight.or_else(|| self.any_straight(from, &self.limits.largest()));
         straight.map_or(Phase::Joining, |straight| {
             Phase::Straight(PieceFlight { piece: Piece::Straight(straight), start_us })
         })
@@ -192,11 +243,14 @@ impl Leg {
         let distance_m = (outputs.position_m - self.to_m).norm();
         self.phase = match self.phase {
             Phase::Leaving(turn) if time_us >= turn.flight().end_us() => {
-                self.straight(&turn.end(), turn.flight().end_us(), situation.limits())
+                self.limits.want(situation.limits());
+                self.straight(&turn.end(), turn.flight().end_us())
             }
             Phase::Joining => self.joined(&outputs.setpoint, time_us),
             Phase::Straight(flight) if time_us >= flight.end_us() => match self.corner {
-                Some(corner) => Phase::Turning(Turn { corner, start_us: flight.end_us() }),
+                Some(corner) => {
+                    Phase::Turning(Turn { corner, start_us: flight.end_us(), limits: self.limits })
+                }
                 None => self.phase,
             },
             unchanged => unchanged,
@@ -223,7 +277,7 @@ impl Leg {
         let Some(corner) = self.corner else { return Phase::Joining };
         if let Some(elapsed_s) = corner.blend.elapsed_s(reference) {
             let start_us = time_us.saturating_sub((elapsed_s * 1e6) as u64);
-            return Phase::Turning(Turn { corner, start_us });
+            return Phase::Turning(Turn { corner, start_us, limits: self.limits });
         }
         let velocity_m_s = corner.blend.velocity_in_m_s;
         let past_m = (reference.position_m - corner.blend.entry_m()).dot(&velocity_m_s) / velocity_m_s.norm();

@@ -84,8 +84,21 @@ impl<'a> Route<'a> {
         let reference = &situation.outputs.setpoint;
         match turn {
             Some(turn) => {
-                let start = Start::settled(&turn.end(), self.limits, true);
-                Leg::after(turn, way_m, radius_m, self.corner(&from_m, &start))
+                let leg = |limits: &Limits| {
+                    let start = Start::settled(&turn.end(), limits, true);
+                    let corner = self.corner_within(&from_m, &start, limits);
+                    Leg::after(turn, way_m, radius_m, corner, self.limits)
+                };
+                // Limits that have been lowered hold from where the motion out of the turn can keep them.
+                let within = |limits: &Limits| Some(leg(limits)).filter(|leg| leg.is_flyable(limits));
+                match turn.limits(self.limits).least(within) {
+                    Some((mut leg, true)) => {
+                        leg.release_limits();
+                        leg
+                    }
+                    Some((leg, false)) => leg,
+                    None => leg(self.limits),
+                }
             }
             None => {
                 let start = Start::settled(reference, self.limits, is_at_rest(reference));
@@ -96,7 +109,11 @@ impl<'a> Route<'a> {
 
     /// The corner at the end of the present step's leg, on a way that goes on from a start; `None` for a stop.
     pub fn corner(&self, from_m: &Vector3<f64>, start: &Start) -> Option<Corner> {
-        first_corner(start, &self.stops(from_m), self.limits, |blend| self.is_free(blend))
+        self.corner_within(from_m, start, self.limits)
+    }
+
+    fn corner_within(&self, from_m: &Vector3<f64>, start: &Start, limits: &Limits) -> Option<Corner> {
+        first_corner(start, &self.stops(from_m), limits, |blend| self.is_free(blend))
     }
 
     /// Whether the fence leaves room for a blend, and for a margin on its inner side.

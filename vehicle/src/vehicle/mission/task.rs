@@ -39,6 +39,7 @@ pub enum Then {
 
 /// How a task goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // One of them is returned a tick.
 pub enum TaskProgress {
     /// As it is.
     Going,

@@ -131,8 +131,12 @@ impl Vehicle {
     /// Changes the closed loop's parameters; the speeds that hold for now lie over them.
     pub(super) fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
         let speeds = self.machines.speeds.keeping(&kept.limits);
+        let before = *self.closed_loop.limits().wanted();
         self.configure(&with_speeds(*kept, speeds.in_force()))?;
         self.machines.speeds = speeds;
+        if *self.closed_loop.limits().wanted() != before {
+            self.consult(|parts, situation, proposal| parts.mission.replan(situation, proposal));
+        }
         Ok(())
     }
 

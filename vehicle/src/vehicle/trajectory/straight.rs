@@ -17,7 +17,7 @@ pub struct Straight {
 
 impl Straight {
     /// From a motion along a line to a place on it that is passed with a velocity. `None` if the motion is not along the line, or
-    /// would have to turn back to come to that place so.
+    /// would have to turn back to come to that place so. It may run past a place to rest at: see [`Straight::leaves_its_way`].
     pub fn new(
         from: &PositionReference,
         to_m: &Vector3<f64>,
@@ -43,8 +43,16 @@ impl Straight {
         let axis = limits_along(&direction, limits);
         let profile = MotionProfile::fastest(&motion, length_m, speed_m_s, &axis)?;
         // To have come to rest and gone back is no way to pass a place.
-        let turns_back = speed_m_s > 0.0 && profile.lowest_velocity() < -BESIDE;
+        let turns_back = speed_m_s > 0.0 && profile.extremes_from(0.0).velocity[0] < -BESIDE;
         (!turns_back).then_some(Self { from_m: from.position_m, direction, profile })
+    }
+
+    /// Whether it runs past its end, or backs away from its beginning: its limits are too low for the motion that it begins with.
+    pub fn leaves_its_way(&self) -> bool {
+        /// What the vehicle does not show, m.
+        const SMALL_M: f64 = 0.01;
+        self.profile.extremes_from(0.0).beyond(self.profile.at(0.0).position, self.profile.end().position)
+            > SMALL_M
     }
 
     /// From its beginning to its end, s.

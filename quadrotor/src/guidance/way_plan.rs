@@ -1,0 +1,158 @@
+//! A plan of the way: from a state to a goal, axis by axis.
+
+use nalgebra::{Rotation2, Vector2, Vector3};
+use rsruckig::prelude::ControlInterface;
+use serde::{Deserialize, Serialize};
+
+use crate::guidance::motion_profile::{Motion, MotionProfile};
+use crate::guidance::state_to_state::StateToState;
+use crate::{Limits, PositionReference};
+
+/// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
+const STRAIGHT: [f64; 2] = [0.98, 0.198];
+/// Both when the motion is not along that line: the largest square inside the circle.
+const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
+
+/// By how much more than another plan one may leave the way between its start and its goal, m: what rounding takes, and less
+/// than what the controllers make of it.
+const BEYOND_M: f64 = 1e-3;
+/// And by how much its speed may exceed what cannot be avoided, m/s.
+const FASTER_M_S: f64 = 1e-3;
+
+/// Profiles over time along a bearing, across it to the right, and down.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WayPlan {
+    /// Direction of the first horizontal axis, rad from north.
+    bearing_rad: f64,
+    axes: [MotionProfile; 3],
+}
+
+/// What a plan does that lower limits may make worse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Excursion {
+    /// How far it leaves the way between its start and its goal along each axis, m.
+    beyond_m: [f64; 3],
+}
+
+impl WayPlan {
+    /// A motion that goes on as it is, north, east and down.
+    pub fn going_on(reference: &PositionReference) -> Self {
+        let motion = |axis: usize| {
+            MotionProfile::constant(Motion {
+                position: reference.position_m[axis],
+                velocity: reference.velocity_m_s[axis],
+                acceleration: reference.acceleration_m_s2[axis],
+                jerk: 0.0,
+            })
+        };
+        Self { bearing_rad: 0.0, axes: [motion(0), motion(1), motion(2)] }
+    }
+
+    /// From a state to a goal, arriving on all axes at the same time; `None` if there is no solution.
+    pub fn new(from: &PositionReference, goal: &PositionReference, limits: &Limits) -> Option<Self> {
+        let way = (goal.position_m - from.position_m).xy();
+        let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
+        let turn = Rotation2::new(-bearing_rad);
+        let local = |world: &Vector3<f64>| {
+            let horizontal = turn * world.xy();
+            [horizontal.x, horizontal.y, world.z]
+        };
+        // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT and TURNING.
+        let across = |vector: &Vector3<f64>, limit: f64| local(vector)[1].abs() / limit;
+        let straight = across(&from.velocity_m_s, limits.speed_horizontal_m_s) <= STRAIGHT[1]
+            && across(&from.acceleration_m_s2, limits.acceleration_horizontal_m_s2) <= STRAIGHT[1];
+        let shares = if straight { STRAIGHT } else { TURNING };
+        let limit =
+            |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
+
+        let max_velocity = limit(limits.speed_horizontal_m_s, limits.speed_down_m_s);
+        let mut min_velocity = max_velocity.map(|speed| -speed);
+        min_velocity[2] = -limits.speed_up_m_s;
+        let target_velocity = local(&goal.velocity_m_s);
+        // Seen from where it begins: far from the origin the solver has as many digits as near it.
+        let axes = StateToState {
+            interface: ControlInterface::Position,
+            from: core::array::from_fn(|axis| Motion {
+                position: 0.0,
+                velocity: local(&from.velocity_m_s)[axis],
+                acceleration: local(&from.acceleration_m_s2)[axis],
+                jerk: 0.0,
+            }),
+            target_position: local(&(goal.position_m - from.position_m)),
+            target_velocity: core::array::from_fn(|axis| {
+                target_velocity[axis].clamp(min_velocity[axis], max_velocity[axis])
+            }),
+            max_velocity,
+            min_velocity,
+            max_acceleration: limit(limits.acceleration_horizontal_m_s2, limits.acceleration_vertical_m_s2),
+            max_jerk: limit(limits.jerk_horizontal_m_s3, limits.jerk_vertical_m_s3),
+        }
+        .solve()?;
+        let start = local(&from.position_m);
+        let axes = core::array::from_fn(|axis| axes[axis].moved(start[axis]));
+        Some(Self { bearing_rad, axes })
+    }
+
+    /// Position, velocity and acceleration so many seconds after its beginning. The heading is zero.
+    pub fn at(&self, time_s: f64) -> PositionReference {
+        let motions = self.axes.map(|axis| axis.at(time_s));
+        let turn = Rotation2::new(self.bearing_rad);
+        let world = |part: fn(&Motion) -> f64| {
+            let [along, across, down] = motions.each_ref().map(part);
+            let horizontal = turn * Vector2::new(along, across);
+            Vector3::new(horizontal.x, horizontal.y, down)
+        };
+        PositionReference {
+            position_m: world(|motion| motion.position),
+            velocity_m_s: world(|motion| motion.velocity),
+            acceleration_m_s2: world(|motion| motion.acceleration),
+            yaw_rad: 0.0,
+            yaw_rate_rad_s: 0.0,
+        }
+    }
+
+    /// Where it ends, NED, m.
+    pub fn end_m(&self) -> Vector3<f64> {
+        let [along, across, down] = self.axes.each_ref().map(|axis| axis.end().position);
+        let horizontal = Rotation2::new(self.bearing_rad) * Vector2::new(along, across);
+        Vector3::new(horizontal.x, horizontal.y, down)
+    }
+
+    /// How far it leaves its way from `time_s` on.
+    pub fn excursion(&self, time_s: f64) -> Excursion {
+        let beyond = |axis: &MotionProfile| {
+            axis.extremes_from(time_s).beyond(axis.at(time_s).position, axis.end().position)
+        };
+        Excursion { beyond_m: self.axes.each_ref().map(beyond) }
+    }
+
+    /// Whether it is as good as a plan under larger limits: it leaves its way no farther, and becomes no faster than `limits`
+    /// allow, than it is already, or than it must become when its acceleration is taken out with the jerk of the larger limits,
+    /// `kept`.
+    pub fn is_as_good_as(&self, other: &Excursion, limits: &Limits, kept: &Limits) -> bool {
+        let own = self.excursion(0.0);
+        let stays = own.beyond_m.iter().zip(other.beyond_m).all(|(own, other)| *own <= other + BEYOND_M);
+        let speeds = [
+            [limits.speed_horizontal_m_s; 2],
+            [limits.speed_horizontal_m_s; 2],
+            [limits.speed_up_m_s, limits.speed_down_m_s],
+        ];
+        let across = TURNING[1] * kept.jerk_horizontal_m_s3;
+        let jerks = [across, across, kept.jerk_vertical_m_s3];
+        stays && (0..3).all(|axis| keeps_speed(&self.axes[axis], speeds[axis], jerks[axis], FASTER_M_S))
+    }
+}
+
+/// Whether a profile keeps within speeds in either direction, its speed at the start, and the one that it comes to when its
+/// acceleration is taken out with a jerk.
+pub(crate) fn keeps_speed(
+    profile: &MotionProfile,
+    [backward, forward]: [f64; 2],
+    jerk: f64,
+    tolerance: f64,
+) -> bool {
+    let Motion { velocity: now, acceleration, .. } = profile.at(0.0);
+    let settled = now + acceleration * acceleration.abs() / (2.0 * jerk);
+    let [low, high] = profile.extremes_from(0.0).velocity;
+    low >= (-backward).min(now).min(settled) - tolerance && high <= forward.max(now).max(settled) + tolerance
+}
