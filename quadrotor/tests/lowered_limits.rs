@@ -55,8 +55,8 @@ fn fly_on(flight: &mut Simulation, inputs: &Inputs, seconds: f64) -> Excursion {
     for look in 1..=(seconds * 1e6) as u64 / LOOK_US {
         flight.advance_to(begin_us + look * LOOK_US, inputs).expect("the flight goes on");
         let now = flight.outputs();
-        for axis in 0..3 {
-            let beyond_m = beyond(now.position_m[axis], START_M[axis], goal.position_m[axis]);
+        for (axis, start_m) in START_M.into_iter().enumerate() {
+            let beyond_m = beyond(now.position_m[axis], start_m, goal.position_m[axis]);
             excursion.beyond_m = excursion.beyond_m.max(beyond_m);
         }
         excursion.heading_rad = excursion.heading_rad.max(beyond(now.setpoint.yaw_rad, 0.0, goal.yaw_rad));
