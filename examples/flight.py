@@ -58,12 +58,12 @@ def receive(connection, kind=None, timeout: float = SILENCE):
         raise SystemExit(f"the connection to the vehicle has failed: {error}") from None
 
 
-def remedy(longest_gap: float) -> str:
-    """Why a flight failed, if the vehicle's time ran ahead of this program, and what to do."""
-    if longest_gap <= LATE:
+def remedy(ahead: float) -> str:
+    """Why a flight failed, if the vehicle's time ran this many seconds ahead of this program, and what to do."""
+    if ahead <= LATE:
         return ""
-    return (f" (the vehicle flew up to {longest_gap:.1f} s between two reports: this program cannot keep up with its speed; start the "
-            "vehicle with --lockstep always, or with a lower --speed)")
+    return (f" (the vehicle flew up to {ahead:.1f} s ahead: this program cannot keep up with its speed; start the vehicle with "
+            "--lockstep always, or with a lower --speed)")
 
 
 class Flight:
@@ -88,7 +88,16 @@ class Flight:
 
     def fail(self, reason: str):
         """Ends the program with one line."""
-        raise SystemExit(reason + remedy(self.longest_gap))
+        raise SystemExit(reason + remedy(max(self.longest_gap, self.lag())))
+
+    def lag(self) -> float:
+        """How far the vehicle's time is ahead of what this program has read, s: it goes on with what has come and was not read yet."""
+        if not self.flown:
+            return 0.0
+        known, begun = self.now, time.monotonic()
+        while time.monotonic() - begun < 0.05:
+            self.receive("LOCAL_POSITION_NED", 0.01)
+        return self.now - known - (time.monotonic() - begun)
 
     def receive(self, kind, timeout: float):
         """The vehicle's next message of a kind, or of one of several; None if there is none within the time. Every message is taken in."""

@@ -38,7 +38,7 @@ INVALID, INVALID_RADIUS = mavlink.MAV_MISSION_INVALID, mavlink.MAV_MISSION_INVAL
 MEANINGLESS = {
     "two corners": ([(INSIDE, 2, 0, 0), (INSIDE, 2, 9, 0)], INVALID_RADIUS, "item 1: corner count = 2"),
     "crossing sides": ([(INSIDE, 4, *SQUARE[corner]) for corner in (0, 2, 1, 3)], INVALID, "sides 0 and 2 cross"),
-    "no area": ([(INSIDE, 3, 5, 5)] * 3, INVALID, "sides 0 and 1 cross"),
+    "no area": ([(INSIDE, 3, 5, 5)] * 3, INVALID, "all corners lie on one line"),
     "corners of another kind": ([(INSIDE, 3, 0, 0), (OUTSIDE, 3, 9, 0), (INSIDE, 3, 9, 9)], INVALID, "item 2: this polygon"),
     "a corner missing": ([(INSIDE, 4, *corner) for corner in SQUARE[:3]], INVALID, "needs 4 consecutive corners"),
     "no number of corners": ([(INSIDE, math.nan, 0, 0)], INVALID_RADIUS, "corner count = NaN"),

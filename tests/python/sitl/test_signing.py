@@ -178,7 +178,9 @@ def test_a_key_is_that_of_all_vehicles_each_with_its_own_streams(start, connect,
         client.connection.write(frame)
         signed(client.connection)
         client.beat()
-        refused(client, "1 replayed")
+        # Only now it has a place and hears what is refused.
+        client.connection.write(frame)
+        refused(client, "2 replayed")
         assert not client.wait("HEARTBEAT").base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     # Removed at one, it is removed at the other.
     clients[1].mav.setup_signing_send(2, 1, [0] * 32, 0)
