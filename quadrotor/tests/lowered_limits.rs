@@ -106,6 +106,30 @@ fn no_lowered_limit_leads_an_unshaped_flight_off_its_way() {
     check_table(false, &[2_500_000]);
 }
 
+/// A descent whose jerk is lowered arrives without going back up on its way: what it has begun is ended with the jerk that this needs.
+#[test]
+fn a_descent_does_not_turn_back_on_its_way() {
+    let inputs = goal([0.0, 0.0, -3.0], 0.0);
+    for change_us in [600_000, 1_000_000, 1_500_000, 2_500_000] {
+        for jerk_m_s3 in [1.0, 0.4] {
+            let mut flight = Simulation::new(&base(true), &inputs).unwrap();
+            flight.advance_to(change_us, &inputs).unwrap();
+            let mut low = base(true);
+            low.limits.jerk_vertical_m_s3 = jerk_m_s3;
+            flight.reconfigure(&low).unwrap();
+            let (mut lowest_m, mut back_m): (f64, f64) = (f64::NEG_INFINITY, 0.0);
+            for look in 1..=400 {
+                flight.advance_to(change_us + look * LOOK_US, &inputs).unwrap();
+                let z_m = flight.outputs().position_m.z;
+                lowest_m = lowest_m.max(z_m);
+                back_m = back_m.max(lowest_m - z_m);
+            }
+            assert!(back_m < 0.02, "{jerk_m_s3} m/s^3 at {change_us} us: {back_m} m back up");
+            assert!((flight.outputs().position_m.z + 3.0).abs() < 0.01);
+        }
+    }
+}
+
 /// With less jerk an acceleration is taken out too late: both ended far away, one of them in the ground.
 #[test]
 fn less_jerk_on_the_way_up_and_down_ends_at_the_goal() {

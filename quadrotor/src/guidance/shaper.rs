@@ -125,7 +125,7 @@ impl Shaper {
         }
         // As the motion would have gone on, with its speeds, too, if it stays nearer to its way so.
         let as_before = WayPlan::new(now, &goal, self.limits.kept())?;
-        let bar = as_before.excursion(0.0);
+        let bar = self.bar(as_before.excursion(0.0), now, &goal);
         let plan = self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar));
         plan.or(Some((as_before, false)))
     }
@@ -143,11 +143,17 @@ impl Shaper {
         if self.keeps_limits() {
             return WayPlan::new(now, &goal, self.limits.wanted()).map(|plan| (plan, true));
         }
-        let bar = self.plan.excursion(self.elapsed_s(time_us));
+        let bar = self.bar(self.plan.excursion(self.elapsed_s(time_us)), now, &goal);
         if !changed {
             return self.good_plan(now, &goal, self.limits.wanted(), &bar).map(|plan| (plan, true));
         }
         self.limits.least(|limits| self.good_plan(now, &goal, limits, &bar))
+    }
+
+    /// What a plan may do: no more than the motion would have done, but that braking to a lower speed may reverse it.
+    fn bar(&self, before: Excursion, now: &PositionReference, goal: &PositionReference) -> Excursion {
+        let braking = WayPlan::new(now, goal, &self.limits.largest());
+        braking.map_or(before, |plan| before.or_back_as(&plan.excursion(0.0)))
     }
 
     /// A plan within limits that is as good as another one within the kept limits.

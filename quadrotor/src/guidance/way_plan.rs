@@ -18,6 +18,8 @@ const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
 const BEYOND_M: f64 = 1e-3;
 /// And by how much its speed may exceed what cannot be avoided, m/s.
 const FASTER_M_S: f64 = 1e-3;
+/// A shorter way, m, may be flown to and fro.
+const SHORT_M: f64 = 0.05;
 
 /// Profiles over time along a bearing, across it to the right, and down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,6 +34,16 @@ pub(crate) struct WayPlan {
 pub(crate) struct Excursion {
     /// How far it leaves the way between its start and its goal along each axis, m.
     beyond_m: [f64; 3],
+    /// The largest speed away from its goal along each axis, m/s.
+    back_m_s: [f64; 3],
+}
+
+impl Excursion {
+    /// Also as fast away from the goal as another plan.
+    pub fn or_back_as(self, other: &Self) -> Self {
+        let back_m_s = core::array::from_fn(|axis| self.back_m_s[axis].max(other.back_m_s[axis]));
+        Self { back_m_s, ..self }
+    }
 }
 
 impl WayPlan {
@@ -123,15 +135,23 @@ impl WayPlan {
         let beyond = |axis: &MotionProfile| {
             axis.extremes_from(time_s).beyond(axis.at(time_s).position, axis.end().position)
         };
-        Excursion { beyond_m: self.axes.each_ref().map(beyond) }
+        let back = |axis: &MotionProfile| {
+            let [low, high] = axis.extremes_from(time_s).velocity;
+            let way = axis.end().position - axis.at(time_s).position;
+            // On a short way there is no backwards.
+            if way.abs() < SHORT_M { 0.0 } else { (if way > 0.0 { -low } else { high }).max(0.0) }
+        };
+        let axes = self.axes.each_ref();
+        Excursion { beyond_m: axes.map(beyond), back_m_s: axes.map(back) }
     }
 
-    /// Whether it is as good as a plan under larger limits: it leaves its way no farther, and becomes no faster than `limits`
+    /// Whether it is as good as a plan under larger limits: it leaves its way no farther, goes back no faster, and becomes no faster than `limits`
     /// allow, than it is already, or than it must become when its acceleration is taken out with the jerk of the larger limits,
     /// `kept`.
     pub fn is_as_good_as(&self, other: &Excursion, limits: &Limits, kept: &Limits) -> bool {
         let own = self.excursion(0.0);
-        let stays = own.beyond_m.iter().zip(other.beyond_m).all(|(own, other)| *own <= other + BEYOND_M);
+        let stays = own.beyond_m.iter().zip(other.beyond_m).all(|(own, other)| *own <= other + BEYOND_M)
+            && own.back_m_s.iter().zip(other.back_m_s).all(|(own, other)| *own <= other + FASTER_M_S);
         let speeds = [
             [limits.speed_horizontal_m_s; 2],
             [limits.speed_horizontal_m_s; 2],
