@@ -34,7 +34,7 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2[0] = 1e-5),
         "airframe.inertia.x = 1e-5 kg*m^2 must be at least 0.001059 kg*m^2: the other two moments of inertia differ by \
-         a hundred times that; change them first"
+         a hundred times that; change one of them first, or set this limit for now"
     );
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2 = [1e-5; 3]),
@@ -46,6 +46,43 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
         drag.starts_with("airframe.rotor.torque_coefficient = 0.01 N*m*s^2 must be at most 0.00"),
         "{drag}"
     );
+}
+
+/// Parameters that arrive one by one: a refused step names a value that is allowed, and from there the way goes on.
+#[test]
+fn moments_of_inertia_reach_any_target_one_by_one() {
+    let inertia = |configuration: &Configuration| configuration.airframe.inertia_kg_m2;
+    for (start, target) in
+        [([0.106, 0.106, 0.212], [9e-4, 9e-4, 1.8e-3]), ([9e-4, 9e-4, 1.8e-3], [0.106, 0.106, 0.212])]
+    {
+        let mut configuration = Configuration::default();
+        configuration.airframe.inertia_kg_m2 = start;
+        StabilityReport::new(&configuration).expect("the start flies");
+        let mut refusals = 0;
+        for _ in 0..3 {
+            for axis in 0..3 {
+                let mut changed = configuration;
+                changed.airframe.inertia_kg_m2[axis] = target[axis];
+                match StabilityReport::new(&changed) {
+                    Err(ConfigurationError::Inconsistent { name, limit, .. }) => {
+                        refusals += 1;
+                        let named = ["airframe.inertia.x", "airframe.inertia.y", "airframe.inertia.z"]
+                            .iter()
+                            .position(|each| *each == name)
+                            .expect("a moment of inertia");
+                        configuration.airframe.inertia_kg_m2[named] = limit.value;
+                    }
+                    other => {
+                        other.expect("flies");
+                        configuration = changed;
+                    }
+                }
+                StabilityReport::new(&configuration).expect("flies at the limit");
+            }
+        }
+        assert!(refusals > 0);
+        assert_eq!(inertia(&configuration), target);
+    }
 }
 
 #[test]

@@ -85,7 +85,8 @@ fn validate_inertia([x, y, z]: &[f64; 3]) -> Result<(), ConfigurationError> {
                 value: Quantity { value, unit: "kg*m^2" },
                 relation: "at least",
                 limit: rounded_up(least, "kg*m^2"),
-                reason: "the other two moments of inertia differ by a hundred times that; change them first",
+                reason: "the other two moments of inertia differ by a hundred times that; change one of them first, \
+                         or set this limit for now",
             });
         }
     }
