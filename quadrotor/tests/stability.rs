@@ -51,7 +51,6 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
 /// Parameters that arrive one by one: a refused step names a value that is allowed, and from there the way goes on.
 #[test]
 fn moments_of_inertia_reach_any_target_one_by_one() {
-    let inertia = |configuration: &Configuration| configuration.airframe.inertia_kg_m2;
     for (start, target) in
         [([0.106, 0.106, 0.212], [9e-4, 9e-4, 1.8e-3]), ([9e-4, 9e-4, 1.8e-3], [0.106, 0.106, 0.212])]
     {
@@ -60,9 +59,9 @@ fn moments_of_inertia_reach_any_target_one_by_one() {
         StabilityReport::new(&configuration).expect("the start flies");
         let mut refusals = 0;
         for _ in 0..3 {
-            for axis in 0..3 {
+            for (axis, wanted) in target.into_iter().enumerate() {
                 let mut changed = configuration;
-                changed.airframe.inertia_kg_m2[axis] = target[axis];
+                changed.airframe.inertia_kg_m2[axis] = wanted;
                 match StabilityReport::new(&changed) {
                     Err(ConfigurationError::Inconsistent { name, limit, .. }) => {
                         refusals += 1;
@@ -81,7 +80,7 @@ fn moments_of_inertia_reach_any_target_one_by_one() {
             }
         }
         assert!(refusals > 0);
-        assert_eq!(inertia(&configuration), target);
+        assert_eq!(configuration.airframe.inertia_kg_m2, target);
     }
 }
 
@@ -184,6 +183,15 @@ fn what_flies_badly_is_accepted_with_a_warning() {
     );
     let rod = warnings(|configuration| configuration.airframe.inertia_kg_m2[0] = 0.01);
     assert!(rod.iter().any(|each| matches!(each, StabilityWarning::Inertia { .. })), "{rod:?}");
+    // The largest moment is within 1.5 times the sum of the others, the smallest one far from their difference.
+    let needle = warnings(|configuration| configuration.airframe.inertia_kg_m2 = [0.002, 0.1, 0.15]);
+    assert!(needle.iter().any(|each| matches!(each, StabilityWarning::Inertia { .. })), "{needle:?}");
+    // A short sample time keeps it below what is refused.
+    let drag = warnings(|configuration| {
+        configuration.airframe.torque_coefficient_n_m_s2 = 0.01;
+        configuration.controllers.attitude.sample_time_us = 1_000;
+    });
+    assert!(drag.iter().any(|each| matches!(each, StabilityWarning::RotorDrag { .. })), "{drag:?}");
 }
 
 /// A limit is no part of the loops; a weight is.
