@@ -34,7 +34,7 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2[0] = 1e-5),
         "airframe.inertia.x = 1e-5 kg*m^2 must be at least 0.001059 kg*m^2: the other two moments of inertia differ by \
-         a hundred times that; change them first"
+         a hundred times that; change one of them first, or set this limit for now"
     );
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2 = [1e-5; 3]),
@@ -46,6 +46,42 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
         drag.starts_with("airframe.rotor.torque_coefficient = 0.01 N*m*s^2 must be at most 0.00"),
         "{drag}"
     );
+}
+
+/// Parameters that arrive one by one: a refused step names a value that is allowed, and from there the way goes on.
+#[test]
+fn moments_of_inertia_reach_any_target_one_by_one() {
+    for (start, target) in
+        [([0.106, 0.106, 0.212], [9e-4, 9e-4, 1.8e-3]), ([9e-4, 9e-4, 1.8e-3], [0.106, 0.106, 0.212])]
+    {
+        let mut configuration = Configuration::default();
+        configuration.airframe.inertia_kg_m2 = start;
+        StabilityReport::new(&configuration).expect("the start flies");
+        let mut refusals = 0;
+        for _ in 0..3 {
+            for (axis, wanted) in target.into_iter().enumerate() {
+                let mut changed = configuration;
+                changed.airframe.inertia_kg_m2[axis] = wanted;
+                match StabilityReport::new(&changed) {
+                    Err(ConfigurationError::Inconsistent { name, limit, .. }) => {
+                        refusals += 1;
+                        let named = ["airframe.inertia.x", "airframe.inertia.y", "airframe.inertia.z"]
+                            .iter()
+                            .position(|each| *each == name)
+                            .expect("a moment of inertia");
+                        configuration.airframe.inertia_kg_m2[named] = limit.value;
+                    }
+                    other => {
+                        other.expect("flies");
+                        configuration = changed;
+                    }
+                }
+                StabilityReport::new(&configuration).expect("flies at the limit");
+            }
+        }
+        assert!(refusals > 0);
+        assert_eq!(configuration.airframe.inertia_kg_m2, target);
+    }
 }
 
 #[test]
@@ -147,6 +183,15 @@ fn what_flies_badly_is_accepted_with_a_warning() {
     );
     let rod = warnings(|configuration| configuration.airframe.inertia_kg_m2[0] = 0.01);
     assert!(rod.iter().any(|each| matches!(each, StabilityWarning::Inertia { .. })), "{rod:?}");
+    // The largest moment is within 1.5 times the sum of the others, the smallest one far from their difference.
+    let needle = warnings(|configuration| configuration.airframe.inertia_kg_m2 = [0.002, 0.1, 0.15]);
+    assert!(needle.iter().any(|each| matches!(each, StabilityWarning::Inertia { .. })), "{needle:?}");
+    // A short sample time keeps it below what is refused.
+    let drag = warnings(|configuration| {
+        configuration.airframe.torque_coefficient_n_m_s2 = 0.01;
+        configuration.controllers.attitude.sample_time_us = 1_000;
+    });
+    assert!(drag.iter().any(|each| matches!(each, StabilityWarning::RotorDrag { .. })), "{drag:?}");
 }
 
 /// A limit is no part of the loops; a weight is.

@@ -23,7 +23,10 @@ pub struct LoopStability {
     pub spread: Option<Spread>,
 }
 
-/// Stationary standard deviations of a loop under the configured measurement noise.
+/// Stationary standard deviations of a loop under the configured measurement noise, to first order.
+///
+/// Two effects of more noise are not in them: limits that become active, and the thrust that the lagging rotors lose while
+/// torque commands change, which moves the height by the square of the noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Of the angle about one axis, rad; 0 for the altitude.

@@ -17,19 +17,22 @@ use crate::design::stability::turning_axis::{Turning, TurningAxis};
 use crate::design::stability::turning_loop::TurningLoop;
 use crate::design::stability::verdict::judged;
 use crate::design::stability::vertical_loop::{self, VerticalLoop};
-use crate::{CascadeDesign, Configuration, ConfigurationError, GRAVITY_M_S2, Sensors};
+use crate::{Airframe, CascadeDesign, Configuration, ConfigurationError, GRAVITY_M_S2, Sensors};
 
 /// A loop whose least damped mode has less than this damping ratio swings: after a disturbance it takes seven oscillations
 /// for one to fade to a hundredth.
 const LEAST_DAMPING: f64 = 0.1;
 /// A loop whose slowest mode takes longer than this, s, to fade to a third is slow.
 const SLOW_S: f64 = 10.0;
-/// Without the torque that the attitude reference needs, errors must take this long, s, to double at least: flights in
-/// which they take less are lost as soon as torques saturate, and few others.
+/// Without the torque that the attitude reference needs, errors must take this long, s, to double at least. The attitude loop
+/// of the defaults corrects with a time constant of 0.2 s: what doubles within about two of these grows faster than it is
+/// caught after a saturation. Measured on random weights and rotor lags: of 12 flights with 0.25 to 0.5 s two are lost, of 72
+/// with more none.
 const UNAIDED_S: f64 = 0.5;
 /// With fewer standard deviations of the tilt than this within limits.tilt the user is warned.
 const WARNED_TILT_DEVIATIONS: f64 = 6.0;
-/// Moments of inertia that miss the triangle inequality by no more than this share are taken for rounded.
+/// Moments of inertia that miss the triangle inequality by no more than this share of the smallest one are taken for rounded.
+/// A plate has none to spare, and moments are measured to a tenth or two.
 const INERTIA_TOLERANCE: f64 = 0.5;
 
 /// How the closed loop behaves about hover: with its sampled controllers at their two rates, the rotors' lag, and the
@@ -161,6 +164,7 @@ impl StabilityReport {
     fn all_warnings(&self, configuration: &Configuration, design: &CascadeDesign) -> Vec<StabilityWarning> {
         let mut warnings: Vec<_> =
             implausible_inertia(&configuration.airframe.inertia_kg_m2).into_iter().collect();
+        warnings.extend(implausible_drag(&configuration.airframe));
         let unaided = self.unaided.iter().flatten().filter(|each| !each.is_stable());
         warnings.extend(unaided.map(|each| StabilityWarning::SlowAttitude { name: each.name }));
         for each in &self.loops {
@@ -236,7 +240,16 @@ fn horizontal(
 /// A warning about moments of inertia that no rigid body has: each is at most the sum of the other two.
 fn implausible_inertia(inertia_kg_m2: &[f64; 3]) -> Option<StabilityWarning> {
     let [x, y, z] = *inertia_kg_m2;
-    let largest = x.max(y).max(z);
-    let others = x + y + z - largest;
-    (largest > (1.0 + INERTIA_TOLERANCE) * others).then_some(StabilityWarning::Inertia { x, y, z })
+    let (smallest, largest) = (x.min(y).min(z), x.max(y).max(z));
+    let middle = x + y + z - smallest - largest;
+    (largest - middle > (1.0 + INERTIA_TOLERANCE) * smallest).then_some(StabilityWarning::Inertia { x, y, z })
+}
+
+/// A warning about drag that no propeller has. Its torque is about a tenth of a diameter times the thrust, and rotors that do
+/// not overlap have diameters of at most √2 arms. From about a thousand arms on flights spin up, by 85 rad/s, although all
+/// loops are stable.
+fn implausible_drag(airframe: &Airframe) -> Option<StabilityWarning> {
+    let ratio_m = airframe.torque_coefficient_n_m_s2 / airframe.thrust_coefficient_n_s2;
+    let arm_length_m = airframe.arm_length_m;
+    (ratio_m > arm_length_m).then_some(StabilityWarning::RotorDrag { ratio_m, arm_length_m })
 }

@@ -74,4 +74,15 @@ pub enum StabilityWarning {
         /// J_z, kg·m².
         z: f64,
     },
+    /// No propeller has so much drag torque beside its thrust.
+    #[error(
+        "no propeller has airframe.rotor.torque_coefficient = {ratio_m:.2} m times airframe.rotor.thrust_coefficient: it \
+         must be at most airframe.arm_length = {arm_length_m} m; lower airframe.rotor.torque_coefficient"
+    )]
+    RotorDrag {
+        /// Drag torque of a rotor over its thrust, m.
+        ratio_m: f64,
+        /// airframe.arm_length, m.
+        arm_length_m: f64,
+    },
 }
