@@ -250,8 +250,8 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
     /// Starts from an earlier active set, without the constraints that would pull instead of push.
     fn resume<const W: usize>(&mut self, warm_start: &WarmStart<W>) {
         for constraint in warm_start.constraints() {
-            let bounded = constraint < self.program.constraints() && (self.h)(constraint).is_finite();
-            if bounded && !self.active.contains(constraint) {
+            // A repeated constraint depends on itself and is not added again.
+            if constraint < self.program.constraints() && (self.h)(constraint).is_finite() {
                 let split = self.active.split(&self.program.normals[constraint]);
                 self.active.add(constraint, &split, 0.0);
             }

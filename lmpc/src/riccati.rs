@@ -42,8 +42,8 @@ pub fn solve_riccati(
     let mut g_k = b * r_inverse_b_t;
     let mut h_k = q.clone();
     let mut iterations = 0;
-    while iterations < MAXIMUM_DOUBLINGS {
-        iterations += 1;
+    for doubling in 1..=MAXIMUM_DOUBLINGS {
+        iterations = doubling;
         // W = I + G H
         let w = (&identity + &g_k * &h_k).lu();
         let (Some(w_inverse_a), Some(w_inverse_g)) = (w.solve(&a_k), w.solve(&g_k)) else {

@@ -123,3 +123,76 @@ fn no_step_allocates() {
         assert_eq!(allocations.count_total, 0, "{name}");
     }
 }
+
+/// x(k+1) = x(k) + u(k) with x(k+1) ≤ 0.5: towards a goal beyond, the first move goes to the bound.
+#[test]
+fn a_plant_of_one_state_goes_to_its_bound() {
+    let one = dmatrix![1.0];
+    let plant = StateSpace::new(one.clone(), one.clone(), one.clone()).unwrap();
+    let limits = [Limit::range(Quantity::State, 1, 1..2)];
+    let model = Augmented::new(&plant);
+    let weights = Weights::output(&model, 1.0, 0.1).unwrap();
+    let bases = [LaguerreBasis::new(3, 0.5).unwrap()];
+    let design = LmpcDesign::new(&model, &weights, &bases, 40, Weighting::Terminal { lambda: 1.0 }).unwrap();
+    let laguerre = LaguerreMpc::<1, 1, 1, 4>::new(&design, &limits).unwrap();
+    let moves = StateSpaceMpcDesign::new(&plant, &one, &dmatrix![0.1], 40, 3).unwrap();
+    let state_space = StateSpaceMpc::<1, 1, 1, 4>::new(&moves, &limits).unwrap();
+    let laws: [(&str, &dyn Controller<1, 1, 1, 4>); 2] =
+        [("Laguerre MPC", &laguerre), ("state-space MPC", &state_space)];
+    for (name, law) in laws {
+        // At x = 0.1, 10 below the goal, of which the state-space MPC goes by the deviation.
+        let sample = Sample {
+            measured: Vector1::new(0.1),
+            deviation: Vector1::new(-10.0),
+            error: Vector1::new(-10.0),
+            ..Sample::default()
+        };
+        let first = |upper: f64| {
+            let mut state = ControllerState::new(Vector1::new(0.1), Vector1::zeros(), Vector1::zeros());
+            law.step(&mut state, &Sample { upper: &[upper, 1e3], ..sample })
+        };
+        let from = if name == "Laguerre MPC" { 0.1 } else { -10.0 };
+        assert!(first(1e3).input.x > 1.0, "{name}");
+        let bounded = first(from + 0.4);
+        assert_eq!((bounded.status, bounded.active), (Status::Optimal, 1), "{name}");
+        assert!((bounded.input.x - 0.4).abs() < 1e-9, "{name}: {bounded:?}");
+    }
+}
+
+/// With the model's increment the law is the one with the measured increment, told the motion that the model explains:
+/// x(k−1) is where the plant came from under u(k−1) + d.
+#[test]
+fn the_model_increment_is_the_motion_that_the_model_explains() {
+    let model = Augmented::new(&plant());
+    let weights = Weights::output(&model, 1.0, 1.0).unwrap();
+    let bases = [LaguerreBasis::new(TERMS, 0.8).unwrap()];
+    let design = LmpcDesign::new(&model, &weights, &bases, 100, Weighting::Terminal { lambda: 1.0 }).unwrap();
+    type Laguerre = LaguerreMpc<2, 1, 1, { unknowns(1, TERMS) }>;
+    let limits = [Limit::range(Quantity::Input, 1, 0..MOVES)];
+    let by_model = Laguerre::with_model_increment(&design, &limits).unwrap();
+    let measured = Laguerre::new(&design, &limits).unwrap();
+    for (before, u, d, bound) in [
+        (Vector2::new(0.4, -0.3), 0.2, 0.1, 1e3),
+        (Vector2::new(-1.0, 0.6), -0.5, 0.3, 1e3),
+        (Vector2::new(3.0, 0.5), 0.1, -0.2, 0.4),
+    ] {
+        let x = advanced(before, u + d);
+        let upper = [bound; 2];
+        let state = ControllerState::<2, 1, W>::new(before, Vector1::new(u), Vector1::zeros());
+        let sample = Sample {
+            measured: x,
+            deviation: x,
+            error: Vector1::new(x.x),
+            disturbance: Vector1::new(d),
+            upper: &upper,
+            ..Sample::default()
+        };
+        let expected = measured.step(&mut state.clone(), &Sample { increment: x - before, ..sample });
+        // What was measured of the motion is not looked at.
+        for increment in [Vector2::zeros(), Vector2::new(5.0, -7.0)] {
+            let step = by_model.step(&mut state.clone(), &Sample { increment, ..sample });
+            assert!((step.input - expected.input).norm() < 1e-8, "{step:?} beside {expected:?}");
+            assert_eq!(step.active, expected.active);
+        }
+    }
+}

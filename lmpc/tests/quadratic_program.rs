@@ -262,6 +262,24 @@ fn a_constraint_that_is_met_without_a_push_stays_active() {
     assert_eq!((met.active, met.multipliers[0], met.x), (1, 0.0, SVector::<f64, 2>::new(1.0, -0.5)));
 }
 
+/// Constraints that the program does not have, or that do not bound any more, are not resumed.
+#[test]
+fn a_warm_start_of_another_program_changes_nothing() {
+    let g = dmatrix![1.0, 0.0; 0.0, 1.0; 1.0, 1.0];
+    let three = QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &g).unwrap();
+    let one = QuadraticProgram::<2>::new(&DMatrix::identity(2, 2), &dmatrix![1.0, 0.0]).unwrap();
+    let f = SVector::<f64, 2>::new(-3.0, -4.0);
+    let mut warm = WarmStart::default();
+    let corner = three.solve(&f, &[1.0, 2.0, 10.0], &mut warm, LIMIT);
+    assert_eq!(warm.constraints().max(), Some(1), "{corner:?}");
+    // min ½|x − (3, 4)|² with x₁ ≤ 1 alone
+    let edge = SVector::<f64, 2>::new(1.0, 4.0);
+    let solution = one.solve(&f, &[1.0], &mut warm.clone(), LIMIT);
+    assert_eq!((solution.x, solution.outcome, solution.active), (edge, Outcome::Optimal, 1));
+    let unbounded = three.solve(&f, &[1.0, f64::INFINITY, f64::INFINITY], &mut warm, LIMIT);
+    assert_eq!((unbounded.x, unbounded.outcome, unbounded.active), (edge, Outcome::Optimal, 1));
+}
+
 #[test]
 fn contradictions_are_seen() {
     // x₁ ≤ −1 and −x₁ ≤ −1; then 0 ≤ −1

@@ -149,3 +149,122 @@ fn position_bandwidth_rad_s(configuration: &Configuration) -> f64 {
     let ratio = settings.output_weight.component_div(&settings.increment_weight).max();
     libm::cbrt(GRAVITY_M_S2 * libm::sqrt(ratio) / settings.sample_time_s())
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::{CommandLimits, can_brake, can_return, position_bandwidth_rad_s};
+    use crate::{Configuration, GRAVITY_M_S2, Limits, PlantState, PositionReference, RigidBody};
+
+    fn limits() -> Limits {
+        Limits {
+            acceleration_horizontal_m_s2: 2.0,
+            acceleration_vertical_m_s2: 3.0,
+            tilt_rate_rad_s: 1.0,
+            tilt_acceleration_rad_s2: 4.0,
+            ..Limits::default()
+        }
+    }
+
+    fn body(position_m: [f64; 3], velocity_m_s: [f64; 3]) -> RigidBody {
+        let at_rest = PlantState::at_rest(&Configuration::default().initial).body;
+        RigidBody { position_m: position_m.into(), velocity_m_s: velocity_m_s.into(), ..at_rest }
+    }
+
+    fn reference() -> PositionReference {
+        PositionReference {
+            velocity_m_s: Vector3::new(1.0, 0.0, -1.0),
+            ..PositionReference::goal([10.0, -5.0, -20.0], 0.3)
+        }
+    }
+
+    /// Until they are released, commands keep the tilt and the thrust of the larger limits, and the rest of the wanted ones.
+    #[test]
+    fn commands_keep_the_tilt_and_thrust_of_the_larger_limits() {
+        let before = Configuration::default();
+        let mut wanted = before;
+        wanted.limits.tilt_rad *= 0.8;
+        wanted.limits.tilt_rate_rad_s *= 0.7;
+        wanted.limits.tilt_acceleration_rad_s2 *= 0.6;
+        (wanted.limits.thrust_min, wanted.limits.thrust_max) = (0.9, 1.2);
+        wanted.limits.speed_horizontal_m_s *= 0.5;
+        let mut commands = CommandLimits::new(&before.limits);
+        assert_eq!(commands.in_force(&before).limits, before.flyable_limits());
+        commands.change(&wanted.limits, 0);
+        assert!(commands.is_eased());
+        let kept = Limits {
+            tilt_rad: before.limits.tilt_rad,
+            tilt_rate_rad_s: before.limits.tilt_rate_rad_s,
+            tilt_acceleration_rad_s2: before.limits.tilt_acceleration_rad_s2,
+            thrust_max: before.limits.thrust_max,
+            ..wanted.flyable_limits()
+        };
+        let in_force = commands.in_force(&wanted).limits;
+        // The least thrust is combined by its distance from the weight, which rounds.
+        assert!((in_force.thrust_min - before.limits.thrust_min).abs() < 1e-12);
+        assert_eq!(Limits { thrust_min: wanted.limits.thrust_min, ..in_force }, kept);
+    }
+
+    /// v² = 2 a s, with a quarter of the acceleration limit, of the speed relative to the reference; the way is 0.1 m at least.
+    #[test]
+    fn a_speed_is_braked_on_the_way() {
+        let brakes = |away: [f64; 3], slower: f64, velocity: [f64; 3]| {
+            let position = reference().position_m + Vector3::from(away);
+            let velocity = reference().velocity_m_s + Vector3::from(velocity) * slower;
+            can_brake(&reference(), &body(position.into(), velocity.into()), &limits())
+        };
+        for (away, velocity) in [
+            ([3.0, 4.0, 0.0], [3.0 / 5.0 * f64::sqrt(5.0), -4.0 / 5.0 * f64::sqrt(5.0), 0.0]),
+            ([0.0, 0.0, 6.0], [0.0, 0.0, -3.0]),
+            ([0.0, 0.0, -6.0], [0.0, 0.0, -3.0]),
+            ([0.03, 0.0, 0.0], [f64::sqrt(0.1), 0.0, 0.0]),
+            ([0.0, 0.0, 0.0], [0.0, 0.0, f64::sqrt(0.15)]),
+        ] {
+            assert!(brakes(away, 0.999, velocity), "{away:?} {velocity:?}");
+            assert!(!brakes(away, 1.001, velocity), "{away:?} {velocity:?}");
+        }
+    }
+
+    /// Jerk ω³ e + ω² v within half of g times the tilt's rate, ω times that within half of g times its acceleration.
+    #[test]
+    fn an_error_is_closed_within_the_limits_of_the_tilt() {
+        let returns = |way_m: f64, speed_m_s: f64, bandwidth_rad_s: f64| {
+            let position = reference().position_m + Vector3::new(0.6, -0.8, 0.0) * way_m;
+            let velocity = reference().velocity_m_s + Vector3::new(0.8, 0.6, 0.0) * speed_m_s;
+            can_return(&reference(), &body(position.into(), velocity.into()), &limits(), bandwidth_rad_s)
+        };
+        // Up to ω = 4 the rate is the closer limit, g/2, beyond the acceleration, 2g/ω.
+        for (bandwidth, jerk) in [(2.0, GRAVITY_M_S2 / 2.0), (8.0, GRAVITY_M_S2 / 4.0)] {
+            for (share, within) in [(0.999, true), (1.001, false)] {
+                let jerk = share * jerk;
+                let squared = bandwidth * bandwidth;
+                assert_eq!(
+                    returns(jerk / (squared * bandwidth), 0.0, bandwidth),
+                    within,
+                    "{bandwidth} rad/s"
+                );
+                assert_eq!(returns(0.0, jerk / squared, bandwidth), within, "{bandwidth} rad/s");
+                assert_eq!(
+                    returns(0.5 * jerk / (squared * bandwidth), 0.5 * jerk / squared, bandwidth),
+                    within
+                );
+            }
+        }
+    }
+
+    /// ω³ ΔT = g √(Q/R), by the faster axis.
+    #[test]
+    fn the_bandwidth_is_that_of_three_integrators() {
+        let mut configuration = Configuration::default();
+        let position = &mut configuration.controllers.position;
+        position.output_weight = [2.0, 9.0].into();
+        position.increment_weight = [0.5, 4.0].into();
+        let bandwidth = position_bandwidth_rad_s(&configuration);
+        let period_s = configuration.controllers.position.sample_time_s();
+        assert!(
+            (bandwidth * bandwidth * bandwidth * period_s / GRAVITY_M_S2 - 2.0).abs() < 1e-12,
+            "{bandwidth}"
+        );
+    }
+}

@@ -152,9 +152,10 @@ pub(crate) fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec; // used by dmatrix!
     use core::f64::consts::PI;
 
-    use nalgebra::{Vector2, Vector3};
+    use nalgebra::{Vector2, Vector3, dmatrix};
 
     use super::{
         altitude_bounds, altitude_limits, attitude_bounds, largest_tilt, placed, position_bounds,
@@ -194,6 +195,7 @@ mod tests {
         }
         let [acceleration, speed]: [_; 2] = altitude_limits(&controllers.altitude).try_into().unwrap();
         assert!(speed.soft && !acceleration.soft);
+        assert_eq!(speed.directions, dmatrix![0.0, 1.0; 0.0, -1.0], "of z, ż: down and up");
         assert_eq!((acceleration.samples[0], speed.samples[0]), (0, 1));
         assert_eq!(acceleration.samples.len(), speed.samples.len());
     }

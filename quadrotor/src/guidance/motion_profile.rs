@@ -146,3 +146,79 @@ impl MotionProfile {
         motion.after(time_s - start_s)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::{Motion, MotionProfile};
+
+    /// Pieces of constant jerk that continue one another, with their durations, s.
+    fn profile(from: Motion, pieces: &[(f64, f64)]) -> MotionProfile {
+        let start = |motion: Motion, jerk: f64| Motion { jerk, ..motion };
+        let mut now = start(from, pieces[0].1);
+        let (mut profile, mut time_s) = (MotionProfile::constant(now), 0.0);
+        for (index, (duration_s, _)) in pieces.iter().enumerate() {
+            time_s += duration_s;
+            now = start(now.after(*duration_s), pieces.get(index + 1).map_or(0.0, |(_, jerk)| *jerk));
+            profile.push(time_s, now);
+        }
+        profile
+    }
+
+    proptest! {
+        /// Under constant jerk Simpson's rule is exact for velocity and position.
+        #[test]
+        fn a_motion_is_the_integral_of_its_jerk(
+            p in -10.0..10.0, v in -5.0..5.0, a in -3.0..3.0, j in -4.0..4.0, time_s in 0.0..5.0,
+        ) {
+            let from = Motion { position: p, velocity: v, acceleration: a, jerk: j };
+            let (half, whole) = (from.after(time_s / 2.0), from.after(time_s));
+            let simpson = |of: fn(&Motion) -> f64| time_s / 6.0 * (of(&from) + 4.0 * of(&half) + of(&whole));
+            prop_assert!((whole.acceleration - a - simpson(|motion| motion.jerk)).abs() < 1e-10);
+            prop_assert!((whole.velocity - v - simpson(|motion| motion.acceleration)).abs() < 1e-10);
+            prop_assert!((whole.position - p - simpson(|motion| motion.velocity)).abs() < 1e-10);
+        }
+
+        /// A fine grid over a profile finds the same ranges, and nothing outside them.
+        #[test]
+        fn extremes_are_those_of_a_grid(
+            v in -5.0..5.0, a in -3.0..3.0,
+            pieces in prop::collection::vec((0.05..2.0, prop_oneof![Just(0.0), -4.0..4.0]), 1..9), share in 0.0..1.0,
+        ) {
+            let profile = profile(Motion { velocity: v, acceleration: a, ..Motion::at(1.0) }, &pieces);
+            let end_s: f64 = pieces.iter().map(|(duration_s, _)| duration_s).sum();
+            prop_assert!((profile.duration_s() - end_s).abs() < 1e-12);
+            prop_assert!((profile.end().position - profile.at(end_s).position).abs() < 1e-9);
+            let from_s = share * end_s;
+            let extremes = profile.extremes_from(from_s);
+            let (mut position, mut velocity) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
+            for step in 0..=20_000 {
+                let now = profile.at(from_s + (end_s - from_s) * f64::from(step) / 20_000.0);
+                position = [position[0].min(now.position), position[1].max(now.position)];
+                velocity = [velocity[0].min(now.velocity), velocity[1].max(now.velocity)];
+            }
+            for (found, sampled) in [(extremes.position, position), (extremes.velocity, velocity)] {
+                prop_assert!(found[0] <= sampled[0] + 1e-9 && found[1] >= sampled[1] - 1e-9, "{found:?} {sampled:?}");
+                // Between two points of the grid a parabola rises by less than its curvature allows.
+                prop_assert!(found[0] > sampled[0] - 1e-3 && found[1] < sampled[1] + 1e-3, "{found:?} {sampled:?}");
+            }
+            let [low, high] = extremes.position;
+            prop_assert_eq!(extremes.beyond(low, high), 0.0);
+            prop_assert!((extremes.beyond(low + 0.25, high + 1.0) - 0.25).abs() < 1e-12);
+            prop_assert!((extremes.beyond(low - 1.0, high - 0.5) - 0.5).abs() < 1e-12);
+        }
+    }
+
+    /// Before its start a profile is its first piece; moved, it keeps all but its position.
+    #[test]
+    fn a_moved_profile_is_the_same_elsewhere() {
+        let profile = profile(Motion { velocity: 1.0, ..Motion::at(2.0) }, &[(1.0, 3.0), (0.5, -2.0)]);
+        let moved = profile.moved(-7.0);
+        for time_s in [0.0, 0.4, 1.0, 1.2, 1.5, 9.0] {
+            let (here, there) = (profile.at(time_s), moved.at(time_s));
+            assert!((there.position - here.position + 7.0).abs() < 1e-12);
+            assert_eq!(Motion { position: here.position, ..there }, here);
+        }
+    }
+}

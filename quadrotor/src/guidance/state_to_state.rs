@@ -108,3 +108,54 @@ fn add(pieces: &mut Option<MotionProfile>, start_s: f64, motion: Motion) {
 fn stack<const DOF: usize>(values: [f64; DOF]) -> DataArrayOrVec<f64, DOF> {
     DataArrayOrVec::Stack(values)
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::AxisLimits;
+    use crate::guidance::motion_profile::{Motion, MotionProfile};
+
+    /// From rest to rest where neither speed nor acceleration is reached: four pieces of the full jerk, each ∛(d/2j) long.
+    #[test]
+    fn a_short_way_takes_four_pieces_of_full_jerk() {
+        let limits = AxisLimits { speed: 100.0, acceleration: 100.0, jerk: 4.0 };
+        for way in [3.0, -3.0] {
+            let profile = MotionProfile::fastest(&Motion::at(1.0), 1.0 + way, 0.0, &limits).unwrap();
+            let piece_s = libm::cbrt(3.0 / 8.0);
+            assert!((profile.duration_s() - 4.0 * piece_s).abs() < 1e-9, "{}", profile.duration_s());
+            assert!((profile.at(2.0 * piece_s).position - 1.0 - way / 2.0).abs() < 1e-9);
+        }
+    }
+
+    proptest! {
+        /// A plan starts as the motion is, continues without a jump, keeps its limits, ends where and as fast as asked, and goes on so.
+        #[test]
+        fn plans_lead_from_state_to_state_within_their_limits(
+            p in -20.0..20.0, v in -1.0..1.0, to in -20.0..20.0, passing in -1.0..1.0,
+            speed in 1.5..6.0, acceleration in 0.5..4.0, jerk in 0.5..8.0,
+        ) {
+            let from = Motion { velocity: v, ..Motion::at(p) };
+            let limits = AxisLimits { speed, acceleration, jerk };
+            let profile = MotionProfile::fastest(&from, to, passing, &limits).unwrap();
+            let end_s = profile.duration_s();
+            prop_assert_eq!((profile.at(0.0).position, profile.at(0.0).velocity), (p, v));
+            let later = profile.at(end_s + 2.0);
+            prop_assert!((profile.end().position - to).abs() < 1e-6 && (later.position - to - 2.0 * passing).abs() < 1e-6);
+            prop_assert!((later.velocity - passing).abs() < 1e-8 && later.acceleration.abs() < 1e-8);
+            let interval_s = end_s / 2000.0;
+            for step in 0..2000 {
+                let (now, next) = (profile.at(f64::from(step) * interval_s), profile.at(f64::from(step + 1) * interval_s));
+                prop_assert!(now.velocity.abs() < speed + 1e-8 && now.acceleration.abs() < acceleration + 1e-8);
+                prop_assert!((next.acceleration - now.acceleration).abs() < jerk * interval_s + 1e-8);
+                prop_assert!((next.position - now.position).abs() < (speed + 1e-6) * interval_s + 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn limits_that_are_not_positive_have_no_plan() {
+        let limits = AxisLimits { speed: 1.0, acceleration: 0.0, jerk: 1.0 };
+        assert_eq!(MotionProfile::fastest(&Motion::at(0.0), 1.0, 0.0, &limits), None);
+    }
+}
