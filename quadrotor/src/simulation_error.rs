@@ -4,6 +4,7 @@ use core::fmt;
 
 use thiserror::Error;
 
+use crate::control::control_error::seconds;
 use crate::{ControlError, Overload};
 
 /// Why a flight could not go on.
@@ -11,7 +12,7 @@ use crate::{ControlError, Overload};
 #[non_exhaustive]
 pub enum SimulationError {
     /// An input is not finite.
-    #[error("the input {name} is not finite at {time_us} µs")]
+    #[error("the input {name} is not finite at {} s", seconds(*time_us))]
     InputNotFinite {
         /// Public name of the input.
         name: &'static str,
@@ -22,7 +23,7 @@ pub enum SimulationError {
     #[error(transparent)]
     Control(ControlError),
     /// Time only goes forward.
-    #[error("cannot advance to {requested_us} µs: the flight is already at {time_us} µs")]
+    #[error("cannot advance to {} s: the flight is already at {} s", seconds(*requested_us), seconds(*time_us))]
     Backwards {
         /// Time of the flight.
         time_us: u64,
@@ -30,7 +31,7 @@ pub enum SimulationError {
         requested_us: u64,
     },
     /// The state has left the range of numbers: see [`PlantState::has_diverged`](crate::PlantState::has_diverged).
-    #[error("the motion has diverged at {time_us} µs{}", Because(.overload.as_ref()))]
+    #[error("the motion has diverged at {} s{}", seconds(*time_us), Because(.overload.as_ref()))]
     Diverged {
         /// When.
         time_us: u64,
@@ -54,5 +55,28 @@ impl From<ControlError> for SimulationError {
             ControlError::InputNotFinite { name, time_us } => Self::InputNotFinite { name, time_us },
             other => Self::Control(other),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+
+    use super::SimulationError;
+
+    #[test]
+    fn messages_show_seconds() {
+        let shown = [
+            SimulationError::Diverged { time_us: 1_067_001, overload: None },
+            SimulationError::Backwards { time_us: 60_000_000, requested_us: 300_000 },
+        ]
+        .map(|error| error.to_string());
+        assert_eq!(
+            shown,
+            [
+                "the motion has diverged at 1.067001 s",
+                "cannot advance to 0.3 s: the flight is already at 60 s"
+            ]
+        );
     }
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ControlError {
     /// An input is not finite.
-    #[error("the input {name} is not finite at {time_us} µs")]
+    #[error("the input {name} is not finite at {} s", seconds(*time_us))]
     InputNotFinite {
         /// Public name of the input.
         name: &'static str,
@@ -15,7 +15,7 @@ pub enum ControlError {
         time_us: u64,
     },
     /// A measurement is not finite, or its quaternion is far from a unit one.
-    #[error("the measurement at {time_us} µs is not finite or has no valid attitude")]
+    #[error("the measurement at {} s is not finite or has no valid attitude", seconds(*time_us))]
     Measurement {
         /// When.
         time_us: u64,
@@ -35,4 +35,9 @@ pub enum ControlError {
     /// The shaper is asked for, which this build was made without.
     #[error("shaping needs the cargo feature \"shaper\"")]
     NoShaper,
+}
+
+/// A time in microseconds as messages show it, s.
+pub fn seconds(time_us: u64) -> f64 {
+    time_us as f64 / 1e6
 }

@@ -286,7 +286,7 @@ pub struct Arguments {
 
     /// Let clients change files in --ftp-root [default: false]
     ///
-    /// Up to 64 MB.
+    /// Up to 64 MiB in all and 16 MiB per file.
     #[arg(
         long, env = "LMPC_SITL_FTP_WRITE", num_args = 0..=1, default_missing_value = "true", value_name = "true|false",
         help_heading = FILES, hide_short_help = true

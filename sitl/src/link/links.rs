@@ -53,9 +53,11 @@ pub struct Lost {
 
 impl std::fmt::Display for Lost {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let counts = [(self.datagrams, "datagrams"), (self.forwards, "forwarded frames")];
-        let words =
-            counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+        let counts = [(self.datagrams, "datagram"), (self.forwards, "forwarded frame")];
+        let words = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| {
+            let plural = if *count == 1 { "" } else { "s" };
+            format!("{count} {what}{plural}")
+        });
         write!(formatter, "dropped {}", words.collect::<Vec<_>>().join(", "))
     }
 }
@@ -295,6 +297,10 @@ impl Links {
         let proven = !has_key || frame.signature().is_some();
         let departed = link.peers.get(&number).is_some_and(|peer| peer.departed);
         if proven && !departed && !link.transport.confirm(number, now) {
+            // Nothing else that it has sent takes effect either: not while it is disconnected, and not afterwards.
+            if let Some(refused) = link.peers.get_mut(&number) {
+                refused.inbox = Inbox::default();
+            }
             return false;
         }
         let peer = match link.peers.entry(number) {
@@ -334,7 +340,7 @@ impl Links {
             for (number, peer) in &mut link.peers {
                 let itself = from == PeerId { link: index, number: *number };
                 // What has never spoken cannot be known not to be the sender itself, by another way.
-                let wanted = !itself && peer.has_spoken() && peer.leads_to(target.system);
+                let wanted = !itself && !peer.departed && peer.has_spoken() && peer.leads_to(target.system);
                 if wanted && peer.allowance.spend(received.frame.bytes().len(), false) {
                     if !*allowed.get_or_insert_with(|| self.forwarding.allows(from, now)) {
                         self.lost.forwards += 1;
@@ -614,6 +620,38 @@ mod tests {
         assert_eq!(links.active_peers(), 0);
     }
 
+    /// A connection that is refused ends at the next look. What it had sent must not be taken for the rest of a peer's.
+    #[test]
+    fn what_a_refused_connection_has_sent_has_no_effect_after_its_end() {
+        let (mut links, [near, _]) = connected();
+        links.links[0].transport =
+            Box::new(Ends { inward: near.0.clone(), outward: near.1.clone(), local: true, full: true });
+        put(&near, &[heartbeat(255).bytes(), heartbeat(254).bytes()].concat());
+        let now = Instant::now();
+        links.poll(now);
+        let turn = links.take_turn(now, |_| true).expect("bytes wait");
+        assert!(turn.received.is_none(), "refused");
+        put(&near, &[]);
+        assert!(receive_at(&mut links, now).is_empty(), "nobody could be answered");
+        assert!(links.links[0].peers.is_empty());
+    }
+
+    #[test]
+    fn nothing_is_forwarded_to_who_has_left() {
+        let (mut links, [flood, left]) = connected();
+        put(&left, heartbeat(255).bytes());
+        assert_eq!(receive(&mut links).len(), 1);
+        // It is gone, and something of it waits.
+        put(&left, heartbeat(255).bytes());
+        put(&left, &[]);
+        put(&flood, &different(254, 2_000));
+        let now = Instant::now();
+        links.poll(now);
+        let turns = std::iter::from_fn(|| links.take_turn(now, |peer| peer.link == 0));
+        assert_eq!(turns.filter(|turn| turn.received.is_some()).count(), 2_000);
+        assert_eq!(links.lost(), Lost::default(), "nobody was there to lose a frame");
+    }
+
     /// With a key a radio may speak without one, but does not become a peer by that.
     #[test]
     fn with_a_key_only_signed_frames_make_peers() {
@@ -725,6 +763,7 @@ mod tests {
         links.poll(Instant::now());
         assert_eq!(links.lost(), Lost { datagrams: 7, forwards: 0 });
         assert_eq!(links.lost().to_string(), "dropped 7 datagrams");
+        assert_eq!(Lost { datagrams: 1, forwards: 2 }.to_string(), "dropped 1 datagram, 2 forwarded frames");
         let handled = receive(&mut links);
         assert_eq!(handled.iter().filter(|received| received.origin.peer.link == 0).count(), 8_000);
         assert!(handled.iter().any(|received| received.origin.peer.link == 1));

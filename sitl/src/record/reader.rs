@@ -69,11 +69,12 @@ impl Reader {
 
     fn damaged(&self) -> Failure {
         let reason = format!(
-            "line {}, the entry after {:.6} s of simulation time, is damaged: its checksum is wrong. The {} lines before it \
-             replay as a file of their own",
+            "line {}, the entry after {:.6} s of simulation time, is damaged: its checksum is wrong. To replay what comes \
+             before it, copy that to another file: head -n {} {}",
             self.line,
             self.time_us as f64 / 1e6,
             self.line - 1,
+            self.path.display(),
         );
         Failure::Content { path: self.path.clone(), reason }
     }

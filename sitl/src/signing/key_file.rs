@@ -36,7 +36,7 @@ impl KeyFile {
         }
         let key = SecretKey::read(&content);
         if key.is_none() && !content.trim_ascii().is_empty() {
-            let reason = "not a signing key; the file must have 64 hexadecimal digits or 32 bytes, not all zero (an empty file waits for SETUP_SIGNING)";
+            let reason = "not a signing key; the file must have 64 hexadecimal digits or 32 bytes, not all zero; with --accept-signing-setup it can be empty";
             return Err(wrong(path, reason.to_owned()));
         }
         let mut beside = path.to_owned().into_os_string();
