@@ -262,7 +262,8 @@ proptest! {
         let (past_m, worst) = observe(&mut changed);
         prop_assert_eq!(worst, None);
         for axis in 0..3 {
-            prop_assert!(past_m[axis] <= free_m[axis] + 0.02, "{past_m} {free_m}");
+            // The plan's axes are turned by up to a sample's motion against these: some of a per cent of what cannot be avoided.
+            prop_assert!(past_m[axis] <= 1.01 * free_m[axis] + 0.02, "{past_m} {free_m}");
         }
         let end = changed.outputs().setpoint;
         prop_assert!((end.position_m - after.reference.position_m).norm() < 1e-3, "{end:?}");
