@@ -262,7 +262,7 @@ proptest! {
         let (past_m, worst) = observe(&mut changed);
         prop_assert_eq!(worst, None);
         for axis in 0..3 {
-            // The plan's axes are turned by up to a sample's motion against these: some of a per cent of what cannot be avoided.
+            // The plan's axes may be turned by one sample's motion relative to these.
             prop_assert!(past_m[axis] <= 1.01 * free_m[axis] + 0.02, "{past_m} {free_m}");
         }
         let end = changed.outputs().setpoint;
