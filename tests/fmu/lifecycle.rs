@@ -111,13 +111,15 @@ fn impossible_times_are_refused(subject: &'static Subject) {
     assert_eq!(instance.setup(0.0, Some(f64::INFINITY)), OK);
 }
 
+/// Outputs at the end of a short flight.
+fn flown(instance: &mut Instance) -> Vec<u64> {
+    instance.initialize();
+    instance.fly(0.0, 0.1, 10);
+    instance.outputs()
+}
+
 /// FMPy resets directly after instantiation; others between runs.
 fn reset_from_everywhere_gives_a_fresh_instance(subject: &'static Subject) {
-    let flown = |instance: &mut Instance| {
-        instance.initialize();
-        instance.fly(0.0, 0.1, 10);
-        instance.outputs()
-    };
     let fresh = flown(&mut Instance::new(subject));
 
     let mut instance = Instance::new(subject);
@@ -140,11 +142,6 @@ fn reset_from_everywhere_gives_a_fresh_instance(subject: &'static Subject) {
 
 /// What ends one run does not end the next.
 fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'static Subject) {
-    let flown = |instance: &mut Instance| {
-        instance.initialize();
-        instance.fly(0.0, 0.1, 10);
-        instance.outputs()
-    };
     let fresh = flown(&mut Instance::new(subject));
     let mut instance = Instance::new(subject);
     for _ in 0..2 {

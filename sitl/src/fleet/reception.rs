@@ -15,7 +15,8 @@ use autopilot::codec::target_of;
 use vehicle::Severity;
 
 use super::{Fleet, Member};
-use crate::link::{Lost, Received, SetupRules};
+use crate::link::{Links, Lost, Received, SetupRules};
+use crate::rarely::Rarely;
 use crate::terminal::set_simulation_time;
 
 /// What one look at the links may take; a turn that has begun then is ended.
@@ -24,9 +25,6 @@ const BUDGET: Duration = Duration::from_millis(2);
 const POLLING: Duration = Duration::from_millis(1);
 /// What the peers of one hub get before another hub is next.
 const SHARE: Duration = Duration::from_micros(100);
-/// Lost messages are announced this often.
-const TOLD: Duration = Duration::from_secs(5);
-
 /// Where reception goes on, and what has been told of it.
 #[derive(Debug)]
 pub struct Reception {
@@ -38,13 +36,19 @@ pub struct Reception {
     released: usize,
     /// What was told of each hub.
     told: Vec<Lost>,
-    told_at: Option<Instant>,
+    announced: Rarely,
 }
 
 impl Reception {
     /// Of this many hubs.
     pub fn new(hubs: usize) -> Self {
-        Self { polled: 0, served: 0, released: 0, told: vec![Lost::default(); hubs], told_at: None }
+        Self {
+            polled: 0,
+            served: 0,
+            released: 0,
+            told: vec![Lost::default(); hubs],
+            announced: Rarely::default(),
+        }
     }
 }
 
@@ -189,19 +193,17 @@ impl Fleet {
 
     /// Says that messages were lost, if there are more than were told, and it is time.
     fn tell_lost(&mut self, now: Instant) {
-        if self.reception.told_at.is_some_and(|told| now.saturating_duration_since(told) < TOLD) {
+        let Self { hubs, reception, .. } = self;
+        let lost = hubs.iter().map(Links::lost);
+        if lost.clone().eq(reception.told.iter().copied()) || !reception.announced.is_due(now) {
             return;
         }
-        for hub in 0..self.hubs.len() {
-            let (Some(links), Some(told)) = (self.hubs.get(hub), self.reception.told.get_mut(hub)) else {
-                continue;
-            };
-            let lost = links.lost();
-            if std::mem::replace(told, lost) == lost {
-                continue;
+        let lost: Vec<Lost> = lost.collect();
+        let told = std::mem::replace(&mut reception.told, lost.clone());
+        for (hub, (lost, told)) in lost.into_iter().zip(told).enumerate() {
+            if lost != told {
+                self.announce(hub, Severity::Warning, &format!("Links overloaded: {lost}"), now);
             }
-            self.reception.told_at = Some(now);
-            self.announce(hub, Severity::Warning, &format!("Links overloaded: {lost}"), now);
         }
     }
 

@@ -14,6 +14,7 @@ use super::endpoint::LinkSpecification;
 use super::error::LinkError;
 use super::forwarding::Forwarding;
 use super::inbox::Inbox;
+use super::lost::Lost;
 use super::open::open;
 use super::peer::Peer;
 use super::signing_setup::{SetupRules, SigningSetup};
@@ -40,26 +41,6 @@ pub struct Turn {
     pub peer: PeerId,
     /// The frame that was received and accepted, and is forwarded already; `None`: there was none among the bytes of this turn.
     pub received: Option<Received>,
-}
-
-/// What was lost because more came than can be handled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lost {
-    /// Datagrams for which the inbox of their sender had no room.
-    pub datagrams: u64,
-    /// Frames beyond the share that their sender may have forwarded.
-    pub forwards: u64,
-}
-
-impl std::fmt::Display for Lost {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let counts = [(self.datagrams, "datagram"), (self.forwards, "forwarded frame")];
-        let words = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| {
-            let plural = if *count == 1 { "" } else { "s" };
-            format!("{count} {what}{plural}")
-        });
-        write!(formatter, "dropped {}", words.collect::<Vec<_>>().join(", "))
-    }
 }
 
 #[derive(Debug)]
@@ -388,9 +369,8 @@ impl Links {
     /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
     pub fn has_room(&self, peer: PeerId) -> Option<bool> {
         let link = self.links.get(peer.link)?;
-        let peer =
-            link.peers.get(&peer.number).filter(|peer| !peer.departed).map(|known| (known, peer.number));
-        peer.map(|(known, number)| known.allowance.is_open() && link.transport.has_room(number))
+        let known = link.peers.get(&peer.number).filter(|known| !known.departed)?;
+        Some(known.allowance.is_open() && link.transport.has_room(peer.number))
     }
 
     /// Sends what is waiting.

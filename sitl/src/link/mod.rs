@@ -10,6 +10,7 @@ mod error;
 mod forwarding;
 mod inbox;
 mod links;
+mod lost;
 mod open;
 mod peer;
 #[cfg(unix)]
@@ -23,7 +24,8 @@ mod udp;
 
 pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
-pub use links::{Links, Lost, Received, Turn};
+pub use links::{Links, Received, Turn};
+pub use lost::Lost;
 pub use signing_setup::{SetupRefusal, SetupRules, SigningSetup};
 pub(crate) use transport::is_nothing_yet;
 pub(crate) use turns::Turns;
