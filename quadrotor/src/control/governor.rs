@@ -46,18 +46,6 @@ impl Governor {
     }
 }
 
-/// κ of a controller whose set-point enters through the output error alone: the speed at which the
-/// integral of the error and the proportional term balance, K_y / (T K_x).
-///
-/// Channel `i` of a chain of double integrators, states position and rate.
-pub(crate) fn integral_rate<const N: usize, const P: usize>(
-    law: &StateFeedback<N, P, P>,
-    channel: usize,
-    sample_time_s: f64,
-) -> f64 {
-    law.output_gain()[(channel, channel)] / (law.state_gain()[(channel, 2 * channel)] * sample_time_s)
-}
-
 /// κ of a controller whose set-point enters through the state as well: the rate at which the proportional
 /// and the derivative term balance, K_position / K_rate.
 pub(crate) fn proportional_rate<const N: usize, const P: usize>(
@@ -67,55 +55,3 @@ pub(crate) fn proportional_rate<const N: usize, const P: usize>(
     law.state_gain()[(channel, 2 * channel)] / law.state_gain()[(channel, 2 * channel + 1)]
 }
 
-#[cfg(test)]
-mod tests {
-    use lmpc::StateFeedback;
-    use nalgebra::{DMatrix, Vector2};
-
-    use super::{Governor, integral_rate, proportional_rate};
-
-    /// κ = 2, d = 8: linear up to e₁ = 2.
-    const GOVERNOR: Governor = Governor { rate: 2.0, deceleration: 8.0, speed: 100.0 };
-
-    #[test]
-    fn small_errors_are_seen_whole() {
-        for error in [0.0, 0.3, 1.999, 2.0] {
-            assert_eq!(GOVERNOR.seen(error), error);
-        }
-    }
-
-    /// From the speed κ · seen, braking with d over the whole error ends in the linear law, which takes e₁/2 more than
-    /// braking: v² / 2d = e − e₁/2.
-    #[test]
-    fn large_errors_are_closed_with_a_speed_that_can_be_braked() {
-        for error in [2.000_001, 3.0, 7.5, 200.0] {
-            let speed = 2.0 * GOVERNOR.seen(error);
-            assert!((speed * speed / 16.0 - (error - 1.0)).abs() < 1e-12 * error, "{error}: {speed}");
-        }
-    }
-
-    #[test]
-    fn the_speed_is_bounded_for_small_errors_as_for_large_ones() {
-        let slow = Governor { speed: 3.0, ..GOVERNOR };
-        assert_eq!((slow.seen(1.4), slow.seen(1.6), slow.seen(50.0)), (1.4, 1.5, 1.5));
-    }
-
-    #[test]
-    fn a_vector_is_shortened_and_not_turned() {
-        let slow = Governor { speed: 3.0, ..GOVERNOR };
-        assert!((slow.seen_vector(&Vector2::new(-30.0, 40.0)) - Vector2::new(-0.9, 1.2)).norm() < 1e-15);
-        assert_eq!(slow.seen_vector(&Vector2::new(0.3, -0.4)), Vector2::new(0.3, -0.4));
-        assert_eq!(slow.seen_vector(&Vector2::zeros()), Vector2::zeros());
-    }
-
-    /// Position and rate of two channels, then the two outputs.
-    #[test]
-    fn rates_are_ratios_of_a_channels_own_gains() {
-        let gain =
-            DMatrix::from_row_slice(2, 6, &[10.0, 5.0, 0.1, 0.2, 3.0, 0.3, 0.4, 0.5, 8.0, 32.0, 0.6, 2.0]);
-        let law = StateFeedback::<4, 2, 2>::new(&gain).unwrap();
-        assert!((integral_rate(&law, 0, 0.05) - 3.0 / (10.0 * 0.05)).abs() < 1e-12);
-        assert!((integral_rate(&law, 1, 0.05) - 2.0 / (8.0 * 0.05)).abs() < 1e-12);
-        assert_eq!((proportional_rate(&law, 0), proportional_rate(&law, 1)), (2.0, 0.25));
-    }
-}

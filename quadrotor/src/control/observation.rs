@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
 use crate::control::vehicle_motion::VehicleMotion;
-use crate::{Configuration, RigidBody};
+use crate::{Configuration, GRAVITY_M_S2, RigidBody};
 
 /// The vehicle as the controllers see it at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +14,9 @@ pub(crate) struct Observation {
     pub(crate) measured: RigidBody,
     /// What the controllers go by.
     pub(crate) body: RigidBody,
+    /// Acceleration that thrust and gravity make, NED, m/s², and its rate as the body turns, m/s³.
+    acceleration_m_s2: Vector3<f64>,
+    jerk_m_s3: Vector3<f64>,
     /// Acceleration that the thrust does not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
     /// Torque that the rotors do not explain, FRD, N·m.
@@ -29,10 +32,17 @@ impl Observation {
         time_us: u64,
     ) -> Self {
         let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
+        // a = g e₃ − R e₃ F/m,  ȧ = −R (ω × e₃) F/m
+        let lift = estimator.thrust_n(configuration) / configuration.believed_mass_kg();
+        let rotation = body.rotation();
+        let acceleration_m_s2 = Vector3::z() * GRAVITY_M_S2 - rotation * Vector3::z() * lift;
+        let jerk_m_s3 = rotation * body.body_rate_rad_s.cross(&Vector3::z()) * -lift;
         let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);
         Self {
             measured: *measured,
             body,
+            acceleration_m_s2,
+            jerk_m_s3,
             disturbance_m_s2: estimator.disturbance_m_s2(),
             disturbance_n_m: estimator.disturbance_rad_s2().component_mul(&inertia)
                 * configuration.controllers.mass_factor,
@@ -44,6 +54,8 @@ impl Observation {
         VehicleMotion {
             position_m: self.body.position_m.xy(),
             velocity_m_s: self.body.velocity_m_s.xy(),
+            acceleration_m_s2: self.acceleration_m_s2.xy(),
+            jerk_m_s3: self.jerk_m_s3.xy(),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
         }
     }
@@ -54,6 +66,8 @@ impl Observation {
         VehicleMotion {
             position_m: down(&self.body.position_m),
             velocity_m_s: down(&self.body.velocity_m_s),
+            acceleration_m_s2: down(&self.acceleration_m_s2),
+            jerk_m_s3: down(&self.jerk_m_s3),
             disturbance_m_s2: down(&self.disturbance_m_s2),
         }
     }

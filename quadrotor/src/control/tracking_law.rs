@@ -1,8 +1,10 @@
 //! One controller of the cascade, of whatever kind, on a model of N states and P inputs.
 
+use alloc::vec::Vec;
+
 use lmpc::{
-    Controller, ControllerState, DesignError, LaguerreMpc, Limit, LmpcDesign, Sample, StateFeedback,
-    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
+    Controller, ControllerState, DesignError, Limit, LmpcDesign, Quantity, Sample, SignalLimit, StabilizedDesign,
+    StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
 };
 use nalgebra::{DMatrix, SVector};
 
@@ -14,9 +16,9 @@ use crate::{ControllerKind, ControllerSettings};
 #[allow(clippy::large_enum_variant)] // A design is made once and holds one of each loop.
 pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, const L: usize> {
     /// Laguerre MPC with few terms.
-    FewTerms(LaguerreMpc<N, P, P, S>),
+    FewTerms(StabilizedMpc<N, P, P, S>),
     /// Laguerre MPC with many.
-    ManyTerms(LaguerreMpc<N, P, P, L>),
+    ManyTerms(StabilizedMpc<N, P, P, L>),
     /// State-space MPC.
     StateSpace(StateSpaceMpc<N, P, P, L>),
     /// Laguerre MPC without limits, or the regulator: increments from the measured motion, which contains what
@@ -25,7 +27,7 @@ pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, cons
 }
 
 impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw<N, P, S, L> {
-    /// The controller of this kind with the weights of a finished Laguerre design.
+    /// The controller of this kind with the weights of a finished Laguerre design, without limits.
     pub(crate) fn new(
         kind: ControllerKind,
         settings: &ControllerSettings<P>,
@@ -33,17 +35,31 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         limits: &[Limit],
     ) -> Result<Self, DesignError> {
         Ok(match kind {
-            ControllerKind::Lmpc if limits.is_empty() => {
-                Self::Incremental(StateFeedback::from_design(design)?)
-            }
-            // Under limits it goes by the motion that the model explains: in the measured motion an actuator that answers
-            // late looks like a disturbance.
+            ControllerKind::Lmpc => Self::Incremental(StateFeedback::from_design(design)?),
+            ControllerKind::StateSpaceMpc => Self::StateSpace(StateSpaceMpc::new(
+                &state_space_of(settings, design)?,
+                limits,
+            )?),
+            ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
+        })
+    }
+
+    /// The controller of this kind with the weights of a stabilized Laguerre design under limits. A slack of 1 costs `slack_cost`.
+    pub(crate) fn stabilized(
+        kind: ControllerKind,
+        settings: &ControllerSettings<P>,
+        design: &StabilizedDesign,
+        limits: &[SignalLimit],
+        slack_cost: f64,
+    ) -> Result<Self, DesignError> {
+        Ok(match kind {
             ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
-                Self::FewTerms(LaguerreMpc::with_model_increment(design, limits)?)
+                Self::FewTerms(StabilizedMpc::new(design, limits, slack_cost)?)
             }
-            ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
+            ControllerKind::Lmpc => Self::ManyTerms(StabilizedMpc::new(design, limits, slack_cost)?),
             ControllerKind::StateSpaceMpc => {
-                Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, limits)?)
+                let limits: Vec<Limit> = limits.iter().map(plain).collect();
+                Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, &limits)?)
             }
             ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
         })
@@ -80,9 +96,37 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     }
 }
 
+/// The same limit for a state-space MPC. One of a signal that mixes state and input is not placed.
+fn plain(limit: &SignalLimit) -> Limit {
+    let of_input = limit.state.amax() == 0.0;
+    let of_state = limit.input.amax() == 0.0;
+    Limit {
+        quantity: if of_input { Quantity::Input } else { Quantity::State },
+        directions: if of_input { &limit.directions * &limit.input } else { &limit.directions * &limit.state },
+        samples: if of_input || of_state { limit.samples.clone() } else { Vec::new() },
+        soft: !of_input,
+    }
+}
+
+/// State-space MPC with the same weights, and the regulator's cost of what comes after the horizon.
+fn state_space<const P: usize>(
+    settings: &ControllerSettings<P>,
+    design: &StabilizedDesign,
+) -> Result<StateSpaceMpcDesign, DesignError> {
+    let (q, states) = (design.weights().q(), design.model().plant().states());
+    let weights = StateSpaceMpcWeights {
+        output: q.view((states, states), (P, P)).into_owned(),
+        moves: design.weights().r().clone(),
+        increment: q.view((0, 0), (states, states)).into_owned(),
+        terminal: Some(design.dlqr().cost().clone()),
+    };
+    let (horizon, moves) = (settings.prediction_horizon as usize, settings.control_horizon as usize);
+    StateSpaceMpcDesign::with_weights(design.model().plant(), &weights, horizon, moves)
+}
+
 /// State-space MPC with the same weights: Q on y − r and on the increments of the rates, R on the moves, and the
 /// regulator's cost of what comes after the horizon.
-fn state_space<const P: usize>(
+fn state_space_of<const P: usize>(
     settings: &ControllerSettings<P>,
     design: &LmpcDesign,
 ) -> Result<StateSpaceMpcDesign, DesignError> {

@@ -3,19 +3,23 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Augmented, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateFeedback, StateSpace,
+    Augmented, DesignError, Discretization, Dlqr, LaguerreBasis, Limit, LmpcDesign, SignalLimit, StabilizedDesign, StateFeedback, StateSpace,
     Weighting, Weights, spectral_radius,
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SVector};
 
 use crate::configuration::validation::validate;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::capacities::{
     ALTITUDE_FEW, ALTITUDE_MANY, ATTITUDE_FEW, ATTITUDE_MANY, POSITION_FEW, POSITION_MANY,
 };
-use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
+use crate::design::altitude_limits::altitude_limits;
+use crate::design::attitude_response::AttitudeResponse;
+use crate::design::controller_limits::attitude_limits;
+use crate::design::loop_weights::loop_weights;
+use crate::design::position_limits::position_limits;
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::linear_models::{altitude_model, attitude_model, position_model};
+use crate::design::linear_models::{altitude_model_with_lag, attitude_model, position_model_with_attitude};
 use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, Mixer};
 
 /// The figures of one finished design.
@@ -36,13 +40,13 @@ pub struct DesignReport {
 /// the paper's forward Euler would leave a bias of T²/2 times the acceleration of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CascadeDesign {
-    pub(crate) altitude: TrackingLaw<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>,
-    pub(crate) position: TrackingLaw<4, 2, POSITION_FEW, POSITION_MANY>,
+    pub(crate) altitude: TrackingLaw<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>,
+    pub(crate) position: TrackingLaw<8, 2, POSITION_FEW, POSITION_MANY>,
     pub(crate) attitude: TrackingLaw<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>,
     /// Without limits: how fast the loops close.
-    pub(crate) altitude_gains: StateFeedback<2, 1, 1>,
-    pub(crate) position_gains: StateFeedback<4, 2, 2>,
     pub(crate) attitude_gains: StateFeedback<6, 3, 3>,
+    /// Whether the position controller does the same in all horizontal directions.
+    pub(crate) position_is_isotropic: bool,
     pub(crate) estimator: EstimatorDesign,
     pub(crate) mixer: Mixer,
     reports: [DesignReport; 3],
@@ -62,9 +66,8 @@ impl CascadeDesign {
             altitude: altitude.law,
             position: position.law,
             attitude: attitude.law,
-            altitude_gains: altitude.gains,
-            position_gains: position.gains,
             attitude_gains: attitude.gains,
+            position_is_isotropic: is_isotropic(&configuration.controllers.position),
             estimator: estimator_design(configuration)?,
             mixer: Mixer::new(&configuration.airframe)?,
             reports: [altitude.report, position.report, attitude.report],
@@ -90,12 +93,10 @@ impl CascadeDesign {
         let estimator = redesigned.estimator.then(|| estimator_design(configuration)).transpose()?;
         let [altitude_report, position_report, attitude_report] = &mut self.reports;
         if let Some(designed) = altitude {
-            (self.altitude, self.altitude_gains, *altitude_report) =
-                (designed.law, designed.gains, designed.report);
+            (self.altitude, *altitude_report) = (designed.law, designed.report);
         }
         if let Some(designed) = position {
-            (self.position, self.position_gains, *position_report) =
-                (designed.law, designed.gains, designed.report);
+            (self.position, *position_report) = (designed.law, designed.report);
         }
         if let Some(designed) = attitude {
             (self.attitude, self.attitude_gains, *attitude_report) =
@@ -105,6 +106,7 @@ impl CascadeDesign {
             self.estimator = designed;
         }
         self.mixer = mixer;
+        self.position_is_isotropic = is_isotropic(&configuration.controllers.position);
         Ok(redesigned)
     }
 
@@ -134,8 +136,8 @@ impl Redesigned {
         let (before, after) = (&one.controllers, &other.controllers);
         let kind = before.kind != after.kind;
         Self {
-            altitude: kind || before.altitude != after.altitude,
-            position: kind || before.position != after.position,
+            altitude: kind || before.altitude != after.altitude || one.airframe != other.airframe,
+            position: kind || before.position != after.position || before.attitude != after.attitude || one.airframe != other.airframe,
             attitude: kind
                 || before.attitude != after.attitude
                 || one.believed_inertia_kg_m2() != other.believed_inertia_kg_m2(),
@@ -153,24 +155,97 @@ struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> 
     report: DesignReport,
 }
 
-type Altitude = Designed<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
-type Position = Designed<4, 2, POSITION_FEW, POSITION_MANY>;
+type Altitude = Stabilized<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
+type Position = Stabilized<8, 2, POSITION_FEW, POSITION_MANY>;
 type Attitude = Designed<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>;
 
 fn altitude_design(configuration: &Configuration) -> Result<Altitude, ConfigurationError> {
-    let settings = &configuration.controllers;
-    let limits = altitude_limits(&settings.altitude);
-    designed("altitude controller", settings.kind, &settings.altitude, &limits, |sample_time| {
-        altitude_model(sample_time, Discretization::ZeroOrderHold)
+    let settings = &configuration.controllers.altitude;
+    let limits = altitude_limits();
+    let lag_s = configuration.airframe.rotor_time_constant_s;
+    let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
+    stabilized("altitude controller", configuration, settings, &bandwidth, &limits, || {
+        altitude_model_with_lag(lag_s, settings.sample_time_s())
     })
 }
 
 fn position_design(configuration: &Configuration) -> Result<Position, ConfigurationError> {
-    let settings = &configuration.controllers;
-    let limits = position_limits(&settings.position);
-    designed("position controller", settings.kind, &settings.position, &limits, |sample_time| {
-        position_model(sample_time, Discretization::ZeroOrderHold)
+    let settings = &configuration.controllers.position;
+    let response = attitude_response(configuration);
+    let limits = position_limits(&response);
+    let bandwidth = [position_bandwidth_rad_s(configuration); 2].into();
+    stabilized("position controller", configuration, settings, &bandwidth, &limits, || {
+        position_model_with_attitude(
+            response.natural_frequency_rad_s,
+            response.damping,
+            settings.sample_time_s(),
+        )
     })
+}
+
+/// Whether all weights are the same in both directions.
+fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
+    let same = |weights: &SVector<f64, 2>| weights[0] == weights[1];
+    same(&settings.output_weight)
+        && same(&settings.damping_weight)
+        && same(&settings.rate_weight)
+        && same(&settings.increment_weight)
+}
+
+/// Error of the output, m, the cost of which stands for that of a violated limit.
+const SIGHT_M: f64 = 20.0;
+/// What a violation by a limit's whole relaxation costs, as a multiple of that.
+const VIOLATION: f64 = 1e3;
+/// Bandwidth of the feedback about which plans are made, as a share of the controller's.
+const STABILIZING_SHARE: f64 = 0.3;
+
+fn attitude_response(_configuration: &Configuration) -> AttitudeResponse {
+    AttitudeResponse { natural_frequency_rad_s: 6.5, damping: 0.8 }
+}
+
+fn position_bandwidth_rad_s(configuration: &Configuration) -> f64 {
+    attitude_response(configuration).natural_frequency_rad_s * 0.37
+}
+
+fn altitude_bandwidth_rad_s(_configuration: &Configuration) -> f64 {
+    2.7
+}
+
+struct Stabilized<const N: usize, const P: usize, const S: usize, const L: usize> {
+    law: TrackingLaw<N, P, S, L>,
+    report: DesignReport,
+}
+
+fn stabilized<const N: usize, const P: usize, const S: usize, const L: usize>(
+    name: &'static str,
+    configuration: &Configuration,
+    settings: &ControllerSettings<P>,
+    bandwidth_rad_s: &SVector<f64, P>,
+    limits: &[SignalLimit],
+    model: impl Fn() -> Result<StateSpace, DesignError>,
+) -> Result<Stabilized<N, P, S, L>, ConfigurationError> {
+    let finished = || {
+        let augmented = Augmented::new(&model()?);
+        let weights = loop_weights(&augmented, settings, bandwidth_rad_s)?;
+        let slow = loop_weights(&augmented, settings, &(bandwidth_rad_s * STABILIZING_SHARE))?;
+        let stabilizing = Dlqr::new(augmented.a(), augmented.b(), slow.q(), slow.r(), settings.lambda)?;
+        let basis = LaguerreBasis::new(settings.terms as usize, settings.scale)?;
+        let bases: [LaguerreBasis; P] = core::array::from_fn(|_| basis.clone());
+        let design =
+            StabilizedDesign::new(&augmented, &weights, stabilizing.gain(), &bases, settings.lambda)?;
+        let output = design.dlqr().cost()[(N, N)];
+        let slack_cost = VIOLATION * output * SIGHT_M * SIGHT_M;
+        Ok(Stabilized {
+            law: TrackingLaw::stabilized(configuration.controllers.kind, settings, &design, limits, slack_cost)?,
+            report: DesignReport {
+                spectral_radius: design.spectral_radius(),
+                eigenvalue_difference_to_dlqr: design.spectral_radius()
+                    - spectral_radius("A − BK", &(augmented.a() - augmented.b() * design.dlqr().gain()))?,
+                condition_number: design.condition_number(),
+            },
+        })
+    };
+    finished().map_err(|source| ConfigurationError::Design { part: name, source })
 }
 
 fn attitude_design(configuration: &Configuration) -> Result<Attitude, ConfigurationError> {

@@ -213,8 +213,8 @@ fn horizontal(
 ) -> Result<[LoopStability; 2], DesignError> {
     let [north, east] = LinearLaw::of(&design.position);
     // (14): ẍ = −g θ, ÿ = g φ
-    let north = MovingAxis::new(configuration, design, north.scaled(-GRAVITY_M_S2));
-    let east = MovingAxis::new(configuration, design, east.scaled(GRAVITY_M_S2));
+    let north = MovingAxis::new(configuration, design, north);
+    let east = MovingAxis::new(configuration, design, east);
     let seen = Seen {
         angle: Some(Turning::ANGLE),
         position: Some(Turning::SIZE + Moving::POSITION),

@@ -10,7 +10,7 @@ use crate::{CascadeDesign, Configuration};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TurningAxis {
     /// From angles to angular accelerations.
-    law: LinearLaw,
+    law: LinearLaw<2>,
     is_incremental: bool,
     /// Inertia that the controller believes in, as a multiple of the true one.
     believed: f64,
@@ -89,7 +89,7 @@ impl TurningAxis {
     pub(crate) fn new(
         configuration: &Configuration,
         design: &CascadeDesign,
-        laws: &[LinearLaw; 3],
+        laws: &[LinearLaw<2>; 3],
         axis: usize,
     ) -> Self {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
@@ -114,10 +114,19 @@ impl TurningAxis {
         !self.is_incremental
     }
 
+    /// Angle and rate as the controllers see them, with errors of the measured ones.
+    pub(crate) fn seen(&self, state: &Turning, noise: [f64; 2]) -> [f64; 2] {
+        if self.output_feedback {
+            [state.estimate[0], state.estimate[1]]
+        } else {
+            [state.angle + noise[0], state.rate + noise[1]]
+        }
+    }
+
     /// A sample of the attitude controller: with a reference for the angle and its rate, and errors of the measured ones.
     pub(crate) fn sample(&self, state: &mut Turning, reference: [f64; 2], noise: [f64; 2]) {
         let measured = [state.angle + noise[0], state.rate + noise[1]];
-        let seen = if self.output_feedback { [state.estimate[0], state.estimate[1]] } else { measured };
+        let seen = self.seen(state, noise);
         let deviation = [seen[0] - reference[0], seen[1] - reference[1]];
 
         let acceleration = (reference[1] - state.reference_rate) / self.sample_time_s;
