@@ -124,7 +124,7 @@ pub use configuration::parameters::PARAMETERS;
 pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
-    ReferenceSettings, Sensors,
+    PredictionModel, ReferenceSettings, Sensors,
 };
 pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};

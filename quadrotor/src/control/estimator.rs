@@ -103,6 +103,11 @@ impl Estimator {
         self.disturbance_rad_s2
     }
 
+    /// Speeds of the rotors by their model at the time that is predicted for, rad/s.
+    pub(crate) fn rotor_speed_rad_s(&self) -> [f64; 4] {
+        self.rotor_speed_rad_s
+    }
+
     /// Goes on under another design, for an unchanged vehicle: a thrust that is believed to accelerate more, or less, leaves the
     /// less, or more, to the disturbance.
     pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {

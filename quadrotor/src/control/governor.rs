@@ -58,21 +58,12 @@ pub(crate) fn integral_rate<const N: usize, const P: usize>(
     law.output_gain()[(channel, channel)] / (law.state_gain()[(channel, 2 * channel)] * sample_time_s)
 }
 
-/// κ of a controller whose set-point enters through the state as well: the rate at which the proportional
-/// and the derivative term balance, K_position / K_rate.
-pub(crate) fn proportional_rate<const N: usize, const P: usize>(
-    law: &StateFeedback<N, P, P>,
-    channel: usize,
-) -> f64 {
-    law.state_gain()[(channel, 2 * channel)] / law.state_gain()[(channel, 2 * channel + 1)]
-}
-
 #[cfg(test)]
 mod tests {
     use lmpc::StateFeedback;
     use nalgebra::{DMatrix, Vector2};
 
-    use super::{Governor, integral_rate, proportional_rate};
+    use super::{Governor, integral_rate};
 
     /// κ = 2, d = 8: linear up to e₁ = 2.
     const GOVERNOR: Governor = Governor { rate: 2.0, deceleration: 8.0, speed: 100.0 };
@@ -110,12 +101,11 @@ mod tests {
 
     /// Position and rate of two channels, then the two outputs.
     #[test]
-    fn rates_are_ratios_of_a_channels_own_gains() {
+    fn a_rate_is_a_ratio_of_a_channels_own_gains() {
         let gain =
             DMatrix::from_row_slice(2, 6, &[10.0, 5.0, 0.1, 0.2, 3.0, 0.3, 0.4, 0.5, 8.0, 32.0, 0.6, 2.0]);
         let law = StateFeedback::<4, 2, 2>::new(&gain).unwrap();
         assert!((integral_rate(&law, 0, 0.05) - 3.0 / (10.0 * 0.05)).abs() < 1e-12);
         assert!((integral_rate(&law, 1, 0.05) - 2.0 / (8.0 * 0.05)).abs() < 1e-12);
-        assert_eq!((proportional_rate(&law, 0), proportional_rate(&law, 1)), (2.0, 0.25));
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod activity;
 pub(crate) mod altitude_controller;
 pub(crate) mod attitude_controller;
+pub(crate) mod attitude_reference;
 pub(crate) mod cascade;
 pub(crate) mod command_limits;
 pub(crate) mod control_error;
@@ -20,5 +21,6 @@ pub(crate) mod observation;
 pub(crate) mod position_controller;
 pub(crate) mod rotor_loss;
 pub(crate) mod rotor_monitor;
+pub(crate) mod thrust_lag;
 pub(crate) mod tracking_law;
 pub(crate) mod vehicle_motion;

@@ -1,8 +1,8 @@
 //! One controller of the cascade, of whatever kind, on a model of N states and P inputs.
 
 use lmpc::{
-    Controller, ControllerState, DesignError, LaguerreMpc, Limit, LmpcDesign, Sample, StateFeedback,
-    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
+    Controller, ControllerState, DesignError, DeviationFeedback, LaguerreMpc, Limit, LmpcDesign, Sample,
+    StateFeedback, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
 };
 use nalgebra::{DMatrix, SVector};
 
@@ -22,6 +22,8 @@ pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, cons
     /// Laguerre MPC without limits, or the regulator: increments from the measured motion, which contains what
     /// disturbs it.
     Incremental(StateFeedback<N, P, P>),
+    /// The regulator by the deviation from its reference, told of what disturbs it.
+    ByDeviation(DeviationFeedback<N, P, P>),
 }
 
 impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw<N, P, S, L> {
@@ -47,6 +49,12 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
             }
             ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
         })
+    }
+
+    /// The regulator of a design, by the deviation from its reference.
+    pub(crate) fn by_deviation(design: &LmpcDesign) -> Result<Self, DesignError> {
+        let regulator = DeviationFeedback::new(design.model().plant(), design.dlqr().gain())?;
+        Ok(Self::ByDeviation(regulator))
     }
 
     /// Whether it goes by the measured motion; else it must be told of disturbances.
@@ -76,6 +84,7 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
             Self::ManyTerms(controller) => controller,
             Self::StateSpace(controller) => controller,
             Self::Incremental(controller) => controller,
+            Self::ByDeviation(controller) => controller,
         }
     }
 }
@@ -88,9 +97,11 @@ fn state_space<const P: usize>(
 ) -> Result<StateSpaceMpcDesign, DesignError> {
     let diagonal =
         |weights: &SVector<f64, P>| DMatrix::from_fn(P, P, |i, j| if i == j { weights[i] } else { 0.0 });
-    let mut damping = DMatrix::zeros(2 * P, 2 * P);
+    let states = design.model().plant().states();
+    let mut damping = DMatrix::zeros(states, states);
     for (channel, weight) in settings.rate_weight.iter().enumerate() {
-        damping[(2 * channel + 1, 2 * channel + 1)] = *weight;
+        let rate = channel * (states / P) + 1;
+        damping[(rate, rate)] = *weight;
     }
     let weights = StateSpaceMpcWeights {
         output: diagonal(&settings.output_weight),

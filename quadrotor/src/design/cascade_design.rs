@@ -1,7 +1,5 @@
 //! The three controllers of the cascade, designed from a configuration.
 
-use alloc::vec::Vec;
-
 use lmpc::{
     Augmented, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateFeedback, StateSpace,
     Weighting, Weights, spectral_radius,
@@ -10,12 +8,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::configuration::validation::validate;
 use crate::control::tracking_law::TrackingLaw;
-use crate::design::capacities::{
-    ALTITUDE_FEW, ALTITUDE_MANY, ATTITUDE_FEW, ATTITUDE_MANY, POSITION_FEW, POSITION_MANY,
-};
-use crate::design::controller_limits::{altitude_limits, attitude_limits, position_limits};
+use crate::design::attitude_design::AttitudeDesign;
+use crate::design::attitude_response::AttitudeResponse;
+use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSITION_MANY};
+use crate::design::controller_limits::{altitude_limits, position_limits};
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::linear_models::{altitude_model, attitude_model, position_model};
+use crate::design::linear_models::{altitude_model, position_model};
 use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, Mixer};
 
 /// The figures of one finished design.
@@ -29,6 +27,28 @@ pub struct DesignReport {
     pub condition_number: f64,
 }
 
+impl DesignReport {
+    pub(crate) fn of(design: &LmpcDesign) -> Result<Self, DesignError> {
+        let augmented = design.model();
+        let regulated = augmented.a() - augmented.b() * design.dlqr().gain();
+        Ok(Self {
+            spectral_radius: design.spectral_radius(),
+            eigenvalue_difference_to_dlqr: design.spectral_radius() - spectral_radius("A − BK", &regulated)?,
+            condition_number: design.condition_number(),
+        })
+    }
+
+    /// The larger of each figure, of two designs that make one controller.
+    pub(crate) fn worse(&self, other: &Self) -> Self {
+        let (one, two) = (self.eigenvalue_difference_to_dlqr, other.eigenvalue_difference_to_dlqr);
+        Self {
+            spectral_radius: self.spectral_radius.max(other.spectral_radius),
+            eigenvalue_difference_to_dlqr: if libm::fabs(two) > libm::fabs(one) { two } else { one },
+            condition_number: self.condition_number.max(other.condition_number),
+        }
+    }
+}
+
 /// The run-time controllers and how they came out. Derived from a [`Configuration`] and from nothing
 /// else, so that it need not be saved.
 ///
@@ -38,11 +58,10 @@ pub struct DesignReport {
 pub struct CascadeDesign {
     pub(crate) altitude: TrackingLaw<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>,
     pub(crate) position: TrackingLaw<4, 2, POSITION_FEW, POSITION_MANY>,
-    pub(crate) attitude: TrackingLaw<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>,
+    pub(crate) attitude: AttitudeDesign,
     /// Without limits: how fast the loops close.
     pub(crate) altitude_gains: StateFeedback<2, 1, 1>,
     pub(crate) position_gains: StateFeedback<4, 2, 2>,
-    pub(crate) attitude_gains: StateFeedback<6, 3, 3>,
     pub(crate) estimator: EstimatorDesign,
     pub(crate) mixer: Mixer,
     reports: [DesignReport; 3],
@@ -57,17 +76,17 @@ impl CascadeDesign {
         validate(configuration)?;
         let altitude = altitude_design(configuration)?;
         let position = position_design(configuration)?;
-        let attitude = attitude_design(configuration)?;
+        let mixer = Mixer::new(&configuration.airframe)?;
+        let (attitude, attitude_report) = attitude_design(configuration, &mixer)?;
         Ok(Self {
             altitude: altitude.law,
             position: position.law,
-            attitude: attitude.law,
+            attitude,
             altitude_gains: altitude.gains,
             position_gains: position.gains,
-            attitude_gains: attitude.gains,
             estimator: estimator_design(configuration)?,
-            mixer: Mixer::new(&configuration.airframe)?,
-            reports: [altitude.report, position.report, attitude.report],
+            mixer,
+            reports: [altitude.report, position.report, attitude_report],
         })
     }
 
@@ -86,7 +105,7 @@ impl CascadeDesign {
         let redesigned = Redesigned::between(before, configuration);
         let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
         let position = redesigned.position.then(|| position_design(configuration)).transpose()?;
-        let attitude = redesigned.attitude.then(|| attitude_design(configuration)).transpose()?;
+        let attitude = redesigned.attitude.then(|| attitude_design(configuration, &mixer)).transpose()?;
         let estimator = redesigned.estimator.then(|| estimator_design(configuration)).transpose()?;
         let [altitude_report, position_report, attitude_report] = &mut self.reports;
         if let Some(designed) = altitude {
@@ -98,14 +117,19 @@ impl CascadeDesign {
                 (designed.law, designed.gains, designed.report);
         }
         if let Some(designed) = attitude {
-            (self.attitude, self.attitude_gains, *attitude_report) =
-                (designed.law, designed.gains, designed.report);
+            (self.attitude, *attitude_report) = designed;
         }
         if let Some(designed) = estimator {
             self.estimator = designed;
         }
         self.mixer = mixer;
         Ok(redesigned)
+    }
+
+    /// What the closed attitude loop makes of a commanded roll or pitch angle; `None` with the paper's models, which take it
+    /// for instantaneous.
+    pub fn attitude_response(&self) -> Option<AttitudeResponse> {
+        self.attitude.response
     }
 
     /// The figures of the three designs, by the controller's name.
@@ -136,9 +160,7 @@ impl Redesigned {
         Self {
             altitude: kind || before.altitude != after.altitude,
             position: kind || before.position != after.position,
-            attitude: kind
-                || before.attitude != after.attitude
-                || one.believed_inertia_kg_m2() != other.believed_inertia_kg_m2(),
+            attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
                 || one.sensors.position_noise_m != other.sensors.position_noise_m
                 || one.sensors.attitude_noise_rad != other.sensors.attitude_noise_rad,
@@ -155,7 +177,6 @@ struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> 
 
 type Altitude = Designed<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
 type Position = Designed<4, 2, POSITION_FEW, POSITION_MANY>;
-type Attitude = Designed<6, 3, ATTITUDE_FEW, ATTITUDE_MANY>;
 
 fn altitude_design(configuration: &Configuration) -> Result<Altitude, ConfigurationError> {
     let settings = &configuration.controllers;
@@ -173,20 +194,12 @@ fn position_design(configuration: &Configuration) -> Result<Position, Configurat
     })
 }
 
-fn attitude_design(configuration: &Configuration) -> Result<Attitude, ConfigurationError> {
-    let settings = &configuration.controllers;
-    let inertia = configuration.believed_inertia_kg_m2().into();
-    // Laguerre MPC goes by the motion of the attitude error, as the regulator does, and leaves the limits of the
-    // torques to the mixer: increments from a torque that was cut off would lose the damping that it had
-    // asked for, because the rotors answer late, which the model does not know.
-    let limits = if settings.kind == ControllerKind::StateSpaceMpc {
-        attitude_limits(&settings.attitude)
-    } else {
-        Vec::new()
-    };
-    designed("attitude controller", settings.kind, &settings.attitude, &limits, |sample_time| {
-        attitude_model(&inertia, sample_time, Discretization::ZeroOrderHold)
-    })
+fn attitude_design(
+    configuration: &Configuration,
+    mixer: &Mixer,
+) -> Result<(AttitudeDesign, DesignReport), ConfigurationError> {
+    AttitudeDesign::new(configuration, mixer)
+        .map_err(|source| ConfigurationError::Design { part: "attitude controller", source })
 }
 
 fn estimator_design(configuration: &Configuration) -> Result<EstimatorDesign, ConfigurationError> {
@@ -211,23 +224,24 @@ fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
                     StateFeedback::new(design.dlqr().gain())?
                 }
             },
-            report: report(&design)?,
+            report: DesignReport::of(&design)?,
         })
     };
     finished().map_err(|source| ConfigurationError::Design { part: name, source })
 }
 
-fn laguerre_design<const P: usize>(
+pub(crate) fn laguerre_design<const P: usize>(
     settings: &ControllerSettings<P>,
     plant: StateSpace,
 ) -> Result<LmpcDesign, DesignError> {
     let augmented = Augmented::new(&plant);
 
-    // Q = diag(0, w_rate, …, w_output, …) on [Δx_m; y − r], x_m = [y₁ ẏ₁ y₂ ẏ₂ …]; R = diag(w_increment)
+    // Q = diag(0, w_rate, …, w_output, …) on [Δx_m; y − r], x_m = [y₁ ẏ₁ … y₂ ẏ₂ …]; R = diag(w_increment)
     let mut q = DVector::zeros(augmented.states());
+    let states = augmented.plant().states();
     for channel in 0..P {
-        q[2 * channel + 1] = settings.rate_weight[channel];
-        q[2 * P + channel] = settings.output_weight[channel];
+        q[channel * (states / P) + 1] = settings.rate_weight[channel];
+        q[states + channel] = settings.output_weight[channel];
     }
     let r = DMatrix::from_diagonal(&DVector::from_column_slice(settings.increment_weight.as_slice()));
     let weights = Weights::new(&augmented, DMatrix::from_diagonal(&q), r)?;
@@ -240,14 +254,4 @@ fn laguerre_design<const P: usize>(
         Weighting::Terminal { lambda: settings.lambda }
     };
     LmpcDesign::new(&augmented, &weights, &bases, settings.prediction_horizon as usize, weighting)
-}
-
-fn report(design: &LmpcDesign) -> Result<DesignReport, DesignError> {
-    let augmented = design.model();
-    let regulated = augmented.a() - augmented.b() * design.dlqr().gain();
-    Ok(DesignReport {
-        spectral_radius: design.spectral_radius(),
-        eigenvalue_difference_to_dlqr: design.spectral_radius() - spectral_radius("A − BK", &regulated)?,
-        condition_number: design.condition_number(),
-    })
 }

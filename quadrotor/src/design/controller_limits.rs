@@ -4,13 +4,11 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 use lmpc::{Limit, Quantity};
-use nalgebra::{DMatrix, Vector2, Vector3};
+use nalgebra::{DMatrix, Vector2};
 
-use crate::design::capacities::{
-    ALTITUDE_BOUNDS, ATTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES,
-};
-use crate::design::limited_samples::{ALTITUDE, ATTITUDE, POSITION};
-use crate::{Configuration, ControllerSettings, GRAVITY_M_S2, Limits, Mixer};
+use crate::design::capacities::{ALTITUDE_BOUNDS, POSITION_BOUNDS, RATE_SIDES, SPEED_SIDES, TILT_SIDES};
+use crate::design::limited_samples::{ALTITUDE, POSITION};
+use crate::{Configuration, ControllerSettings, GRAVITY_M_S2, Limits};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -30,7 +28,7 @@ const GROWTH: f64 = 10.0;
 
 /// The samples on which limits of a controller are placed: within its horizon, and before α^m L(m) grows. With
 /// α a > 1 the moves that exponential weighting predicts grow without bound, and so would the limits' rows.
-fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
+pub(crate) fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
     let growing = settings.alpha * settings.scale;
     let kept =
         |m: &usize| *m < settings.prediction_horizon as usize && libm::pow(growing, *m as f64) <= GROWTH;
@@ -108,27 +106,6 @@ pub(crate) fn altitude_bounds(
     [range.1, -range.0, down - moving_m_s, up + moving_m_s]
 }
 
-/// Each torque.
-pub(crate) fn attitude_limits(settings: &ControllerSettings<3>) -> Vec<Limit> {
-    [Limit::range(Quantity::Input, 3, placed(settings, ATTITUDE))].into()
-}
-
-/// Values of [`attitude_limits`]: what the rotors can do about each axis alone under a thrust, N, that may be reduced to
-/// a least one, N, beside the torque `other_n_m` that they make anyway.
-///
-/// Each axis for itself: what the mixer does when they add up (roll and pitch first) no convex limit tells.
-pub(crate) fn attitude_bounds(
-    mixer: &Mixer,
-    (thrust_n, least_thrust_n): (f64, f64),
-    other_n_m: &Vector3<f64>,
-) -> [f64; ATTITUDE_BOUNDS] {
-    let most = mixer.available_torques_n_m(thrust_n, least_thrust_n);
-    core::array::from_fn(|bound| {
-        let axis = bound % 3;
-        if bound < 3 { most[axis] - other_n_m[axis] } else { most[axis] + other_n_m[axis] }
-    })
-}
-
 /// The largest tilt as |a|/g when the thrust axis may lean by `tilt_rad` under the vertical acceleration G.
 pub(crate) fn largest_tilt(tilt_rad: f64, vertical_m_s2: f64) -> f64 {
     libm::tan(tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0) / GRAVITY_M_S2
@@ -155,13 +132,13 @@ mod tests {
     use alloc::vec; // used by dmatrix!
     use core::f64::consts::PI;
 
-    use nalgebra::{Vector2, Vector3, dmatrix};
+    use nalgebra::{Vector2, dmatrix};
 
     use super::{
-        altitude_bounds, altitude_limits, attitude_bounds, largest_tilt, placed, position_bounds,
-        position_limits, thrust_range_n,
+        altitude_bounds, altitude_limits, largest_tilt, placed, position_bounds, position_limits,
+        thrust_range_n,
     };
-    use crate::{Airframe, Configuration, Controllers, GRAVITY_M_S2, Limits, Mixer};
+    use crate::{Configuration, Controllers, GRAVITY_M_S2, Limits};
 
     /// Within the horizon, and while the predicted moves grow at most tenfold.
     #[test]
@@ -266,27 +243,5 @@ mod tests {
         near(range(0.01, 3.0), 0.27, 0.8 * 21.87);
         // A vehicle that is too heavy has one thrust left.
         near(range(2.9, 2.0), 2.9 * 6.864_655, 2.9 * 6.864_655);
-    }
-
-    /// What four rotors can differ from the mean by, at the nearer end of their range, under a thrust that is not reduced.
-    #[test]
-    fn torques_are_bounded_by_the_rotors_that_make_them() {
-        let airframe = Airframe::default();
-        let mixer = Mixer::new(&airframe).unwrap();
-        let other = Vector3::new(0.01, -0.02, 0.003);
-        for (thrust_n, room_n) in
-            [(6.27, 6.0 / 4.0), (20.87, 1.0 / 4.0), (0.27, 0.0), (-3.0, 0.0), (21.87, 0.0), (100.0, 0.0)]
-        {
-            // Two rotors on an arm of 0.275 m; four rotors with k₂/k₁ = 6e-7/2.7e-5.
-            let most = [2.0 * 0.275 * room_n, 2.0 * 0.275 * room_n, 4.0 * room_n * 6e-7 / 2.7e-5];
-            let bounds = attitude_bounds(&mixer, (thrust_n, thrust_n), &other);
-            for axis in 0..3 {
-                assert!(
-                    (bounds[axis] - (most[axis] - other[axis])).abs() < 1e-12,
-                    "{thrust_n} N: {bounds:?}"
-                );
-                assert!((bounds[3 + axis] - (most[axis] + other[axis])).abs() < 1e-12, "{thrust_n} N");
-            }
-        }
     }
 }

@@ -1,5 +1,8 @@
 //! What is computed before a flight: linear models, limits and gains of the controllers.
 
+pub(crate) mod attitude_bandwidth;
+pub(crate) mod attitude_design;
+pub(crate) mod attitude_limits;
 pub(crate) mod attitude_response;
 pub(crate) mod capacities;
 pub(crate) mod cascade_design;

@@ -10,7 +10,7 @@ use crate::{CascadeDesign, Configuration};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MovingAxis {
     /// From positions to accelerations.
-    law: LinearLaw,
+    law: LinearLaw<2>,
     output_feedback: bool,
     estimator: Axis,
     shortfall_share: f64,
@@ -58,7 +58,7 @@ impl Moving {
 
 impl MovingAxis {
     /// Under this law, from m and m/s to m/s².
-    pub(crate) fn new(configuration: &Configuration, design: &CascadeDesign, law: LinearLaw) -> Self {
+    pub(crate) fn new(configuration: &Configuration, design: &CascadeDesign, law: LinearLaw<2>) -> Self {
         Self {
             law,
             output_feedback: configuration.sensors.output_feedback,
