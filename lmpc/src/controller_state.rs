@@ -94,8 +94,8 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
         self.feedback
     }
 
-    /// u_r(k−1).
-    pub(crate) fn input_reference(&self) -> SVector<f64, P> {
+    /// u_r(k−1), the part that was feed-forward.
+    pub fn input_reference(&self) -> SVector<f64, P> {
         self.input_reference
     }
 

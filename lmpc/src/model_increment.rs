@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
-use crate::{DesignError, StateSpace};
+use crate::{DesignError, StateSpace, validate};
 
 /// Δx that leads to a state under a driving input: x − A⁻¹(x − B u). Under limits it stands for the measured
 /// motion, in which an actuator that answers late looks like a disturbance.
@@ -17,6 +17,8 @@ pub(crate) struct ModelIncrement<const N: usize, const P: usize> {
 impl<const N: usize, const P: usize> ModelIncrement<N, P> {
     /// For a plant of N states and P inputs whose A can be inverted.
     pub(crate) fn new(plant: &StateSpace) -> Result<Self, DesignError> {
+        validate::shape("A", plant.a(), (N, N))?;
+        validate::shape("B", plant.b(), (N, P))?;
         let inverse = plant.a().clone().try_inverse().ok_or(DesignError::NotFinite { name: "A⁻¹" })?;
         let by_input = &inverse * plant.b();
         let by_state = DMatrix::identity(N, N) - inverse;

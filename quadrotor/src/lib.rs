@@ -124,7 +124,7 @@ pub use configuration::parameters::PARAMETERS;
 pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,
-    ReferenceSettings, Sensors,
+    PredictionModel, ReferenceSettings, Sensors,
 };
 pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
@@ -135,9 +135,10 @@ pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::Mixer;
 pub use control::rotor_monitor::RotorMonitor;
+pub use design::attitude_response::AttitudeResponse;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
-pub use design::linear_models::{altitude_model, attitude_model, position_model};
+pub use design::linear_models::{altitude_model, attitude_model, lagged_attitude_model, position_model};
 pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use design::stability::cause::Cause;
 pub use design::stability::loop_stability::{LoopStability, Spread};

@@ -1,10 +1,10 @@
 //! Every number of a [`Configuration`](crate::Configuration) by its public name: the one source of names,
 //! units and ranges for the FMU's variables, the vehicle's parameters and the validation.
 
-use crate::ControllerKind;
 use crate::configuration::parameter::{Access, Choice, Mutability, Parameter};
 use crate::configuration::unit::Unit;
 use crate::design::capacities::{MOST_MOVES, MOST_TERMS};
+use crate::{ControllerKind, PredictionModel};
 
 /// A real parameter: name, unit, variability, range, place and description.
 macro_rules! real {
@@ -91,6 +91,18 @@ static CONTROLLER_KIND: Choice = Choice {
     ],
 };
 
+/// What `controller.model` chooses from.
+const PREDICTION_MODELS: [PredictionModel; 2] = [PredictionModel::InnerLoops, PredictionModel::Paper];
+
+static PREDICTION_MODEL: Choice = Choice {
+    name: "PredictionModel",
+    description: "Models that the controllers predict with",
+    items: &[
+        ("inner_loops", "With the loop inside: the attitude with the lag of the rotors"),
+        ("paper", "As the paper prints them: inputs act at once"),
+    ],
+};
+
 const TUNABLE: Mutability = Mutability::Tunable;
 const STRUCTURAL: Mutability = Mutability::Structural;
 const START: Mutability = Mutability::Start;
@@ -140,6 +152,21 @@ pub static PARAMETERS: &[Parameter] = &[
             },
         },
     },
+    Parameter {
+        name: "controller.model",
+        description: "Models that the controllers predict with: 1 = inner_loops (with the loop inside: the attitude with the lag of the rotors), 2 = paper (as the paper prints them, inputs act at once)",
+        unit: Unit::One,
+        mutability: STRUCTURAL,
+        access: Access::Enumeration {
+            choice: &PREDICTION_MODEL,
+            get: |configuration| (1..).zip(PREDICTION_MODELS).find(|(_, model)| *model == configuration.controllers.model).map_or(1, |(item, _)| item),
+            set: |configuration, value| {
+                if let Some((_, model)) = (1..).zip(PREDICTION_MODELS).find(|(item, _)| *item == value) {
+                    configuration.controllers.model = model;
+                }
+            },
+        },
+    },
     boolean!("controller.governor", STRUCTURAL, controllers.governor, "Whether a distant set-point is moved closer for the position and altitude controllers, so that the vehicle can brake in time; without it large steps overshoot"),
     real!("controller.mass_factor", One, STRUCTURAL, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
@@ -167,20 +194,20 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("controller.position.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.position.increment_weight[1], "R: weight of the increment of the roll command, which moves east"),
     sample_time!("controller.attitude.sample_time", attitude, "Sample time of the attitude controller"),
     integer!("controller.attitude.terms", 1..=MOST_TERMS, controllers.attitude.terms, "N: Laguerre terms of the attitude controller, per input"),
-    real!("controller.attitude.scale", One, STRUCTURAL, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller"),
-    integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller, samples"),
+    real!("controller.attitude.scale", One, STRUCTURAL, 0.0..=0.99, controllers.attitude.scale, "a: Laguerre scaling factor of the attitude controller for roll and pitch; yaw has the same in its own time"),
+    integer!("controller.attitude.prediction_horizon", 1..=1000, controllers.attitude.prediction_horizon, "N_p: prediction horizon of the attitude controller for roll and pitch, samples; yaw has the same in its own time"),
     integer!("controller.attitude.control_horizon", 1..=MOST_MOVES, controllers.attitude.control_horizon, "N_c: control moves of the attitude controller's state-space MPC, per input"),
     real!("controller.attitude.alpha", One, STRUCTURAL, 1.0..=2.0, controllers.attitude.alpha, "alpha: exponential data weighting of the attitude controller; 1 selects the Riccati terminal weight"),
     real!("controller.attitude.lambda", One, STRUCTURAL, 0.5..=1.0, controllers.attitude.lambda, "lambda: degree of stability of the attitude controller"),
     real!("controller.attitude.output_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[0], "Q: weight of the roll error"),
     real!("controller.attitude.output_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[1], "Q: weight of the pitch error"),
     real!("controller.attitude.output_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.output_weight[2], "Q: weight of the heading error"),
-    real!("controller.attitude.rate_weight.phi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[0], "Q: weight of the increment of the roll rate"),
-    real!("controller.attitude.rate_weight.theta", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[1], "Q: weight of the increment of the pitch rate"),
-    real!("controller.attitude.rate_weight.psi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[2], "Q: weight of the increment of the yaw rate"),
-    real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque"),
-    real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque"),
-    real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque"),
+    real!("controller.attitude.rate_weight.phi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[0], "Q: weight of the increment of the roll rate, as a multiple of the one that the airframe calls for"),
+    real!("controller.attitude.rate_weight.theta", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[1], "Q: weight of the increment of the pitch rate, as a multiple of the one that the airframe calls for"),
+    real!("controller.attitude.rate_weight.psi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[2], "Q: weight of the increment of the yaw rate, as a multiple of the one that the airframe calls for"),
+    real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque, as a multiple of the one that the airframe calls for"),
+    real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque, as a multiple of the one that the airframe calls for"),
+    real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque, as a multiple of the one that the airframe calls for"),
     real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; commands stay within 60 % of it, the rest is a margin for overshoot when torques saturate"),
     real!("limits.tilt_rate", RadianPerSecond, TUNABLE, 0.05..=20.0, limits.tilt_rate_rad_s, "Largest rate of the tilt command"),
     real!("limits.tilt_acceleration", RadianPerSecondSquared, TUNABLE, 0.1..=500.0, limits.tilt_acceleration_rad_s2, "Largest angular acceleration of the tilt command"),

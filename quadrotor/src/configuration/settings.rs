@@ -104,11 +104,23 @@ pub enum ControllerKind {
     Dlqr,
 }
 
+/// Which models the controllers predict with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum PredictionModel {
+    /// With the loop inside: the attitude with the rotors' lag.
+    #[default]
+    InnerLoops,
+    /// As the paper prints them: (9), (15) and (23), whose inputs act at once.
+    Paper,
+}
+
 /// The cascade: position → tilt, altitude → thrust, attitude → torques (Figure 2).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Controllers {
     /// Which controller flies.
     pub kind: ControllerKind,
+    /// Which models it predicts with.
+    pub model: PredictionModel,
     /// Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can
     /// brake from the speed that it calls for. Without it large steps overshoot as the weights have it.
     pub governor: bool,
@@ -119,7 +131,11 @@ pub struct Controllers {
     pub altitude: ControllerSettings<1>,
     /// Position controller on (15), inputs θ, φ for outputs x, y.
     pub position: ControllerSettings<2>,
-    /// Attitude controller on (23), inputs τ_φ, τ_θ, τ_ψ for outputs φ, θ, ψ.
+    /// Attitude controller on (23) with the rotors' lag, outputs φ, θ, ψ. Its inputs are angular accelerations, J⁻¹ τ, so that
+    /// its weights do not depend on the vehicle: they are multiples of those that close its loop at the bandwidth that the
+    /// airframe allows, 1 for outputs, 1/(ΔT ω²)² for increments of rates and 1/(ΔT ω³)² for increments of inputs. Roll and
+    /// pitch have one bandwidth ω, yaw has another one; a and N_p are those of roll and pitch, and yaw has them in its own
+    /// time.
     pub attitude: ControllerSettings<3>,
 }
 
@@ -157,13 +173,13 @@ pub struct ControllerSettings<const P: usize> {
 /// | --- | --- | --- |
 /// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
 /// | α | 1, the Riccati solution as terminal weight | α = 1.2 discounts the future, which costs once limits are active |
-/// | a | 0.7 altitude, 0.86 position and attitude | with N_p, least closed-loop cost on steps that saturate: within 1 % of the optimum at N = 5, 0.3 % at N = 7 |
-/// | N_p | 60 altitude and attitude, 150 position | the same |
+/// | a | 0.7 altitude, 0.86 position | with N_p, least closed-loop cost on steps that saturate: within 1 % of the optimum at N = 5, 0.3 % at N = 7 |
+/// | N_p | 60 altitude, 150 position | the same |
+/// | attitude a, N_p | 0.93, 120 | turning upside down under the torque limits overshoots by 3 %; 0.9 to 0.95 by 6 to 2 % |
 /// | altitude R | 1 | closes at ω = (1/(ΔT √R))^(1/3) = 2.7 rad/s: a tenth of what rotor lag and sampling allow |
 /// | position R | 1200 | closes at (g/(ΔT √R))^(1/3) = 1.8 rad/s: a quarter of the attitude loop's bandwidth |
-/// | attitude R, roll and pitch | 12 | closes at (1/(J ΔT √R))^(1/3) = 6.5 rad/s: a fifth of the rotor lag's 33 rad/s |
-/// | attitude R, yaw | 300 | closes at 3 rad/s: yaw torque is a seventh of the others' |
-/// | attitude rate weight | 3, yaw 0 | damps roll and pitch against the rotor lag, which the model does not have |
+/// | attitude bandwidth | from the airframe | at most 0.6/(rotor lag + ΔT/2), and √(α/0.06) rad/s of the angular acceleration α in hover: 11.9 rad/s for the paper's roll and pitch, 3.4 for its yaw |
+/// | attitude rate weight | 2 | the closed loop has a damping of 0.65 |
 impl Default for Controllers {
     fn default() -> Self {
         let altitude = ControllerSettings {
@@ -180,14 +196,16 @@ impl Default for Controllers {
             increment_weight: SVector::from([1.0]),
         };
         let position = ControllerSettings { scale: 0.86, prediction_horizon: 150, ..altitude };
-        let attitude = ControllerSettings { sample_time_us: 10_000, scale: 0.86, ..altitude };
+        let attitude =
+            ControllerSettings { sample_time_us: 10_000, scale: 0.93, prediction_horizon: 120, ..altitude };
         Self {
             kind: ControllerKind::default(),
+            model: PredictionModel::default(),
             governor: true,
             mass_factor: 1.0,
             altitude,
             position: position.with_weights([1.0; 2], [0.5; 2], [1.0; 2]),
-            attitude: attitude.with_weights([1.0; 3], [3.0, 3.0, 0.0], [12.0, 12.0, 300.0]),
+            attitude: attitude.with_weights([1.0; 3], [2.0; 3], [1.0; 3]),
         }
     }
 }

@@ -41,6 +41,22 @@ impl ControllerActivity {
         activity
     }
 
+    /// Of two laws that make one controller: the worse outcome, and all iterations and limits.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let severity = |status: ControllerStatus| match status {
+            ControllerStatus::Optimal => 0,
+            ControllerStatus::Relaxed => 1,
+            ControllerStatus::IterationLimit => 2,
+            ControllerStatus::Held => 3,
+        };
+        let worse = severity(other.status) > severity(self.status);
+        Self {
+            status: if worse { other.status } else { self.status },
+            iterations: self.iterations.saturating_add(other.iterations),
+            active: self.active.saturating_add(other.active),
+        }
+    }
+
     /// Counts the axes whose input was cut off, unless as many limits were active already.
     pub(crate) fn cut<const P: usize>(&mut self, wanted: &SVector<f64, P>, applied: &SVector<f64, P>) {
         let differs = |axis: &usize| {
@@ -95,6 +111,16 @@ mod tests {
         assert_eq!(active(0, Vector3::new(0.9, -2.0, 0.0)), 1);
         assert_eq!(active(0, Vector3::new(1.1, -1.9, 0.1)), 3);
         assert_eq!(active(2, Vector3::new(0.9, -2.0, 0.0)), 2);
+    }
+
+    #[test]
+    fn two_laws_are_as_bad_as_the_worse_one() {
+        let of = |status, iterations, active| ControllerActivity { status, iterations, active };
+        let (fine, relaxed) = (of(Status::Optimal, 2, 3), of(Status::Relaxed, 5, 7));
+        assert_eq!(fine.with(&relaxed), of(Status::Relaxed, 7, 10));
+        assert_eq!(relaxed.with(&fine), of(Status::Relaxed, 7, 10));
+        assert_eq!(of(Status::Held, 0, 0).with(&relaxed).status, Status::Held);
+        assert_eq!(relaxed.with(&of(Status::IterationLimit, 0, 0)).status, Status::IterationLimit);
     }
 
     /// A billionth of 1 + |u| is rounding.

@@ -7,12 +7,13 @@ use crate::attitude::{tilt_angles, turned};
 use crate::control::activity::Activity;
 use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
+use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
 use crate::control::mass_belief::MassBelief;
-use crate::control::observation::Observation;
+use crate::control::observation::{Observation, gyroscopic_torque_n_m};
 use crate::control::position_controller::PositionController;
-use crate::design::controller_limits::{
-    COMMANDED_TILT_SHARE, attitude_bounds, least_thrust_n, thrust_range_n,
-};
+use crate::control::thrust_lag::ThrustLag;
+use crate::design::attitude_limits::RotorRoom;
+use crate::design::controller_limits::{COMMANDED_TILT_SHARE, least_thrust_n, thrust_range_n};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -31,6 +32,7 @@ pub struct Cascade {
     position: PositionController,
     altitude: AltitudeController,
     attitude: AttitudeController,
+    turning: SmoothedAcceleration,
     /// What feedback adds to the acceleration of the reference, NED, m/s².
     feedback_m_s2: Vector3<f64>,
     /// Acceleration of the reference at the latest sample of the attitude controller, NED, m/s².
@@ -62,6 +64,7 @@ impl Cascade {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
             attitude: AttitudeController::new(&body.rotation()),
+            turning: SmoothedAcceleration::default(),
             feedback_m_s2: Vector3::zeros(),
             reference_m_s2: Vector3::zeros(),
             tilt_reference_rad: [0.0; 2],
@@ -93,7 +96,7 @@ impl Cascade {
             self.position.translate(|acceleration| belief.horizontal(acceleration));
             self.altitude.translate(|acceleration| belief.vertical(acceleration));
         }
-        self.attitude.hand_over(&before.cascade, after);
+        self.attitude.hand_over(before, after);
     }
 
     /// The acceleration that is commanded, NED, m/s².
@@ -217,27 +220,46 @@ impl Cascade {
         (thrust_n, least_thrust_n): (f64, f64),
         time_us: u64,
     ) -> [f64; 4] {
-        let period_us = configuration.controllers.attitude.sample_time_us;
-        let period_s = configuration.controllers.attitude.sample_time_s();
+        let controllers = &configuration.controllers;
+        let period_s = controllers.attitude.sample_time_s();
         let body = &seen.body;
-        let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
-        let (torque, activity) = self.attitude.step(
-            configuration,
-            design,
-            &seen.rotation(),
-            reference,
-            &attitude_bounds(&design.mixer, (thrust_n, least_thrust_n), &gyroscopic),
-            interval_s(&mut self.sampled.attitude_us, time_us, period_us),
-        );
+        let since_s = interval_s(&mut self.sampled.attitude_us, time_us, controllers.attitude.sample_time_us);
+        let (attitude, rate_rad_s) = reference;
+        let reference = AttitudeReference {
+            attitude: *attitude,
+            rate_rad_s: *rate_rad_s,
+            acceleration_rad_s2: self.turning.go_on(rate_rad_s, since_s),
+            jerk_rad_s3: Vector3::zeros(),
+        };
+        let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
+        let room = RotorRoom {
+            mixer: &design.mixer,
+            thrust_n: (thrust_n, least_thrust_n),
+            other_n_m: gyroscopic_torque_n_m(configuration, &body.body_rate_rad_s),
+            inertia_kg_m2,
+            believed: controllers.mass_factor,
+        };
+        let (acceleration, activity) =
+            self.attitude.step(configuration, &design.attitude, &seen.rotation(), &reference, &room);
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
-        let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
-        let rotor_command_rad_s = design.mixer.rotor_speeds_rad_s(&wanted, least_thrust_n);
-        let made = wrench_of_rotors(&configuration.airframe, &rotor_command_rad_s);
+        let torque_n_m = acceleration.component_mul(&inertia_kg_m2) + room.other_n_m;
+        let wanted = Wrench { thrust_n, torque_n_m: lead * torque_n_m };
+        let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
+        let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
+        let rotor_command_rad_s =
+            core::array::from_fn(|rotor| lag.command_rad_s(thrusts_n[rotor], seen.rotor_speed_rad_s[rotor]));
+        let made = wrench_of_rotors(
+            &configuration.airframe,
+            &core::array::from_fn(|rotor| {
+                lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
+            }),
+        );
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
-        self.attitude.apply(design, &(lead.inverse() * made.torque_n_m - gyroscopic));
+        let made_n_m = lead.inverse() * made.torque_n_m - room.other_n_m;
+        self.attitude.apply(&design.attitude, &made_n_m.component_div(&inertia_kg_m2));
         rotor_command_rad_s
     }
 }
@@ -288,9 +310,4 @@ fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f6
     let level = configuration.believed_mass_kg() * (GRAVITY_M_S2 - vertical_m_s2);
     let (least, most) = thrust_range_n(configuration);
     (level / upright).clamp(least, most)
-}
-
-/// ω × Jω, N·m: what (3) takes from the torques, given back.
-fn gyroscopic_torque(configuration: &Configuration, body_rate_rad_s: &Vector3<f64>) -> Vector3<f64> {
-    body_rate_rad_s.cross(&configuration.believed_inertia_kg_m2().component_mul(body_rate_rad_s))
 }

@@ -61,11 +61,6 @@ impl Estimator {
         }
     }
 
-    /// Thrust of the rotors by their model, N.
-    pub(crate) fn thrust_n(&self, configuration: &Configuration) -> f64 {
-        wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n
-    }
-
     fn is_finite(&self) -> bool {
         let disturbances = self.disturbance_m_s2.iter().chain(&self.disturbance_rad_s2);
         self.body.is_possible()
@@ -80,6 +75,11 @@ impl Estimator {
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     pub(crate) fn disturbance_rad_s2(&self) -> Vector3<f64> {
         self.disturbance_rad_s2
+    }
+
+    /// Speeds of the rotors by their model at the time that is predicted for, rad/s.
+    pub(crate) fn rotor_speed_rad_s(&self) -> [f64; 4] {
+        self.rotor_speed_rad_s
     }
 
     /// Goes on under another design, for an unchanged vehicle: a thrust that is believed to accelerate more, or less, leaves the

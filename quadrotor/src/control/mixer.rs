@@ -1,6 +1,6 @@
 //! The inverse of the rotor map (1), with saturation.
 
-use nalgebra::Matrix4;
+use nalgebra::{Matrix4, Vector2};
 
 use crate::control::largest_share::{Bound, largest_share};
 use crate::{Airframe, ConfigurationError, Wrench};
@@ -64,11 +64,16 @@ impl Mixer {
     /// Below the middle the thrust is kept and the torques give way: thrust is never raised, except to the least that the rotors
     /// make. No rotor pulls backwards.
     pub fn rotor_speeds_rad_s(&self, wanted: &Wrench, least_thrust_n: f64) -> [f64; 4] {
+        // ω = √(thrust / k₁)
+        self.rotor_thrusts_n(wanted, least_thrust_n)
+            .map(|thrust| libm::sqrt(thrust / self.thrust_coefficient_n_s2))
+    }
+
+    /// The thrusts, N, that [`Mixer::rotor_speeds_rad_s`] makes with those speeds.
+    pub(crate) fn rotor_thrusts_n(&self, wanted: &Wrench, least_thrust_n: f64) -> [f64; 4] {
         let (weakest, strongest) = self.range_n;
         // Thrust of each rotor: F/4 + tilt ± yaw
-        let roll = wanted.torque_n_m.x / self.arm_length_m;
-        let pitch = wanted.torque_n_m.y / self.arm_length_m;
-        let tilt = self.tilting.map(|[by_roll, by_pitch]| by_roll * roll + by_pitch * pitch);
+        let tilt = self.tilting_thrusts_n(&wanted.torque_n_m.xy());
         let yaw = wanted.torque_n_m.z * self.thrust_coefficient_n_s2 / (4.0 * self.torque_coefficient_n_m_s2);
         let mean = (wanted.thrust_n / 4.0).clamp(weakest, strongest);
         let mean = mean - self.given(mean, self.most_given(mean, least_thrust_n), &tilt, yaw);
@@ -81,11 +86,53 @@ impl Mixer {
         let most = most.iter().map(|bound| bound.room - share * bound.size).fold(f64::INFINITY, f64::min);
         let yaw = yaw.min(most).max(least.min(most));
 
-        // ω = √(thrust / k₁)
         core::array::from_fn(|rotor| {
-            let thrust = mean + share * tilt[rotor] + self.turning[rotor] * yaw;
-            libm::sqrt(thrust.clamp(weakest, strongest) / self.thrust_coefficient_n_s2)
+            (mean + share * tilt[rotor] + self.turning[rotor] * yaw).clamp(weakest, strongest)
         })
+    }
+
+    /// By how much the thrust of each rotor differs from the mean for roll and pitch torques, N·m.
+    pub(crate) fn tilting_thrusts_n(&self, torque_n_m: &Vector2<f64>) -> [f64; 4] {
+        let (roll, pitch) = (torque_n_m.x / self.arm_length_m, torque_n_m.y / self.arm_length_m);
+        self.tilting.map(|[by_roll, by_pitch]| by_roll * roll + by_pitch * pitch)
+    }
+
+    /// By how much the thrust of each rotor may differ from the mean, N, down and up, for roll and pitch torques under a
+    /// thrust that gives way to them, down to a least one.
+    pub(crate) fn tilting_room_n(&self, (thrust_n, least_thrust_n): (f64, f64)) -> (f64, f64) {
+        let (weakest, strongest) = self.range_n;
+        let mean = (thrust_n / 4.0).clamp(weakest, strongest);
+        let mean = mean - self.most_given(mean, least_thrust_n);
+        (mean - weakest, strongest - mean)
+    }
+
+    /// Least and largest yaw torque, N·m, that these roll and pitch torques leave room for, under a thrust that gives way to
+    /// all of them as far as the mixer lets it, down to a least one.
+    pub(crate) fn turning_range_n_m(
+        &self,
+        (thrust_n, least_thrust_n): (f64, f64),
+        tilting_n_m: &Vector2<f64>,
+    ) -> (f64, f64) {
+        let (weakest, strongest) = self.range_n;
+        let tilt = self.tilting_thrusts_n(tilting_n_m);
+        let mean = (thrust_n / 4.0).clamp(weakest, strongest);
+        let most = self.most_given(mean, least_thrust_n);
+        let (least, largest) = self.yaw_bounds(&tilt, mean);
+        let (share, to_tilt) = largest_share(&tilt_bounds(&least, &largest, 0.0), most);
+        let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
+        let range = |mean: f64| {
+            let (least, largest) = self.yaw_bounds(&tilt, mean);
+            let ends = |bounds: &[YawBound; 4]| {
+                bounds.iter().map(|bound| bound.room - share * bound.size).fold(f64::INFINITY, f64::min)
+            };
+            // Rounding may leave less than nothing.
+            (-ends(&least).max(0.0), ends(&largest).max(0.0))
+        };
+        let ((low, high), (low_after, high_after)) =
+            (range(mean - to_tilt), range(mean - to_tilt - headroom));
+        let torque_n_m =
+            |yaw_n: f64| yaw_n * 4.0 * self.torque_coefficient_n_m_s2 / self.thrust_coefficient_n_s2;
+        (torque_n_m(low.min(low_after)), torque_n_m(high.max(high_after)))
     }
 
     /// By how much the mean thrust, N, may give way: to the middle of the range, where the room for torques is largest, or to the
@@ -170,7 +217,7 @@ fn tilt_bounds(least: &[YawBound; 4], most: &[YawBound; 4], yaw: f64) -> [Bound;
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
+    use nalgebra::{Vector2, Vector3};
     use proptest::prelude::*;
 
     use super::Mixer;
@@ -247,6 +294,25 @@ mod tests {
             let speeds = mixer.rotor_speeds_rad_s(&Wrench { thrust_n: thrust, torque_n_m }, least);
             let made = wrench_of_rotors(&airframe, &speeds).torque_n_m[axis];
             prop_assert!((made - available[axis]).abs() < 1e-9, "{made} {available:?}");
+        }
+
+        /// The room that is told is the room that the mixer makes: each end of the yaw range is made whole, beside the roll
+        /// and pitch torques that it was told for, and nothing beyond.
+        #[test]
+        fn the_yaw_range_is_made(
+            thrust in 0.0..25.0, least in 0.0..25.0, x in -2.0..2.0, y in -2.0..2.0, upper in prop::bool::ANY,
+        ) {
+            let airframe = Airframe::default();
+            let mixer = Mixer::new(&airframe).expect("a mixer");
+            let (low, high) = mixer.turning_range_n_m((thrust, least), &Vector2::new(x, y));
+            prop_assert!(low <= 0.0 && high >= 0.0);
+            let z = if upper { high } else { low };
+            let made = |z: f64| {
+                let wanted = Wrench { thrust_n: thrust, torque_n_m: Vector3::new(x, y, z) };
+                wrench_of_rotors(&airframe, &mixer.rotor_speeds_rad_s(&wanted, least)).torque_n_m
+            };
+            prop_assert!((made(z).z - z).abs() < 1e-9, "{z}: {}", made(z));
+            prop_assert!(made(100.0 * z.signum()).z.abs() <= z.abs() + 1e-9, "{z}: {}", made(100.0 * z.signum()));
         }
 
         /// The map and its inverse agree for whatever layout is balanced and can make every torque.

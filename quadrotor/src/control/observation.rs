@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
 use crate::control::vehicle_motion::VehicleMotion;
-use crate::{Configuration, GRAVITY_M_S2, RigidBody};
+use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
 /// The vehicle as the controllers see it at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +19,12 @@ pub(crate) struct Observation {
     jerk_m_s3: Vector3<f64>,
     /// Acceleration that the thrust does not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
-    /// Torque that the rotors do not explain, FRD, N·m.
-    disturbance_n_m: Vector3<f64>,
+    /// Angular acceleration that the torques do not explain, FRD, rad/s².
+    disturbance_rad_s2: Vector3<f64>,
+    /// Speeds that the rotors have reached by their model, rad/s.
+    pub(crate) rotor_speed_rad_s: [f64; 4],
+    /// Angular acceleration by the torques that they make at those speeds, FRD, rad/s².
+    rotor_acceleration_rad_s2: Vector3<f64>,
 }
 
 impl Observation {
@@ -32,20 +36,23 @@ impl Observation {
         time_us: u64,
     ) -> Self {
         let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
+        let rotor_speed_rad_s = estimator.rotor_speed_rad_s();
+        let made = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
+        let torque_n_m = made.torque_n_m - gyroscopic_torque_n_m(configuration, &body.body_rate_rad_s);
         // a = g e₃ − R e₃ F/m,  ȧ = −R (ω × e₃) F/m
-        let lift = estimator.thrust_n(configuration) / configuration.believed_mass_kg();
+        let lift = made.thrust_n / configuration.believed_mass_kg();
         let rotation = body.rotation();
         let acceleration_m_s2 = Vector3::z() * GRAVITY_M_S2 - rotation * Vector3::z() * lift;
         let jerk_m_s3 = rotation * body.body_rate_rad_s.cross(&Vector3::z()) * -lift;
-        let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);
         Self {
             measured: *measured,
             body,
             acceleration_m_s2,
             jerk_m_s3,
             disturbance_m_s2: estimator.disturbance_m_s2(),
-            disturbance_n_m: estimator.disturbance_rad_s2().component_mul(&inertia)
-                * configuration.controllers.mass_factor,
+            disturbance_rad_s2: estimator.disturbance_rad_s2(),
+            rotor_speed_rad_s,
+            rotor_acceleration_rad_s2: torque_n_m.component_div(&configuration.believed_inertia_kg_m2()),
         }
     }
 
@@ -77,7 +84,16 @@ impl Observation {
         VehicleRotation {
             attitude: self.body.rotation(),
             body_rate_rad_s: self.body.body_rate_rad_s,
-            disturbance_n_m: self.disturbance_n_m,
+            acceleration_rad_s2: self.rotor_acceleration_rad_s2,
+            disturbance_rad_s2: self.disturbance_rad_s2,
         }
     }
+}
+
+/// ω × Jω, N·m: what (3) takes from the torques, given back.
+pub(crate) fn gyroscopic_torque_n_m(
+    configuration: &Configuration,
+    body_rate_rad_s: &Vector3<f64>,
+) -> Vector3<f64> {
+    body_rate_rad_s.cross(&configuration.believed_inertia_kg_m2().component_mul(body_rate_rad_s))
 }

@@ -3,8 +3,9 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Controller, ControllerState, DesignError, Limit, LmpcDesign, Quantity, Sample, SignalLimit, StabilizedDesign,
-    StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
+    Controller, ControllerState, DesignError, DeviationFeedback, LaguerreMpc, Limit, LmpcDesign, Quantity,
+    Sample, SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
+    StateSpaceMpcWeights, Step,
 };
 use nalgebra::{DMatrix, SVector};
 
@@ -16,14 +17,20 @@ use crate::{ControllerKind, ControllerSettings};
 #[allow(clippy::large_enum_variant)] // A design is made once and holds one of each loop.
 pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, const L: usize> {
     /// Laguerre MPC with few terms.
-    FewTerms(StabilizedMpc<N, P, P, S>),
+    FewTerms(LaguerreMpc<N, P, P, S>),
     /// Laguerre MPC with many.
-    ManyTerms(StabilizedMpc<N, P, P, L>),
+    ManyTerms(LaguerreMpc<N, P, P, L>),
+    /// Laguerre MPC about a stabilizing feedback, with few terms.
+    StabilizedFew(StabilizedMpc<N, P, P, S>),
+    /// The same with many.
+    StabilizedMany(StabilizedMpc<N, P, P, L>),
     /// State-space MPC.
     StateSpace(StateSpaceMpc<N, P, P, L>),
     /// Laguerre MPC without limits, or the regulator: increments from the measured motion, which contains what
     /// disturbs it.
     Incremental(StateFeedback<N, P, P>),
+    /// The regulator by the deviation from its reference, told of what disturbs it.
+    ByDeviation(DeviationFeedback<N, P, P>),
 }
 
 impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw<N, P, S, L> {
@@ -35,7 +42,15 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         limits: &[Limit],
     ) -> Result<Self, DesignError> {
         Ok(match kind {
-            ControllerKind::Lmpc => Self::Incremental(StateFeedback::from_design(design)?),
+            ControllerKind::Lmpc if limits.is_empty() => {
+                Self::Incremental(StateFeedback::from_design(design)?)
+            }
+            // Under limits it goes by the motion that the model explains: in the measured motion an actuator that answers
+            // late looks like a disturbance.
+            ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
+                Self::FewTerms(LaguerreMpc::with_model_increment(design, limits)?)
+            }
+            ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
             ControllerKind::StateSpaceMpc => Self::StateSpace(StateSpaceMpc::new(
                 &state_space_of(settings, design)?,
                 limits,
@@ -54,9 +69,9 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     ) -> Result<Self, DesignError> {
         Ok(match kind {
             ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
-                Self::FewTerms(StabilizedMpc::new(design, limits, slack_cost)?)
+                Self::StabilizedFew(StabilizedMpc::new(design, limits, slack_cost)?)
             }
-            ControllerKind::Lmpc => Self::ManyTerms(StabilizedMpc::new(design, limits, slack_cost)?),
+            ControllerKind::Lmpc => Self::StabilizedMany(StabilizedMpc::new(design, limits, slack_cost)?),
             ControllerKind::StateSpaceMpc => {
                 let limits: Vec<Limit> = limits.iter().map(plain).collect();
                 Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, &limits)?)
@@ -65,9 +80,15 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         })
     }
 
+    /// The regulator of a design, by the deviation from its reference.
+    pub(crate) fn by_deviation(design: &LmpcDesign) -> Result<Self, DesignError> {
+        let regulator = DeviationFeedback::new(design.model().plant(), design.dlqr().gain())?;
+        Ok(Self::ByDeviation(regulator))
+    }
+
     /// Whether it goes by the measured motion; else it must be told of disturbances.
     pub(crate) fn is_incremental(&self) -> bool {
-        matches!(self, Self::Incremental(_))
+        matches!(self, Self::Incremental(_) | Self::StabilizedFew(_) | Self::StabilizedMany(_))
     }
 
     /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
@@ -90,8 +111,11 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         match self {
             Self::FewTerms(controller) => controller,
             Self::ManyTerms(controller) => controller,
+            Self::StabilizedFew(controller) => controller,
+            Self::StabilizedMany(controller) => controller,
             Self::StateSpace(controller) => controller,
             Self::Incremental(controller) => controller,
+            Self::ByDeviation(controller) => controller,
         }
     }
 }
@@ -132,9 +156,11 @@ fn state_space_of<const P: usize>(
 ) -> Result<StateSpaceMpcDesign, DesignError> {
     let diagonal =
         |weights: &SVector<f64, P>| DMatrix::from_fn(P, P, |i, j| if i == j { weights[i] } else { 0.0 });
-    let mut damping = DMatrix::zeros(2 * P, 2 * P);
+    let states = design.model().plant().states();
+    let mut damping = DMatrix::zeros(states, states);
     for (channel, weight) in settings.rate_weight.iter().enumerate() {
-        damping[(2 * channel + 1, 2 * channel + 1)] = *weight;
+        let rate = channel * (states / P) + 1;
+        damping[(rate, rate)] = *weight;
     }
     let weights = StateSpaceMpcWeights {
         output: diagonal(&settings.output_weight),

@@ -17,15 +17,19 @@ pub(crate) const FEW_TERMS: usize = 7;
 /// Coefficients per input of the larger programs.
 const MANY: usize = if MOST_TERMS > MOST_MOVES { MOST_TERMS } else { MOST_MOVES };
 
-/// Unknowns of the smaller programs, by the number of inputs: G; θ, φ; τ_φ, τ_θ, τ_ψ.
+/// Unknowns of the smaller programs, by the number of inputs: G; θ, φ; roll and pitch; yaw.
 pub(crate) const ALTITUDE_FEW: usize = unknowns(1, FEW_TERMS);
 pub(crate) const POSITION_FEW: usize = unknowns(2, FEW_TERMS);
-pub(crate) const ATTITUDE_FEW: usize = unknowns(3, FEW_TERMS);
+pub(crate) const LEAN_FEW: usize = unknowns(2, FEW_TERMS);
+pub(crate) const TURN_FEW: usize = unknowns(1, FEW_TERMS);
 
 /// Unknowns of the larger programs, and active limits that a controller's state can remember.
 pub(crate) const ALTITUDE_MANY: usize = unknowns(1, MANY);
 pub(crate) const POSITION_MANY: usize = unknowns(2, MANY);
-pub(crate) const ATTITUDE_MANY: usize = unknowns(3, MANY);
+pub(crate) const LEAN_MANY: usize = unknowns(2, MANY);
+pub(crate) const TURN_MANY: usize = unknowns(1, MANY);
 
-/// Bounds of the attitude controller: three torques, each both ways.
-pub(crate) const ATTITUDE_BOUNDS: usize = 2 * 3;
+/// Bounds of the attitude controller about roll and pitch: the thrust of each of four rotors, up and down.
+pub(crate) const LEAN_BOUNDS: usize = 4 * 2;
+/// Its bounds about yaw: both ways, now and later.
+pub(crate) const TURN_BOUNDS: usize = 2 * 2;

@@ -1,12 +1,8 @@
 //! What the predictive controllers keep within, as [`Limit`]s and their values at a sample.
 
 use alloc::vec::Vec;
-use lmpc::{Limit, Quantity};
-use nalgebra::Vector3;
 
-use crate::design::capacities::ATTITUDE_BOUNDS;
-use crate::design::limited_samples::ATTITUDE;
-use crate::{Configuration, ControllerSettings, GRAVITY_M_S2, Mixer};
+use crate::{Configuration, ControllerSettings, GRAVITY_M_S2};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -20,32 +16,11 @@ const GROWTH: f64 = 10.0;
 
 /// The samples on which limits of a controller are placed: within its horizon, and before α^m L(m) grows. With
 /// α a > 1 the moves that exponential weighting predicts grow without bound, and so would the limits' rows.
-fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
+pub(crate) fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
     let growing = settings.alpha * settings.scale;
     let kept =
         |m: &usize| *m < settings.prediction_horizon as usize && libm::pow(growing, *m as f64) <= GROWTH;
     samples.iter().copied().filter(kept).collect()
-}
-
-/// Each torque.
-pub(crate) fn attitude_limits(settings: &ControllerSettings<3>) -> Vec<Limit> {
-    [Limit::range(Quantity::Input, 3, placed(settings, ATTITUDE))].into()
-}
-
-/// Values of [`attitude_limits`]: what the rotors can do about each axis alone under a thrust, N, that may be reduced to
-/// a least one, N, beside the torque `other_n_m` that they make anyway.
-///
-/// Each axis for itself: what the mixer does when they add up (roll and pitch first) no convex limit tells.
-pub(crate) fn attitude_bounds(
-    mixer: &Mixer,
-    (thrust_n, least_thrust_n): (f64, f64),
-    other_n_m: &Vector3<f64>,
-) -> [f64; ATTITUDE_BOUNDS] {
-    let most = mixer.available_torques_n_m(thrust_n, least_thrust_n);
-    core::array::from_fn(|bound| {
-        let axis = bound % 3;
-        if bound < 3 { most[axis] - other_n_m[axis] } else { most[axis] + other_n_m[axis] }
-    })
 }
 
 /// Thrust, N, that an attitude target keeps whatever its torques need: what holds the altitude at a tilt of the given cosine, as
@@ -63,4 +38,3 @@ pub(crate) fn thrust_range_n(configuration: &Configuration) -> (f64, f64) {
     let least = (limits.thrust_min * weight).max(weakest);
     (least, (limits.thrust_max * weight).min(USABLE_THRUST_SHARE * strongest).max(least))
 }
-

@@ -1,7 +1,9 @@
-//! The linear models of the paper's three controllers.
+//! The linear models of the paper's three controllers, and of the attitude with its rotors.
+
+use alloc::vec; // used by dmatrix!
 
 use lmpc::{DesignError, Discretization, StateSpace};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, dmatrix};
 
 use crate::GRAVITY_M_S2;
 
@@ -99,4 +101,60 @@ pub fn attitude_model(
     discretization: Discretization,
 ) -> Result<StateSpace, DesignError> {
     double_integrators(&inertia_kg_m2.map(f64::recip), sample_time_s, discretization)
+}
+
+/// (23) in angular accelerations, with the rotors that make them: each of `axes` has the angle, its rate and the angular
+/// acceleration that the rotors have reached; inputs are the angular accelerations that they are asked for, outputs the angles.
+///
+/// ```text
+/// φ̈ = α,  α̇ = (α_c − α)/T
+/// ```
+///
+/// With a lag T of 0 the rotors answer at once, as in (23): α is then the last input.
+///
+/// # Errors
+/// [`DesignError::SampleTime`] unless the sample time is positive.
+pub fn lagged_attitude_model(
+    axes: usize,
+    rotor_lag_s: f64,
+    sample_time_s: f64,
+) -> Result<StateSpace, DesignError> {
+    let axis = if rotor_lag_s > 0.0 {
+        let a = dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 0.0, 0.0, -1.0 / rotor_lag_s];
+        let b = dmatrix![0.0; 0.0; 1.0 / rotor_lag_s];
+        let c = dmatrix![1.0, 0.0, 0.0];
+        StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)?
+    } else {
+        let prompt = double_integrators(&[1.0], sample_time_s, Discretization::ZeroOrderHold)?;
+        let (mut a, mut b) = (prompt.a().clone().resize(3, 3, 0.0), prompt.b().clone().resize(3, 1, 0.0));
+        (a[(2, 2)], b[(2, 0)]) = (0.0, 1.0);
+        StateSpace::new(a, b, prompt.c().clone().resize(1, 3, 0.0))?
+    };
+    let blocks = |block: &DMatrix<f64>| DMatrix::<f64>::identity(axes, axes).kronecker(block);
+    StateSpace::new(blocks(axis.a()), blocks(axis.b()), blocks(axis.c()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lagged_attitude_model;
+
+    /// α(t) = u (1 − e^(−t/T)), integrated once and twice; for T → 0 the double integrator.
+    #[test]
+    fn rotors_answer_a_held_command_exponentially() {
+        let t = 0.02_f64;
+        for lag in [0.005, 0.03, 0.2] {
+            let plant = lagged_attitude_model(2, lag, t).expect("a model");
+            assert_eq!((plant.states(), plant.inputs(), plant.outputs()), (6, 2, 2));
+            let gone = 1.0 - (-t / lag).exp();
+            let rate = t - lag * gone;
+            let angle = t * t / 2.0 - lag * rate;
+            for (row, expected) in [angle, rate, gone].into_iter().enumerate() {
+                assert!((plant.b()[(3 + row, 1)] - expected).abs() < 1e-14, "{lag} s, row {row}");
+                assert_eq!((plant.b()[(row, 1)], plant.b()[(3 + row, 0)]), (0.0, 0.0));
+            }
+        }
+        let prompt = lagged_attitude_model(1, 0.0, t).expect("a model");
+        let soon = lagged_attitude_model(1, 1e-6, t).expect("a model");
+        assert!((prompt.a() - soon.a()).amax() < 1e-6 && (prompt.b() - soon.b()).amax() < 1e-4);
+    }
 }

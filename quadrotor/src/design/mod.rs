@@ -1,6 +1,9 @@
 //! What is computed before a flight: linear models, limits and gains of the controllers.
 
 pub(crate) mod altitude_limits;
+pub(crate) mod attitude_bandwidth;
+pub(crate) mod attitude_design;
+pub(crate) mod attitude_limits;
 pub(crate) mod attitude_response;
 pub(crate) mod capacities;
 pub(crate) mod cascade_design;
@@ -16,3 +19,4 @@ pub(crate) mod reduced_attitude;
 pub(crate) mod rotor_loss_design;
 pub(crate) mod side_force;
 pub(crate) mod stability;
+pub(crate) mod translation_design;

@@ -22,7 +22,7 @@ static TILT: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28,
 static TURNING: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
 /// Samples of the speed and of the rate of the tilt, which follow later.
 static MOVING: &[usize] =
-    &[2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
+    &[4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
 static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
 
 /// Number of signals on all samples.
@@ -97,7 +97,7 @@ pub(crate) fn position_bounds(
 /// v · 2 s
 /// ```
 pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
-    speed_m_s * speed_m_s / acceleration_m_s2 + 2.0 * speed_m_s
+    speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
 }
 
 /// The error that is planned with: of a far one as much as the horizon.

@@ -4,9 +4,7 @@ use alloc::vec::Vec;
 use core::f64::consts::LN_2;
 
 use lmpc::DesignError;
-use nalgebra::Vector3;
 
-use crate::design::controller_limits::attitude_bounds;
 use crate::design::stability::linear_law::LinearLaw;
 use crate::design::stability::loop_stability::{LoopStability, Seen};
 use crate::design::stability::moving_axis::{Moving, MovingAxis};
@@ -17,7 +15,7 @@ use crate::design::stability::turning_axis::{Turning, TurningAxis};
 use crate::design::stability::turning_loop::TurningLoop;
 use crate::design::stability::verdict::judged;
 use crate::design::stability::vertical_loop::{self, VerticalLoop};
-use crate::{Airframe, CascadeDesign, Configuration, ConfigurationError, GRAVITY_M_S2, Sensors};
+use crate::{Airframe, CascadeDesign, Configuration, ConfigurationError, Sensors};
 
 /// A loop whose least damped mode has less than this damping ratio swings: after a disturbance it takes seven oscillations
 /// for one to fade to a hundredth.
@@ -78,13 +76,13 @@ impl StabilityReport {
     /// [`DesignError::NotFinite`], [`DesignError::Eigenvalues`].
     pub(crate) fn of(configuration: &Configuration, design: &CascadeDesign) -> Result<Self, DesignError> {
         let noise = reading(&configuration.sensors);
-        let laws = LinearLaw::of(&design.attitude);
-        let axes = [0, 1, 2].map(|axis| TurningAxis::new(configuration, design, &laws, axis));
+        let [roll, pitch] = LinearLaw::of(&design.attitude.lean);
+        let [yaw] = LinearLaw::of(&design.attitude.turn);
         let turning = |name, axis| {
             let seen = Seen { angle: Some(Turning::ANGLE), position: None, command: Turning::COMMAND };
             LoopStability::of(name, &TurningLoop::new(configuration, axis)?, &noise, seen)
         };
-        let [roll, pitch, yaw] = axes;
+        let [roll, pitch, yaw] = [roll, pitch, yaw].map(|law| TurningAxis::new(configuration, design, law));
         let tilting = |axes: [TurningAxis; 2]| horizontal(configuration, design, axes, &noise);
         let [north, east] = tilting([roll, pitch])?;
         let unaided = roll
@@ -146,8 +144,7 @@ impl StabilityReport {
         design: &CascadeDesign,
     ) -> [(&'static str, f64); 2] {
         let airframe = &configuration.airframe;
-        let most =
-            attitude_bounds(&design.mixer, (airframe.weight_n(), airframe.weight_n()), &Vector3::zeros());
+        let most = design.mixer.available_torques_n_m(airframe.weight_n(), airframe.weight_n());
         let [roll, pitch, _, north, east, _] = &self.loops;
         [(roll, east, 0), (pitch, north, 1)].map(|(turning, tilting, axis)| {
             let commands = [turning, tilting].into_iter().filter_map(|each| each.spread);

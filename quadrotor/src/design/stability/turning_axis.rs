@@ -1,7 +1,8 @@
 //! One axis of the attitude under its controller, for small signals.
 
-use crate::control::attitude_controller::SMOOTHING_S;
+use crate::control::attitude_reference::SMOOTHING_S;
 use crate::control::estimator::lag_kept;
+use crate::design::attitude_design::AXIS_STATES;
 use crate::design::estimator_design::Axis;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::{CascadeDesign, Configuration};
@@ -9,8 +10,8 @@ use crate::{CascadeDesign, Configuration};
 /// One axis of rotation: what its controller, the rotors and the estimator do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TurningAxis {
-    /// From angles to angular accelerations.
-    law: LinearLaw<2>,
+    /// From angles to angular accelerations of the believed inertia.
+    law: LinearLaw<AXIS_STATES>,
     is_incremental: bool,
     /// Inertia that the controller believes in, as a multiple of the true one.
     believed: f64,
@@ -32,8 +33,8 @@ pub(crate) struct Turning {
     pub(crate) acceleration: f64,
     /// That which they are asked for, rad/s².
     pub(crate) command: f64,
-    error: f64,
-    rate_error: f64,
+    /// Angle, rate and the rotors' acceleration less their references, at the last sample.
+    deviation: [f64; AXIS_STATES],
     feedback: f64,
     reference_rate: f64,
     reference_acceleration: f64,
@@ -43,21 +44,20 @@ pub(crate) struct Turning {
 
 impl Turning {
     /// Number of values.
-    pub(crate) const SIZE: usize = 12;
+    pub(crate) const SIZE: usize = 13;
     /// Places of the angle and of the command among them.
     pub(crate) const ANGLE: usize = 0;
     pub(crate) const COMMAND: usize = 3;
 
     pub(crate) fn from_values(values: &[f64; Self::SIZE]) -> Self {
-        let [angle, rate, acceleration, command, error, rate_error, feedback, ..] = *values;
+        let [angle, rate, acceleration, command, d0, d1, d2, feedback, ..] = *values;
         let [.., reference_rate, reference_acceleration, e0, e1, e2] = *values;
         Self {
             angle,
             rate,
             acceleration,
             command,
-            error,
-            rate_error,
+            deviation: [d0, d1, d2],
             feedback,
             reference_rate,
             reference_acceleration,
@@ -66,14 +66,15 @@ impl Turning {
     }
 
     pub(crate) fn values(&self) -> [f64; Self::SIZE] {
-        let [e0, e1, e2] = self.estimate;
+        let ([d0, d1, d2], [e0, e1, e2]) = (self.deviation, self.estimate);
         [
             self.angle,
             self.rate,
             self.acceleration,
             self.command,
-            self.error,
-            self.rate_error,
+            d0,
+            d1,
+            d2,
             self.feedback,
             self.reference_rate,
             self.reference_acceleration,
@@ -85,16 +86,15 @@ impl Turning {
 }
 
 impl TurningAxis {
-    /// The roll (0), pitch (1) or yaw (2) axis.
+    /// Under this law.
     pub(crate) fn new(
         configuration: &Configuration,
         design: &CascadeDesign,
-        laws: &[LinearLaw<2>; 3],
-        axis: usize,
+        law: LinearLaw<AXIS_STATES>,
     ) -> Self {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         Self {
-            law: laws[axis].scaled(1.0 / configuration.airframe.inertia_kg_m2[axis]),
+            law,
             is_incremental: design.attitude.is_incremental(),
             believed: configuration.controllers.mass_factor,
             sample_time_s,
@@ -127,22 +127,23 @@ impl TurningAxis {
     pub(crate) fn sample(&self, state: &mut Turning, reference: [f64; 2], noise: [f64; 2]) {
         let measured = [state.angle + noise[0], state.rate + noise[1]];
         let seen = self.seen(state, noise);
-        let deviation = [seen[0] - reference[0], seen[1] - reference[1]];
-
         let acceleration = (reference[1] - state.reference_rate) / self.sample_time_s;
         let share = (self.sample_time_s / SMOOTHING_S).min(1.0);
         state.reference_acceleration += (acceleration - state.reference_acceleration) * share;
         state.reference_rate = reference[1];
-        let ahead = if self.is_incremental { 0.0 } else { self.believed * state.reference_acceleration };
+        let ahead = if self.is_incremental { 0.0 } else { state.reference_acceleration };
 
+        let reached = state.acceleration / self.believed;
+        let deviation = [seen[0] - reference[0], seen[1] - reference[1], reached - ahead];
         state.feedback = self.law.feedback(&ChannelSample {
-            increment: [deviation[0] - state.error, deviation[1] - state.rate_error],
+            increment: core::array::from_fn(|place| deviation[place] - state.deviation[place]),
             deviation,
             held: state.feedback,
-            disturbance: self.believed * state.estimate[2],
+            disturbance: state.estimate[2],
         });
-        [state.error, state.rate_error] = deviation;
-        state.command = state.feedback + ahead;
+        state.deviation = deviation;
+        // J_believed u makes more, or less, of the true inertia.
+        state.command = self.believed * (state.feedback + ahead);
 
         let after = state.command + (state.acceleration - state.command) * self.kept;
         let mean = (state.acceleration + after) / 2.0 / self.believed;

@@ -1,0 +1,66 @@
+//! What the attitude controller keeps within: the thrusts of the four rotors.
+
+use alloc::vec::Vec;
+
+use lmpc::{Limit, Quantity};
+use nalgebra::{DMatrix, Vector2, Vector3};
+
+use crate::design::capacities::{LEAN_BOUNDS, TURN_BOUNDS};
+use crate::{Airframe, Mixer};
+
+/// The commanded angular accelerations about roll and pitch, rad/s², at some samples: how far each rotor's thrust may differ
+/// from the mean, N, up and down.
+pub(crate) fn lean_limits(airframe: &Airframe, mixer: &Mixer, samples: &[usize]) -> Vec<Limit> {
+    let [roll, pitch, _] = airframe.inertia_kg_m2;
+    let by_roll = mixer.tilting_thrusts_n(&Vector2::new(roll, 0.0));
+    let by_pitch = mixer.tilting_thrusts_n(&Vector2::new(0.0, pitch));
+    let directions = DMatrix::from_fn(LEAN_BOUNDS, 2, |bound, axis| {
+        let rotor = bound % 4;
+        let thrust_n = if axis == 0 { by_roll[rotor] } else { by_pitch[rotor] };
+        if bound < 4 { thrust_n } else { -thrust_n }
+    });
+    let samples = samples.to_vec();
+    [Limit { quantity: Quantity::Input, directions, samples, soft: false }].into()
+}
+
+/// The commanded angular acceleration about yaw, rad/s²: at this sample what roll and pitch leave, and later on what the
+/// rotors can do about yaw alone.
+pub(crate) fn turn_limits(samples: &[usize]) -> Vec<Limit> {
+    let (present, later): (Vec<_>, Vec<_>) = samples.iter().copied().partition(|sample| *sample == 0);
+    [present, later].map(|samples| Limit::range(Quantity::Input, 1, samples)).into()
+}
+
+/// What the rotors have room for at one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RotorRoom<'a> {
+    pub(crate) mixer: &'a Mixer,
+    /// Thrust asked for and the least that it may be reduced to for the torques, N.
+    pub(crate) thrust_n: (f64, f64),
+    /// Torque that is needed beside the commanded angular accelerations, FRD, N·m.
+    pub(crate) other_n_m: Vector3<f64>,
+    /// Inertia that the controllers believe in, kg·m².
+    pub(crate) inertia_kg_m2: Vector3<f64>,
+    /// That as a multiple of the airframe's.
+    pub(crate) believed: f64,
+}
+
+impl RotorRoom<'_> {
+    /// Values of [`lean_limits`]. Thrust gives way to roll and pitch.
+    pub(crate) fn lean_bounds(&self) -> [f64; LEAN_BOUNDS] {
+        let (down_n, up_n) = self.mixer.tilting_room_n(self.thrust_n);
+        let taken = self.mixer.tilting_thrusts_n(&self.other_n_m.xy());
+        core::array::from_fn(|bound| {
+            let taken = taken[bound % 4];
+            (if bound < 4 { up_n - taken } else { down_n + taken }) / self.believed
+        })
+    }
+
+    /// Values of [`turn_limits`], beside the angular accelerations about roll and pitch that are commanded, rad/s².
+    pub(crate) fn turn_bounds(&self, lean_rad_s2: &Vector2<f64>) -> [f64; TURN_BOUNDS] {
+        let tilting = lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + self.other_n_m.xy();
+        let present = self.mixer.turning_range_n_m(self.thrust_n, &tilting);
+        let alone = self.mixer.turning_range_n_m(self.thrust_n, &Vector2::zeros());
+        let acceleration = |torque_n_m: f64| (torque_n_m - self.other_n_m.z) / self.inertia_kg_m2.z;
+        [acceleration(present.1), -acceleration(present.0), acceleration(alone.1), -acceleration(alone.0)]
+    }
+}
