@@ -9,10 +9,9 @@ use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
 use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
 use crate::control::mass_belief::MassBelief;
-use crate::control::observation::{Observation, gyroscopic_torque_n_m};
+use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::thrust_lag::ThrustLag;
-use crate::design::attitude_limits::RotorRoom;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, largest_tilt, least_thrust_n, thrust_range_n};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
@@ -221,7 +220,6 @@ impl Cascade {
     ) -> [f64; 4] {
         let controllers = &configuration.controllers;
         let period_s = controllers.attitude.sample_time_s();
-        let body = &seen.body;
         let since_s = interval_s(&mut self.sampled.attitude_us, time_us, controllers.attitude.sample_time_us);
         let (attitude, rate_rad_s) = reference;
         let reference = AttitudeReference {
@@ -230,35 +228,21 @@ impl Cascade {
             acceleration_rad_s2: self.turning.go_on(rate_rad_s, since_s),
             jerk_rad_s3: Vector3::zeros(),
         };
-        let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
-        let room = RotorRoom {
-            mixer: &design.mixer,
-            thrust_n: (thrust_n, least_thrust_n),
-            other_n_m: gyroscopic_torque_n_m(configuration, &body.body_rate_rad_s),
-            inertia_kg_m2,
-            believed: controllers.mass_factor,
-        };
-        let (acceleration, activity) =
-            self.attitude.step(configuration, &design.attitude, &seen.rotation(), &reference, &room);
-        // The rotors answer late; until then a spinning body has turned under the torque.
-        let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
-        let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
-        let torque_n_m = acceleration.component_mul(&inertia_kg_m2) + room.other_n_m;
-        let wanted = Wrench { thrust_n, torque_n_m: lead * torque_n_m };
+        let thrust_range_n = (thrust_n, least_thrust_n);
+        let (asked, activity) =
+            self.attitude.step(configuration, design, &seen.rotation(), &reference, thrust_range_n);
+        let wanted = Wrench { thrust_n, torque_n_m: asked.torque_n_m() };
         let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
         let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
         let rotor_command_rad_s =
             core::array::from_fn(|rotor| lag.command_rad_s(thrusts_n[rotor], seen.rotor_speed_rad_s[rotor]));
-        let made = wrench_of_rotors(
-            &configuration.airframe,
-            &core::array::from_fn(|rotor| {
-                lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
-            }),
-        );
+        let settled_rad_s = core::array::from_fn(|rotor| {
+            lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
+        });
+        let made = wrench_of_rotors(&configuration.airframe, &settled_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
-        let made_n_m = lead.inverse() * made.torque_n_m - room.other_n_m;
-        self.attitude.apply(&design.attitude, &made_n_m.component_div(&inertia_kg_m2));
+        self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
         rotor_command_rad_s
     }
 }

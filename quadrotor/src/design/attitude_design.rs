@@ -35,6 +35,8 @@ const SLOWEST_TURN: f64 = 8.0;
 pub(crate) struct AttitudeDesign {
     pub(crate) lean: LeanLaw,
     pub(crate) turn: TurnLaw,
+    /// Rate per error with which small leans are closed, 1/s: half of the bandwidth.
+    pub(crate) closing_1_s: f64,
     /// What the closed loop makes of a commanded roll or pitch angle; with the paper's models nobody needs it.
     pub(crate) response: Option<AttitudeResponse>,
 }
@@ -70,6 +72,7 @@ impl AttitudeDesign {
         let design = Self {
             lean: law(configuration, &lean_settings, &lean, &lean_limits)?,
             turn: law(configuration, &turn_settings, &turn, &turn_limits(&turn_samples))?,
+            closing_1_s: bandwidth.lean_rad_s / 2.0,
             response,
         };
         Ok((design, report))
