@@ -14,7 +14,7 @@ use crate::design::cascade_design::{DesignReport, laguerre_design};
 use crate::design::controller_limits::placed;
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::lagged_attitude_model;
-use crate::{Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
+use crate::{Airframe, Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
 
 /// States of one axis: angle, rate, and the angular acceleration that the rotors have reached.
 pub(crate) const AXIS_STATES: usize = 3;
@@ -87,7 +87,8 @@ impl AttitudeDesign {
     pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
         let depends = |configuration: &Configuration| {
             let controllers = &configuration.controllers;
-            (configuration.airframe, controllers.kind, controllers.model, controllers.attitude)
+            let airframe = Airframe { drag_n_s_m: [0.0; 3], ..configuration.airframe };
+            (airframe, controllers.kind, controllers.model, controllers.attitude)
         };
         depends(one) == depends(other)
     }
