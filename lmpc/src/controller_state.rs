@@ -75,6 +75,20 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
         }
     }
 
+    /// The same memory in other coordinates of the state and of the input.
+    pub fn map(
+        &self,
+        state: impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
+        input: impl Fn(&SVector<f64, P>) -> SVector<f64, P>,
+    ) -> Self {
+        Self {
+            measured: state(&self.measured),
+            feedback: input(&self.feedback),
+            input_reference: input(&self.input_reference),
+            warm_start: self.warm_start,
+        }
+    }
+
     /// v(k−1), the part of the applied input that feedback added.
     pub fn feedback(&self) -> SVector<f64, P> {
         self.feedback
@@ -134,6 +148,11 @@ impl<const P: usize> Decision<P> {
     /// Feedback v(k) from a gain, `integral` of which is the integral action of this sample.
     pub(crate) fn linear(feedback: SVector<f64, P>, integral: SVector<f64, P>) -> Self {
         Self { feedback, integral, status: Status::Optimal, iterations: 0, active: 0 }
+    }
+
+    /// Feedback v(k) from a program with `active` limits.
+    pub(crate) fn program(feedback: SVector<f64, P>, status: Status, iterations: u32, active: usize) -> Self {
+        Self { feedback, integral: SVector::zeros(), status, iterations, active }
     }
 
     /// The first move Δv that a solution stands for, on top of v(k−1); none if the solution is of no use.

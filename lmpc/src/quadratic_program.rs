@@ -80,7 +80,7 @@ impl<const N: usize> WarmStart<N> {
         self.constraints.iter().take(self.count as usize).map(|&constraint| constraint as usize)
     }
 
-    fn remember(&mut self, constraints: &[usize]) {
+    pub(crate) fn remember(&mut self, constraints: &[usize]) {
         self.count = 0;
         for (slot, constraint) in self.constraints.iter_mut().zip(constraints) {
             *slot = u32::try_from(*constraint).unwrap_or(u32::MAX);

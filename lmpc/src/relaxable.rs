@@ -31,6 +31,14 @@ pub(crate) struct RelaxableWarmStart<const W: usize> {
     stages: [WarmStart<W>; STAGES],
 }
 
+impl<const W: usize> RelaxableWarmStart<W> {
+    /// That of the program without slack.
+    pub(crate) fn strict(&mut self) -> &mut WarmStart<W> {
+        let [strict, ..] = &mut self.stages;
+        strict
+    }
+}
+
 impl<const E: usize> RelaxableProgram<E> {
     /// For H, n×n with n < E, and the rows of G, 1×n each.
     pub(crate) fn new(h: &DMatrix<f64>, rows: &[LimitRow]) -> Result<Self, DesignError> {

@@ -22,6 +22,9 @@ pub struct Sample<'a, const N: usize, const P: usize, const Q: usize> {
     /// The value of each bound: one per direction of each [`Limit`](crate::Limit), in their order. Those that are
     /// missing do not bound.
     pub upper: &'a [f64],
+    /// By how much the reference's own motion moves each limited signal until its sample: C (x_r(k+m) − x_r(k)) +
+    /// D (u_r(k+m) − u_r(k)), sample by sample, in each sample limit by limit. What is missing is zero.
+    pub moved: &'a [f64],
     /// r(k), r(k+1), … as deviations from the reference trajectory, as far as they are known; the last one lasts.
     pub preview: &'a [SVector<f64, Q>],
 }
@@ -36,6 +39,7 @@ impl<const N: usize, const P: usize, const Q: usize> Default for Sample<'_, N, P
             input_reference: SVector::zeros(),
             disturbance: SVector::zeros(),
             upper: &[],
+            moved: &[],
             preview: &[],
         }
     }

@@ -159,6 +159,8 @@ pub struct ControllerSettings<const P: usize> {
     pub lambda: f64,
     /// Diagonal of Q on y − r, per output.
     pub output_weight: SVector<f64, P>,
+    /// Weight of each output's rate over the bandwidth.
+    pub damping_weight: SVector<f64, P>,
     /// Diagonal of Q on the increment of each output's rate (damping); the paper has 0.
     pub rate_weight: SVector<f64, P>,
     /// Diagonal of R on Δu, per input.
@@ -189,7 +191,8 @@ impl Default for Controllers {
             alpha: 1.0,
             lambda: 1.0,
             output_weight: SVector::from([1.0]),
-            rate_weight: SVector::from([0.0]),
+            damping_weight: SVector::from([1.0]),
+            rate_weight: SVector::from([0.5]),
             increment_weight: SVector::from([1.0]),
         };
         let position = ControllerSettings { scale: 0.86, prediction_horizon: 150, ..altitude };
@@ -201,7 +204,7 @@ impl Default for Controllers {
             governor: true,
             mass_factor: 1.0,
             altitude,
-            position: position.with_weights([1.0; 2], [0.0; 2], [1200.0; 2]),
+            position: position.with_weights([1.0; 2], [0.5; 2], [1.0; 2]),
             attitude: attitude.with_weights([1.0; 3], [2.0; 3], [1.0; 3]),
         }
     }
@@ -233,6 +236,7 @@ impl<const P: usize> ControllerSettings<P> {
             alpha: self.alpha,
             lambda: self.lambda,
             output_weight: SVector::from(output),
+            damping_weight: SVector::from([1.0; R]),
             rate_weight: SVector::from(rate),
             increment_weight: SVector::from(increment),
         }

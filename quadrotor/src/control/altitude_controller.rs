@@ -1,24 +1,24 @@
 //! Altitude: from z and its rate to the vertical acceleration G of (7).
 
 use lmpc::{ControllerState, Sample};
-use nalgebra::{Vector1, Vector2};
+use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
-use crate::control::governor::{Governor, integral_rate};
 use crate::control::vehicle_motion::VehicleMotion;
+use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
-use crate::design::controller_limits::altitude_bounds;
+use crate::design::position_limits::horizon_m;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
-/// Share of the acceleration limit that braking before a distant set-point counts on.
-const BRAKING_SHARE: f64 = 0.5;
+/// Accelerations below this count as this for the horizon, m/s².
+const SLOWEST_M_S2: f64 = 0.5;
 
 /// State of the altitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AltitudeController {
-    controller: ControllerState<2, 1, ALTITUDE_MANY>,
+    controller: ControllerState<3, 1, ALTITUDE_MANY>,
     reference: ReferenceMotion<1>,
 }
 
@@ -26,7 +26,7 @@ impl AltitudeController {
     /// Takes over a vehicle at height z, m, as if it had been at rest there: its whole velocity then
     /// counts as motion to be explained, and is damped from the first sample on.
     pub fn new(z_m: f64) -> Self {
-        let start = ControllerState::new(Vector2::new(z_m, 0.0), Vector1::zeros(), Vector1::zeros());
+        let start = ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros());
         Self { controller: start, reference: ReferenceMotion::default() }
     }
 
@@ -41,29 +41,25 @@ impl AltitudeController {
     ) -> (f64, ControllerActivity) {
         let law = &design.altitude;
         let limits = &configuration.limits;
-        let period_s = configuration.controllers.altitude.sample_time_s();
-        let measured = Vector2::new(seen.position_m.x, seen.velocity_m_s.x);
-        let [explained] = reference.increments_since(&self.reference).map(Vector2::from);
-        let mut error = seen.position_m - reference.position;
-        if configuration.controllers.governor {
-            let governor = Governor {
-                rate: integral_rate(&design.altitude_gains, 0, period_s),
-                deceleration: BRAKING_SHARE * limits.acceleration_vertical_m_s2,
-                // Below the set-point (z down) it climbs.
-                speed: if error.x > 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s },
-            };
-            error = governor.seen_vector(&error);
-        }
+        let measured = Vector3::new(seen.position_m.x, seen.velocity_m_s.x, seen.acceleration_m_s2.x);
+        let [[position, velocity, acceleration, _]] = reference.increments_since(&self.reference);
+        let fastest = limits.speed_up_m_s.max(limits.speed_down_m_s);
+        let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
+        let sight = horizon_m(fastest, weakest);
+        let error = (seen.position_m - reference.position).map(|error| error.clamp(-sight, sight));
         let rate_m_s = reference.velocity.x;
-        let moving_m_s = law.uncounted(&reference.velocity).x;
         let sample = Sample {
             measured,
-            increment: measured - self.controller.measured() - explained,
-            deviation: Vector2::new(error.x, seen.velocity_m_s.x - rate_m_s),
+            increment: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
+            deviation: Vector3::new(
+                error.x,
+                seen.velocity_m_s.x - rate_m_s,
+                seen.acceleration_m_s2.x - reference.acceleration.x,
+            ),
             error,
-            input_reference: reference.acceleration_ahead,
+            input_reference: reference.acceleration,
             disturbance: seen.disturbance_m_s2,
-            upper: &altitude_bounds(limits, range, rate_m_s, moving_m_s),
+            upper: &altitude_bounds(limits, range, rate_m_s),
             ..Sample::default()
         };
         let step = law.step(&mut self.controller, &sample);

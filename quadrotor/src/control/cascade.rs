@@ -12,10 +12,9 @@ use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::thrust_lag::ThrustLag;
-use crate::design::controller_limits::{COMMANDED_TILT_SHARE, largest_tilt, least_thrust_n, thrust_range_n};
+use crate::design::controller_limits::{COMMANDED_TILT_SHARE, least_thrust_n, thrust_range_n};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
-use crate::guidance::ramp::Ramp;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::guidance::setpoint::Setpoint;
 use crate::{
@@ -33,10 +32,10 @@ pub struct Cascade {
     altitude: AltitudeController,
     attitude: AttitudeController,
     turning: SmoothedAcceleration,
-    /// Horizontal acceleration wanted, NED, m/s².
-    horizontal: Ramp<2>,
-    /// Vertical acceleration wanted, NED, m/s².
-    vertical: Ramp<1>,
+    /// What feedback adds to the acceleration of the reference, NED, m/s².
+    feedback_m_s2: Vector3<f64>,
+    /// Acceleration of the reference at the latest sample of the attitude controller, NED, m/s².
+    reference_m_s2: Vector3<f64>,
     tilt_reference_rad: [f64; 2],
     activity: Activity,
     sampled: LatestSamples,
@@ -59,14 +58,14 @@ fn interval_s(latest_us: &mut Option<u64>, time_us: u64, period_us: u64) -> f64 
 
 impl Cascade {
     /// Takes over a vehicle.
-    pub fn new(body: &RigidBody, time_us: u64) -> Self {
+    pub fn new(body: &RigidBody) -> Self {
         Self {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
             attitude: AttitudeController::new(&body.rotation()),
             turning: SmoothedAcceleration::default(),
-            horizontal: Ramp::still(time_us),
-            vertical: Ramp::still(time_us),
+            feedback_m_s2: Vector3::zeros(),
+            reference_m_s2: Vector3::zeros(),
             tilt_reference_rad: [0.0; 2],
             activity: Activity::default(),
             sampled: LatestSamples::default(),
@@ -88,18 +87,19 @@ impl Cascade {
         if let Some(belief) =
             MassBelief::changed(&before.configuration.controllers, &after.configuration.controllers)
         {
-            self.horizontal = self.horizontal.map(|acceleration| belief.horizontal(acceleration));
-            self.vertical = self.vertical.map(|acceleration| belief.vertical(acceleration));
+            let commanded = self.acceleration_m_s2();
+            let horizontal = belief.horizontal(&commanded.xy());
+            let vertical = belief.vertical(&Vector1::new(commanded.z));
+            self.feedback_m_s2 = Vector3::new(horizontal.x, horizontal.y, vertical.x) - self.reference_m_s2;
             self.position.translate(|acceleration| belief.horizontal(acceleration));
             self.altitude.translate(|acceleration| belief.vertical(acceleration));
         }
         self.attitude.hand_over(before, after);
     }
 
-    /// The acceleration that is commanded at `time_us`, NED, m/s².
-    pub(crate) fn acceleration_m_s2(&self, time_us: u64) -> Vector3<f64> {
-        let (horizontal, vertical) = (self.horizontal.at(time_us), self.vertical.at(time_us));
-        Vector3::new(horizontal.x, horizontal.y, vertical.x)
+    /// The acceleration that is commanded, NED, m/s².
+    pub(crate) fn acceleration_m_s2(&self) -> Vector3<f64> {
+        self.reference_m_s2 + self.feedback_m_s2
     }
 
     /// A sample of the position controller.
@@ -112,31 +112,27 @@ impl Cascade {
         time_us: u64,
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
-        let vertical = self.vertical.at(time_us).x;
+        let vertical = self.acceleration_m_s2().z;
         let reference = &setpoint.reference;
         let motion = ReferenceMotion {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
-            acceleration_ahead: setpoint.acceleration_ahead_m_s2.xy(),
+            jerk: setpoint.jerk_m_s3.xy(),
             interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
         };
-        let limits = &configuration.limits;
-        let before = self.horizontal;
-        let tilt = largest_tilt(COMMANDED_TILT_SHARE * limits.tilt_rad, vertical);
-        let (to, activity) =
-            self.position.step(configuration, design, &seen.horizontal(), &motion, tilt, |wanted| {
-                // ẍ = −g θ: what bounds the rate of the tilt bounds the rate of the acceleration.
-                let paced = before.towards(
-                    within_tilt(wanted, vertical, limits.tilt_rad),
-                    GRAVITY_M_S2 * limits.tilt_rate_rad_s,
-                    GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2,
-                    time_us,
-                    period_us,
-                );
-                within_tilt(paced, vertical, limits.tilt_rad)
-            });
-        self.horizontal.go_to(to, time_us, period_us);
+        let tilt_rad = configuration.limits.tilt_rad;
+        let (applied, activity) = self.position.step(
+            configuration,
+            design,
+            &seen.horizontal(),
+            &motion,
+            // The thrust of a climb that begins does not last.
+            most_horizontal(vertical.max(0.0), tilt_rad),
+            |wanted| within_tilt(wanted, vertical, tilt_rad),
+        );
+        let feedback = applied - motion.acceleration;
+        (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
         self.activity.position = activity;
     }
 
@@ -156,12 +152,12 @@ impl Cascade {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
-            acceleration_ahead: axis(&setpoint.acceleration_ahead_m_s2),
+            jerk: axis(&setpoint.jerk_m_s3),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
-        let (to, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
-        self.vertical.go_to(Vector1::new(to), time_us, period_us);
+        let (applied, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
+        self.feedback_m_s2.z = applied - motion.acceleration.x;
         self.activity.altitude = activity;
     }
 
@@ -171,21 +167,24 @@ impl Cascade {
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        heading: &Heading,
+        (setpoint, heading): (&Setpoint, &Heading),
         time_us: u64,
     ) -> [f64; 4] {
-        let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
-        let now = (self.horizontal.at(time_us), self.vertical.at(time_us).x);
-        let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, now);
+        // The thrust answers as late as the rotors do.
+        let lag_s = configuration.airframe.rotor_time_constant_s;
+        let mut ahead = setpoint.reference.acceleration_m_s2;
+        ahead.z += setpoint.jerk_m_s3.z * lag_s;
+        self.reference_m_s2 = ahead;
+        let now = self.acceleration_m_s2();
+        let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, &now);
         self.tilt_reference_rad = tilt;
         let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
-        let next_us = time_us + period_us;
-        let ahead = (self.horizontal.ahead(next_us), self.vertical.ahead(next_us).x);
-        let (_, next) = attitude_reference(configuration, next_yaw_rad, ahead);
+        let next = now + setpoint.jerk_m_s3 * period_s;
+        let (_, next) = attitude_reference(configuration, next_yaw_rad, &next);
         let rate = turned(&reference, &next) / period_s;
 
-        let thrust_n = thrust(configuration, now.1, upright(&seen.body));
+        let thrust_n = thrust(configuration, now.z, upright(&seen.body));
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
         self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n, time_us)
@@ -247,15 +246,15 @@ impl Cascade {
     }
 }
 
-/// φ, θ and the attitude whose thrust axis makes the accelerations wanted, horizontal and vertical, m/s².
+/// φ, θ and the attitude whose thrust axis makes an acceleration, NED, m/s².
 fn attitude_reference(
     configuration: &Configuration,
     yaw_rad: f64,
-    (horizontal, vertical): (Vector2<f64>, f64),
+    wanted: &Vector3<f64>,
 ) -> ([f64; 2], UnitQuaternion<f64>) {
     // m a = m g e₃ − F b₃: the thrust axis points along g e₃ − a
-    let horizontal = within_tilt(horizontal, vertical, configuration.limits.tilt_rad);
-    let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - vertical);
+    let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
+    let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - wanted.z);
     let (phi, theta) = tilt_angles(&axis, yaw_rad);
     ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
 }
@@ -265,10 +264,15 @@ fn upright(body: &RigidBody) -> f64 {
     (body.rotation() * Vector3::z()).z
 }
 
-/// A horizontal acceleration, NED, m/s², shortened so that commands keep the thrust axis within
-/// `tilt_rad` when the vertical acceleration is `vertical_m_s2`: |a| ≤ tan(0.6 tilt) (g − G).
+/// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical
+/// acceleration is `vertical_m_s2`: |a| ≤ tan(0.94 tilt) (g − G).
+fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
+    libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
+}
+
+/// A horizontal acceleration, NED, m/s², shortened to [`most_horizontal`].
 fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
-    let limit = libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0);
+    let limit = most_horizontal(vertical_m_s2, tilt_rad);
     let norm = wanted.norm();
     if norm > limit { wanted * (limit / norm) } else { wanted }
 }

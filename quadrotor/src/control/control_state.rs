@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::control::cascade::Cascade;
 use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
-use crate::control::estimator::{Command, Estimator};
+use crate::control::estimator::Estimator;
 use crate::control::instants::{Clocks, LATEST_US, Phases};
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
@@ -275,22 +275,23 @@ impl ControlState {
             self.limits.watch(&design.configuration, &self.guidance, &seen.body, time_us);
         }
         let configuration = &self.limits.in_force(&design.configuration);
-        let controllers = &configuration.controllers;
         if due.position {
-            // Commands ramp up to the input until the next sample.
-            let setpoint = self.guidance.setpoint(time_us, controllers.position.sample_time_us);
+            let setpoint = self.guidance.setpoint(time_us);
             self.cascade.sample_position(configuration, cascade, seen, &setpoint, time_us);
         }
         if due.altitude {
-            // … and the rotors lag behind the thrust command.
-            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
-            let setpoint = self.guidance.setpoint(time_us, controllers.altitude.sample_time_us + lag_us);
+            let setpoint = self.guidance.setpoint(time_us);
             self.cascade.sample_altitude(configuration, cascade, seen, &setpoint, time_us);
         }
         if due.attitude {
             let heading = self.guidance.sample_heading(reference, limits, time_us);
-            self.rotor_command_rad_s =
-                self.cascade.sample_attitude(configuration, cascade, seen, &heading, time_us);
+            self.rotor_command_rad_s = self.cascade.sample_attitude(
+                configuration,
+                cascade,
+                seen,
+                (&self.guidance.setpoint(time_us), &heading),
+                time_us,
+            );
         }
     }
 
@@ -298,11 +299,14 @@ impl ControlState {
     /// it, too, so that those which do can take over in flight.
     fn predict(&mut self, design: &LoopDesign, seen: &Observation, time_us: u64) {
         let configuration = &design.configuration;
-        let acceleration_m_s2 =
-            (self.law == ControlLaw::Cascade).then(|| self.cascade.acceleration_m_s2(time_us));
-        let command = Command { acceleration_m_s2, rotor_speed_rad_s: self.rotor_command_rad_s };
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
-        self.estimator.predict(configuration, &design.cascade.estimator, &seen.measured, &command, times);
+        self.estimator.predict(
+            configuration,
+            &design.cascade.estimator,
+            &seen.measured,
+            &self.rotor_command_rad_s,
+            times,
+        );
     }
 }
 
@@ -316,7 +320,7 @@ fn engaged(
     let (_, _, psi) = body.rotation().euler_angles();
     (
         Guidance::new(&configuration.flyable_limits(), shaping, &body.position_m, psi, time_us),
-        Cascade::new(body, time_us),
+        Cascade::new(body),
     )
 }
 

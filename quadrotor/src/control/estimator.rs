@@ -9,27 +9,10 @@ use crate::design::estimator_design::EstimatorDesign;
 use crate::design::loop_design::LoopDesign;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
-/// Time over which the vehicle's falling short of its commands is averaged, s.
-const SHORTFALL_S: f64 = 0.3;
-
 /// Share of the difference between a rotor's speed and its command that is left after a time:
 /// ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ).
 pub(crate) fn lag_kept(configuration: &Configuration, time_s: f64) -> f64 {
     libm::exp(-time_s / configuration.airframe.rotor_time_constant_s)
-}
-
-/// Share of a new shortfall that enters the average in a time.
-pub(crate) fn shortfall_share(time_s: f64) -> f64 {
-    1.0 - libm::exp(-time_s / SHORTFALL_S)
-}
-
-/// What was commanded for the time until the next sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Command {
-    /// Acceleration, NED, m/s², unless an attitude was commanded instead.
-    pub(crate) acceleration_m_s2: Option<Vector3<f64>>,
-    /// Speeds of the rotors, rad/s.
-    pub(crate) rotor_speed_rad_s: [f64; 4],
 }
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
@@ -40,10 +23,6 @@ pub struct Estimator {
     disturbance_m_s2: Vector3<f64>,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
-    /// The commanded vertical acceleration as the rotors answer it, m/s² down.
-    answer_z_m_s2: f64,
-    /// By how much the modelled acceleration differs from that, smoothed, NED, m/s².
-    shortfall_m_s2: Vector3<f64>,
     /// Speeds of the rotors by their model, rad/s.
     rotor_speed_rad_s: [f64; 4],
     time_us: u64,
@@ -63,8 +42,6 @@ impl Estimator {
             body: if sensors.output_feedback { at_rest } else { *measured },
             disturbance_m_s2: Vector3::zeros(),
             disturbance_rad_s2: Vector3::zeros(),
-            answer_z_m_s2: 0.0,
-            shortfall_m_s2: Vector3::zeros(),
             rotor_speed_rad_s,
             time_us,
         }
@@ -85,17 +62,14 @@ impl Estimator {
     }
 
     fn is_finite(&self) -> bool {
-        let disturbances =
-            self.disturbance_m_s2.iter().chain(&self.disturbance_rad_s2).chain(&self.shortfall_m_s2);
+        let disturbances = self.disturbance_m_s2.iter().chain(&self.disturbance_rad_s2);
         self.body.is_possible()
-            && self.answer_z_m_s2.is_finite()
             && disturbances.chain(&self.rotor_speed_rad_s).all(|number| number.is_finite())
     }
 
-    /// Acceleration beside the commanded one, NED, m/s²: what thrust and gravity do not explain, and what the
-    /// vehicle falls short of its commands in the long run.
+    /// Acceleration that thrust and gravity do not explain, NED, m/s².
     pub(crate) fn disturbance_m_s2(&self) -> Vector3<f64> {
-        self.disturbance_m_s2 + self.shortfall_m_s2
+        self.disturbance_m_s2
     }
 
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
@@ -117,8 +91,6 @@ impl Estimator {
         let thrust = self.body.rotation() * Vector3::z() * (thrust_n / configuration.believed_mass_kg());
         self.disturbance_m_s2 -= belief.growth_under(&thrust);
         self.disturbance_rad_s2 = belief.difference(&self.disturbance_rad_s2);
-        self.shortfall_m_s2 = belief.difference(&self.shortfall_m_s2);
-        self.answer_z_m_s2 = belief.vertical(&Vector1::new(self.answer_z_m_s2)).x;
     }
 
     /// On to the next sample: from what was measured at this one and what is commanded until then.
@@ -127,7 +99,7 @@ impl Estimator {
         configuration: &Configuration,
         design: &EstimatorDesign,
         measured: &RigidBody,
-        command: &Command,
+        command_rad_s: &[f64; 4],
         (time_us, period_us): (u64, u64),
     ) {
         // A sample time that has changed moves the sample away from the time that was predicted for.
@@ -135,7 +107,6 @@ impl Estimator {
         let believed = configuration.controllers.mass_factor;
         let airframe = &configuration.airframe;
         let before = self.rotor_speed_rad_s;
-        let command_rad_s = &command.rotor_speed_rad_s;
         let kept = lag_kept(configuration, design.sample_time_s);
         self.rotor_speed_rad_s = core::array::from_fn(|rotor| {
             command_rad_s[rotor] + (before[rotor] - command_rad_s[rotor]) * kept
@@ -147,12 +118,6 @@ impl Estimator {
         // v̇ = g e₃ − R e₃ F/m
         let thrust = rotation * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
         let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
-        // The attitude is led by the rate of its reference; the thrust answers as late as the rotors do.
-        let commanded = command.acceleration_m_s2.unwrap_or(acceleration);
-        self.answer_z_m_s2 = commanded.z + (self.answer_z_m_s2 - commanded.z) * kept;
-        let answer = Vector3::new(commanded.x, commanded.y, self.answer_z_m_s2);
-        self.shortfall_m_s2 +=
-            (acceleration - answer - self.shortfall_m_s2) * shortfall_share(design.sample_time_s);
         // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;

@@ -11,7 +11,6 @@ pub(crate) mod control_inputs;
 pub(crate) mod control_loop;
 pub(crate) mod control_state;
 pub(crate) mod estimator;
-pub(crate) mod governor;
 pub(crate) mod instants;
 mod largest_share;
 pub(crate) mod mass_belief;

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
 use crate::control::vehicle_motion::VehicleMotion;
-use crate::{Configuration, RigidBody, wrench_of_rotors};
+use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
 /// The vehicle as the controllers see it at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +14,9 @@ pub(crate) struct Observation {
     pub(crate) measured: RigidBody,
     /// What the controllers go by.
     pub(crate) body: RigidBody,
+    /// Acceleration that thrust and gravity make, NED, m/s², and its rate as the body turns, m/s³.
+    acceleration_m_s2: Vector3<f64>,
+    jerk_m_s3: Vector3<f64>,
     /// Acceleration that the thrust does not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
@@ -35,9 +38,16 @@ impl Observation {
         let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
         let rotor_speed_rad_s = estimator.rotor_speed_rad_s();
         let made = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
+        // a = g e₃ − R e₃ F/m,  ȧ = −R (ω × e₃) F/m
+        let lift = made.thrust_n / configuration.believed_mass_kg();
+        let rotation = body.rotation();
+        let acceleration_m_s2 = Vector3::z() * GRAVITY_M_S2 - rotation * Vector3::z() * lift;
+        let jerk_m_s3 = rotation * body.body_rate_rad_s.cross(&Vector3::z()) * -lift;
         Self {
             measured: *measured,
             body,
+            acceleration_m_s2,
+            jerk_m_s3,
             disturbance_m_s2: estimator.disturbance_m_s2(),
             disturbance_rad_s2: estimator.disturbance_rad_s2(),
             rotor_speed_rad_s,
@@ -50,6 +60,8 @@ impl Observation {
         VehicleMotion {
             position_m: self.body.position_m.xy(),
             velocity_m_s: self.body.velocity_m_s.xy(),
+            acceleration_m_s2: self.acceleration_m_s2.xy(),
+            jerk_m_s3: self.jerk_m_s3.xy(),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
         }
     }
@@ -60,6 +72,8 @@ impl Observation {
         VehicleMotion {
             position_m: down(&self.body.position_m),
             velocity_m_s: down(&self.body.velocity_m_s),
+            acceleration_m_s2: down(&self.acceleration_m_s2),
+            jerk_m_s3: down(&self.jerk_m_s3),
             disturbance_m_s2: down(&self.disturbance_m_s2),
         }
     }

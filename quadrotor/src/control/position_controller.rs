@@ -1,103 +1,128 @@
-//! Position: from x, y and their rates to tilt commands.
+//! Position: from x, y and their derivatives to a horizontal acceleration, which stands for a tilt.
 
 use lmpc::{ControllerState, Sample};
-use nalgebra::{Vector2, Vector4};
+use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
-use crate::control::governor::{Governor, integral_rate};
 use crate::control::vehicle_motion::VehicleMotion;
 use crate::design::capacities::POSITION_MANY;
-use crate::design::controller_limits::position_bounds;
+use crate::design::position_limits::{horizon_m, in_sight, position_bounds};
 use crate::guidance::reference_motion::ReferenceMotion;
-use crate::{CascadeDesign, Configuration, GRAVITY_M_S2};
-
-/// Share of the acceleration limit that braking before a distant set-point counts on. The loop's own
-/// response to the governed error needs the rest.
-const BRAKING_SHARE: f64 = 0.25;
+use crate::{CascadeDesign, Configuration};
 
 /// State of the position controller.
 ///
-/// Its inputs θ and φ are those of (14) for a heading of zero: ẍ = −g θ north and ÿ = g φ east hold
-/// exactly, for any tilt and heading, because the cascade turns the acceleration that they stand for into
-/// a direction of the thrust.
+/// Its inputs stand for θ and φ of (14): ẍ = −g θ north and ÿ = g φ east hold exactly, for any tilt and heading, because the cascade
+/// turns the acceleration into a direction of the thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
-    controller: ControllerState<4, 2, POSITION_MANY>,
+    controller: ControllerState<8, 2, POSITION_MANY>,
     reference: ReferenceMotion<2>,
 }
 
 impl PositionController {
     /// Takes over a vehicle at x, y, m, as if it had been at rest there.
     pub fn new(position_m: Vector2<f64>) -> Self {
-        let measured = Vector4::new(position_m.x, 0.0, position_m.y, 0.0);
+        let zero = Vector2::zeros();
+        let measured = by_axis([position_m, zero, zero, zero]);
         let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
         Self { controller: start, reference: ReferenceMotion::default() }
     }
 
-    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `tilt` is the largest |a|/g,
-    /// and `limited` brings an acceleration within what the vehicle can do.
+    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `most_m_s2` is the largest one, and `limited` brings
+    /// one within what the vehicle can do.
     pub(crate) fn step(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &VehicleMotion<2>,
         reference: &ReferenceMotion<2>,
-        tilt: f64,
+        most_m_s2: f64,
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
-        let law = &design.position;
         let limits = &configuration.limits;
-        let period_s = configuration.controllers.position.sample_time_s();
-        let measured = interleaved(&seen.position_m, &seen.velocity_m_s);
+        let measured = by_axis([seen.position_m, seen.velocity_m_s, seen.acceleration_m_s2, seen.jerk_m_s3]);
         let [x, y] = reference.increments_since(&self.reference);
-        let explained = Vector4::new(x[0], x[1], y[0], y[1]);
-        let mut error = seen.position_m - reference.position;
-        if configuration.controllers.governor {
-            let linear = &design.position_gains;
-            let governor = Governor {
-                rate: integral_rate(linear, 0, period_s).min(integral_rate(linear, 1, period_s)),
-                deceleration: BRAKING_SHARE * limits.acceleration_horizontal_m_s2,
-                speed: limits.speed_horizontal_m_s,
-            };
-            error = governor.seen_vector(&error);
-        }
-        let moving = law.uncounted(&reference.velocity);
+        let explained =
+            by_axis(core::array::from_fn(|derivative| Vector2::new(x[derivative], y[derivative])));
+        let error = in_sight(
+            &(seen.position_m - reference.position),
+            horizon_m(limits.speed_horizontal_m_s, most_m_s2),
+        );
+        // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
+        // than the way to it.
+        let turn = Turn::along(&error, design.position_is_isotropic);
         let sample = Sample {
-            measured,
-            increment: measured - self.controller.measured() - explained,
-            deviation: interleaved(&error, &(seen.velocity_m_s - reference.velocity)),
-            error,
-            input_reference: tilt_of(&reference.acceleration_ahead),
-            disturbance: tilt_of(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, tilt, period_s, &reference.velocity, &moving),
+            measured: turn.state(&measured),
+            increment: turn.state(&(measured - self.controller.measured() - explained)),
+            deviation: turn.state(&by_axis([
+                error,
+                seen.velocity_m_s - reference.velocity,
+                seen.acceleration_m_s2 - reference.acceleration,
+                seen.jerk_m_s3 - reference.jerk,
+            ])),
+            error: turn.vector(&error),
+            input_reference: turn.vector(&reference.acceleration),
+            disturbance: turn.vector(&seen.disturbance_m_s2),
+            upper: &position_bounds(limits, most_m_s2, reference),
             ..Sample::default()
         };
-        let step = law.step(&mut self.controller, &sample);
+        let mut turned = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
+        let mut step = design.position.step(&mut turned, &sample);
+        let back = turn.inverse();
+        self.controller = turned.map(|state| back.state(state), |input| back.vector(input));
+        step.input = back.vector(&step.input);
         self.reference = *reference;
-        let wanted = acceleration_of(&step.input);
-        let applied = limited(wanted);
-        self.controller.apply(&tilt_of(&applied));
-        (applied, ControllerActivity::of(&step, &wanted, &applied))
+        let applied = limited(step.input);
+        self.controller.apply(&applied);
+        (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
     /// Expresses the acceleration that was applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
-        let applied = acceleration_of(&self.controller.applied());
-        self.controller.apply(&tilt_of(&term(&applied)));
+        self.controller.apply(&term(&self.controller.applied()));
     }
 }
 
-/// x, ẋ, y, ẏ: the order of (14).
-fn interleaved(position: &Vector2<f64>, velocity: &Vector2<f64>) -> Vector4<f64> {
-    Vector4::new(position.x, velocity.x, position.y, velocity.y)
+/// x and its derivatives, then y and its derivatives.
+fn by_axis(derivatives: [Vector2<f64>; 4]) -> SVector<f64, 8> {
+    SVector::from_fn(|state, _| derivatives[state % 4][state / 4])
 }
 
-/// (11), (13): ẍ = −g θ, ÿ = g φ, input order θ, φ.
-fn acceleration_of(tilt: &Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-GRAVITY_M_S2 * tilt.x, GRAVITY_M_S2 * tilt.y)
+/// A turn of horizontal vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn {
+    cosine: f64,
+    sine: f64,
 }
 
-fn tilt_of(acceleration: &Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-acceleration.x / GRAVITY_M_S2, acceleration.y / GRAVITY_M_S2)
+impl Turn {
+    /// That which brings a vector to the first axis; none if the axes differ.
+    fn along(vector: &Vector2<f64>, is_isotropic: bool) -> Self {
+        let size = libm::hypot(vector.x, vector.y);
+        if is_isotropic && size > 0.0 && size.is_finite() {
+            Self { cosine: vector.x / size, sine: -vector.y / size }
+        } else {
+            Self { cosine: 1.0, sine: 0.0 }
+        }
+    }
+
+    fn inverse(&self) -> Self {
+        Self { sine: -self.sine, ..*self }
+    }
+
+    fn vector(&self, vector: &Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(
+            self.cosine * vector.x - self.sine * vector.y,
+            self.sine * vector.x + self.cosine * vector.y,
+        )
+    }
+
+    /// Of each derivative in a state by axis.
+    fn state(&self, state: &SVector<f64, 8>) -> SVector<f64, 8> {
+        by_axis(core::array::from_fn(|derivative| {
+            self.vector(&Vector2::new(state[derivative], state[4 + derivative]))
+        }))
+    }
 }

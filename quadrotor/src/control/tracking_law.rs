@@ -1,8 +1,11 @@
 //! One controller of the cascade, of whatever kind, on a model of N states and P inputs.
 
+use alloc::vec::Vec;
+
 use lmpc::{
-    Controller, ControllerState, DesignError, DeviationFeedback, LaguerreMpc, Limit, LmpcDesign, Sample,
-    StateFeedback, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step,
+    Controller, ControllerState, DesignError, DeviationFeedback, LaguerreMpc, Limit, LmpcDesign, Quantity,
+    Sample, SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
+    StateSpaceMpcWeights, Step,
 };
 use nalgebra::{DMatrix, SVector};
 
@@ -17,6 +20,10 @@ pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, cons
     FewTerms(LaguerreMpc<N, P, P, S>),
     /// Laguerre MPC with many.
     ManyTerms(LaguerreMpc<N, P, P, L>),
+    /// Laguerre MPC about a stabilizing feedback, with few terms.
+    StabilizedFew(StabilizedMpc<N, P, P, S>),
+    /// The same with many.
+    StabilizedMany(StabilizedMpc<N, P, P, L>),
     /// State-space MPC.
     StateSpace(StateSpaceMpc<N, P, P, L>),
     /// Laguerre MPC without limits, or the regulator: increments from the measured motion, which contains what
@@ -27,7 +34,7 @@ pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, cons
 }
 
 impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw<N, P, S, L> {
-    /// The controller of this kind with the weights of a finished Laguerre design.
+    /// The controller of this kind with the weights of a finished Laguerre design, without limits.
     pub(crate) fn new(
         kind: ControllerKind,
         settings: &ControllerSettings<P>,
@@ -45,7 +52,28 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
             }
             ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
             ControllerKind::StateSpaceMpc => {
-                Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, limits)?)
+                Self::StateSpace(StateSpaceMpc::new(&state_space_of(settings, design)?, limits)?)
+            }
+            ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
+        })
+    }
+
+    /// The controller of this kind with the weights of a stabilized Laguerre design under limits. A slack of 1 costs `slack_cost`.
+    pub(crate) fn stabilized(
+        kind: ControllerKind,
+        settings: &ControllerSettings<P>,
+        design: &StabilizedDesign,
+        limits: &[SignalLimit],
+        slack_cost: f64,
+    ) -> Result<Self, DesignError> {
+        Ok(match kind {
+            ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
+                Self::StabilizedFew(StabilizedMpc::new(design, limits, slack_cost)?)
+            }
+            ControllerKind::Lmpc => Self::StabilizedMany(StabilizedMpc::new(design, limits, slack_cost)?),
+            ControllerKind::StateSpaceMpc => {
+                let limits: Vec<Limit> = limits.iter().map(plain).collect();
+                Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, &limits)?)
             }
             ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
         })
@@ -59,7 +87,7 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
 
     /// Whether it goes by the measured motion; else it must be told of disturbances.
     pub(crate) fn is_incremental(&self) -> bool {
-        matches!(self, Self::Incremental(_))
+        matches!(self, Self::Incremental(_) | Self::StabilizedFew(_) | Self::StabilizedMany(_))
     }
 
     /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
@@ -82,6 +110,8 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         match self {
             Self::FewTerms(controller) => controller,
             Self::ManyTerms(controller) => controller,
+            Self::StabilizedFew(controller) => controller,
+            Self::StabilizedMany(controller) => controller,
             Self::StateSpace(controller) => controller,
             Self::Incremental(controller) => controller,
             Self::ByDeviation(controller) => controller,
@@ -89,9 +119,41 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     }
 }
 
+/// The same limit for a state-space MPC. One of a signal that mixes state and input is not placed.
+fn plain(limit: &SignalLimit) -> Limit {
+    let of_input = limit.state.amax() == 0.0;
+    let of_state = limit.input.amax() == 0.0;
+    Limit {
+        quantity: if of_input { Quantity::Input } else { Quantity::State },
+        directions: if of_input {
+            &limit.directions * &limit.input
+        } else {
+            &limit.directions * &limit.state
+        },
+        samples: if of_input || of_state { limit.samples.clone() } else { Vec::new() },
+        soft: !of_input,
+    }
+}
+
+/// State-space MPC with the same weights, and the regulator's cost of what comes after the horizon.
+fn state_space<const P: usize>(
+    settings: &ControllerSettings<P>,
+    design: &StabilizedDesign,
+) -> Result<StateSpaceMpcDesign, DesignError> {
+    let (q, states) = (design.weights().q(), design.model().plant().states());
+    let weights = StateSpaceMpcWeights {
+        output: q.view((states, states), (P, P)).into_owned(),
+        moves: design.weights().r().clone(),
+        increment: q.view((0, 0), (states, states)).into_owned(),
+        terminal: Some(design.dlqr().cost().clone()),
+    };
+    let (horizon, moves) = (settings.prediction_horizon as usize, settings.control_horizon as usize);
+    StateSpaceMpcDesign::with_weights(design.model().plant(), &weights, horizon, moves)
+}
+
 /// State-space MPC with the same weights: Q on y − r and on the increments of the rates, R on the moves, and the
 /// regulator's cost of what comes after the horizon.
-fn state_space<const P: usize>(
+fn state_space_of<const P: usize>(
     settings: &ControllerSettings<P>,
     design: &LmpcDesign,
 ) -> Result<StateSpaceMpcDesign, DesignError> {

@@ -29,17 +29,6 @@ pub(crate) const POSITION_MANY: usize = unknowns(2, MANY);
 pub(crate) const LEAN_MANY: usize = unknowns(2, MANY);
 pub(crate) const TURN_MANY: usize = unknowns(1, MANY);
 
-/// Sides of the polygon inside the circle of admissible tilt: its flat sides lie 2 % further in.
-pub(crate) const TILT_SIDES: usize = 16;
-/// Sides of the polygon for the rate of the tilt: 8 % further in, which the rate does not need finer.
-pub(crate) const RATE_SIDES: usize = 8;
-/// Sides of the polygon for the speed, as those of the tilt.
-pub(crate) const SPEED_SIDES: usize = 16;
-
-/// Bounds of the position controller: the sides of its polygons.
-pub(crate) const POSITION_BOUNDS: usize = TILT_SIDES + RATE_SIDES + SPEED_SIDES;
-/// Bounds of the altitude controller: acceleration and speed, each down and up.
-pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
 /// Bounds of the attitude controller about roll and pitch: the thrust of each of four rotors, up and down.
 pub(crate) const LEAN_BOUNDS: usize = 4 * 2;
 /// Its bounds about yaw: both ways, now and later.

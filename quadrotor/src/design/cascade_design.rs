@@ -1,20 +1,18 @@
 //! The three controllers of the cascade, designed from a configuration.
 
 use lmpc::{
-    Augmented, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateFeedback, StateSpace,
-    Weighting, Weights, spectral_radius,
+    Augmented, DesignError, LaguerreBasis, LmpcDesign, StateSpace, Weighting, Weights, spectral_radius,
 };
 use nalgebra::{DMatrix, DVector};
 
 use crate::configuration::validation::validate;
-use crate::control::tracking_law::TrackingLaw;
 use crate::design::attitude_design::AttitudeDesign;
 use crate::design::attitude_response::AttitudeResponse;
-use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSITION_MANY};
-use crate::design::controller_limits::{altitude_limits, position_limits};
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::linear_models::{altitude_model, position_model};
-use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, Mixer};
+use crate::design::translation_design::{
+    AltitudeLaw, PositionLaw, altitude_design, is_isotropic, position_design,
+};
+use crate::{Configuration, ConfigurationError, ControllerSettings, Mixer};
 
 /// The figures of one finished design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,12 +54,11 @@ impl DesignReport {
 /// the paper's forward Euler would leave a bias of T²/2 times the acceleration of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CascadeDesign {
-    pub(crate) altitude: TrackingLaw<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>,
-    pub(crate) position: TrackingLaw<4, 2, POSITION_FEW, POSITION_MANY>,
+    pub(crate) altitude: AltitudeLaw,
+    pub(crate) position: PositionLaw,
     pub(crate) attitude: AttitudeDesign,
-    /// Without limits: how fast the loops close.
-    pub(crate) altitude_gains: StateFeedback<2, 1, 1>,
-    pub(crate) position_gains: StateFeedback<4, 2, 2>,
+    /// Whether the position controller does the same in all horizontal directions.
+    pub(crate) position_is_isotropic: bool,
     pub(crate) estimator: EstimatorDesign,
     pub(crate) mixer: Mixer,
     reports: [DesignReport; 3],
@@ -74,16 +71,15 @@ impl CascadeDesign {
     /// Every variant of [`ConfigurationError`] but `Fixed`.
     pub fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
         validate(configuration)?;
-        let altitude = altitude_design(configuration)?;
-        let position = position_design(configuration)?;
         let mixer = Mixer::new(&configuration.airframe)?;
         let (attitude, attitude_report) = attitude_design(configuration, &mixer)?;
+        let altitude = altitude_design(configuration)?;
+        let position = position_design(configuration, attitude.response)?;
         Ok(Self {
             altitude: altitude.law,
             position: position.law,
             attitude,
-            altitude_gains: altitude.gains,
-            position_gains: position.gains,
+            position_is_isotropic: is_isotropic(&configuration.controllers.position),
             estimator: estimator_design(configuration)?,
             mixer,
             reports: [altitude.report, position.report, attitude_report],
@@ -103,18 +99,17 @@ impl CascadeDesign {
         validate(configuration)?;
         let mixer = Mixer::new(&configuration.airframe)?;
         let redesigned = Redesigned::between(before, configuration);
-        let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
-        let position = redesigned.position.then(|| position_design(configuration)).transpose()?;
         let attitude = redesigned.attitude.then(|| attitude_design(configuration, &mixer)).transpose()?;
+        let response = attitude.as_ref().map_or(self.attitude.response, |(attitude, _)| attitude.response);
+        let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
+        let position = redesigned.position.then(|| position_design(configuration, response)).transpose()?;
         let estimator = redesigned.estimator.then(|| estimator_design(configuration)).transpose()?;
         let [altitude_report, position_report, attitude_report] = &mut self.reports;
         if let Some(designed) = altitude {
-            (self.altitude, self.altitude_gains, *altitude_report) =
-                (designed.law, designed.gains, designed.report);
+            (self.altitude, *altitude_report) = (designed.law, designed.report);
         }
         if let Some(designed) = position {
-            (self.position, self.position_gains, *position_report) =
-                (designed.law, designed.gains, designed.report);
+            (self.position, *position_report) = (designed.law, designed.report);
         }
         if let Some(designed) = attitude {
             (self.attitude, *attitude_report) = designed;
@@ -123,6 +118,7 @@ impl CascadeDesign {
             self.estimator = designed;
         }
         self.mixer = mixer;
+        self.position_is_isotropic = is_isotropic(&configuration.controllers.position);
         Ok(redesigned)
     }
 
@@ -158,8 +154,8 @@ impl Redesigned {
         let (before, after) = (&one.controllers, &other.controllers);
         let kind = before.kind != after.kind;
         Self {
-            altitude: kind || before.altitude != after.altitude,
-            position: kind || before.position != after.position,
+            altitude: kind || before.altitude != after.altitude || one.airframe != other.airframe,
+            position: kind || before.position != after.position || !AttitudeDesign::is_same(one, other),
             attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
                 || one.sensors.position_noise_m != other.sensors.position_noise_m
@@ -168,32 +164,7 @@ impl Redesigned {
     }
 }
 
-/// One finished controller.
-struct Designed<const N: usize, const P: usize, const S: usize, const L: usize> {
-    law: TrackingLaw<N, P, S, L>,
-    gains: StateFeedback<N, P, P>,
-    report: DesignReport,
-}
-
-type Altitude = Designed<2, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
-type Position = Designed<4, 2, POSITION_FEW, POSITION_MANY>;
-
-fn altitude_design(configuration: &Configuration) -> Result<Altitude, ConfigurationError> {
-    let settings = &configuration.controllers;
-    let limits = altitude_limits(&settings.altitude);
-    designed("altitude controller", settings.kind, &settings.altitude, &limits, |sample_time| {
-        altitude_model(sample_time, Discretization::ZeroOrderHold)
-    })
-}
-
-fn position_design(configuration: &Configuration) -> Result<Position, ConfigurationError> {
-    let settings = &configuration.controllers;
-    let limits = position_limits(&settings.position);
-    designed("position controller", settings.kind, &settings.position, &limits, |sample_time| {
-        position_model(sample_time, Discretization::ZeroOrderHold)
-    })
-}
-
+/// The figures and the law come together.
 fn attitude_design(
     configuration: &Configuration,
     mixer: &Mixer,
@@ -205,29 +176,6 @@ fn attitude_design(
 fn estimator_design(configuration: &Configuration) -> Result<EstimatorDesign, ConfigurationError> {
     EstimatorDesign::new(configuration)
         .map_err(|source| ConfigurationError::Design { part: "Kalman predictor", source })
-}
-
-fn designed<const N: usize, const P: usize, const S: usize, const L: usize>(
-    name: &'static str,
-    kind: ControllerKind,
-    settings: &ControllerSettings<P>,
-    limits: &[Limit],
-    model: impl Fn(f64) -> Result<StateSpace, DesignError>,
-) -> Result<Designed<N, P, S, L>, ConfigurationError> {
-    let finished = || {
-        let design = laguerre_design(settings, model(settings.sample_time_s())?)?;
-        Ok(Designed {
-            law: TrackingLaw::new(kind, settings, &design, limits)?,
-            gains: match kind {
-                ControllerKind::Lmpc => StateFeedback::from_design(&design)?,
-                ControllerKind::StateSpaceMpc | ControllerKind::Dlqr => {
-                    StateFeedback::new(design.dlqr().gain())?
-                }
-            },
-            report: DesignReport::of(&design)?,
-        })
-    };
-    finished().map_err(|source| ConfigurationError::Design { part: name, source })
 }
 
 pub(crate) fn laguerre_design<const P: usize>(

@@ -1,9 +1,6 @@
 //! The largest horizontal force that a hovering vehicle can hold its place against.
 
-use core::f64::consts::PI;
-
 use crate::Configuration;
-use crate::design::capacities::TILT_SIDES;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, thrust_range_n};
 
 /// Largest tilt that the position controller commands, rad: 0.6 of the tilt limit. The rest is room for the attitude
@@ -25,8 +22,7 @@ pub fn commanded_thrust_n(configuration: &Configuration) -> f64 {
 pub fn side_force_limit_n(configuration: &Configuration) -> f64 {
     let weight_n = configuration.airframe.weight_n();
     let strongest_n = commanded_thrust_n(configuration);
-    let inscribed = libm::cos(PI / TILT_SIDES as f64);
-    let by_tilt_n = inscribed * weight_n * libm::tan(commanded_tilt_rad(configuration));
+    let by_tilt_n = weight_n * libm::tan(commanded_tilt_rad(configuration));
     let by_thrust_n = libm::sqrt((strongest_n * strongest_n - weight_n * weight_n).max(0.0));
     by_tilt_n.min(by_thrust_n)
 }

@@ -8,7 +8,6 @@ pub(crate) mod heading_shaper;
 #[cfg(feature = "shaper")]
 pub(crate) mod motion_profile;
 pub(crate) mod position_reference;
-pub(crate) mod ramp;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
 pub(crate) mod setpoint;

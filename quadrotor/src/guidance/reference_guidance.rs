@@ -118,16 +118,20 @@ impl Guidance {
         }
     }
 
-    /// What is tracked at `time_us` by a command that takes effect `ahead_us` later.
-    pub fn setpoint(&self, time_us: u64, ahead_us: u64) -> Setpoint {
-        let acceleration_ahead_m_s2 = match self {
+    /// What is tracked at `time_us`, with its jerk.
+    pub fn setpoint(&self, time_us: u64) -> Setpoint {
+        /// Time over which a jerk is found, µs.
+        const STEP_US: u64 = 1000;
+        let jerk_m_s3 = match self {
             #[cfg(feature = "shaper")]
-            Self::Shaped(shaper) => shaper.reference(time_us + ahead_us).acceleration_m_s2,
-            Self::Direct(direct) => {
-                direct.latest.acceleration_m_s2 + direct.jerk_m_s3 * (ahead_us as f64 / 1e6)
+            Self::Shaped(shaper) => {
+                (shaper.reference(time_us + STEP_US).acceleration_m_s2
+                    - shaper.reference(time_us).acceleration_m_s2)
+                    / (STEP_US as f64 / 1e6)
             }
+            Self::Direct(direct) => direct.jerk_m_s3,
         };
-        Setpoint { reference: self.reference(time_us), acceleration_ahead_m_s2 }
+        Setpoint { reference: self.reference(time_us), jerk_m_s3 }
     }
 }
 

@@ -12,8 +12,8 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub velocity: SVector<f64, AXES>,
     /// Acceleration.
     pub acceleration: SVector<f64, AXES>,
-    /// Acceleration when the command takes effect.
-    pub acceleration_ahead: SVector<f64, AXES>,
+    /// Jerk.
+    pub jerk: SVector<f64, AXES>,
     /// Time since the previous sample, s.
     pub interval_s: f64,
 }
@@ -21,22 +21,27 @@ pub struct ReferenceMotion<const AXES: usize> {
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero = SVector::zeros();
-        Self { position: zero, velocity: zero, acceleration: zero, acceleration_ahead: zero, interval_s: 0.0 }
+        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, interval_s: 0.0 }
     }
 }
 
 impl<const AXES: usize> ReferenceMotion<AXES> {
-    /// Increments \[Δposition, Δvelocity\] of each axis since the previous sample, as far as the
-    /// derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
+    /// Increments \[Δposition, Δvelocity, Δacceleration, Δjerk\] of each axis since the previous sample. Those of position and
+    /// velocity as far as the derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
     ///
     /// Hermite's rule, exact for constant jerk:
     /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
-    pub fn increments_since(&self, previous: &Self) -> [[f64; 2]; AXES] {
+    pub fn increments_since(&self, previous: &Self) -> [[f64; 4]; AXES] {
         let t = self.interval_s;
         core::array::from_fn(|axis| {
             let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
             let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);
-            [t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0, t * (a + a_before) / 2.0]
+            [
+                t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0,
+                t * (a + a_before) / 2.0,
+                a - a_before,
+                self.jerk[axis] - previous.jerk[axis],
+            ]
         })
     }
 }

@@ -10,6 +10,6 @@ use crate::PositionReference;
 pub struct Setpoint {
     /// Position, velocity, acceleration, heading and its rate.
     pub reference: PositionReference,
-    /// Acceleration a little later, NED, m/s²: when the command that is computed now takes effect.
-    pub acceleration_ahead_m_s2: Vector3<f64>,
+    /// Jerk, NED, m/s³.
+    pub jerk_m_s3: Vector3<f64>,
 }

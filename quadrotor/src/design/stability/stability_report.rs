@@ -15,7 +15,7 @@ use crate::design::stability::turning_axis::{Turning, TurningAxis};
 use crate::design::stability::turning_loop::TurningLoop;
 use crate::design::stability::verdict::judged;
 use crate::design::stability::vertical_loop::{self, VerticalLoop};
-use crate::{Airframe, CascadeDesign, Configuration, ConfigurationError, GRAVITY_M_S2, Sensors};
+use crate::{Airframe, CascadeDesign, Configuration, ConfigurationError, Sensors};
 
 /// A loop whose least damped mode has less than this damping ratio swings: after a disturbance it takes seven oscillations
 /// for one to fade to a hundredth.
@@ -210,8 +210,8 @@ fn horizontal(
 ) -> Result<[LoopStability; 2], DesignError> {
     let [north, east] = LinearLaw::of(&design.position);
     // (14): ẍ = −g θ, ÿ = g φ
-    let north = MovingAxis::new(configuration, design, north.scaled(-GRAVITY_M_S2));
-    let east = MovingAxis::new(configuration, design, east.scaled(GRAVITY_M_S2));
+    let north = MovingAxis::new(configuration, design, north);
+    let east = MovingAxis::new(configuration, design, east);
     let seen = Seen {
         angle: Some(Turning::ANGLE),
         position: Some(Turning::SIZE + Moving::POSITION),

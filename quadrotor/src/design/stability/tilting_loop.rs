@@ -20,7 +20,7 @@ pub(crate) const TILTING: usize = Turning::SIZE + Moving::SIZE;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TiltingLoop {
     turning: TurningAxis,
-    moving: MovingAxis,
+    moving: MovingAxis<4>,
     events: Vec<LoopEvent>,
     motions: Motions<6>,
     /// Mass that the controllers believe in, as a multiple of the true one.
@@ -36,7 +36,7 @@ impl TiltingLoop {
     pub(crate) fn new(
         configuration: &Configuration,
         axis: usize,
-        moving: MovingAxis,
+        moving: MovingAxis<4>,
         turning: TurningAxis,
     ) -> Result<Self, DesignError> {
         let controllers = &configuration.controllers;
@@ -53,22 +53,15 @@ impl TiltingLoop {
         })
     }
 
-    fn sample_attitude(
-        &self,
-        turning: &mut Turning,
-        moving: &mut Moving,
-        event: &LoopEvent,
-        noise: &Reading,
-    ) {
+    fn sample_attitude(&self, turning: &mut Turning, moving: &mut Moving, noise: &Reading) {
         // In hover m g = m_believed (g − G): a lean of a/(g − G).
         let leaning = self.believed / GRAVITY_M_S2;
-        let lean = |share: f64| moving.commanded(share) * leaning;
-        let now = lean(event.share);
-        let rate = (lean(event.share_ahead) - now) / self.inner_s;
+        let now = moving.feedback * leaning;
+        // Between its samples the position controller holds its command.
+        let rate = 0.0;
         let modelled = turning.estimate[0] * GRAVITY_M_S2 / self.believed;
         self.turning.sample(turning, [now, rate], [noise.angle, noise.rate]);
-        let answer = moving.commanded(event.share);
-        self.moving.predict(moving, modelled, answer, noise.position);
+        self.moving.predict(moving, modelled, noise.position);
     }
 }
 
@@ -86,10 +79,13 @@ impl SmallSignal<TILTING> for TiltingLoop {
         let mut moving = Moving::from_values(&core::array::from_fn(|i| state[Turning::SIZE + i]));
         let present = &self.events[event];
         if present.outer {
-            self.moving.sample(&mut moving, present, [noise.position, noise.velocity]);
+            let thrust = GRAVITY_M_S2 / self.believed;
+            let [angle, rate] = self.turning.seen(&turning, [noise.angle, noise.rate]);
+            let achieved = [angle * thrust, rate * thrust];
+            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
         }
         if present.inner {
-            self.sample_attitude(&mut turning, &mut moving, present, noise);
+            self.sample_attitude(&mut turning, &mut moving, noise);
         }
         let Turning { angle, rate, acceleration, command, .. } = turning;
         let before = [moving.position, moving.velocity, angle, rate, acceleration, command];

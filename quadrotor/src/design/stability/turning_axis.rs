@@ -114,10 +114,19 @@ impl TurningAxis {
         !self.is_incremental
     }
 
+    /// Angle and rate as the controllers see them, with errors of the measured ones.
+    pub(crate) fn seen(&self, state: &Turning, noise: [f64; 2]) -> [f64; 2] {
+        if self.output_feedback {
+            [state.estimate[0], state.estimate[1]]
+        } else {
+            [state.angle + noise[0], state.rate + noise[1]]
+        }
+    }
+
     /// A sample of the attitude controller: with a reference for the angle and its rate, and errors of the measured ones.
     pub(crate) fn sample(&self, state: &mut Turning, reference: [f64; 2], noise: [f64; 2]) {
         let measured = [state.angle + noise[0], state.rate + noise[1]];
-        let seen = if self.output_feedback { [state.estimate[0], state.estimate[1]] } else { measured };
+        let seen = self.seen(state, noise);
         let acceleration = (reference[1] - state.reference_rate) / self.sample_time_s;
         let share = (self.sample_time_s / SMOOTHING_S).min(1.0);
         state.reference_acceleration += (acceleration - state.reference_acceleration) * share;

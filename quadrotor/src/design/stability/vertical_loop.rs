@@ -12,16 +12,16 @@ use crate::design::stability::motion::{Motions, vertical};
 use crate::design::stability::moving_axis::{Moving, MovingAxis};
 use crate::design::stability::small_signal::{Reading, SmallSignal};
 
-/// Number of states: the rotors' acceleration, the commanded one, the answer that the estimator expects, and the axis.
-pub(crate) const VERTICAL: usize = 3 + Moving::SIZE;
+/// Number of states: the rotors' acceleration, the commanded one, and the axis.
+pub(crate) const VERTICAL: usize = 2 + Moving::SIZE;
 /// Places of the commanded acceleration and of the position among them.
 pub(crate) const COMMAND: usize = 1;
-pub(crate) const POSITION: usize = 3 + Moving::POSITION;
+pub(crate) const POSITION: usize = 2 + Moving::POSITION;
 
 /// The altitude controller with the rotors' lag.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct VerticalLoop {
-    moving: MovingAxis,
+    moving: MovingAxis<3>,
     events: Vec<LoopEvent>,
     motions: Motions<4>,
     believed: f64,
@@ -34,7 +34,7 @@ impl VerticalLoop {
     ///
     /// # Errors
     /// [`DesignError::NotFinite`].
-    pub(crate) fn new(configuration: &Configuration, moving: MovingAxis) -> Result<Self, DesignError> {
+    pub(crate) fn new(configuration: &Configuration, moving: MovingAxis<3>) -> Result<Self, DesignError> {
         let controllers = &configuration.controllers;
         let events = loop_events(controllers.altitude.sample_time_us, controllers.attitude.sample_time_us);
         let durations = events.iter().map(|event| event.duration_us);
@@ -59,21 +59,21 @@ impl SmallSignal<VERTICAL> for VerticalLoop {
     }
 
     fn after(&self, state: &SVector<f64, VERTICAL>, event: usize, noise: &Reading) -> SVector<f64, VERTICAL> {
-        let (mut acceleration, mut command, mut answer) = (state[0], state[1], state[2]);
-        let mut moving = Moving::from_values(&core::array::from_fn(|i| state[3 + i]));
+        let (mut acceleration, mut command) = (state[0], state[1]);
+        let mut moving = Moving::from_values(&core::array::from_fn(|i| state[2 + i]));
         let present = &self.events[event];
         if present.outer {
-            self.moving.sample(&mut moving, present, [noise.position, noise.velocity]);
+            let achieved = [acceleration / self.believed, 0.0];
+            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
         }
         if present.inner {
-            let wanted = moving.commanded(present.share);
+            let wanted = moving.feedback;
             command = self.believed * wanted;
             let mean = (acceleration + command + (acceleration - command) * self.kept) / 2.0;
-            answer = wanted + (answer - wanted) * self.kept;
-            self.moving.predict(&mut moving, mean / self.believed, answer, noise.position);
+            self.moving.predict(&mut moving, mean / self.believed, noise.position);
         }
         let before = [moving.position, moving.velocity, acceleration, command];
         [moving.position, moving.velocity, acceleration, _] = self.motions.after(event, before);
-        SVector::from_iterator([acceleration, command, answer].into_iter().chain(moving.values()))
+        SVector::from_iterator([acceleration, command].into_iter().chain(moving.values()))
     }
 }

@@ -1,0 +1,41 @@
+//! What the altitude controller keeps within.
+
+use lmpc::SignalLimit;
+use nalgebra::DMatrix;
+
+use crate::Limits;
+
+/// Bounds: acceleration and speed, each down and up.
+pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
+
+static THRUST: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
+static SPEED: &[usize] = &[
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75,
+    90, 110,
+];
+/// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
+const CATCHING_UP: f64 = 0.1;
+/// Violations that cost alike: of the acceleration, m/s², and of the speed, m/s.
+const FIRM_M_S2: f64 = 0.5;
+const SPEED_M_S: f64 = 4.0;
+
+/// The vertical acceleration, and the speed, with the states of [`altitude_model_with_lag`](crate::altitude_model_with_lag).
+pub(crate) fn altitude_limits() -> [SignalLimit; 2] {
+    let range = || DMatrix::from_column_slice(2, 1, &[1.0, -1.0]);
+    [
+        SignalLimit::of_inputs(3, 1, range(), THRUST.to_vec()).giving_way_by(FIRM_M_S2),
+        SignalLimit::of_states(3, 1, &[1], range(), SPEED.to_vec()).giving_way_by(SPEED_M_S),
+    ]
+}
+
+/// Values of [`altitude_limits`]: G within `range`, and the speeds down and up.
+pub(crate) fn altitude_bounds(
+    limits: &Limits,
+    range: (f64, f64),
+    reference_rate_m_s: f64,
+) -> [f64; ALTITUDE_BOUNDS] {
+    let speed = |limit: f64, asked: f64| if asked > limit { asked + CATCHING_UP * limit } else { limit };
+    let down = speed(limits.speed_down_m_s, reference_rate_m_s);
+    let up = speed(limits.speed_up_m_s, -reference_rate_m_s);
+    [range.1, -range.0, down, up]
+}

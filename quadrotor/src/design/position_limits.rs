@@ -1,0 +1,108 @@
+//! What the position controller keeps within.
+
+use core::f64::consts::PI;
+
+use lmpc::SignalLimit;
+use nalgebra::{DMatrix, Vector2};
+
+use crate::design::attitude_response::AttitudeResponse;
+use crate::guidance::reference_motion::ReferenceMotion;
+use crate::{GRAVITY_M_S2, Limits};
+
+/// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
+const SIDES: usize = 24;
+/// Sides of the polygons for the rate and the acceleration of the tilt, which need not be finer: 8 %.
+const COARSE_SIDES: usize = 8;
+/// Bounds, one per side.
+pub(crate) const POSITION_BOUNDS: usize = 2 * SIDES + 2 * COARSE_SIDES;
+
+/// Samples of the tilt command: those at which it can be chosen, and some of those at which it settles.
+static TILT: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
+/// Samples of its acceleration: while commands change fast.
+static TURNING: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
+/// Samples of the speed and of the rate of the tilt, which follow later.
+static MOVING: &[usize] =
+    &[4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
+static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
+
+/// Number of signals on all samples.
+pub(crate) const POSITION_SIGNALS: usize = 2 * (19 + 12 + 25 + 11);
+
+/// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
+const CATCHING_UP: f64 = 0.1;
+/// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
+/// speed, m/s. The tilt is the one to keep.
+const FIRM_M_S2: f64 = 0.5;
+const TURNING_RAD_S2: f64 = 8.0;
+const LEANING_RAD_S: f64 = 2.0;
+const SPEED_M_S: f64 = 8.0;
+
+/// The commanded acceleration, and the angular acceleration, rate and speed that follow from it, in all directions alike.
+///
+/// With the states of [`position_model_with_attitude`](crate::position_model_with_attitude), horizontal accelerations a and commands u:
+/// |u| is bounded by the tilt, |ω² (u − a) − 2 ζ ω ȧ| by its angular acceleration, |ȧ| by its rate, |v| by the speed.
+pub(crate) fn position_limits(response: &AttitudeResponse) -> [SignalLimit; 4] {
+    let (omega, zeta) = (response.natural_frequency_rad_s, response.damping);
+    let of_states = |limited: [usize; 2], sides: usize, samples: &[usize]| {
+        SignalLimit::of_states(8, 2, &limited, SignalLimit::polygon(sides), samples.to_vec())
+    };
+    let mut turning = DMatrix::zeros(2, 8);
+    for axis in 0..2 {
+        turning[(axis, 4 * axis + 2)] = -omega * omega;
+        turning[(axis, 4 * axis + 3)] = -2.0 * zeta * omega;
+    }
+    [
+        SignalLimit::of_inputs(8, 2, SignalLimit::polygon(SIDES), TILT.to_vec()).giving_way_by(FIRM_M_S2),
+        SignalLimit {
+            state: turning,
+            input: DMatrix::identity(2, 2) * (omega * omega),
+            directions: SignalLimit::polygon(COARSE_SIDES),
+            samples: TURNING.to_vec(),
+            relaxation: GRAVITY_M_S2 * TURNING_RAD_S2,
+        },
+        of_states([3, 7], COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
+        of_states([1, 5], SIDES, MOVING).giving_way_by(SPEED_M_S),
+    ]
+}
+
+/// Values of [`position_limits`], the commanded acceleration being at most `acceleration_m_s2`.
+pub(crate) fn position_bounds(
+    limits: &Limits,
+    acceleration_m_s2: f64,
+    reference: &ReferenceMotion<2>,
+) -> [f64; POSITION_BOUNDS] {
+    let inside = libm::cos(PI / COARSE_SIDES as f64);
+    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2 * inside;
+    let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s * inside;
+    let asked = reference.velocity.norm();
+    let speed = if asked > limits.speed_horizontal_m_s {
+        asked + CATCHING_UP * limits.speed_horizontal_m_s
+    } else {
+        limits.speed_horizontal_m_s
+    };
+    core::array::from_fn(|bound| match bound {
+        ..SIDES => acceleration_m_s2,
+        _ if bound < SIDES + COARSE_SIDES => turning,
+        _ if bound < SIDES + 2 * COARSE_SIDES => leaning,
+        _ => speed,
+    })
+}
+
+/// The largest distance, m, at which a set-point is seen: a plan that is shorter cannot tell further ones apart, and beyond that the
+/// speed limit decides.
+///
+/// ```text
+/// v²/a   twice the way to brake from the speed limit
+/// v · 2 s
+/// ```
+pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+    speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
+}
+
+/// The error that is planned with: of a far one as much as the horizon.
+pub(crate) fn in_sight(error: &Vector2<f64>, horizon_m: f64) -> Vector2<f64> {
+    // The square of a finite number can be infinite.
+    let unit = error.amax().max(1.0);
+    let size = unit * (error / unit).norm();
+    if size > horizon_m { error / unit * (horizon_m / (size / unit)) } else { *error }
+}
