@@ -49,12 +49,17 @@ fn noise_redesigns_the_estimator() {
     assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.sensors.velocity_noise_m_s = 0.1), NONE);
 }
 
-/// The mixer belongs to the airframe, and no controller needs to be designed again for it.
+/// The attitude controller keeps the limits of the rotors; its weights follow from them.
 #[test]
-fn another_airframe_has_another_mixer() {
-    let none = redesigned(ControllerKind::Lmpc, |changed| {
+fn another_airframe_has_another_mixer_and_attitude_controller() {
+    let attitude = redesigned(ControllerKind::Lmpc, |changed| {
         changed.airframe.layout = RotorLayout::x();
         changed.airframe.rotor_speed_max_rad_s = 400.0;
+    });
+    assert_eq!(attitude, Redesigned { attitude: true, ..NONE });
+    let none = redesigned(ControllerKind::Lmpc, |changed| {
+        changed.airframe.drag_n_s_m = [0.1; 3];
+        changed.controllers.mass_factor = 1.2;
     });
     assert_eq!(none, NONE);
 }

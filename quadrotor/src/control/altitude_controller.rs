@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::vehicle_motion::VerticalMotion;
-use crate::design::capacities::ALTITUDE_MANY;
 use crate::design::altitude_limits::altitude_bounds;
+use crate::design::capacities::ALTITUDE_MANY;
 use crate::design::position_limits::horizon_m;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};

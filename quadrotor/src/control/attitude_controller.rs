@@ -4,14 +4,15 @@ use lmpc::{ControllerState, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::Configuration;
 use crate::attitude::{attitude_error, turned};
 use crate::control::activity::ControllerActivity;
 use crate::control::attitude_reference::AttitudeReference;
+use crate::control::spin::Spin;
 use crate::design::attitude_design::{AXIS_STATES, AttitudeDesign};
 use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_MANY, TURN_MANY};
 use crate::design::loop_design::LoopDesign;
+use crate::{CascadeDesign, Configuration};
 
 /// What is known of the vehicle's rotation, measured or estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,10 +21,27 @@ pub(crate) struct VehicleRotation {
     pub(crate) attitude: UnitQuaternion<f64>,
     /// p, q, r, rad/s.
     pub(crate) body_rate_rad_s: Vector3<f64>,
-    /// Angular acceleration by the torques that the rotors have reached, rad/s².
-    pub(crate) acceleration_rad_s2: Vector3<f64>,
+    /// Torque that the rotors make, N·m.
+    pub(crate) torque_n_m: Vector3<f64>,
     /// Estimated angular acceleration that the rotors do not explain, rad/s².
     pub(crate) disturbance_rad_s2: Vector3<f64>,
+}
+
+/// What the rotors are to make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AskedTorque {
+    /// The controller's own angular acceleration, rad/s² …
+    own_rad_s2: Vector3<f64>,
+    /// … beside which there is this torque, N·m.
+    beside_n_m: Vector3<f64>,
+    inertia_kg_m2: Vector3<f64>,
+}
+
+impl AskedTorque {
+    /// In FRD, N·m.
+    pub(crate) fn torque_n_m(&self) -> Vector3<f64> {
+        self.own_rad_s2.component_mul(&self.inertia_kg_m2) + self.beside_n_m
+    }
 }
 
 /// State of the attitude controller.
@@ -120,41 +138,68 @@ impl AttitudeController {
         }
     }
 
-    /// One sample: angular accelerations in FRD, rad/s², that the rotors are to make, without the gyroscopic ones, and how
-    /// they were found. Report what the rotors were asked for in the end with [`AttitudeController::apply`].
+    /// One sample: what the rotors are to make, and how it was found. Report what they were asked for in the end with
+    /// [`AttitudeController::apply`].
     pub(crate) fn step(
         &mut self,
         configuration: &Configuration,
-        design: &AttitudeDesign,
+        design: &CascadeDesign,
         seen: &VehicleRotation,
         reference: &AttitudeReference,
-        room: &RotorRoom<'_>,
-    ) -> (Vector3<f64>, ControllerActivity) {
+        thrust_n: (f64, f64),
+    ) -> (AskedTorque, ControllerActivity) {
         self.turn_with_the_body(&seen.attitude);
         let to_body = seen.attitude.inverse() * reference.attitude;
-        let reference_acceleration = to_body * reference.acceleration_rad_s2;
-        let deviation = Deviation {
-            angle_rad: attitude_error(&reference.attitude, &seen.attitude),
-            rate_rad_s: seen.body_rate_rad_s - to_body * reference.rate_rad_s,
-            acceleration_rad_s2: seen.acceleration_rad_s2 - reference_acceleration,
-        };
         let lag_s = configuration.airframe.rotor_time_constant_s;
+        let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
+        let rate_error_rad_s = seen.body_rate_rad_s - to_body * reference.rate_rad_s;
+        let spin = Spin {
+            inertia_kg_m2,
+            body_rate_rad_s: seen.body_rate_rad_s,
+            rate_error_rad_s,
+            torque_n_m: seen.torque_n_m,
+            delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
+        };
+        let [roll_n_m, pitch_n_m, _] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
+        let most_n_m = roll_n_m.min(pitch_n_m);
+        let beside = spin.beside(most_n_m);
+        let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
+
+        let reference_acceleration = to_body * reference.acceleration_rad_s2;
+        let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
+        let deviation = Deviation {
+            angle_rad: leaning_at_most(&attitude_error(&reference.attitude, &seen.attitude), largest_rad),
+            rate_rad_s: rate_error_rad_s,
+            acceleration_rad_s2: reached - reference_acceleration,
+        };
         let told = Seen {
             deviation,
             increment: deviation.since(&self.deviation),
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
-            input_reference: if design.is_incremental() {
+            input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
             } else {
                 reference_acceleration + to_body * reference.jerk_rad_s3 * lag_s
             },
             disturbance: seen.disturbance_rad_s2,
         };
-        let lean = design.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
-        let turn = design.turn.step(&mut self.turn, &told.sample(2, &room.turn_bounds(&lean.input)));
+        let room = RotorRoom {
+            mixer: &design.mixer,
+            thrust_n,
+            other_n_m: beside.commanded_n_m,
+            inertia_kg_m2,
+            believed: configuration.controllers.mass_factor,
+        };
+        let lean = design.attitude.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
+        let turn = design.attitude.turn.step(&mut self.turn, &told.sample(2, &room.turn_bounds(&lean.input)));
         self.deviation = deviation;
         self.integral_rad_s2 = joined(&lean.integral, &turn.integral);
-        (joined(&lean.input, &turn.input), activity(&lean, &turn))
+        let asked = AskedTorque {
+            own_rad_s2: joined(&lean.input, &turn.input),
+            beside_n_m: beside.commanded_n_m,
+            inertia_kg_m2,
+        };
+        (asked, activity(&lean, &turn))
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -196,9 +241,10 @@ impl AttitudeController {
         joined(&self.lean.applied(), &self.turn.applied())
     }
 
-    /// Reports the angular accelerations, rad/s², that the rotors were asked for.
-    pub(crate) fn apply(&mut self, design: &AttitudeDesign, asked_rad_s2: &Vector3<f64>) {
-        let (lean, turn) = (asked_rad_s2.xy(), Vector1::new(asked_rad_s2.z));
+    /// Reports the torque, N·m, that the rotors were asked for.
+    pub(crate) fn apply(&mut self, design: &AttitudeDesign, asked: &AskedTorque, torque_n_m: &Vector3<f64>) {
+        let own_rad_s2 = (torque_n_m - asked.beside_n_m).component_div(&asked.inertia_kg_m2);
+        let (lean, turn) = (own_rad_s2.xy(), Vector1::new(own_rad_s2.z));
         if design.is_incremental() {
             self.lean.apply_holding_integral(&lean, &self.integral_rad_s2.xy());
             self.turn.apply_holding_integral(&turn, &Vector1::new(self.integral_rad_s2.z));
@@ -207,6 +253,13 @@ impl AttitudeController {
             self.turn.apply(&turn);
         }
     }
+}
+
+/// An error whose lean is shortened to a largest one, rad.
+fn leaning_at_most(error_rad: &Vector3<f64>, largest_rad: f64) -> Vector3<f64> {
+    let lean = error_rad.xy().norm();
+    let share = if lean > largest_rad { largest_rad / lean } else { 1.0 };
+    Vector3::new(error_rad.x * share, error_rad.y * share, error_rad.z)
 }
 
 fn joined(lean: &Vector2<f64>, turn: &Vector1<f64>) -> Vector3<f64> {

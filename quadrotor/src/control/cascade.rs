@@ -9,10 +9,9 @@ use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
 use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
 use crate::control::mass_belief::MassBelief;
-use crate::control::observation::{Observation, gyroscopic_torque_n_m};
+use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::thrust_lag::ThrustLag;
-use crate::design::attitude_limits::RotorRoom;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, least_thrust_n, thrust_range_n};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
@@ -91,8 +90,7 @@ impl Cascade {
             let commanded = self.acceleration_m_s2();
             let horizontal = belief.horizontal(&commanded.xy());
             let vertical = belief.vertical(&Vector1::new(commanded.z));
-            self.feedback_m_s2 =
-                Vector3::new(horizontal.x, horizontal.y, vertical.x) - self.reference_m_s2;
+            self.feedback_m_s2 = Vector3::new(horizontal.x, horizontal.y, vertical.x) - self.reference_m_s2;
             self.position.translate(|acceleration| belief.horizontal(acceleration));
             self.altitude.translate(|acceleration| belief.vertical(acceleration));
         }
@@ -128,7 +126,7 @@ impl Cascade {
         let (applied, activity) = self.position.step(
             configuration,
             design,
-            &seen.horizontal(&self.attitude.feedback_rad_s2()),
+            &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
             &motion,
             // The thrust of a climb that begins does not last.
             most_horizontal(vertical.max(0.0), tilt_rad),
@@ -160,8 +158,7 @@ impl Cascade {
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
-        let (applied, activity) =
-            self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
+        let (applied, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
         self.feedback_m_s2.z = applied - motion.acceleration.x;
         self.activity.altitude = activity;
     }
@@ -224,7 +221,6 @@ impl Cascade {
     ) -> [f64; 4] {
         let controllers = &configuration.controllers;
         let period_s = controllers.attitude.sample_time_s();
-        let body = &seen.body;
         let since_s = interval_s(&mut self.sampled.attitude_us, time_us, controllers.attitude.sample_time_us);
         let (attitude, rate_rad_s) = reference;
         let reference = AttitudeReference {
@@ -233,35 +229,21 @@ impl Cascade {
             acceleration_rad_s2: self.turning.go_on(rate_rad_s, since_s),
             jerk_rad_s3: Vector3::zeros(),
         };
-        let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
-        let room = RotorRoom {
-            mixer: &design.mixer,
-            thrust_n: (thrust_n, least_thrust_n),
-            other_n_m: gyroscopic_torque_n_m(configuration, &body.body_rate_rad_s),
-            inertia_kg_m2,
-            believed: controllers.mass_factor,
-        };
-        let (acceleration, activity) =
-            self.attitude.step(configuration, &design.attitude, &seen.rotation(), &reference, &room);
-        // The rotors answer late; until then a spinning body has turned under the torque.
-        let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
-        let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
-        let torque_n_m = acceleration.component_mul(&inertia_kg_m2) + room.other_n_m;
-        let wanted = Wrench { thrust_n, torque_n_m: lead * torque_n_m };
+        let thrust_range_n = (thrust_n, least_thrust_n);
+        let (asked, activity) =
+            self.attitude.step(configuration, design, &seen.rotation(), &reference, thrust_range_n);
+        let wanted = Wrench { thrust_n, torque_n_m: asked.torque_n_m() };
         let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
         let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
         let rotor_command_rad_s =
             core::array::from_fn(|rotor| lag.command_rad_s(thrusts_n[rotor], seen.rotor_speed_rad_s[rotor]));
-        let made = wrench_of_rotors(
-            &configuration.airframe,
-            &core::array::from_fn(|rotor| {
-                lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
-            }),
-        );
+        let settled_rad_s = core::array::from_fn(|rotor| {
+            lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
+        });
+        let made = wrench_of_rotors(&configuration.airframe, &settled_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
-        let made_n_m = lead.inverse() * made.torque_n_m - room.other_n_m;
-        self.attitude.apply(&design.attitude, &made_n_m.component_div(&inertia_kg_m2));
+        self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
         rotor_command_rad_s
     }
 }

@@ -285,8 +285,13 @@ impl ControlState {
         }
         if due.attitude {
             let heading = self.guidance.sample_heading(reference, limits, time_us);
-            self.rotor_command_rad_s =
-                self.cascade.sample_attitude(configuration, cascade, seen, (&self.guidance.setpoint(time_us), &heading), time_us);
+            self.rotor_command_rad_s = self.cascade.sample_attitude(
+                configuration,
+                cascade,
+                seen,
+                (&self.guidance.setpoint(time_us), &heading),
+                time_us,
+            );
         }
     }
 
@@ -295,7 +300,13 @@ impl ControlState {
     fn predict(&mut self, design: &LoopDesign, seen: &Observation, time_us: u64) {
         let configuration = &design.configuration;
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
-        self.estimator.predict(configuration, &design.cascade.estimator, &seen.measured, &self.rotor_command_rad_s, times);
+        self.estimator.predict(
+            configuration,
+            &design.cascade.estimator,
+            &seen.measured,
+            &self.rotor_command_rad_s,
+            times,
+        );
     }
 }
 

@@ -20,6 +20,7 @@ pub(crate) mod observation;
 pub(crate) mod position_controller;
 pub(crate) mod rotor_loss;
 pub(crate) mod rotor_monitor;
+pub(crate) mod spin;
 pub(crate) mod thrust_lag;
 pub(crate) mod tracking_law;
 pub(crate) mod vehicle_motion;

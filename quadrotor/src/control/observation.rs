@@ -22,8 +22,8 @@ pub(crate) struct Observation {
     disturbance_rad_s2: Vector3<f64>,
     /// Speeds that the rotors have reached by their model, rad/s.
     pub(crate) rotor_speed_rad_s: [f64; 4],
-    /// Angular acceleration by the torques that they make at those speeds, FRD, rad/s².
-    rotor_acceleration_rad_s2: Vector3<f64>,
+    /// Torque that they make at those speeds, FRD, N·m.
+    rotor_torque_n_m: Vector3<f64>,
 }
 
 impl Observation {
@@ -37,7 +37,6 @@ impl Observation {
         let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
         let rotor_speed_rad_s = estimator.rotor_speed_rad_s();
         let made = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
-        let torque_n_m = made.torque_n_m - gyroscopic_torque_n_m(configuration, &body.body_rate_rad_s);
         Self {
             measured: *measured,
             body,
@@ -45,12 +44,16 @@ impl Observation {
             disturbance_m_s2: estimator.disturbance_m_s2(),
             disturbance_rad_s2: estimator.disturbance_rad_s2(),
             rotor_speed_rad_s,
-            rotor_acceleration_rad_s2: torque_n_m.component_div(&configuration.believed_inertia_kg_m2()),
+            rotor_torque_n_m: made.torque_n_m,
         }
     }
 
     /// Motion north and east, when feedback of the attitude has asked for these angular accelerations, FRD, rad/s².
-    pub(crate) fn horizontal(&self, asked_rad_s2: &Vector3<f64>) -> HorizontalMotion {
+    pub(crate) fn horizontal(
+        &self,
+        configuration: &Configuration,
+        asked_rad_s2: &Vector3<f64>,
+    ) -> HorizontalMotion {
         // a = −R e₃ F/m, and as the body turns ȧ = −R (ω × e₃) F/m, ä = −R (ω̇ × e₃) F/m
         let rotation = self.body.rotation();
         let turned = |by: &Vector3<f64>| (rotation * by.cross(&Vector3::z()) * -self.lift_m_s2).xy();
@@ -59,7 +62,7 @@ impl Observation {
             velocity_m_s: self.body.velocity_m_s.xy(),
             acceleration_m_s2: (rotation * Vector3::z() * -self.lift_m_s2).xy(),
             jerk_m_s3: turned(&self.body.body_rate_rad_s),
-            snap_m_s4: turned(&self.rotor_acceleration_rad_s2),
+            snap_m_s4: turned(&self.rotor_torque_n_m.component_div(&configuration.believed_inertia_kg_m2())),
             asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
         }
@@ -81,16 +84,8 @@ impl Observation {
         VehicleRotation {
             attitude: self.body.rotation(),
             body_rate_rad_s: self.body.body_rate_rad_s,
-            acceleration_rad_s2: self.rotor_acceleration_rad_s2,
+            torque_n_m: self.rotor_torque_n_m,
             disturbance_rad_s2: self.disturbance_rad_s2,
         }
     }
-}
-
-/// ω × Jω, N·m: what (3) takes from the torques, given back.
-pub(crate) fn gyroscopic_torque_n_m(
-    configuration: &Configuration,
-    body_rate_rad_s: &Vector3<f64>,
-) -> Vector3<f64> {
-    body_rate_rad_s.cross(&configuration.believed_inertia_kg_m2().component_mul(body_rate_rad_s))
 }

@@ -51,10 +51,9 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
                 Self::FewTerms(LaguerreMpc::with_model_increment(design, limits)?)
             }
             ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
-            ControllerKind::StateSpaceMpc => Self::StateSpace(StateSpaceMpc::new(
-                &state_space_of(settings, design)?,
-                limits,
-            )?),
+            ControllerKind::StateSpaceMpc => {
+                Self::StateSpace(StateSpaceMpc::new(&state_space_of(settings, design)?, limits)?)
+            }
             ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
         })
     }
@@ -131,7 +130,11 @@ fn plain(limit: &SignalLimit) -> Limit {
     let of_state = limit.input.amax() == 0.0;
     Limit {
         quantity: if of_input { Quantity::Input } else { Quantity::State },
-        directions: if of_input { &limit.directions * &limit.input } else { &limit.directions * &limit.state },
+        directions: if of_input {
+            &limit.directions * &limit.input
+        } else {
+            &limit.directions * &limit.state
+        },
         samples: if of_input || of_state { limit.samples.clone() } else { Vec::new() },
         soft: !of_input,
     }

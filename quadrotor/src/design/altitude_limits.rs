@@ -10,7 +10,8 @@ pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
 
 static THRUST: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
 static SPEED: &[usize] = &[
-    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110,
+    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75,
+    90, 110,
 ];
 /// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
 const CATCHING_UP: f64 = 0.1;
@@ -23,8 +24,7 @@ pub(crate) fn altitude_limits() -> [SignalLimit; 2] {
     let range = || DMatrix::from_column_slice(2, 1, &[1.0, -1.0]);
     [
         SignalLimit::of_inputs(3, 1, range(), THRUST.to_vec()).giving_way_by(FIRM_M_S2),
-        SignalLimit::of_states(3, 1, &[1], range(), SPEED.to_vec())
-            .giving_way_by(SPEED_M_S),
+        SignalLimit::of_states(3, 1, &[1], range(), SPEED.to_vec()).giving_way_by(SPEED_M_S),
     ]
 }
 

@@ -14,7 +14,7 @@ use crate::design::cascade_design::{DesignReport, laguerre_design};
 use crate::design::controller_limits::placed;
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::lagged_attitude_model;
-use crate::{Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
+use crate::{Airframe, Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
 
 /// States of one axis: angle, rate, and the angular acceleration that the rotors have reached.
 pub(crate) const AXIS_STATES: usize = 3;
@@ -35,6 +35,8 @@ const SLOWEST_TURN: f64 = 8.0;
 pub(crate) struct AttitudeDesign {
     pub(crate) lean: LeanLaw,
     pub(crate) turn: TurnLaw,
+    /// Rate per error with which small leans are closed, 1/s: half of the bandwidth.
+    pub(crate) closing_1_s: f64,
     /// The closed loop of roll and pitch; with the paper's models nobody needs it.
     pub(crate) closed: Option<AttitudeLoop>,
 }
@@ -70,6 +72,7 @@ impl AttitudeDesign {
         let design = Self {
             lean: law(configuration, &lean_settings, &lean, &lean_limits)?,
             turn: law(configuration, &turn_settings, &turn, &turn_limits(&turn_samples))?,
+            closing_1_s: bandwidth.lean_rad_s / 2.0,
             closed,
         };
         Ok((design, report))
@@ -84,7 +87,8 @@ impl AttitudeDesign {
     pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
         let depends = |configuration: &Configuration| {
             let controllers = &configuration.controllers;
-            (configuration.airframe, controllers.kind, controllers.model, controllers.attitude)
+            let airframe = Airframe { drag_n_s_m: [0.0; 3], ..configuration.airframe };
+            (airframe, controllers.kind, controllers.model, controllers.attitude)
         };
         depends(one) == depends(other)
     }

@@ -9,7 +9,9 @@ use crate::configuration::validation::validate;
 use crate::design::attitude_design::AttitudeDesign;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::translation_design::{AltitudeLaw, PositionLaw, altitude_design, is_isotropic, position_design};
+use crate::design::translation_design::{
+    AltitudeLaw, PositionLaw, altitude_design, is_isotropic, position_design,
+};
 use crate::{Configuration, ConfigurationError, ControllerSettings, Mixer};
 
 /// The figures of one finished design.

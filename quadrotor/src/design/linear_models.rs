@@ -46,11 +46,7 @@ pub fn position_model(sample_time_s: f64, discretization: Discretization) -> Res
 /// # Errors
 /// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`] for a time constant of 0.
 pub fn altitude_model_with_lag(time_constant_s: f64, sample_time_s: f64) -> Result<StateSpace, DesignError> {
-    let a = DMatrix::from_row_slice(
-        3,
-        3,
-        &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / time_constant_s],
-    );
+    let a = DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / time_constant_s]);
     let b = DMatrix::from_column_slice(3, 1, &[0.0, 0.0, 1.0 / time_constant_s]);
     let c = DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 0.0]);
     StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)

@@ -21,7 +21,8 @@ pub(crate) fn printed_design<const N: usize, const P: usize, const S: usize, con
 ) -> Result<(LmpcDesign, TrackingLaw<N, P, S, L>), DesignError> {
     let with_idle_states = with_idle_states(plant, N, P)?;
     let augmented = Augmented::new(plant);
-    let design = weighted_design(settings, &augmented, &loop_weights(&augmented, settings, bandwidth_rad_s)?)?;
+    let design =
+        weighted_design(settings, &augmented, &loop_weights(&augmented, settings, bandwidth_rad_s)?)?;
     let law = match kind {
         ControllerKind::Lmpc => TrackingLaw::of_gain(&widened(design.gain(), N, P))?,
         ControllerKind::Dlqr => TrackingLaw::of_gain(&widened(design.dlqr().gain(), N, P))?,

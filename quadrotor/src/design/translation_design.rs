@@ -1,7 +1,8 @@
 //! The position and altitude controllers, designed from a configuration.
 
 use lmpc::{
-    Augmented, DesignError, Discretization, Dlqr, LaguerreBasis, SignalLimit, StabilizedDesign, StateSpace, spectral_radius,
+    Augmented, DesignError, Discretization, Dlqr, LaguerreBasis, SignalLimit, StabilizedDesign, StateSpace,
+    spectral_radius,
 };
 use nalgebra::{DMatrix, SVector};
 

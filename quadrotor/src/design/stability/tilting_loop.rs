@@ -53,12 +53,7 @@ impl TiltingLoop {
         })
     }
 
-    fn sample_attitude(
-        &self,
-        turning: &mut Turning,
-        moving: &mut Moving,
-        noise: &Reading,
-    ) {
+    fn sample_attitude(&self, turning: &mut Turning, moving: &mut Moving, noise: &Reading) {
         // In hover m g = m_believed (g − G): a lean of a/(g − G).
         let leaning = self.believed / GRAVITY_M_S2;
         let now = moving.feedback * leaning;

@@ -29,7 +29,7 @@ struct Tally {
 
 impl Tally {
     fn add(&mut self, name: &str, configuration: &Configuration, duration_s: f64) {
-        let Ok(design) = designed(configuration) else {
+        let Ok(design) = designed(configuration).inspect_err(|e| println!("{name}: {e}")) else {
             self.undesignable += 1;
             return;
         };

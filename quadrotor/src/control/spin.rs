@@ -1,0 +1,83 @@
+//! The torques that a turning body needs beside those of its controller.
+
+use nalgebra::Vector3;
+
+/// Largest share of the torque about roll and pitch that is spent on them. What is not cancelled turns the angular velocity
+/// and does no work, so that the loop stays damped whatever is left out.
+const CANCELLED_SHARE: f64 = 0.5;
+
+/// A turning body as its controller sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spin {
+    /// Believed moments of inertia, kg·m².
+    pub(crate) inertia_kg_m2: Vector3<f64>,
+    /// ω: p, q, r, rad/s.
+    pub(crate) body_rate_rad_s: Vector3<f64>,
+    /// That less the rate of the reference, rad/s.
+    pub(crate) rate_error_rad_s: Vector3<f64>,
+    /// Torque that the rotors make, N·m.
+    pub(crate) torque_n_m: Vector3<f64>,
+    /// Delay of a commanded torque, s: the rotors' lag and half a sample.
+    pub(crate) delay_s: f64,
+}
+
+/// What the controller's own torque J α is added to, N·m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beside {
+    /// The part of the torque that the rotors make which is not its own.
+    pub(crate) made_n_m: Vector3<f64>,
+    /// The torque to command beside the one that it commands.
+    pub(crate) commanded_n_m: Vector3<f64>,
+}
+
+impl Spin {
+    /// The largest rate of a lean, rad/s, at which the torque about roll and pitch, at most `most_n_m`, still cancels what turns
+    /// it: τ = J_z r ω for a body of equal moments about roll and pitch.
+    fn largest_rate_rad_s(&self, most_n_m: f64) -> f64 {
+        let [roll, pitch, yaw]: [f64; 3] = self.inertia_kg_m2.into();
+        let turned_kg_m2 = yaw + libm::fabs(roll - pitch);
+        CANCELLED_SHARE * most_n_m / (turned_kg_m2 * libm::fabs(self.body_rate_rad_s.z))
+    }
+
+    /// The largest lean error, rad, that is closed with no more than that rate, by a loop that closes small errors at
+    /// `closing_1_s` per error and turns from rest to rest over large ones: the angular momentum of a spin is turned slowly or not
+    /// at all.
+    pub(crate) fn largest_lean_rad(&self, most_n_m: f64, closing_1_s: f64) -> f64 {
+        let rate = self.largest_rate_rad_s(most_n_m);
+        let acceleration = most_n_m / self.inertia_kg_m2.xy().max();
+        (rate / closing_1_s).max(rate * rate / acceleration)
+    }
+
+    /// The controller's model has a lean that stays where it is in the world while the body spins about its thrust axis.
+    /// With the rate error δ and the spin r, a double integrator in axes that do not spin takes, in body axes,
+    ///
+    /// ```text
+    /// τ = J α + g,   g = ω × Jω − J (r e₃ × δ)
+    /// α̇ = (α_c − α)/T − r e₃ × α
+    /// ```
+    ///
+    /// and rotors that answer with the lag T are there in time for τ_c = τ + T τ̇ = J α_c + g + T ġ − T J (r e₃ × α).
+    ///
+    /// About roll and pitch g is cut to a share of `most_n_m`, what the rotors can do about them: the angular momentum of a
+    /// fast spin is more than they can turn, and holds the thrust axis still by itself.
+    pub(crate) fn beside(&self, most_n_m: f64) -> Beside {
+        let (inertia, rate) = (&self.inertia_kg_m2, &self.body_rate_rad_s);
+        let spin = Vector3::z() * rate.z;
+        let gyroscopic = |rate: &Vector3<f64>| rate.cross(&inertia.component_mul(rate));
+        let whole = gyroscopic(rate) - inertia.component_mul(&spin.cross(&self.rate_error_rad_s));
+        let size = whole.xy().norm();
+        let allowed = CANCELLED_SHARE * most_n_m;
+        let share = if size > allowed { allowed / size } else { 1.0 };
+        let lateral = Vector3::new(share, share, 1.0);
+        let made_n_m = whole.component_mul(&lateral);
+
+        let own = (self.torque_n_m - made_n_m).component_div(inertia);
+        // ω̇ = J⁻¹ (τ − ω × Jω) moves both ω and δ, if the reference keeps its rate.
+        let turning = (self.torque_n_m - gyroscopic(rate)).component_div(inertia);
+        let moved = gyroscopic(&(rate + turning * self.delay_s))
+            - gyroscopic(rate)
+            - inertia.component_mul(&spin.cross(&turning)) * self.delay_s;
+        let led = moved.component_mul(&lateral) - inertia.component_mul(&spin.cross(&own)) * self.delay_s;
+        Beside { made_n_m, commanded_n_m: made_n_m + Vector3::new(led.x, led.y, 0.0) }
+    }
+}
