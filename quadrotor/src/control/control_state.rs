@@ -146,6 +146,12 @@ impl ControlState {
         self.guidance.reference(time_us)
     }
 
+    /// What the cascade will track at `time_us`, as far as it is known now: see [`PositionReference::expected_after`] for a
+    /// reference that is not shaped.
+    pub fn preview(&self, time_us: u64) -> PositionReference {
+        self.guidance.preview(time_us)
+    }
+
     /// φ and θ that the position controller asks of the attitude controller, rad.
     pub fn tilt_reference_rad(&self) -> [f64; 2] {
         self.cascade.tilt_reference_rad()
@@ -223,6 +229,9 @@ impl ControlState {
         time_us: u64,
     ) -> Result<(), ControlError> {
         let configuration = &design.configuration;
+        if let Target::Reference(reference) = target {
+            self.guidance.watch(reference, &configuration.limits, time_us);
+        }
         let clocks = self.clocks(&configuration.controllers);
         let due = Due {
             position: clocks.position.ticks(time_us),

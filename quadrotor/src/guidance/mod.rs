@@ -1,6 +1,9 @@
 //! From what the vehicle is asked for to the set-points that the controllers track.
 
 pub(crate) mod attitude_target;
+pub(crate) mod continuation;
+pub(crate) mod derivative_estimator;
+pub(crate) mod direct_reference;
 pub(crate) mod eased_limits;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
