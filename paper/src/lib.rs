@@ -9,6 +9,7 @@
 //! design ◄─ model_file (--gain)
 //! ```
 
+pub mod bars;
 mod constrained_step;
 mod design;
 mod eigenvalues;

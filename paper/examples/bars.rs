@@ -1,0 +1,144 @@
+//! Flies the table of bars, to tune with:
+//!
+//! ```text
+//! cargo run -p paper --example bars -- --only goal --kind lmpc,dlqr --set controller.position.terms=7 --csv target/tracks
+//! ```
+
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use paper::bars::{BarResult, Flyer, flown, plans};
+use quadrotor::{Access, Configuration, PARAMETERS};
+use rayon::prelude::*;
+
+/// Flies the table of bars and prints its figures.
+#[derive(Parser)]
+struct Arguments {
+    /// Changes a parameter of the FMU, as NAME=VALUE; can be repeated.
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Only flights whose row or name contains one of these words, separated by semicolons.
+    #[arg(long, value_delimiter = ';')]
+    only: Vec<String>,
+    /// Only these controllers: lmpc, ssmpc, dlqr, governed, geometric.
+    #[arg(long, value_delimiter = ',')]
+    kind: Vec<String>,
+    /// Writes each flight as a CSV file to this folder.
+    #[arg(long, value_name = "DIR")]
+    csv: Option<PathBuf>,
+    /// Prints only what Laguerre MPC fails.
+    #[arg(long)]
+    failed: bool,
+    /// Lists the flights, and exits.
+    #[arg(long)]
+    list: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let mut configuration = Configuration::default();
+    for setting in &arguments.set {
+        set(&mut configuration, setting)?;
+    }
+    let flyers: Vec<Flyer> = Flyer::ALL
+        .into_iter()
+        .filter(|flyer| arguments.kind.is_empty() || arguments.kind.iter().any(|key| key == flyer.key()))
+        .collect();
+    let mut plans = plans(&configuration);
+    plans.retain(|plan| {
+        let named =
+            |word: &String| plan.row.name().contains(word.as_str()) || plan.name.contains(word.as_str());
+        arguments.only.is_empty() || arguments.only.iter().any(named)
+    });
+    if arguments.list {
+        for plan in &plans {
+            println!("{:14} {}", plan.row.name(), plan.name);
+        }
+        return Ok(());
+    }
+    let flights: Vec<_> = plans.par_iter().map(|plan| (plan, flown(plan, &flyers))).collect();
+    let (mut judged, mut passed) = (0, 0);
+    for (plan, flown) in &flights {
+        for result in flown.results.iter().filter(|result| result.controller == Flyer::LaguerreMpc.name()) {
+            judged += usize::from(result.passed.is_some());
+            passed += usize::from(result.passed == Some(true));
+        }
+        print_flight(plan.row.name(), &plan.name, &flown.results, &flyers, arguments.failed);
+        if let Some(folder) = &arguments.csv {
+            fs::create_dir_all(folder)?;
+            for (flyer, track) in &flown.tracks {
+                fs::write(file(folder, &plan.name, flyer.key()), track.csv())?;
+            }
+        }
+    }
+    println!("\nLMPC keeps {passed} of {judged} bars");
+    Ok(())
+}
+
+fn file(folder: &Path, flight: &str, key: &str) -> PathBuf {
+    folder
+        .join(format!("{}-{key}.csv", flight.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-")))
+}
+
+fn set(configuration: &mut Configuration, setting: &str) -> Result<(), Box<dyn Error>> {
+    let (name, value) = setting.split_once('=').ok_or_else(|| format!("{setting}: must be NAME=VALUE"))?;
+    let parameter = PARAMETERS
+        .iter()
+        .find(|parameter| parameter.name == name)
+        .ok_or_else(|| format!("{name}: unknown parameter"))?;
+    match parameter.access {
+        Access::Real { set, .. } => set(configuration, value.parse()?),
+        Access::Integer { set, .. } => set(configuration, value.parse()?),
+        Access::Boolean { set, .. } => set(configuration, value.parse()?),
+        Access::Enumeration { choice, set, .. } => {
+            let index = choice.items.iter().position(|(item, _)| *item == value);
+            let index = index.ok_or_else(|| format!("{name}: {value} is none of {:?}", choice.items))?;
+            set(configuration, i32::try_from(index)? + 1);
+        }
+    }
+    parameter.check(configuration)?;
+    Ok(())
+}
+
+fn print_flight(row: &str, name: &str, results: &[BarResult], flyers: &[Flyer], failed: bool) {
+    let mut figures: Vec<&str> = Vec::new();
+    let mut cells: BTreeMap<(&str, &str), &BarResult> = BTreeMap::new();
+    for result in results {
+        if !figures.contains(&result.figure) {
+            figures.push(result.figure);
+        }
+        cells.insert((result.figure, result.controller), result);
+    }
+    if failed {
+        let fails = |figure: &&str| {
+            cells
+                .get(&(*figure, Flyer::LaguerreMpc.name()))
+                .is_some_and(|result| result.passed == Some(false))
+        };
+        figures.retain(fails);
+        if figures.is_empty() {
+            return;
+        }
+    }
+    println!("\n{row}: {name}");
+    let header: String = flyers.iter().map(|flyer| format!("{:>15}", flyer.name())).collect();
+    println!("  {:54}{:>10}{header}", "", "bar");
+    for figure in figures {
+        let of = |flyer: &Flyer| cells.get(&(figure, flyer.name())).copied();
+        let bound = flyers.iter().find_map(|flyer| of(flyer)?.bound);
+        let row: String = flyers.iter().map(|flyer| format!("{:>15}", cell(of(flyer)))).collect();
+        println!("  {figure:54}{:>10}{row}", bound.map_or(String::new(), |bound| format!("{bound:.3}")));
+    }
+    for lost in results.iter().filter_map(|result| Some((result.controller, result.lost.as_ref()?))) {
+        println!("  {}: {}", lost.0, lost.1);
+    }
+}
+
+fn cell(result: Option<&BarResult>) -> String {
+    let Some(result) = result else { return String::new() };
+    let value = result.value.map_or("never".to_owned(), |value| format!("{value:.3}"));
+    format!("{value}{}", if result.passed == Some(false) { " !" } else { "  " })
+}

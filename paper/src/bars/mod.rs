@@ -1,0 +1,24 @@
+//! What the closed loop is measured by: flights on the nonlinear plant, with a bar for each of their figures.
+//!
+//! ```text
+//! taylor ─► path ─► plan ◄─ plans (all flights)
+//!                    │
+//! geometric, flyer ──┴─► flight ─► track ─► measures ─► figure ─► result ─► bars[]
+//! ```
+
+mod figure;
+mod flight;
+mod flyer;
+mod geometric;
+mod measures;
+mod path;
+mod plan;
+mod plans;
+mod result;
+mod taylor;
+mod track;
+
+pub use flyer::Flyer;
+pub use plan::Plan;
+pub use plans::plans;
+pub use result::{BarResult, flown};
