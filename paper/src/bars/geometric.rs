@@ -77,11 +77,11 @@ fn thrust_axis(acceleration_m_s2: &Vector3<f64>) -> Vector3<f64> {
     Vector3::z() * GRAVITY_M_S2 - acceleration_m_s2
 }
 
-/// The attitude with this down axis whose forward axis points north.
+/// The attitude with this down axis and the heading ψ = 0 (ZYX): its forward axis has no component to the east.
 fn attitude(down: &Vector3<f64>) -> Rotation3<f64> {
     let down = down.normalize();
-    let right = down.cross(&Vector3::x()).normalize();
-    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[right.cross(&down), right, down]))
+    let forward = Vector3::y().cross(&down).normalize();
+    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[forward, down.cross(&forward), down]))
 }
 
 /// The vector whose cross product is a skew-symmetric matrix.
