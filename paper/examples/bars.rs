@@ -10,7 +10,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use paper::bars::{BarResult, Flyer, flown, plans};
+use paper::bars::{BarResult, Flyer, flown, judged_random_flights, plans, sample_times};
+use paper::shaped_flights;
 use quadrotor::{Access, Configuration, PARAMETERS};
 use rayon::prelude::*;
 
@@ -29,6 +30,12 @@ struct Arguments {
     /// Writes each flight as a CSV file to this folder.
     #[arg(long, value_name = "DIR")]
     csv: Option<PathBuf>,
+    /// Flies so many random flights of each controller as well.
+    #[arg(long, value_name = "FLIGHTS")]
+    random: Option<u32>,
+    /// Times the controllers as well; in a release build.
+    #[arg(long)]
+    time: bool,
     /// Prints only what Laguerre MPC fails.
     #[arg(long)]
     failed: bool,
@@ -60,20 +67,30 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     let flights: Vec<_> = plans.par_iter().map(|plan| (plan, flown(plan, &flyers))).collect();
-    let (mut judged, mut passed) = (0, 0);
-    for (plan, flown) in &flights {
-        for result in flown.results.iter().filter(|result| result.controller == Flyer::LaguerreMpc.name()) {
-            judged += usize::from(result.passed.is_some());
-            passed += usize::from(result.passed == Some(true));
-        }
-        print_flight(plan.row.name(), &plan.name, &flown.results, &flyers, arguments.failed);
+    let mut results = Vec::new();
+    for (plan, flown) in flights {
         if let Some(folder) = &arguments.csv {
             fs::create_dir_all(folder)?;
             for (flyer, track) in &flown.tracks {
                 fs::write(file(folder, &plan.name, flyer.key()), track.csv())?;
             }
         }
+        results.push(flown.results);
     }
+    if let Some(count) = arguments.random {
+        let flown = |flyer: &Flyer| shaped_flights(flyer.name(), &flyer.applied(&configuration), count);
+        let cascades = flyers.iter().filter(|flyer| **flyer != Flyer::Geometric);
+        results.push(cascades.flat_map(|flyer| judged_random_flights(&flown(flyer))).collect());
+    }
+    if arguments.time {
+        results.push(sample_times(&configuration, &flyers));
+    }
+    for results in &results {
+        print_flight(results, &flyers, arguments.failed);
+    }
+    let lmpc = || results.iter().flatten().filter(|result| result.controller == Flyer::LaguerreMpc.name());
+    let judged = lmpc().filter(|result| result.passed.is_some()).count();
+    let passed = lmpc().filter(|result| result.passed == Some(true)).count();
     println!("\nLMPC keeps {passed} of {judged} bars");
     Ok(())
 }
@@ -103,14 +120,14 @@ fn set(configuration: &mut Configuration, setting: &str) -> Result<(), Box<dyn E
     Ok(())
 }
 
-fn print_flight(row: &str, name: &str, results: &[BarResult], flyers: &[Flyer], failed: bool) {
+fn print_flight(results: &[BarResult], flyers: &[Flyer], failed: bool) {
     let mut figures: Vec<&str> = Vec::new();
     let mut cells: BTreeMap<(&str, &str), &BarResult> = BTreeMap::new();
     for result in results {
         if !figures.contains(&result.figure) {
             figures.push(result.figure);
         }
-        cells.insert((result.figure, result.controller), result);
+        cells.insert((result.figure, &result.controller), result);
     }
     if failed {
         let fails = |figure: &&str| {
@@ -123,7 +140,8 @@ fn print_flight(row: &str, name: &str, results: &[BarResult], flyers: &[Flyer], 
             return;
         }
     }
-    println!("\n{row}: {name}");
+    let Some(first) = results.first() else { return };
+    println!("\n{}: {}", first.row, first.flight);
     let header: String = flyers.iter().map(|flyer| format!("{:>15}", flyer.name())).collect();
     println!("  {:54}{:>10}{header}", "", "bar");
     for figure in figures {
@@ -132,7 +150,7 @@ fn print_flight(row: &str, name: &str, results: &[BarResult], flyers: &[Flyer], 
         let row: String = flyers.iter().map(|flyer| format!("{:>15}", cell(of(flyer)))).collect();
         println!("  {figure:54}{:>10}{row}", bound.map_or(String::new(), |bound| format!("{bound:.3}")));
     }
-    for lost in results.iter().filter_map(|result| Some((result.controller, result.lost.as_ref()?))) {
+    for lost in results.iter().filter_map(|result| Some((&result.controller, result.lost.as_ref()?))) {
         println!("  {}: {}", lost.0, lost.1);
     }
 }

@@ -32,4 +32,4 @@ pub use model_file::ModelFile;
 pub use progress::Progress;
 pub use report::{Page, report};
 pub use results::{Results, parts, results, schema};
-pub use robustness::{FLIGHTS, RobustnessResult};
+pub use robustness::{FLIGHTS, RobustnessResult, shaped_flights};

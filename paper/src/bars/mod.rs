@@ -3,7 +3,9 @@
 //! ```text
 //! taylor ─► path ─► plan ◄─ plans (all flights)
 //!                    │
-//! geometric, flyer ──┴─► flight ─► track ─► measures ─► figure ─► result ─► bars[]
+//! geometric, flyer ──┴─► flight ─► track ─► measures ─► figure ─┐
+//! robustness ──────────────────────────────────────────► random ─┼─► result ─► bars[]
+//! sample_time ───────────────────────────────────────────────────┘
 //! ```
 
 mod figure;
@@ -14,11 +16,15 @@ mod measures;
 mod path;
 mod plan;
 mod plans;
+mod random;
 mod result;
+mod sample_time;
 mod taylor;
 mod track;
 
 pub use flyer::Flyer;
 pub use plan::Plan;
 pub use plans::plans;
+pub use random::judged as judged_random_flights;
 pub use result::{BarResult, flown};
+pub use sample_time::sample_times;

@@ -12,12 +12,13 @@ use super::track::Track;
 /// One figure of one flight of one controller.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BarResult {
-    /// Row of the table of bars: "cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag" or "spin".
+    /// Row of the table of bars: "cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin",
+    /// "random" or "sample-time".
     pub row: &'static str,
     /// The flight.
     pub flight: String,
     /// Who flew.
-    pub controller: &'static str,
+    pub controller: String,
     /// What was measured, with its unit.
     pub figure: &'static str,
     /// Its value; null when it was not reached, or the vehicle was lost.
@@ -64,7 +65,7 @@ fn lost(plan: &Plan, flyer: Flyer, reason: String) -> BarResult {
     BarResult {
         row: plan.row.name(),
         flight: plan.name.clone(),
-        controller: flyer.name(),
+        controller: flyer.name().to_owned(),
         figure: "arrived",
         value: None,
         bound: None,
@@ -78,7 +79,7 @@ fn judged(plan: &Plan, flyer: Flyer, figure: &Figure, measured: &[(Flyer, Vec<Fi
     BarResult {
         row: plan.row.name(),
         flight: plan.name.clone(),
-        controller: flyer.name(),
+        controller: flyer.name().to_owned(),
         figure: figure.name,
         value: Some(figure.value).filter(|value| value.is_finite()),
         bound,
