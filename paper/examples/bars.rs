@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(count) = arguments.random {
         let flown = |flyer: &Flyer| shaped_flights(flyer.name(), &flyer.applied(&configuration), count);
         let cascades = flyers.iter().filter(|flyer| **flyer != Flyer::Geometric);
-        results.push(cascades.flat_map(|flyer| judged_random_flights(&flown(flyer))).collect());
+        results.push(cascades.flat_map(|flyer| judged_random_flights(&flown(flyer), flyer.name())).collect());
     }
     if arguments.time {
         results.push(sample_times(&configuration, &flyers));

@@ -5,7 +5,8 @@
 //! eigenvalues ───────┤                                       ┌─► report ─► report.html
 //! constrained_step ──┼─► results (results.json, its schema) ─┤     ▲
 //! flights ───────────┤                                       └─► figures ─► *.png
-//! robustness ────────┘
+//! robustness ────────┤
+//! bars ──────────────┘
 //! design ◄─ model_file (--gain)
 //! ```
 

@@ -7,7 +7,7 @@ use paper::{CostResult, FlightResult, Page, Progress, Results, png, report, resu
 /// All results, with few random flights.
 fn all() -> &'static Results {
     static RESULTS: OnceLock<Results> = OnceLock::new();
-    RESULTS.get_or_init(|| results(4, &Progress::hidden()).unwrap())
+    RESULTS.get_or_init(|| results(4, &[], &Progress::hidden()).unwrap())
 }
 
 fn page() -> Page {

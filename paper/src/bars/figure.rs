@@ -34,7 +34,10 @@ pub enum Bar {
 }
 
 const OVERSHOOT: &str = "overshoot, %";
-const SETTLED: &str = "settled within 2 cm, s";
+/// Name of the settling time.
+pub const SETTLED: &str = "settled within 2 cm, s";
+/// Name of the figure that the optimum is compared in.
+pub const SQUARED_DISTANCE: &str = "integral of the squared distance, m²·s";
 const EXCESS: &str = "beyond a limit, %";
 
 /// The part of a cruise that counts: between these distances from the start, m.
@@ -112,6 +115,7 @@ fn goal(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
         figure(OVERSHOOT, 100.0 * track.overshoot(goal_m), Bar::AtMost(4.0)),
         figure(SETTLED, track.settled_s(), Bar::NoMoreThanRegulator(settled_s)),
         figure(EXCESS, excess_percent(plan, track), Bar::AtMost(1.0)),
+        figure(SQUARED_DISTANCE, track.squared_distance_m2_s(), Bar::None),
         figure("largest distance off the axes of the step, cm", 100.0 * track.off_axis_m(goal_m), Bar::None),
     ]
 }

@@ -2,6 +2,8 @@
 
 use quadrotor::{Configuration, ControllerKind};
 
+use crate::flights::Pilot;
+
 /// A choice of controllers for the whole vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flyer {
@@ -30,6 +32,16 @@ impl Flyer {
             Self::Regulator => "DLQR",
             Self::GovernedRegulator => "DLQR, governed",
             Self::Geometric => "geometric",
+        }
+    }
+
+    /// Name among the random flights, where it took part.
+    pub fn pilot(self) -> String {
+        match self {
+            Self::LaguerreMpc => Pilot::default_lmpc().name,
+            Self::StateSpaceMpc => Pilot::state_space(25).name,
+            Self::Regulator => Pilot::regulator().name,
+            Self::GovernedRegulator | Self::Geometric => self.name().to_owned(),
         }
     }
 

@@ -45,6 +45,16 @@ impl Track {
         }
     }
 
+    /// Integral of the squared distance from the reference, m²·s, by the trapezoidal rule.
+    pub fn squared_distance_m2_s(&self) -> f64 {
+        let squared = |moment: &Moment| moment.error_m().norm_squared();
+        let trapezoid = |pair: &[Moment]| match pair {
+            [one, other] => (other.time_s - one.time_s) * f64::midpoint(squared(one), squared(other)),
+            _ => 0.0,
+        };
+        self.moments.windows(2).map(trapezoid).sum()
+    }
+
     /// The largest share by which tilt, speed or thrust leave their limits.
     pub fn limit_excess(&self, limits: &Limits, airframe: &Airframe) -> f64 {
         let strongest = airframe.thrust_range_n().1 / airframe.weight_n();
@@ -126,6 +136,9 @@ mod tests {
             "{settled_s}"
         );
         assert_eq!(track.off_axis_m([1.0, 0.0, 0.0]), 0.0);
+        // ∫ e^(−2t) (cos 3t + sin 3t / 3)² dt from 0 to ∞: 1/18 · (10/2 + (8·2 + 6·6)/(4 + 36)).
+        let (steady, wave) = (10.0 / 2.0, (8.0 * 2.0 + 6.0 * 6.0) / 40.0);
+        assert!((track.squared_distance_m2_s() - (steady + wave) / 18.0).abs() < 1e-3);
         assert_eq!(Track { moments: track.moments[..100].to_vec() }.settled_s(), f64::INFINITY);
     }
 

@@ -9,7 +9,7 @@ const SPEED_BROKEN: f64 = 5.0;
 const MEDIAN_CM: f64 = 3.0;
 
 /// Holds the shaped random flights of a controller against their bars.
-pub fn judged(flights: &RobustnessResult) -> Vec<BarResult> {
+pub fn judged(flights: &RobustnessResult, controller: &str) -> Vec<BarResult> {
     let percent = |count: u32| 100.0 * f64::from(count) / f64::from(flights.flights.max(1));
     [
         (
@@ -25,7 +25,7 @@ pub fn judged(flights: &RobustnessResult) -> Vec<BarResult> {
     .map(|(figure, value, bound)| BarResult {
         row: "random",
         flight: format!("{} random flights, shaped", flights.flights),
-        controller: flights.controller.clone(),
+        controller: controller.to_owned(),
         figure,
         value: Some(value).filter(|value| value.is_finite()),
         bound: Some(bound),
@@ -56,7 +56,7 @@ mod tests {
             distances_m: Vec::new(),
         };
         let values: Vec<(Option<f64>, Option<bool>)> =
-            judged(&flights).iter().map(|result| (result.value, result.passed)).collect();
+            judged(&flights, "LMPC").iter().map(|result| (result.value, result.passed)).collect();
         assert_eq!(
             values,
             [
