@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use paper::bars::{BarResult, Flyer, flown, judged_random_flights, plans, sample_times};
+use paper::bars::{BarResult, Flyer, Optimum, Plan, flown, judged_random_flights, plans, sample_times};
 use paper::shaped_flights;
 use quadrotor::{Access, Configuration, PARAMETERS};
 use rayon::prelude::*;
@@ -36,6 +36,9 @@ struct Arguments {
     /// Times the controllers as well; in a release build.
     #[arg(long)]
     time: bool,
+    /// Measures the optimal flights in a file of xtask/python/optimum.py as well.
+    #[arg(long, value_name = "OPTIMUM.json")]
+    optimum: Option<PathBuf>,
     /// Prints only what Laguerre MPC fails.
     #[arg(long)]
     failed: bool,
@@ -54,7 +57,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .into_iter()
         .filter(|flyer| arguments.kind.is_empty() || arguments.kind.iter().any(|key| key == flyer.key()))
         .collect();
-    let mut plans = plans(&configuration);
+    let all = plans(&configuration);
+    let mut plans = all.clone();
     plans.retain(|plan| {
         let named =
             |word: &String| plan.row.name().contains(word.as_str()) || plan.name.contains(word.as_str());
@@ -87,6 +91,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for results in &results {
         print_flight(results, &flyers, arguments.failed);
+    }
+    if let Some(path) = &arguments.optimum {
+        print_optima(&Optimum::parse(&fs::read_to_string(path)?)?, &all, arguments.csv.as_deref())?;
     }
     let lmpc = || results.iter().flatten().filter(|result| result.controller == Flyer::LaguerreMpc.name());
     let judged = lmpc().filter(|result| result.passed.is_some()).count();
@@ -153,6 +160,19 @@ fn print_flight(results: &[BarResult], flyers: &[Flyer], failed: bool) {
     for lost in results.iter().filter_map(|result| Some((&result.controller, result.lost.as_ref()?))) {
         println!("  {}: {}", lost.0, lost.1);
     }
+}
+
+fn print_optima(optima: &[Optimum], plans: &[Plan], csv: Option<&Path>) -> Result<(), Box<dyn Error>> {
+    for optimum in optima {
+        let plan = plans.iter().find(|plan| plan.name == optimum.flight);
+        let plan = plan.ok_or_else(|| format!("{}: unknown flight", optimum.flight))?;
+        let (result, track) = optimum.measured(plan);
+        println!("\n{result:#?}");
+        if let Some(folder) = csv {
+            fs::write(file(folder, &plan.name, &optimum.objective.replace(' ', "-")), track.csv())?;
+        }
+    }
+    Ok(())
 }
 
 fn cell(result: Option<&BarResult>) -> String {

@@ -158,7 +158,7 @@ fn optimum(page: &mut Page, results: &Results) {
         "The best flights that IPOPT finds for three raw steps with the whole nonlinear plant as model, by direct multiple shooting with \
          commands that change every 0.04 s or so: once with the least integral of the squared distance from the goal, once with the least \
          time after which the vehicle stays within 2 cm. They keep the limits on tilt, speed and thrust and those of the rotors at every \
-         node; the limits on rate and acceleration of the tilt command do not apply to them. No feedback can be better. The numbers are those of \
+         node and halfway between nodes; the limits on rate and acceleration of the tilt command do not apply to them. No feedback can be better. The numbers are those of \
          the commands flown on this program's plant.",
     );
     let rows: Vec<Vec<String>> =
