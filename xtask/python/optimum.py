@@ -152,7 +152,7 @@ def solve(plant, goal, duration, first, fastest):
     equal.append(x[12:16] - 1)
     equal, at_most = ca.vertcat(*equal), ca.vertcat(*at_most)
     problem = {"x": ca.vertcat(*variables), "f": cost, "g": ca.vertcat(equal, at_most)}
-    options = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes", "max_iter": 1000, "tol": 1e-4, "constr_viol_tol": 1e-6}}
+    options = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes", "max_iter": 1000, "tol": 1e-6}}
     solver = ca.nlpsol("solver", "ipopt", problem, options)
     bounds = {"lbg": [0.0] * equal.numel() + [-math.inf] * at_most.numel(), "ubg": 0.0}
     found = solver(x0=guess, lbx=lower, ubx=upper, **bounds)
