@@ -7,6 +7,14 @@ use quadrotor::{Airframe, ControllerSettings, Controllers, GRAVITY_M_S2, Limits,
 /// Share of the tilt limit that the cascade commands: a raw step overshoots the command.
 const COMMANDED_TILT_SHARE: f64 = 0.6;
 
+/// Samples of the altitude's limits: all of 1.5 s.
+static ALTITUDE: &[usize] = &[
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
+    29,
+];
+/// Samples of the position's limits: fifteen of 4.3 s, each gap a third longer than the one before.
+static POSITION: &[usize] = &[0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48, 64, 85];
+
 /// ÿ = gain · u with y m or rad, sampled with a zero-order hold, as the cascade has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -64,7 +72,7 @@ impl Axis {
             input: [-tilt, tilt],
             increment: limits.tilt_rate_rad_s * settings.sample_time_s(),
             rate: [-speed, speed],
-            limited: limited_samples::POSITION,
+            limited: POSITION,
             steps: &[1.0, 5.0, 20.0],
             ..Self::of("position", "m", GRAVITY_M_S2, settings, 0)
         }
@@ -75,7 +83,7 @@ impl Axis {
         Self {
             input: [GRAVITY_M_S2 * (1.0 - limits.thrust_max), GRAVITY_M_S2 * (1.0 - limits.thrust_min)],
             rate: [-limits.speed_up_m_s, limits.speed_down_m_s],
-            limited: limited_samples::ALTITUDE,
+            limited: ALTITUDE,
             steps: &[-1.0, -5.0, -20.0, 1.0, 5.0, 20.0],
             ..Self::of("altitude", "m", 1.0, &controllers.altitude, 0)
         }

@@ -121,8 +121,8 @@ pub struct Controllers {
     pub kind: ControllerKind,
     /// Which models it predicts with.
     pub model: PredictionModel,
-    /// Whether the position and altitude controllers see a distant set-point only as far away as the vehicle can
-    /// brake from the speed that it calls for. Without it large steps overshoot as the weights have it.
+    /// Whether the regulator sees a distant set-point only as far away as the vehicle can brake from the speed that it calls for:
+    /// it knows no limits. The predictive controllers foresee theirs and are never governed.
     pub governor: bool,
     /// Mass that the controllers believe in, as a multiple of the true one: a way to fly with a wrong
     /// model.

@@ -5,6 +5,7 @@ use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
+use crate::control::governor::{Governor, integral_rate};
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
@@ -14,6 +15,8 @@ use crate::{CascadeDesign, Configuration};
 
 /// Accelerations below this count as this for the horizon, m/s².
 const SLOWEST_M_S2: f64 = 0.5;
+/// Share of the acceleration limit with which the regulator's error is counted on to be braked.
+const BRAKING_SHARE: f64 = 0.25;
 
 /// State of the altitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +50,18 @@ impl AltitudeController {
         let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
         let sight = horizon_m(fastest, weakest);
         let error = Vector1::new((seen.position_m - reference.position.x).clamp(-sight, sight));
+        let error = match law.regulator() {
+            Some(regulator) if configuration.controllers.governor => {
+                let governor = Governor {
+                    rate: integral_rate(regulator, 0, configuration.controllers.altitude.sample_time_s()),
+                    deceleration: BRAKING_SHARE * limits.acceleration_vertical_m_s2,
+                    // Below the set-point (z down) it climbs.
+                    speed: if error.x > 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s },
+                };
+                governor.seen_vector(&error)
+            }
+            _ => error,
+        };
         let rate_m_s = reference.velocity.x;
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let sample = Sample {

@@ -1,15 +1,20 @@
 //! Position: from x, y and their derivatives to a horizontal acceleration, which stands for a tilt.
 
-use lmpc::{ControllerState, Sample};
+use lmpc::{ControllerState, Sample, StateFeedback};
 use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
+use crate::control::governor::{Governor, integral_rate};
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
 use crate::design::position_limits::{AXIS_STATES, POSITION_STATES, horizon_m, in_sight, position_bounds};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
+
+/// Share of the acceleration limit with which the regulator's error is counted on to be braked. Its own response to the governed
+/// error needs the rest.
+const BRAKING_SHARE: f64 = 0.25;
 
 /// State of the position controller.
 ///
@@ -65,6 +70,12 @@ impl PositionController {
             &(seen.position_m - reference.position),
             horizon_m(limits.speed_horizontal_m_s, most_m_s2),
         );
+        let error = match design.position.regulator() {
+            Some(regulator) if configuration.controllers.governor => {
+                governed(configuration, regulator, &error)
+            }
+            _ => error,
+        };
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
@@ -105,6 +116,22 @@ impl PositionController {
 /// x and its derivatives, then y and its derivatives.
 fn by_axis(derivatives: [Vector2<f64>; AXIS_STATES]) -> SVector<f64, POSITION_STATES> {
     SVector::from_fn(|state, _| derivatives[state % AXIS_STATES][state / AXIS_STATES])
+}
+
+/// The error that the regulator may see.
+fn governed(
+    configuration: &Configuration,
+    regulator: &StateFeedback<POSITION_STATES, 2, 2>,
+    error: &Vector2<f64>,
+) -> Vector2<f64> {
+    let period_s = configuration.controllers.position.sample_time_s();
+    let limits = &configuration.limits;
+    let governor = Governor {
+        rate: integral_rate(regulator, 0, period_s).min(integral_rate(regulator, 1, period_s)),
+        deceleration: BRAKING_SHARE * limits.acceleration_horizontal_m_s2,
+        speed: limits.speed_horizontal_m_s,
+    };
+    governor.seen_vector(error)
 }
 
 /// A turn of horizontal vectors.

@@ -90,6 +90,14 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         Ok(Self::ByDeviation(regulator))
     }
 
+    /// The regulator, which knows no limits; `None` of the others.
+    pub(crate) fn regulator(&self) -> Option<&StateFeedback<N, P, P>> {
+        match self {
+            Self::Incremental(regulator) => Some(regulator),
+            _ => None,
+        }
+    }
+
     /// Whether it goes by the measured motion; else it must be told of disturbances.
     pub(crate) fn is_incremental(&self) -> bool {
         matches!(self, Self::Incremental(_) | Self::StabilizedFew(_) | Self::StabilizedMany(_))
@@ -98,12 +106,6 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
     pub(crate) fn sees_deviation_alone(&self) -> bool {
         matches!(self, Self::StateSpace(_))
-    }
-
-    /// The part of a reference's motion that its limits of states do not count: those of a state-space MPC bound
-    /// the deviation from the reference instead of the state.
-    pub(crate) fn uncounted(&self, reference: &SVector<f64, P>) -> SVector<f64, P> {
-        if matches!(self, Self::StateSpace(_)) { *reference } else { SVector::zeros() }
     }
 
     /// One sample.
