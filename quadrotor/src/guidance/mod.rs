@@ -8,12 +8,13 @@ pub(crate) mod eased_limits;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
-#[cfg(feature = "shaper")]
+pub(crate) mod held_input;
 pub(crate) mod motion_profile;
 pub(crate) mod position_reference;
 pub(crate) mod ramp;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
+pub(crate) mod reference_plan;
 pub(crate) mod setpoint;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
