@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    AttitudeTarget, ControlInputs, Disturbance, PositionReference, RigidBody, RotorFault, SimulationError,
-    Target,
+    AttitudeTarget, ControlInputs, Disturbance, PositionReference, ReferencePlan, RigidBody, RotorFault,
+    SimulationError, Target,
 };
 
 /// All inputs of the closed loop. They are sampled on the engine's grid of events: what is asked for by the control loop,
@@ -13,6 +13,8 @@ use crate::{
 pub struct Inputs {
     /// Where to be.
     pub reference: PositionReference,
+    /// The way that the reference takes, if that is known: the controllers look ahead on it. Without effect while shaping is on.
+    pub plan: Option<ReferencePlan>,
     /// What pushes.
     pub disturbance: Disturbance,
     /// Whether the rotors turn.
@@ -37,6 +39,7 @@ impl Default for Inputs {
     fn default() -> Self {
         Self {
             reference: PositionReference::goal([5.0, 5.0, -10.0], 0.0),
+            plan: None,
             disturbance: Disturbance::default(),
             armed: true,
             attitude_target: None,
@@ -74,7 +77,7 @@ impl Inputs {
             (None, Some(target)) => Target::Attitude(target),
             (None, None) => Target::Reference(self.reference),
         };
-        ControlInputs { target, armed: self.armed, shaping: self.shaping }
+        ControlInputs { target, plan: self.plan, armed: self.armed, shaping: self.shaping }
     }
 
     /// Refuses what is not finite, the reference also while something else is flown. The control loop checks what it is

@@ -151,9 +151,9 @@ pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]
 pub use guidance::heading_shaper::HeadingShaper;
-#[cfg(feature = "shaper")]
 pub use guidance::motion_profile::{Motion, MotionExtremes, MotionProfile};
 pub use guidance::position_reference::PositionReference;
+pub use guidance::reference_plan::ReferencePlan;
 #[cfg(feature = "shaper")]
 pub use guidance::state_to_state::AxisLimits;
 pub use inputs::{InputSignal, Inputs};

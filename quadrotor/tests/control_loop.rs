@@ -37,7 +37,7 @@ fn asked(time_us: u64) -> ControlInputs {
         _ => Target::Reference(reference),
     };
     let armed = time_us >= 3_500 && !(1_500_000..1_600_000).contains(&time_us);
-    ControlInputs { target, armed, shaping: None }
+    ControlInputs { armed, ..ControlInputs::armed(target) }
 }
 
 fn flying(kind: ControllerKind) -> Configuration {

@@ -11,6 +11,8 @@ use vehicle::{MissionState, Mode, Vehicle, VehicleSettings};
 const TAKEOFF: [f64; 3] = [0.0, 0.0, -10.0];
 /// Ticks between two samples of the track.
 const SAMPLE: usize = 10;
+/// Samples of the track that are looked ahead: 0.3 s.
+const AHEAD: u64 = 30;
 
 fn item(command: u16, parameters: [f64; 4], position: [f64; 3]) -> MissionItem {
     MissionItem { frame: frame::LOCAL_NED, command, parameters, position, autocontinue: true }
@@ -25,6 +27,8 @@ struct Flight {
     vehicle: Vehicle,
     truth_m: Vec<Vector3<f64>>,
     reference: Vec<PositionReference>,
+    /// What was expected of the reference [`AHEAD`] samples before.
+    expected: Vec<PositionReference>,
     reached: Vec<(u16, usize)>,
 }
 
@@ -40,7 +44,13 @@ impl Flight {
         vehicle.set_plan(PlanKind::Mission, [vec![takeoff], ways].concat()).expect("a mission");
         vehicle.arm(false).expect("armed");
         vehicle.set_mode(Mode::Mission).expect("mission mode");
-        let mut flight = Self { vehicle, truth_m: Vec::new(), reference: Vec::new(), reached: Vec::new() };
+        let mut flight = Self {
+            vehicle,
+            truth_m: Vec::new(),
+            reference: Vec::new(),
+            expected: Vec::new(),
+            reached: Vec::new(),
+        };
         flight.fly_until("takeoff", |flight| !flight.reached.is_empty());
         flight
     }
@@ -56,6 +66,8 @@ impl Flight {
         }
         self.truth_m.push(self.vehicle.truth().position_m);
         self.reference.push(self.vehicle.outputs().setpoint);
+        let ahead_us = self.vehicle.time_us() + AHEAD * 10_000;
+        self.expected.push(self.vehicle.simulation().control().state().preview(ahead_us));
         let now = self.truth_m.len();
         self.reached.extend(self.vehicle.take_reached_items().into_iter().map(|item| (item, now)));
     }
@@ -141,6 +153,28 @@ fn optimal_time_s(cruise: f64, a: f64, radius: f64) -> f64 {
     let blend = 2.0_f64.sqrt() * v / a;
     let (brake, braked) = ((cruise - v) / a, (cruise * cruise - v * v) / (2.0 * a));
     blend + 2.0 * (brake + (20.0 - v * blend / 2.0 - braked) / cruise)
+}
+
+/// On its straights, into its corners and out of them a mission flies what it expected 0.3 s before, to the jerk.
+#[test]
+fn a_mission_flies_what_it_expects() {
+    let ways =
+        [[30.0, 0.0, -10.0], [30.0, 25.0, -12.0], [0.0, 25.0, -12.0]].map(|place| waypoint(place, 2.0));
+    let flight = Flight::new(5.0, WindSettings::default(), Vec::new(), ways.to_vec()).complete();
+    let begin = flight.reached[0].1 + 200;
+    let mut turning = 0;
+    let end = flight.reached.last().expect("reached").1;
+    let flown = &flight.reference[begin..end];
+    let expected = flight.expected[begin - AHEAD as usize..].iter().zip(flown);
+    for (expected, flown) in expected {
+        let off_m = (expected.position_m - flown.position_m).norm();
+        let off_jerk = (expected.jerk_m_s3 - flown.jerk_m_s3).norm();
+        turning += usize::from(flown.acceleration_m_s2.norm() > 0.1);
+        assert!(off_m < 1e-6 && off_jerk < 1e-6, "{off_m} {off_jerk} {expected:?} {flown:?}");
+        let off_rad = (expected.yaw_rad - flown.yaw_rad).abs();
+        assert!(off_rad < 0.02, "{expected:?} {flown:?}");
+    }
+    assert!(turning > 200, "{turning}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{AttitudeTarget, ControlError, PositionReference};
+use crate::{AttitudeTarget, ControlError, PositionReference, ReferencePlan};
 
 /// The law that flies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -39,6 +39,8 @@ pub enum Target {
 pub struct ControlInputs {
     /// What is asked for.
     pub target: Target,
+    /// The way that the reference of [`Target::Reference`] takes, if that is known and it is not shaped.
+    pub plan: Option<ReferencePlan>,
     /// Whether the rotors turn.
     pub armed: bool,
     /// Switches the shaper on or off; the reference goes on from where it is and as it moves. `None` leaves it as it is: at
@@ -85,13 +87,16 @@ impl Target {
 impl ControlInputs {
     /// Armed, with what is asked for, and the shaper as it is.
     pub fn armed(target: Target) -> Self {
-        Self { target, armed: true, shaping: None }
+        Self { target, plan: None, armed: true, shaping: None }
     }
 
     /// Refuses what no law can fly.
     pub(crate) fn check(&self, time_us: u64) -> Result<(), ControlError> {
         if let Some(name) = self.target.not_finite() {
             return Err(ControlError::InputNotFinite { name, time_us });
+        }
+        if self.plan.as_ref().is_some_and(|plan| !plan.is_finite()) {
+            return Err(ControlError::InputNotFinite { name: "reference.plan", time_us });
         }
         if self.shaping == Some(true) && !cfg!(feature = "shaper") {
             return Err(ControlError::NoShaper);

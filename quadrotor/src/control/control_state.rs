@@ -182,7 +182,7 @@ impl ControlState {
         let mut next = *self;
         next.take(&design.configuration, inputs, instruments, time_us)?;
         if next.armed {
-            next.control(design, &inputs.target, instruments, time_us)?;
+            next.control(design, inputs, instruments, time_us)?;
         }
         next.next_us = self.clocks(&design.configuration.controllers).next_instant_us(time_us);
         *self = next;
@@ -224,12 +224,12 @@ impl ControlState {
     fn control(
         &mut self,
         design: &LoopDesign,
-        target: &Target,
+        inputs: &ControlInputs,
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<(), ControlError> {
         let configuration = &design.configuration;
-        if let Target::Reference(reference) = target {
+        if let Target::Reference(reference) = &inputs.target {
             self.guidance.watch(reference, &configuration.limits, time_us);
         }
         let clocks = self.clocks(&configuration.controllers);
@@ -243,8 +243,14 @@ impl ControlState {
         }
         let measurement = instruments.read(time_us).checked(time_us)?;
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
-        match target {
-            Target::Reference(reference) => self.track(design, &seen, reference, due, time_us),
+        match &inputs.target {
+            Target::Reference(reference) => {
+                if due.position || due.altitude {
+                    let limits = &configuration.flyable_limits();
+                    self.guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
+                }
+                self.track(design, &seen, reference, due, time_us);
+            }
             // Only the attitude controller's clock counts for the other laws.
             _ if !due.attitude => return Ok(()),
             Target::Attitude(target) => {
@@ -280,7 +286,6 @@ impl ControlState {
         let cascade = &design.cascade;
         let limits = &design.configuration.flyable_limits();
         if due.position || due.altitude {
-            self.guidance.sample(reference, limits, time_us);
             self.limits.watch(&design.configuration, &self.guidance, &seen.body, time_us);
         }
         let configuration = &self.limits.in_force(&design.configuration);

@@ -6,18 +6,24 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::wrapped;
 use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
 use crate::guidance::heading::Heading;
+use crate::guidance::held_input::HeldInput;
+use crate::guidance::reference_plan::ReferencePlan;
 use crate::{GRAVITY_M_S2, Limits, PositionReference};
 
 /// Multiple of the limits of jerk and of yaw acceleration beyond which a change counts as a jump, not as motion.
 const JUMP: f64 = 10.0;
 
-/// Position, velocity and acceleration as given; the heading within its rate limit. Derivatives that are not given are estimated.
+/// Position, velocity and acceleration as given, carried on while an input is held; the heading within its rate limit. Derivatives
+/// that are not given are estimated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DirectReference {
     /// The way as it was sampled at `time_us`, and the heading at `yaw_time_us`.
     latest: PositionReference,
     time_us: u64,
     yaw_time_us: u64,
+    /// The way that it takes, if that is known.
+    plan: Option<ReferencePlan>,
+    input: HeldInput,
     accelerations: DerivativeEstimator<3>,
     yaw_rates: DerivativeEstimator<1>,
 }
@@ -29,20 +35,26 @@ impl DirectReference {
             latest: *now,
             time_us,
             yaw_time_us: time_us,
+            plan: None,
+            input: HeldInput::new(time_us),
             accelerations: DerivativeEstimator::new(),
             yaw_rates: DerivativeEstimator::new(),
         }
     }
 
-    /// The latest reference, moved on by its derivatives since it was sampled.
+    /// The reference as planned, or else the latest one, moved on by its derivatives since it was sampled.
     pub fn reference(&self, time_us: u64) -> PositionReference {
+        if let Some(plan) = &self.plan {
+            return plan.at(time_us);
+        }
         let since_s = |start_us: u64| time_us.saturating_sub(start_us) as f64 / 1e6;
         let heading = Heading::of(&self.latest.expected_after(since_s(self.yaw_time_us)));
         heading.on(&self.latest.expected_after(since_s(self.time_us)))
     }
 
-    /// Looks at the input, more often than it is sampled: derivatives are estimated from the instants at which it changes.
+    /// Looks at the input, more often than it is sampled: what is not given is found from the instants at which it changes.
     pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
+        self.input.observe(reference, time_us);
         if gives_derivatives(reference) {
             self.accelerations = DerivativeEstimator::new();
         } else {
@@ -57,16 +69,26 @@ impl DirectReference {
         }
     }
 
-    /// A sample of the way.
-    pub fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
+    /// A sample of the way, and of the plan that it is a point of.
+    pub fn sample(
+        &mut self,
+        reference: &PositionReference,
+        plan: Option<&ReferencePlan>,
+        limits: &Limits,
+        time_us: u64,
+    ) {
+        self.plan = plan.map(|plan| plan.near_heading(self.latest.yaw_rad, time_us));
         let mut way = *reference;
         if !gives_derivatives(reference) {
-            let Derivatives { first, second } = self.accelerations.at(time_us);
+            let Derivatives { first, second } = self.accelerations.at(self.input.since_us());
             // What the tilt command may do.
             way.jerk_m_s3 = first.cap_magnitude(GRAVITY_M_S2 * limits.tilt_rate_rad_s);
             way.snap_m_s4 = second.cap_magnitude(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
         }
-        self.latest = Heading::of(&self.latest).on(&way);
+        // The point holds at the instant at which it was set.
+        let age_s = self.input.age_s(time_us);
+        let now = if age_s > 0.0 { way.after(age_s) } else { way };
+        self.latest = Heading::of(&self.latest).on(&now);
         self.time_us = time_us;
     }
 

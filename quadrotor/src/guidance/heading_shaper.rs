@@ -55,6 +55,11 @@ impl HeadingShaper {
         }
     }
 
+    /// Its plan as it is now, and the time of its beginning, µs.
+    pub fn plan(&self) -> (u64, MotionProfile) {
+        (self.start_us, self.profile.moved(self.offset_rad))
+    }
+
     /// Turns to another goal; the plan is kept while goal and limits stay. A problem that has no solution leaves the old plan in
     /// force.
     pub fn update(&mut self, goal: &Heading, limits: &Limits, time_us: u64) {

@@ -8,11 +8,12 @@ pub(crate) mod eased_limits;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
-#[cfg(feature = "shaper")]
+pub(crate) mod held_input;
 pub(crate) mod motion_profile;
 pub(crate) mod position_reference;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
+pub(crate) mod reference_plan;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
 #[cfg(feature = "shaper")]

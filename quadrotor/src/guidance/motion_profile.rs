@@ -91,7 +91,7 @@ impl MotionProfile {
     }
 
     /// Adds a piece that begins at `start_s`. Pieces beyond the tenth are not a profile's: ignored.
-    pub(crate) fn push(&mut self, start_s: f64, motion: Motion) {
+    pub fn push(&mut self, start_s: f64, motion: Motion) {
         if let Some(piece) = self.pieces.get_mut(self.count) {
             *piece = (start_s, motion);
             self.count += 1;
@@ -104,6 +104,18 @@ impl MotionProfile {
             motion.position += by;
         }
         self
+    }
+
+    /// When each piece begins, s, and its motion there.
+    pub fn pieces(&self) -> &[(f64, Motion)] {
+        self.pieces.get(..self.count).unwrap_or(&self.pieces)
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.pieces().iter().all(|(start_s, motion)| {
+            let Motion { position, velocity, acceleration, jerk } = *motion;
+            [*start_s, position, velocity, acceleration, jerk].iter().all(|value| value.is_finite())
+        })
     }
 
     /// When the last piece begins, s: from then on the velocity stays as it is.
@@ -119,7 +131,7 @@ impl MotionProfile {
     /// The ranges of position and velocity from `time_s` on until the last piece begins.
     pub fn extremes_from(&self, time_s: f64) -> MotionExtremes {
         let mut extremes = MotionExtremes::of(&self.at(time_s));
-        let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);
+        let used = self.pieces();
         for ((start_s, motion), (end_s, end)) in used.iter().zip(used.iter().skip(1)) {
             if *end_s <= time_s {
                 continue;
@@ -135,14 +147,13 @@ impl MotionProfile {
     }
 
     fn last(&self) -> &(f64, Motion) {
-        self.pieces.get(..self.count).and_then(<[_]>::last).unwrap_or(&self.pieces[0])
+        self.pieces().last().unwrap_or(&self.pieces[0])
     }
 
     /// The motion at `time_s` ≥ 0 after the start.
     pub fn at(&self, time_s: f64) -> Motion {
-        let used = self.pieces.get(..self.count).unwrap_or(&self.pieces);
         let (start_s, motion) =
-            used.iter().rev().find(|(start_s, _)| *start_s <= time_s).unwrap_or(&self.pieces[0]);
+            self.pieces().iter().rev().find(|(start_s, _)| *start_s <= time_s).unwrap_or(&self.pieces[0]);
         motion.after(time_s - start_s)
     }
 }

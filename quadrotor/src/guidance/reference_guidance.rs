@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::guidance::direct_reference::DirectReference;
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
+use crate::guidance::reference_plan::ReferencePlan;
 #[cfg(feature = "shaper")]
 use crate::guidance::shaper::Shaper;
 use crate::{Limits, PositionReference};
@@ -62,11 +63,17 @@ impl Guidance {
     }
 
     /// A sample of the reference of the position and altitude controllers.
-    pub fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
+    pub fn sample(
+        &mut self,
+        reference: &PositionReference,
+        plan: Option<&ReferencePlan>,
+        limits: &Limits,
+        time_us: u64,
+    ) {
         match self {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => shaper.update(reference, limits, time_us),
-            Self::Direct(direct) => direct.sample(reference, limits, time_us),
+            Self::Direct(direct) => direct.sample(reference, plan, limits, time_us),
         }
     }
 
@@ -110,8 +117,8 @@ impl Guidance {
         }
     }
 
-    /// What will be tracked at `time_us`, as far as it is known now: exactly if it is shaped, unless the goal changes. A reference
-    /// that is passed on is carried on by its derivatives for a short time: see [`PositionReference::expected_after`].
+    /// What will be tracked at `time_us`, as far as it is known now: exactly if it is shaped or comes with a plan, unless the goal
+    /// changes. Another one is carried on by its derivatives for a short time: see [`PositionReference::expected_after`].
     pub fn preview(&self, time_us: u64) -> PositionReference {
         self.reference(time_us)
     }

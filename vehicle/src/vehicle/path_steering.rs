@@ -1,7 +1,7 @@
 //! Along a piece of a planned way, with a heading of its own.
 
 use nalgebra::Vector3;
-use quadrotor::{Heading, HeadingShaper, Limits, PositionReference};
+use quadrotor::{Heading, HeadingShaper, Limits, PositionReference, ReferencePlan};
 
 use super::trajectory::PieceFlight;
 
@@ -9,6 +9,8 @@ use super::trajectory::PieceFlight;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathSteering {
     flight: PieceFlight,
+    /// The piece behind it, if that is known.
+    next: Option<PieceFlight>,
     /// The corners of the way after the piece, NED, m.
     after_m: [Vector3<f64>; 2],
     heading: HeadingShaper,
@@ -20,6 +22,7 @@ impl PathSteering {
     /// Begins with a reference's heading, which is to become another one.
     pub fn new(
         flight: PieceFlight,
+        next: Option<PieceFlight>,
         after_m: [Vector3<f64>; 2],
         now: &PositionReference,
         yaw_rad: f64,
@@ -27,12 +30,12 @@ impl PathSteering {
         time_us: u64,
     ) -> Self {
         let heading = HeadingShaper::moving(&Heading::of(now), limits, time_us);
-        Self { flight, after_m, heading, goal: Heading::fixed(yaw_rad) }
+        Self { flight, next, after_m, heading, goal: Heading::fixed(yaw_rad) }
     }
 
     /// The same on another piece.
-    pub fn onto(self, flight: PieceFlight, after_m: [Vector3<f64>; 2]) -> Self {
-        Self { flight, after_m, ..self }
+    pub fn onto(self, flight: PieceFlight, next: Option<PieceFlight>, after_m: [Vector3<f64>; 2]) -> Self {
+        Self { flight, next, after_m, ..self }
     }
 
     /// The same with the nose somewhere else.
@@ -64,5 +67,11 @@ impl PathSteering {
     pub fn reference(&mut self, limits: &Limits, time_us: u64) -> PositionReference {
         self.heading.update(&self.goal, limits, time_us);
         self.heading.heading(time_us).on(&self.flight.at(time_us))
+    }
+
+    /// The way that the reference takes from now on, as far as it is known.
+    pub fn plan(&self) -> ReferencePlan {
+        let (turn_us, turn) = self.heading.plan();
+        self.flight.plan(self.next.as_ref()).turning(turn_us, turn)
     }
 }

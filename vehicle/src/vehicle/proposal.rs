@@ -131,13 +131,19 @@ impl<'a> Proposal<'a> {
         }
     }
 
-    /// Steers along a piece of a way, with the corners of the way after it, NED, m. The heading goes on.
-    pub fn fly_along(&mut self, situation: &Situation, flight: PieceFlight, after_m: [Vector3<f64>; 2]) {
+    /// Steers along a piece of a way, with the next piece if it is known and the corners of the way after it, NED, m. The heading goes on.
+    pub fn fly_along(
+        &mut self,
+        situation: &Situation,
+        flight: PieceFlight,
+        next: Option<PieceFlight>,
+        after_m: [Vector3<f64>; 2],
+    ) {
         let now = &situation.outputs.setpoint;
-        let begin =
-            |yaw_rad| PathSteering::new(flight, after_m, now, yaw_rad, situation.limits(), situation.time_us);
+        let (limits, time_us) = (situation.limits(), situation.time_us);
+        let begin = |yaw_rad| PathSteering::new(flight, next, after_m, now, yaw_rad, limits, time_us);
         let path = match self.steering() {
-            Steering::Path(path) => path.onto(flight, after_m),
+            Steering::Path(path) => path.onto(flight, next, after_m),
             Steering::Goal(goal) => begin(goal.yaw_rad),
             _ => begin(now.yaw_rad),
         };

@@ -198,7 +198,10 @@ impl Steering {
             }
             Self::Descent { reference, .. } => along(*reference, None),
             Self::Goal(goal) => along(*goal, Some(true)),
-            Self::Path(path) => along(path.reference(limits.wanted(), outputs.time_us), Some(false)),
+            Self::Path(path) => {
+                let reference = path.reference(limits.wanted(), outputs.time_us);
+                Inputs { plan: Some(path.plan()), ..along(reference, Some(false)) }
+            }
             Self::Motion(motion) => {
                 let reference = motion.reference(outputs.time_us);
                 motion.step(&limits.largest(), dt_s);

@@ -263,7 +263,9 @@ impl Course {
         let progress = leg.update(situation);
         match leg.guide() {
             Guide::Goal(goal) => proposal.go_through(situation, &goal),
-            Guide::Path(flight, after_m) => proposal.fly_along(situation, flight, after_m),
+            Guide::Path { flight, next, after_m } => {
+                proposal.fly_along(situation, flight, next, after_m);
+            }
         }
         self.task = Some(Task::Leg(leg, then));
         match progress {

@@ -48,8 +48,8 @@ impl Turn {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant)] // There is one of it.
 enum Phase {
-    /// Around the corner before it.
-    Leaving(Turn),
+    /// Around the corner before it, and what is planned behind that.
+    Leaving(Turn, Option<Straight>),
     /// To the straight line, from any motion.
     Joining,
     /// Along the line.
@@ -76,8 +76,15 @@ pub enum LegProgress {
 pub enum Guide {
     /// Through the shaper, to a place that is passed with a velocity.
     Goal(PositionReference),
-    /// Along a piece; with the corners of the way after it.
-    Path(PieceFlight, [Vector3<f64>; 2]),
+    /// Along a piece.
+    Path {
+        /// The piece.
+        flight: PieceFlight,
+        /// The one behind it, if that is known.
+        next: Option<PieceFlight>,
+        /// The corners of the way after the piece, NED, m.
+        after_m: [Vector3<f64>; 2],
+    },
 }
 
 /// A leg.
@@ -123,7 +130,9 @@ impl Leg {
         corner: Option<Corner>,
         wanted: &Limits,
     ) -> Self {
-        Self { from_m, to_m, radius_m, corner, limits: turn.limits(wanted), phase: Phase::Leaving(turn) }
+        let limits = turn.limits(wanted);
+        let leg = Self { from_m, to_m, radius_m, corner, limits, phase: Phase::Joining };
+        Self { phase: Phase::Leaving(turn, leg.straight_after(&turn)), ..leg }
     }
 
     /// A leg that begins with a reference: straight at rest, and joined from any motion.
@@ -147,7 +156,7 @@ impl Leg {
     pub fn start(&self, situation: &Situation) -> Option<Start> {
         let limits = situation.limits();
         match self.phase {
-            Phase::Leaving(turn) => Some(Start::settled(&turn.end(), limits, true)),
+            Phase::Leaving(turn, _) => Some(Start::settled(&turn.end(), limits, true)),
             Phase::Joining => Some(Start::settled(&situation.outputs.setpoint, limits, false)),
             Phase::Straight(flight) => Some(Start::settled(&flight.at(situation.time_us), limits, true)),
             Phase::Turning(_) => None,
@@ -165,7 +174,13 @@ impl Leg {
                 let Some(straight) = other.straight_within(&now, limits) else { return };
                 Phase::Straight(PieceFlight { piece: Piece::Straight(straight), start_us: situation.time_us })
             }
-            Phase::Leaving(turn) if other.straight_within(&turn.end(), limits).is_none() => return,
+            Phase::Leaving(turn, _) => {
+                let straight = other.straight_within(&turn.end(), limits);
+                if straight.is_none() {
+                    return;
+                }
+                Phase::Leaving(turn, straight)
+            }
             unchanged => unchanged,
         };
         self.limits.release();
@@ -180,7 +195,7 @@ impl Leg {
     /// Whether it can be flown within limits from the motion that it begins with.
     pub fn is_flyable(&self, limits: &Limits) -> bool {
         match self.phase {
-            Phase::Leaving(turn) => self.straight_within(&turn.end(), limits).is_some(),
+            Phase::Leaving(turn, _) => self.straight_within(&turn.end(), limits).is_some(),
             _ => true,
         }
     }
@@ -188,13 +203,26 @@ impl Leg {
     /// How the vehicle is to be steered.
     pub fn guide(&self) -> Guide {
         match self.phase {
-            Phase::Leaving(turn) => Guide::Path(turn.flight(), [self.to_m; 2]),
+            Phase::Leaving(turn, straight) => {
+                let flight = turn.flight();
+                let next = straight.map(|straight| PieceFlight {
+                    piece: Piece::Straight(straight),
+                    start_us: flight.end_us(),
+                });
+                Guide::Path { flight, next, after_m: [self.to_m; 2] }
+            }
             Phase::Joining => Guide::Goal(self.joint()),
             Phase::Straight(flight) => {
                 let after_m = self.corner.map_or(self.to_m, |corner| corner.after_m);
-                Guide::Path(flight, [self.to_m, after_m])
+                let next = self.corner.map(|corner| PieceFlight {
+                    piece: Piece::Blend(corner.blend),
+                    start_us: flight.end_us(),
+                });
+                Guide::Path { flight, next, after_m: [self.to_m, after_m] }
             }
-            Phase::Turning(turn) => Guide::Path(turn.flight(), [turn.corner.after_m; 2]),
+            Phase::Turning(turn) => {
+                Guide::Path { flight: turn.flight(), next: None, after_m: [turn.corner.after_m; 2] }
+            }
         }
     }
 
@@ -216,6 +244,12 @@ impl Leg {
     fn any_straight(&self, from: &PositionReference, limits: &Limits) -> Option<Straight> {
         let PositionReference { position_m, velocity_m_s, .. } = self.joint();
         Straight::new(from, &position_m, &velocity_m_s, limits)
+    }
+
+    /// Along the line behind a turn, as far as it is known before its end.
+    fn straight_after(&self, turn: &Turn) -> Option<Straight> {
+        let end = turn.end();
+        self.limits.least(|limits| self.straight_within(&end, limits)).map(|(straight, _)| straight)
     }
 
     /// Along the line from a motion on it, within the least of its limits that do; a corner that cannot be passed after that is
@@ -242,7 +276,7 @@ impl Leg {
         let (outputs, time_us) = (situation.outputs, situation.time_us);
         let distance_m = (outputs.position_m - self.to_m).norm();
         self.phase = match self.phase {
-            Phase::Leaving(turn) if time_us >= turn.flight().end_us() => {
+            Phase::Leaving(turn, _) if time_us >= turn.flight().end_us() => {
                 self.limits.want(situation.limits());
                 self.straight(&turn.end(), turn.flight().end_us())
             }

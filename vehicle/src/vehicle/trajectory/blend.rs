@@ -83,6 +83,13 @@ impl Blend {
         }
     }
 
+    /// When each of its pieces of constant jerk begins, s, and the motion there.
+    pub fn pieces(&self) -> impl Iterator<Item = (f64, PositionReference)> {
+        [0.0, self.ramp_s, self.duration_s - self.ramp_s, self.duration_s]
+            .into_iter()
+            .map(|start_s| (start_s, self.at(start_s)))
+    }
+
     /// How long after the entry a reference is, s, if it passes the entry or has just passed it, as the blend does.
     pub fn elapsed_s(&self, reference: &PositionReference) -> Option<f64> {
         const NEAR_M: f64 = 0.02;
@@ -102,7 +109,7 @@ impl Blend {
         let slope = 1.0 / (self.ramp_s * (self.duration_s - self.ramp_s));
         match time_s {
             _ if time_s < self.ramp_s => slope,
-            _ if time_s > self.duration_s - self.ramp_s => -slope,
+            _ if time_s >= self.duration_s - self.ramp_s => -slope,
             _ => 0.0,
         }
     }

@@ -1,7 +1,7 @@
 //! A piece of a way that is being flown.
 
 use nalgebra::Vector3;
-use quadrotor::PositionReference;
+use quadrotor::{PositionReference, ReferencePlan};
 
 use super::blend::Blend;
 use super::straight::Straight;
@@ -51,6 +51,21 @@ impl PieceFlight {
             Piece::Straight(straight) => straight.at(time_s),
             Piece::Blend(blend) => blend.at(time_s),
         }
+    }
+
+    /// The way along the piece, and along the next one if it is known, as the control loop can look ahead on it. After its end it
+    /// goes on evenly.
+    pub fn plan(&self, next: Option<&Self>) -> ReferencePlan {
+        let mut plan = ReferencePlan::new(self.start_us, &self.at(self.start_us));
+        for flight in [Some(self), next].into_iter().flatten() {
+            let after_s = flight.start_us.saturating_sub(self.start_us) as f64 / 1e6;
+            let mut add = |(start_s, motion): (f64, PositionReference)| plan.then(after_s + start_s, &motion);
+            match &flight.piece {
+                Piece::Straight(straight) => straight.pieces().for_each(&mut add),
+                Piece::Blend(blend) => blend.pieces().for_each(&mut add),
+            }
+        }
+        plan
     }
 
     /// Places on the way from a time, µs, to its end, NED, m: the way between them is straight, or nearly so.

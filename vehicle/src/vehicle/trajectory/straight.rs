@@ -62,12 +62,20 @@ impl Straight {
 
     /// Motion so many seconds after the beginning; after the end it goes on evenly. The heading is zero.
     pub fn at(&self, time_s: f64) -> PositionReference {
-        let now = self.profile.at(time_s);
+        self.reference(&self.profile.at(time_s))
+    }
+
+    /// When each of its pieces of constant jerk begins, s, and the motion there.
+    pub fn pieces(&self) -> impl Iterator<Item = (f64, PositionReference)> {
+        self.profile.pieces().iter().map(|(start_s, motion)| (*start_s, self.reference(motion)))
+    }
+
+    fn reference(&self, along: &Motion) -> PositionReference {
         PositionReference {
-            velocity_m_s: self.direction * now.velocity,
-            acceleration_m_s2: self.direction * now.acceleration,
-            jerk_m_s3: self.direction * now.jerk,
-            ..at_rest(self.from_m + self.direction * now.position, 0.0)
+            velocity_m_s: self.direction * along.velocity,
+            acceleration_m_s2: self.direction * along.acceleration,
+            jerk_m_s3: self.direction * along.jerk,
+            ..at_rest(self.from_m + self.direction * along.position, 0.0)
         }
     }
 }
