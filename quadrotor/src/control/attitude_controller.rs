@@ -1,5 +1,7 @@
 //! Attitude: from the attitude and body rates to torques.
 
+use core::f64::consts::{PI, TAU};
+
 use lmpc::{ControllerState, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -13,6 +15,9 @@ use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_MANY, TURN_MANY};
 use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration};
+
+/// Tilt error from which a way once begun is gone on with, rad: the reference may lean by the rest and change its mind.
+const UPSIDE_DOWN_RAD: f64 = PI - 0.6;
 
 /// What is known of the vehicle's rotation, measured or estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,7 +173,7 @@ impl AttitudeController {
         let reference_acceleration = to_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
         let deviation = Deviation {
-            angle_rad: leaning_at_most(&attitude_error(&reference.attitude, &seen.attitude), largest_rad),
+            angle_rad: leaning_at_most(&self.error_rad(&reference.attitude, &seen.attitude), largest_rad),
             rate_rad_s: rate_error_rad_s,
             acceleration_rad_s2: reached - reference_acceleration,
         };
@@ -200,6 +205,19 @@ impl AttitudeController {
             inertia_kg_m2,
         };
         (asked, activity(&lean, &turn))
+    }
+
+    /// The attitude error, rad. Upside down there is a way about each axis: the one that was begun is gone on with, though another
+    /// one has become a little shorter since.
+    fn error_rad(&self, reference: &UnitQuaternion<f64>, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
+        let error = attitude_error(reference, attitude);
+        let lean = error.xy();
+        let tilt = lean.norm();
+        if tilt > UPSIDE_DOWN_RAD && lean.dot(&self.deviation.angle_rad.xy()) < 0.0 {
+            let other = lean * (1.0 - TAU / tilt);
+            return Vector3::new(other.x, other.y, error.z);
+        }
+        error
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body

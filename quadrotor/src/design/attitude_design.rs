@@ -24,8 +24,8 @@ pub(crate) type LeanLaw = TrackingLaw<{ 2 * AXIS_STATES }, 2, LEAN_FEW, LEAN_MAN
 /// Yaw: ψ, ψ̇, ψ̈ by the rotors; input ψ̈ as commanded.
 pub(crate) type TurnLaw = TrackingLaw<AXIS_STATES, 1, TURN_FEW, TURN_MANY>;
 
-/// Most times by which yaw is taken to be slower than roll and pitch: beyond it its horizon ends earlier.
-const SLOWEST_TURN: f64 = 8.0;
+/// Most times by which a turn is taken to be longer than a lean: beyond it the horizon ends earlier.
+const LONGEST_TURN: f64 = 8.0;
 
 /// The laws of the attitude controller.
 ///
@@ -50,9 +50,9 @@ impl AttitudeDesign {
         let controllers = &configuration.controllers;
         let settings = &controllers.attitude;
         let bandwidth = AttitudeBandwidth::new(configuration, mixer);
-        let slower = (bandwidth.lean_rad_s / bandwidth.turn_rad_s).clamp(1.0, SLOWEST_TURN);
+        let longer = bandwidth.longer.clamp(1.0, LONGEST_TURN);
         let lean_settings = scaled(settings, [0, 1], bandwidth.lean_rad_s, 1.0);
-        let turn_settings = scaled(settings, [2], bandwidth.turn_rad_s, slower);
+        let turn_settings = scaled(settings, [2], bandwidth.turn_rad_s, longer);
 
         let lag_s = match controllers.model {
             PredictionModel::InnerLoops => configuration.airframe.rotor_time_constant_s,
@@ -62,7 +62,7 @@ impl AttitudeDesign {
         let lean = laguerre_design(&lean_settings, lagged_attitude_model(2, lag_s, sample_time_s)?)?;
         let turn = laguerre_design(&turn_settings, lagged_attitude_model(1, lag_s, sample_time_s)?)?;
         let lean_samples = placed(&lean_settings, ATTITUDE);
-        let turn_samples = placed(&turn_settings, &later(ATTITUDE, slower));
+        let turn_samples = placed(&turn_settings, &later(ATTITUDE, longer));
         let lean_limits = lean_limits(&configuration.airframe, mixer, &lean_samples);
         let response = match controllers.model {
             PredictionModel::InnerLoops => Some(response(controllers.kind, &lean, lag_s, sample_time_s)?),
