@@ -42,9 +42,13 @@ impl SignalLimit {
         samples: Vec<usize>,
     ) -> Self {
         Self {
-            state: DMatrix::from_fn(limited.len(), states, |row, column| {
-                if limited[row] == column { 1.0 } else { 0.0 }
-            }),
+            state: DMatrix::from_fn(
+                limited.len(),
+                states,
+                |row, column| {
+                    if limited[row] == column { 1.0 } else { 0.0 }
+                },
+            ),
             input: DMatrix::zeros(limited.len(), inputs),
             directions,
             samples,
@@ -61,9 +65,13 @@ impl SignalLimit {
     /// radius r and touches it with its corners.
     pub fn polygon(sides: usize) -> DMatrix<f64> {
         let angle = |side: usize| core::f64::consts::TAU * side as f64 / sides as f64;
-        DMatrix::from_fn(sides, 2, |side, axis| {
-            if axis == 0 { libm::cos(angle(side)) } else { libm::sin(angle(side)) }
-        })
+        DMatrix::from_fn(
+            sides,
+            2,
+            |side, axis| {
+                if axis == 0 { libm::cos(angle(side)) } else { libm::sin(angle(side)) }
+            },
+        )
     }
 
     /// Upper and lower bounds of each of `count` components: \[I; −I\].

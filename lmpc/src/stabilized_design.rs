@@ -215,16 +215,12 @@ impl Plan {
         let first_move = InputBasis::new(bases).row();
         let (states, terms) = (model.states(), first_move.ncols());
         let mut transition = DMatrix::zeros(states + terms, states + terms);
-        transition
-            .view_mut((0, 0), (states, states))
-            .copy_from(&(model.a() - model.b() * stabilizing_gain));
+        transition.view_mut((0, 0), (states, states)).copy_from(&(model.a() - model.b() * stabilizing_gain));
         transition.view_mut((0, states), (states, terms)).copy_from(&(model.b() * &first_move));
         let mut offset = states;
         for basis in bases {
             let size = basis.terms();
-            transition
-                .view_mut((offset, offset), (size, size))
-                .copy_from(&basis.a_l().transpose());
+            transition.view_mut((offset, offset), (size, size)).copy_from(&basis.a_l().transpose());
             offset += size;
         }
         let mut move_of = DMatrix::zeros(model.inputs(), states + terms);

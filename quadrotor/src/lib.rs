@@ -135,7 +135,7 @@ pub use control::control_state::ControlState;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::Mixer;
 pub use control::rotor_monitor::RotorMonitor;
-pub use design::attitude_response::AttitudeResponse;
+pub use design::attitude_loop::AttitudeLoop;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::limited_samples;
 pub use design::linear_models::{altitude_model, attitude_model, lagged_attitude_model, position_model};

@@ -5,7 +5,7 @@ use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
-use crate::control::vehicle_motion::VehicleMotion;
+use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
 use crate::design::position_limits::horizon_m;
@@ -35,30 +35,30 @@ impl AltitudeController {
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        seen: &VehicleMotion<1>,
+        seen: &VerticalMotion,
         reference: &ReferenceMotion<1>,
         range: (f64, f64),
     ) -> (f64, ControllerActivity) {
         let law = &design.altitude;
         let limits = &configuration.limits;
-        let measured = Vector3::new(seen.position_m.x, seen.velocity_m_s.x, seen.acceleration_m_s2.x);
-        let [[position, velocity, acceleration, _]] = reference.increments_since(&self.reference);
+        let measured = Vector3::new(seen.position_m, seen.velocity_m_s, seen.acceleration_m_s2);
+        let [[position, velocity, acceleration, ..]] = reference.increments_since(&self.reference);
         let fastest = limits.speed_up_m_s.max(limits.speed_down_m_s);
         let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
         let sight = horizon_m(fastest, weakest);
-        let error = (seen.position_m - reference.position).map(|error| error.clamp(-sight, sight));
+        let error = Vector1::new((seen.position_m - reference.position.x).clamp(-sight, sight));
         let rate_m_s = reference.velocity.x;
         let sample = Sample {
             measured,
             increment: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
             deviation: Vector3::new(
                 error.x,
-                seen.velocity_m_s.x - rate_m_s,
-                seen.acceleration_m_s2.x - reference.acceleration.x,
+                seen.velocity_m_s - rate_m_s,
+                seen.acceleration_m_s2 - reference.acceleration.x,
             ),
             error,
             input_reference: reference.acceleration,
-            disturbance: seen.disturbance_m_s2,
+            disturbance: Vector1::new(seen.disturbance_m_s2),
             upper: &altitude_bounds(limits, range, rate_m_s),
             ..Sample::default()
         };

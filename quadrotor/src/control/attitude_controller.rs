@@ -250,6 +250,11 @@ impl AttitudeController {
         self.integral_rad_s2 = Vector3::zeros();
     }
 
+    /// Angular accelerations about roll and pitch that feedback has asked for, FRD, rad/s².
+    pub(crate) fn feedback_rad_s2(&self) -> Vector3<f64> {
+        joined(&self.lean.feedback(), &Vector1::zeros())
+    }
+
     fn applied_rad_s2(&self) -> Vector3<f64> {
         joined(&self.lean.applied(), &self.turn.applied())
     }

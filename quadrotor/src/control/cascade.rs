@@ -119,13 +119,14 @@ impl Cascade {
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
             jerk: setpoint.jerk_m_s3.xy(),
+            snap: Vector2::zeros(),
             interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
         };
         let tilt_rad = configuration.limits.tilt_rad;
         let (applied, activity) = self.position.step(
             configuration,
             design,
-            &seen.horizontal(),
+            &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
             &motion,
             // The thrust of a climb that begins does not last.
             most_horizontal(vertical.max(0.0), tilt_rad),
@@ -153,6 +154,7 @@ impl Cascade {
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
             jerk: axis(&setpoint.jerk_m_s3),
+            snap: Vector1::zeros(),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
-use crate::control::vehicle_motion::VehicleMotion;
+use crate::control::vehicle_motion::{HorizontalMotion, VerticalMotion};
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
 /// The vehicle as the controllers see it at one instant.
@@ -14,9 +14,8 @@ pub(crate) struct Observation {
     pub(crate) measured: RigidBody,
     /// What the controllers go by.
     pub(crate) body: RigidBody,
-    /// Acceleration that thrust and gravity make, NED, m/s², and its rate as the body turns, m/s³.
-    acceleration_m_s2: Vector3<f64>,
-    jerk_m_s3: Vector3<f64>,
+    /// Thrust per believed mass, m/s².
+    lift_m_s2: f64,
     /// Acceleration that the thrust does not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
@@ -38,16 +37,10 @@ impl Observation {
         let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
         let rotor_speed_rad_s = estimator.rotor_speed_rad_s();
         let made = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
-        // a = g e₃ − R e₃ F/m,  ȧ = −R (ω × e₃) F/m
-        let lift = made.thrust_n / configuration.believed_mass_kg();
-        let rotation = body.rotation();
-        let acceleration_m_s2 = Vector3::z() * GRAVITY_M_S2 - rotation * Vector3::z() * lift;
-        let jerk_m_s3 = rotation * body.body_rate_rad_s.cross(&Vector3::z()) * -lift;
         Self {
             measured: *measured,
             body,
-            acceleration_m_s2,
-            jerk_m_s3,
+            lift_m_s2: made.thrust_n / configuration.believed_mass_kg(),
             disturbance_m_s2: estimator.disturbance_m_s2(),
             disturbance_rad_s2: estimator.disturbance_rad_s2(),
             rotor_speed_rad_s,
@@ -55,26 +48,34 @@ impl Observation {
         }
     }
 
-    /// Motion north and east.
-    pub(crate) fn horizontal(&self) -> VehicleMotion<2> {
-        VehicleMotion {
+    /// Motion north and east, when feedback of the attitude has asked for these angular accelerations, FRD, rad/s².
+    pub(crate) fn horizontal(
+        &self,
+        configuration: &Configuration,
+        asked_rad_s2: &Vector3<f64>,
+    ) -> HorizontalMotion {
+        // a = −R e₃ F/m, and as the body turns ȧ = −R (ω × e₃) F/m, ä = −R (ω̇ × e₃) F/m
+        let rotation = self.body.rotation();
+        let turned = |by: &Vector3<f64>| (rotation * by.cross(&Vector3::z()) * -self.lift_m_s2).xy();
+        HorizontalMotion {
             position_m: self.body.position_m.xy(),
             velocity_m_s: self.body.velocity_m_s.xy(),
-            acceleration_m_s2: self.acceleration_m_s2.xy(),
-            jerk_m_s3: self.jerk_m_s3.xy(),
+            acceleration_m_s2: (rotation * Vector3::z() * -self.lift_m_s2).xy(),
+            jerk_m_s3: turned(&self.body.body_rate_rad_s),
+            snap_m_s4: turned(&self.rotor_torque_n_m.component_div(&configuration.believed_inertia_kg_m2())),
+            asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
         }
     }
 
     /// Motion down.
-    pub(crate) fn vertical(&self) -> VehicleMotion<1> {
-        let down = |vector: &Vector3<f64>| [vector.z].into();
-        VehicleMotion {
-            position_m: down(&self.body.position_m),
-            velocity_m_s: down(&self.body.velocity_m_s),
-            acceleration_m_s2: down(&self.acceleration_m_s2),
-            jerk_m_s3: down(&self.jerk_m_s3),
-            disturbance_m_s2: down(&self.disturbance_m_s2),
+    pub(crate) fn vertical(&self) -> VerticalMotion {
+        VerticalMotion {
+            position_m: self.body.position_m.z,
+            velocity_m_s: self.body.velocity_m_s.z,
+            // z̈ = g − (R e₃)₃ F/m
+            acceleration_m_s2: GRAVITY_M_S2 - (self.body.rotation() * Vector3::z()).z * self.lift_m_s2,
+            disturbance_m_s2: self.disturbance_m_s2.z,
         }
     }
 

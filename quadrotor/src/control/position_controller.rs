@@ -5,9 +5,9 @@ use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
-use crate::control::vehicle_motion::VehicleMotion;
+use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
-use crate::design::position_limits::{horizon_m, in_sight, position_bounds};
+use crate::design::position_limits::{AXIS_STATES, POSITION_STATES, horizon_m, in_sight, position_bounds};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -17,7 +17,7 @@ use crate::{CascadeDesign, Configuration};
 /// turns the acceleration into a direction of the thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
-    controller: ControllerState<8, 2, POSITION_MANY>,
+    controller: ControllerState<POSITION_STATES, 2, POSITION_MANY>,
     reference: ReferenceMotion<2>,
 }
 
@@ -25,7 +25,7 @@ impl PositionController {
     /// Takes over a vehicle at x, y, m, as if it had been at rest there.
     pub fn new(position_m: Vector2<f64>) -> Self {
         let zero = Vector2::zeros();
-        let measured = by_axis([position_m, zero, zero, zero]);
+        let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
         let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
         Self { controller: start, reference: ReferenceMotion::default() }
     }
@@ -36,16 +36,31 @@ impl PositionController {
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        seen: &VehicleMotion<2>,
+        seen: &HorizontalMotion,
         reference: &ReferenceMotion<2>,
         most_m_s2: f64,
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
         let limits = &configuration.limits;
-        let measured = by_axis([seen.position_m, seen.velocity_m_s, seen.acceleration_m_s2, seen.jerk_m_s3]);
+        let measured = by_axis([
+            seen.position_m,
+            seen.velocity_m_s,
+            seen.acceleration_m_s2,
+            seen.jerk_m_s3,
+            seen.snap_m_s4,
+            seen.asked_snap_m_s4,
+        ]);
         let [x, y] = reference.increments_since(&self.reference);
-        let explained =
-            by_axis(core::array::from_fn(|derivative| Vector2::new(x[derivative], y[derivative])));
+        let of_reference = |derivative: usize| Vector2::new(x[derivative], y[derivative]);
+        let explained = by_axis([
+            of_reference(0),
+            of_reference(1),
+            of_reference(2),
+            of_reference(3),
+            of_reference(4),
+            // Feedback is none of the reference.
+            Vector2::zeros(),
+        ]);
         let error = in_sight(
             &(seen.position_m - reference.position),
             horizon_m(limits.speed_horizontal_m_s, most_m_s2),
@@ -61,6 +76,8 @@ impl PositionController {
                 seen.velocity_m_s - reference.velocity,
                 seen.acceleration_m_s2 - reference.acceleration,
                 seen.jerk_m_s3 - reference.jerk,
+                seen.snap_m_s4 - reference.snap,
+                seen.asked_snap_m_s4,
             ])),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.acceleration),
@@ -86,8 +103,8 @@ impl PositionController {
 }
 
 /// x and its derivatives, then y and its derivatives.
-fn by_axis(derivatives: [Vector2<f64>; 4]) -> SVector<f64, 8> {
-    SVector::from_fn(|state, _| derivatives[state % 4][state / 4])
+fn by_axis(derivatives: [Vector2<f64>; AXIS_STATES]) -> SVector<f64, POSITION_STATES> {
+    SVector::from_fn(|state, _| derivatives[state % AXIS_STATES][state / AXIS_STATES])
 }
 
 /// A turn of horizontal vectors.
@@ -120,9 +137,9 @@ impl Turn {
     }
 
     /// Of each derivative in a state by axis.
-    fn state(&self, state: &SVector<f64, 8>) -> SVector<f64, 8> {
+    fn state(&self, state: &SVector<f64, POSITION_STATES>) -> SVector<f64, POSITION_STATES> {
         by_axis(core::array::from_fn(|derivative| {
-            self.vector(&Vector2::new(state[derivative], state[4 + derivative]))
+            self.vector(&Vector2::new(state[derivative], state[AXIS_STATES + derivative]))
         }))
     }
 }

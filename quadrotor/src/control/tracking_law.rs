@@ -58,6 +58,11 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         })
     }
 
+    /// Increments of the measured motion by a gain K on \[Δx; y − r\].
+    pub(crate) fn of_gain(gain: &DMatrix<f64>) -> Result<Self, DesignError> {
+        Ok(Self::Incremental(StateFeedback::new(gain)?))
+    }
+
     /// The controller of this kind with the weights of a stabilized Laguerre design under limits. A slack of 1 costs `slack_cost`.
     pub(crate) fn stabilized(
         kind: ControllerKind,

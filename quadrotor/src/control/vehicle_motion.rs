@@ -1,18 +1,35 @@
-//! What a translational controller knows of the vehicle's motion.
+//! What the translational controllers know of the vehicle's motion, measured or estimated.
 
-use nalgebra::SVector;
+use nalgebra::Vector2;
 
-/// Motion on some axes of NED, measured or estimated.
+/// Motion north and east.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct VehicleMotion<const AXES: usize> {
+pub(crate) struct HorizontalMotion {
     /// Position, m.
-    pub(crate) position_m: SVector<f64, AXES>,
+    pub(crate) position_m: Vector2<f64>,
     /// Velocity, m/s.
-    pub(crate) velocity_m_s: SVector<f64, AXES>,
-    /// Acceleration that thrust and gravity make, m/s².
-    pub(crate) acceleration_m_s2: SVector<f64, AXES>,
+    pub(crate) velocity_m_s: Vector2<f64>,
+    /// Acceleration that the thrust makes, m/s².
+    pub(crate) acceleration_m_s2: Vector2<f64>,
     /// Its rate as the body turns, m/s³.
-    pub(crate) jerk_m_s3: SVector<f64, AXES>,
+    pub(crate) jerk_m_s3: Vector2<f64>,
+    /// The rate of that by the torques that the rotors make, m/s⁴.
+    pub(crate) snap_m_s4: Vector2<f64>,
+    /// The same by the torques that feedback of the attitude has asked for, m/s⁴.
+    pub(crate) asked_snap_m_s4: Vector2<f64>,
     /// Estimated acceleration that thrust and gravity do not explain, m/s².
-    pub(crate) disturbance_m_s2: SVector<f64, AXES>,
+    pub(crate) disturbance_m_s2: Vector2<f64>,
+}
+
+/// Motion down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VerticalMotion {
+    /// Position, m.
+    pub(crate) position_m: f64,
+    /// Velocity, m/s.
+    pub(crate) velocity_m_s: f64,
+    /// Acceleration that thrust and gravity make, m/s².
+    pub(crate) acceleration_m_s2: f64,
+    /// Estimated acceleration that they do not explain, m/s².
+    pub(crate) disturbance_m_s2: f64,
 }

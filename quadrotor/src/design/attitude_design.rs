@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::attitude_bandwidth::AttitudeBandwidth;
 use crate::design::attitude_limits::{lean_limits, turn_limits};
-use crate::design::attitude_response::AttitudeResponse;
+use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
 use crate::design::cascade_design::{DesignReport, laguerre_design};
 use crate::design::controller_limits::placed;
@@ -37,8 +37,8 @@ pub(crate) struct AttitudeDesign {
     pub(crate) turn: TurnLaw,
     /// Rate per error with which small leans are closed, 1/s: half of the bandwidth.
     pub(crate) closing_1_s: f64,
-    /// What the closed loop makes of a commanded roll or pitch angle; with the paper's models nobody needs it.
-    pub(crate) response: Option<AttitudeResponse>,
+    /// The closed loop of roll and pitch; with the paper's models nobody needs it.
+    pub(crate) closed: Option<AttitudeLoop>,
 }
 
 impl AttitudeDesign {
@@ -64,8 +64,8 @@ impl AttitudeDesign {
         let lean_samples = placed(&lean_settings, ATTITUDE);
         let turn_samples = placed(&turn_settings, &later(ATTITUDE, longer));
         let lean_limits = lean_limits(&configuration.airframe, mixer, &lean_samples);
-        let response = match controllers.model {
-            PredictionModel::InnerLoops => Some(response(controllers.kind, &lean, lag_s, sample_time_s)?),
+        let closed = match controllers.model {
+            PredictionModel::InnerLoops => Some(closed_loop(controllers.kind, &lean, lag_s, sample_time_s)?),
             PredictionModel::Paper => None,
         };
         let report = DesignReport::of(&lean)?.worse(&DesignReport::of(&turn)?);
@@ -73,7 +73,7 @@ impl AttitudeDesign {
             lean: law(configuration, &lean_settings, &lean, &lean_limits)?,
             turn: law(configuration, &turn_settings, &turn, &turn_limits(&turn_samples))?,
             closing_1_s: bandwidth.lean_rad_s / 2.0,
-            response,
+            closed,
         };
         Ok((design, report))
     }
@@ -137,20 +137,20 @@ fn law<const N: usize, const P: usize, const S: usize, const L: usize>(
 }
 
 /// Roll and pitch answer alike unless they have different weights; then the slower one counts.
-fn response(
+fn closed_loop(
     kind: ControllerKind,
     lean: &LmpcDesign,
     lag_s: f64,
     sample_time_s: f64,
-) -> Result<AttitudeResponse, DesignError> {
+) -> Result<AttitudeLoop, DesignError> {
     let gain = if kind == ControllerKind::Lmpc { lean.gain() } else { lean.dlqr().gain() };
     let plant = lagged_attitude_model(1, lag_s, sample_time_s)?;
     let axis = |axis: usize| {
         let states = gain.view((axis, axis * AXIS_STATES), (1, AXIS_STATES));
         let mut of_axis = states.into_owned().resize(1, AXIS_STATES + 1, 0.0);
         of_axis[(0, AXIS_STATES)] = gain[(axis, 2 * AXIS_STATES + axis)];
-        AttitudeResponse::new(&plant, &of_axis, sample_time_s)
+        AttitudeLoop::new(&plant, &of_axis, lag_s, sample_time_s)
     };
     let (roll, pitch) = (axis(0)?, axis(1)?);
-    Ok(if pitch.natural_frequency_rad_s < roll.natural_frequency_rad_s { pitch } else { roll })
+    Ok(if pitch.delay_s() > roll.delay_s() { pitch } else { roll })
 }

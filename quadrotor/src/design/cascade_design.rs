@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::configuration::validation::validate;
 use crate::design::attitude_design::AttitudeDesign;
-use crate::design::attitude_response::AttitudeResponse;
+use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::estimator_design::EstimatorDesign;
 use crate::design::translation_design::{
     AltitudeLaw, PositionLaw, altitude_design, is_isotropic, position_design,
@@ -74,15 +74,15 @@ impl CascadeDesign {
         let mixer = Mixer::new(&configuration.airframe)?;
         let (attitude, attitude_report) = attitude_design(configuration, &mixer)?;
         let altitude = altitude_design(configuration)?;
-        let position = position_design(configuration, attitude.response)?;
+        let position = position_design(configuration, attitude.closed)?;
         Ok(Self {
-            altitude: altitude.law,
-            position: position.law,
+            altitude: altitude.0,
+            position: position.0,
             attitude,
             position_is_isotropic: is_isotropic(&configuration.controllers.position),
             estimator: estimator_design(configuration)?,
             mixer,
-            reports: [altitude.report, position.report, attitude_report],
+            reports: [altitude.1, position.1, attitude_report],
         })
     }
 
@@ -100,16 +100,16 @@ impl CascadeDesign {
         let mixer = Mixer::new(&configuration.airframe)?;
         let redesigned = Redesigned::between(before, configuration);
         let attitude = redesigned.attitude.then(|| attitude_design(configuration, &mixer)).transpose()?;
-        let response = attitude.as_ref().map_or(self.attitude.response, |(attitude, _)| attitude.response);
+        let response = attitude.as_ref().map_or(self.attitude.closed, |(attitude, _)| attitude.closed);
         let altitude = redesigned.altitude.then(|| altitude_design(configuration)).transpose()?;
         let position = redesigned.position.then(|| position_design(configuration, response)).transpose()?;
         let estimator = redesigned.estimator.then(|| estimator_design(configuration)).transpose()?;
         let [altitude_report, position_report, attitude_report] = &mut self.reports;
         if let Some(designed) = altitude {
-            (self.altitude, *altitude_report) = (designed.law, designed.report);
+            (self.altitude, *altitude_report) = designed;
         }
         if let Some(designed) = position {
-            (self.position, *position_report) = (designed.law, designed.report);
+            (self.position, *position_report) = designed;
         }
         if let Some(designed) = attitude {
             (self.attitude, *attitude_report) = designed;
@@ -122,10 +122,9 @@ impl CascadeDesign {
         Ok(redesigned)
     }
 
-    /// What the closed attitude loop makes of a commanded roll or pitch angle; `None` with the paper's models, which take it
-    /// for instantaneous.
-    pub fn attitude_response(&self) -> Option<AttitudeResponse> {
-        self.attitude.response
+    /// The closed loop of roll and pitch; `None` with the paper's models, which take it for instantaneous.
+    pub fn attitude_loop(&self) -> Option<AttitudeLoop> {
+        self.attitude.closed
     }
 
     /// The figures of the three designs, by the controller's name.
@@ -193,7 +192,15 @@ pub(crate) fn laguerre_design<const P: usize>(
     }
     let r = DMatrix::from_diagonal(&DVector::from_column_slice(settings.increment_weight.as_slice()));
     let weights = Weights::new(&augmented, DMatrix::from_diagonal(&q), r)?;
+    weighted_design(settings, &augmented, &weights)
+}
 
+/// The Laguerre design of a model with finished weights.
+pub(crate) fn weighted_design<const P: usize>(
+    settings: &ControllerSettings<P>,
+    augmented: &Augmented,
+    weights: &Weights,
+) -> Result<LmpcDesign, DesignError> {
     let basis = LaguerreBasis::new(settings.terms as usize, settings.scale)?;
     let bases: [LaguerreBasis; P] = core::array::from_fn(|_| basis.clone());
     let weighting = if settings.alpha > 1.0 {
@@ -201,5 +208,5 @@ pub(crate) fn laguerre_design<const P: usize>(
     } else {
         Weighting::Terminal { lambda: settings.lambda }
     };
-    LmpcDesign::new(&augmented, &weights, &bases, settings.prediction_horizon as usize, weighting)
+    LmpcDesign::new(augmented, weights, &bases, settings.prediction_horizon as usize, weighting)
 }

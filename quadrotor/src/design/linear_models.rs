@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, dmatrix};
 use crate::GRAVITY_M_S2;
 
 /// Chains of two integrators, one per input: ẍ_i = gain_i u_i, y_i = x_i.
-fn double_integrators(
+pub(crate) fn double_integrators(
     gains: &[f64],
     sample_time_s: f64,
     discretization: Discretization,
@@ -49,37 +49,6 @@ pub fn altitude_model_with_lag(time_constant_s: f64, sample_time_s: f64) -> Resu
     let a = DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / time_constant_s]);
     let b = DMatrix::from_column_slice(3, 1, &[0.0, 0.0, 1.0 / time_constant_s]);
     let c = DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 0.0]);
-    StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)
-}
-
-/// (15) with the closed attitude loop inside it: states x, v_x, ẍ, x⃛, y, v_y, ÿ, y⃛; inputs the commanded accelerations, which
-/// stand for −g θ and g φ; outputs x, y.
-///
-/// The attitude loop turns the thrust to a commanded direction with natural frequency ω and damping ratio ζ:
-/// x⁗ = ω² (u − ẍ) − 2 ζ ω x⃛.
-///
-/// # Errors
-/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`].
-pub fn position_model_with_attitude(
-    natural_frequency_rad_s: f64,
-    damping: f64,
-    sample_time_s: f64,
-) -> Result<StateSpace, DesignError> {
-    let (stiffness, friction) =
-        (natural_frequency_rad_s * natural_frequency_rad_s, 2.0 * damping * natural_frequency_rad_s);
-    let mut a = DMatrix::zeros(8, 8);
-    let mut b = DMatrix::zeros(8, 2);
-    let mut c = DMatrix::zeros(2, 8);
-    for axis in 0..2 {
-        let first = 4 * axis;
-        for derivative in 0..3 {
-            a[(first + derivative, first + derivative + 1)] = 1.0;
-        }
-        a[(first + 3, first + 2)] = -stiffness;
-        a[(first + 3, first + 3)] = -friction;
-        b[(first + 3, axis)] = stiffness;
-        c[(axis, first)] = 1.0;
-    }
     StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)
 }
 

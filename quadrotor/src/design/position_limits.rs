@@ -1,11 +1,8 @@
 //! What the position controller keeps within.
 
-use core::f64::consts::PI;
-
 use lmpc::SignalLimit;
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::Vector2;
 
-use crate::design::attitude_response::AttitudeResponse;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{GRAVITY_M_S2, Limits};
 
@@ -18,15 +15,11 @@ pub(crate) const POSITION_BOUNDS: usize = 2 * SIDES + 2 * COARSE_SIDES;
 
 /// Samples of the tilt command: those at which it can be chosen, and some of those at which it settles.
 static TILT: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
-/// Samples of its acceleration: while commands change fast.
-static TURNING: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
-/// Samples of the speed and of the rate of the tilt, which follow later.
+/// Samples of the speed, which follows later.
 static MOVING: &[usize] =
     &[4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
+/// Samples of the rate and the acceleration of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
-
-/// Number of signals on all samples.
-pub(crate) const POSITION_SIGNALS: usize = 2 * (19 + 12 + 25 + 11);
 
 /// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
 const CATCHING_UP: f64 = 0.1;
@@ -37,31 +30,24 @@ const TURNING_RAD_S2: f64 = 8.0;
 const LEANING_RAD_S: f64 = 2.0;
 const SPEED_M_S: f64 = 8.0;
 
-/// The commanded acceleration, and the angular acceleration, rate and speed that follow from it, in all directions alike.
-///
-/// With the states of [`position_model_with_attitude`](crate::position_model_with_attitude), horizontal accelerations a and commands u:
-/// |u| is bounded by the tilt, |ω² (u − a) − 2 ζ ω ȧ| by its angular acceleration, |ȧ| by its rate, |v| by the speed.
-pub(crate) fn position_limits(response: &AttitudeResponse) -> [SignalLimit; 4] {
-    let (omega, zeta) = (response.natural_frequency_rad_s, response.damping);
-    let of_states = |limited: [usize; 2], sides: usize, samples: &[usize]| {
-        SignalLimit::of_states(8, 2, &limited, SignalLimit::polygon(sides), samples.to_vec())
+/// States of one axis: position, its derivatives up to the snap that the rotors make, and the snap that they are asked for.
+pub(crate) const AXIS_STATES: usize = 6;
+/// States of both.
+pub(crate) const POSITION_STATES: usize = 2 * AXIS_STATES;
+
+/// The commanded acceleration, and the speed, jerk and snap that follow from it, in all directions alike. They stand for tilt, its
+/// rate and its angular acceleration.
+pub(crate) fn position_limits() -> [SignalLimit; 4] {
+    let of_states = |derivative: usize, sides: usize, samples: &[usize]| {
+        let limited = [derivative, AXIS_STATES + derivative];
+        SignalLimit::of_states(POSITION_STATES, 2, &limited, SignalLimit::polygon(sides), samples.to_vec())
     };
-    let mut turning = DMatrix::zeros(2, 8);
-    for axis in 0..2 {
-        turning[(axis, 4 * axis + 2)] = -omega * omega;
-        turning[(axis, 4 * axis + 3)] = -2.0 * zeta * omega;
-    }
     [
-        SignalLimit::of_inputs(8, 2, SignalLimit::polygon(SIDES), TILT.to_vec()).giving_way_by(FIRM_M_S2),
-        SignalLimit {
-            state: turning,
-            input: DMatrix::identity(2, 2) * (omega * omega),
-            directions: SignalLimit::polygon(COARSE_SIDES),
-            samples: TURNING.to_vec(),
-            relaxation: GRAVITY_M_S2 * TURNING_RAD_S2,
-        },
-        of_states([3, 7], COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
-        of_states([1, 5], SIDES, MOVING).giving_way_by(SPEED_M_S),
+        SignalLimit::of_inputs(POSITION_STATES, 2, SignalLimit::polygon(SIDES), TILT.to_vec())
+            .giving_way_by(FIRM_M_S2),
+        of_states(4, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
+        of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
+        of_states(1, SIDES, MOVING).giving_way_by(SPEED_M_S),
     ]
 }
 
@@ -71,9 +57,8 @@ pub(crate) fn position_bounds(
     acceleration_m_s2: f64,
     reference: &ReferenceMotion<2>,
 ) -> [f64; POSITION_BOUNDS] {
-    let inside = libm::cos(PI / COARSE_SIDES as f64);
-    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2 * inside;
-    let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s * inside;
+    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+    let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
     let asked = reference.velocity.norm();
     let speed = if asked > limits.speed_horizontal_m_s {
         asked + CATCHING_UP * limits.speed_horizontal_m_s

@@ -14,6 +14,8 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub acceleration: SVector<f64, AXES>,
     /// Jerk.
     pub jerk: SVector<f64, AXES>,
+    /// Snap.
+    pub snap: SVector<f64, AXES>,
     /// Time since the previous sample, s.
     pub interval_s: f64,
 }
@@ -21,17 +23,17 @@ pub struct ReferenceMotion<const AXES: usize> {
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero = SVector::zeros();
-        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, interval_s: 0.0 }
+        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero, interval_s: 0.0 }
     }
 }
 
 impl<const AXES: usize> ReferenceMotion<AXES> {
-    /// Increments \[Δposition, Δvelocity, Δacceleration, Δjerk\] of each axis since the previous sample. Those of position and
+    /// Increments \[Δposition, Δvelocity, Δacceleration, Δjerk, Δsnap\] of each axis since the previous sample. Those of position and
     /// velocity as far as the derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
     ///
     /// Hermite's rule, exact for constant jerk:
     /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
-    pub fn increments_since(&self, previous: &Self) -> [[f64; 4]; AXES] {
+    pub fn increments_since(&self, previous: &Self) -> [[f64; 5]; AXES] {
         let t = self.interval_s;
         core::array::from_fn(|axis| {
             let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
@@ -41,6 +43,7 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
                 t * (a + a_before) / 2.0,
                 a - a_before,
                 self.jerk[axis] - previous.jerk[axis],
+                self.snap[axis] - previous.snap[axis],
             ]
         })
     }

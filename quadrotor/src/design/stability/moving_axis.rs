@@ -22,7 +22,7 @@ pub(crate) struct Moving {
     /// m/s.
     pub(crate) velocity: f64,
     /// Position and its derivatives at the last sample, as far as the law goes by them.
-    measured: [f64; 4],
+    measured: [f64; 6],
     /// The commanded acceleration, m/s².
     pub(crate) feedback: f64,
     /// Position, velocity and unexplained acceleration.
@@ -31,18 +31,18 @@ pub(crate) struct Moving {
 
 impl Moving {
     /// Number of values.
-    pub(crate) const SIZE: usize = 10;
+    pub(crate) const SIZE: usize = 12;
     /// Place of the position among them.
     pub(crate) const POSITION: usize = 0;
 
     pub(crate) fn from_values(values: &[f64; Self::SIZE]) -> Self {
-        let [position, velocity, m0, m1, m2, m3, feedback, e0, e1, e2] = *values;
-        Self { position, velocity, measured: [m0, m1, m2, m3], feedback, estimate: [e0, e1, e2] }
+        let [position, velocity, m0, m1, m2, m3, m4, m5, feedback, e0, e1, e2] = *values;
+        Self { position, velocity, measured: [m0, m1, m2, m3, m4, m5], feedback, estimate: [e0, e1, e2] }
     }
 
     pub(crate) fn values(&self) -> [f64; Self::SIZE] {
-        let ([m0, m1, m2, m3], [e0, e1, e2]) = (self.measured, self.estimate);
-        [self.position, self.velocity, m0, m1, m2, m3, self.feedback, e0, e1, e2]
+        let ([m0, m1, m2, m3, m4, m5], [e0, e1, e2]) = (self.measured, self.estimate);
+        [self.position, self.velocity, m0, m1, m2, m3, m4, m5, self.feedback, e0, e1, e2]
     }
 }
 
@@ -57,15 +57,15 @@ impl<const K: usize> MovingAxis<K> {
     }
 
     /// A sample of the axis's controller, with errors of the measured position and velocity, and the acceleration that the thrust
-    /// makes and its rate, m/s², m/s³.
-    pub(crate) fn sample(&self, state: &mut Moving, event: &LoopEvent, noise: [f64; 2], achieved: [f64; 2]) {
+    /// makes and what of its derivatives the law goes by, m/s², m/s³, m/s⁴.
+    pub(crate) fn sample(&self, state: &mut Moving, event: &LoopEvent, noise: [f64; 2], achieved: [f64; 4]) {
         let [position, velocity, disturbance] = state.estimate;
         let seen = if self.output_feedback {
             [position - velocity * event.early_s, velocity]
         } else {
             [state.position + noise[0], state.velocity + noise[1]]
         };
-        let seen = [seen[0], seen[1], achieved[0], achieved[1]];
+        let seen = [seen[0], seen[1], achieved[0], achieved[1], achieved[2], achieved[3]];
         state.feedback = self.law.feedback(&ChannelSample {
             increment: core::array::from_fn(|place| seen[place] - state.measured[place]),
             deviation: core::array::from_fn(|place| seen[place]),

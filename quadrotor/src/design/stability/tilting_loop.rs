@@ -20,7 +20,7 @@ pub(crate) const TILTING: usize = Turning::SIZE + Moving::SIZE;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TiltingLoop {
     turning: TurningAxis,
-    moving: MovingAxis<4>,
+    moving: MovingAxis<6>,
     events: Vec<LoopEvent>,
     motions: Motions<6>,
     /// Mass that the controllers believe in, as a multiple of the true one.
@@ -36,7 +36,7 @@ impl TiltingLoop {
     pub(crate) fn new(
         configuration: &Configuration,
         axis: usize,
-        moving: MovingAxis<4>,
+        moving: MovingAxis<6>,
         turning: TurningAxis,
     ) -> Result<Self, DesignError> {
         let controllers = &configuration.controllers;
@@ -81,7 +81,8 @@ impl SmallSignal<TILTING> for TiltingLoop {
         if present.outer {
             let thrust = GRAVITY_M_S2 / self.believed;
             let [angle, rate] = self.turning.seen(&turning, [noise.angle, noise.rate]);
-            let achieved = [angle * thrust, rate * thrust];
+            let [made, asked] = self.turning.accelerations(&turning);
+            let achieved = [angle, rate, made, asked].map(|value| value * thrust);
             self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
         }
         if present.inner {

@@ -123,6 +123,11 @@ impl TurningAxis {
         }
     }
 
+    /// Angular accelerations that the rotors are believed to make and that feedback has asked for, rad/s².
+    pub(crate) fn accelerations(&self, state: &Turning) -> [f64; 2] {
+        [state.acceleration / self.believed, state.feedback]
+    }
+
     /// A sample of the attitude controller: with a reference for the angle and its rate, and errors of the measured ones.
     pub(crate) fn sample(&self, state: &mut Turning, reference: [f64; 2], noise: [f64; 2]) {
         let measured = [state.angle + noise[0], state.rate + noise[1]];

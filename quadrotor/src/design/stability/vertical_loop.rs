@@ -63,7 +63,7 @@ impl SmallSignal<VERTICAL> for VerticalLoop {
         let mut moving = Moving::from_values(&core::array::from_fn(|i| state[2 + i]));
         let present = &self.events[event];
         if present.outer {
-            let achieved = [acceleration / self.believed, 0.0];
+            let achieved = [acceleration / self.believed, 0.0, 0.0, 0.0];
             self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
         }
         if present.inner {
