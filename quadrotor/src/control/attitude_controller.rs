@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use lmpc::{ControllerState, Sample, Step};
+use lmpc::{ControllerState, ModelIncrement, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -75,6 +75,24 @@ struct Deviation {
 }
 
 impl Deviation {
+    /// What of it can be planned with over some times, s, of lean and of turn, under angular accelerations, rad/s²: a rotation that is too
+    /// fast to be braked in this time is braked, and where it has come to is of no interest.
+    fn in_sight(&self, sight_s: [f64; 2], acceleration_rad_s2: [f64; 2]) -> Self {
+        let [lean, turn] = [0, 1].map(|law| sight_s[law] * acceleration_rad_s2[law]);
+        let mut seen = *self;
+        let rate = self.rate_rad_s.xy().norm();
+        if rate > lean {
+            (seen.angle_rad.x, seen.angle_rad.y) = (0.0, 0.0);
+            seen.rate_rad_s.x *= lean / rate;
+            seen.rate_rad_s.y *= lean / rate;
+        }
+        if libm::fabs(self.rate_rad_s.z) > turn {
+            seen.angle_rad.z = 0.0;
+            seen.rate_rad_s.z = turn.copysign(self.rate_rad_s.z);
+        }
+        seen
+    }
+
     fn since(&self, before: &Self) -> Self {
         Self {
             angle_rad: self.angle_rad - before.angle_rad,
@@ -165,21 +183,25 @@ impl AttitudeController {
             torque_n_m: seen.torque_n_m,
             delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
         };
-        let [roll_n_m, pitch_n_m, _] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
+        let [roll_n_m, pitch_n_m, yaw_n_m] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
         let most_n_m = roll_n_m.min(pitch_n_m);
         let beside = spin.beside(most_n_m);
         let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
 
         let reference_acceleration = to_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
+        let error_rad = self.error_rad(&reference.attitude, &seen.attitude);
         let deviation = Deviation {
-            angle_rad: leaning_at_most(&self.error_rad(&reference.attitude, &seen.attitude), largest_rad),
+            angle_rad: leaning_at_most(&error_rad, largest_rad),
             rate_rad_s: rate_error_rad_s,
             acceleration_rad_s2: reached - reference_acceleration,
         };
+        let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
+        let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;
+        let deviation = deviation.in_sight(design.attitude.sight_s, [lean_rad_s2, turn_rad_s2]);
         let told = Seen {
             deviation,
-            increment: deviation.since(&self.deviation),
+            increment: self.increment(design.attitude.motion.as_ref(), &deviation, &seen.disturbance_rad_s2),
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
@@ -205,6 +227,21 @@ impl AttitudeController {
             inertia_kg_m2,
         };
         (asked, activity(&lean, &turn))
+    }
+
+    /// The motion since the last sample: by the model, if there is one, else as it was measured.
+    fn increment(
+        &self,
+        motion: Option<&ModelIncrement<AXIS_STATES, 1>>,
+        deviation: &Deviation,
+        disturbance_rad_s2: &Vector3<f64>,
+    ) -> Deviation {
+        let Some(motion) = motion else { return deviation.since(&self.deviation) };
+        let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
+        let axes =
+            [0, 1, 2].map(|axis| motion.that_led_to(&deviation.states(axis), &Vector1::new(driving[axis])));
+        let of = |state: usize| Vector3::from(axes.map(|axis| axis[state]));
+        Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) }
     }
 
     /// The attitude error, rad. Upside down there is a way about each axis: the one that was begun is gone on with, though another
