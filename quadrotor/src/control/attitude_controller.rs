@@ -16,8 +16,10 @@ use crate::design::capacities::{LEAN_MANY, TURN_MANY};
 use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration};
 
-/// Tilt error from which a way once begun is gone on with, rad: the reference may lean by the rest and change its mind.
+/// Tilt error from which a vehicle is upside down, rad: its reference may lean by the rest.
 const UPSIDE_DOWN_RAD: f64 = PI - 0.6;
+/// Rate from which a turn has begun, rad/s.
+const BEGUN_RAD_S: f64 = 0.3;
 
 /// What is known of the vehicle's rotation, measured or estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,7 +192,7 @@ impl AttitudeController {
 
         let reference_acceleration = to_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
-        let error_rad = self.error_rad(&reference.attitude, &seen.attitude);
+        let error_rad = going_on(&attitude_error(&reference.attitude, &seen.attitude), &rate_error_rad_s);
         let deviation = Deviation {
             angle_rad: leaning_at_most(&error_rad, largest_rad),
             rate_rad_s: rate_error_rad_s,
@@ -244,19 +246,6 @@ impl AttitudeController {
         Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) }
     }
 
-    /// The attitude error, rad. Upside down there is a way about each axis: the one that was begun is gone on with, though another
-    /// one has become a little shorter since.
-    fn error_rad(&self, reference: &UnitQuaternion<f64>, attitude: &UnitQuaternion<f64>) -> Vector3<f64> {
-        let error = attitude_error(reference, attitude);
-        let lean = error.xy();
-        let tilt = lean.norm();
-        if tilt > UPSIDE_DOWN_RAD && lean.dot(&self.deviation.angle_rad.xy()) < 0.0 {
-            let other = lean * (1.0 - TAU / tilt);
-            return Vector3::new(other.x, other.y, error.z);
-        }
-        error
-    }
-
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
     /// spins about its thrust axis; an integral left behind in turning axes would push sideways.
     fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
@@ -308,6 +297,19 @@ impl AttitudeController {
             self.turn.apply(&turn);
         }
     }
+}
+
+/// An error in which a vehicle that is upside down goes on turning as it does, rad: the shortest way changes its direction with every
+/// small lean, and the next one is no better than the one that was begun.
+fn going_on(error_rad: &Vector3<f64>, rate_error_rad_s: &Vector3<f64>) -> Vector3<f64> {
+    let (lean, rate) = (error_rad.xy(), rate_error_rad_s.xy());
+    let (tilt, speed) = (lean.norm(), rate.norm());
+    if tilt < UPSIDE_DOWN_RAD || speed < BEGUN_RAD_S {
+        return *error_rad;
+    }
+    let left = if rate.dot(&lean) > 0.0 { TAU - tilt } else { tilt };
+    let way = rate * (-left / speed);
+    Vector3::new(way.x, way.y, error_rad.z)
 }
 
 /// An error whose lean is shortened to a largest one, rad.

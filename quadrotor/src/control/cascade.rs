@@ -178,7 +178,9 @@ impl Cascade {
         let mut ahead = setpoint.reference.acceleration_m_s2;
         ahead.z += setpoint.jerk_m_s3.z * lag_s;
         self.reference_m_s2 = ahead;
-        let now = self.acceleration_m_s2();
+        // While the thrust pushes sideways or down, where it should push next cannot be followed, and a way upright that bends with it
+        // takes longer.
+        let now = if upright(&seen.body) < UPRIGHT { Vector3::zeros() } else { self.acceleration_m_s2() };
         let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, &now);
         self.tilt_reference_rad = tilt;
         let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
