@@ -34,6 +34,9 @@ pub enum Error {
         /// What the solver says.
         reason: String,
     },
+    /// The file of optimal flights is not one.
+    #[error("invalid optimal flights: {0}")]
+    Optimum(String),
     /// A figure cannot be drawn.
     #[error("{name}: {reason}")]
     Picture {

@@ -5,10 +5,12 @@
 //! eigenvalues ───────┤                                       ┌─► report ─► report.html
 //! constrained_step ──┼─► results (results.json, its schema) ─┤     ▲
 //! flights ───────────┤                                       └─► figures ─► *.png
-//! robustness ────────┘
+//! robustness ────────┤
+//! bars ──────────────┘
 //! design ◄─ model_file (--gain)
 //! ```
 
+pub mod bars;
 mod constrained_step;
 mod design;
 mod eigenvalues;
@@ -31,4 +33,4 @@ pub use model_file::ModelFile;
 pub use progress::Progress;
 pub use report::{Page, report};
 pub use results::{Results, parts, results, schema};
-pub use robustness::{FLIGHTS, RobustnessResult};
+pub use robustness::{FLIGHTS, RobustnessResult, shaped_flights};

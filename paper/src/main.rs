@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use paper::bars::Optimum;
 use paper::{Error, FLIGHTS, ModelFile, Progress, parts, png, report, results, schema};
 use rayon::prelude::*;
 
@@ -19,6 +20,9 @@ struct Arguments {
     /// Prints the JSON Schema of results.json, and exits.
     #[arg(long, conflicts_with = "gain")]
     schema: bool,
+    /// Optimal flights that xtask/python/optimum.py found, to compare with.
+    #[arg(long, value_name = "OPTIMUM.json", conflicts_with_all = ["gain", "schema"])]
+    optimum: Option<PathBuf>,
     /// Directory for report.html, results.json and PNG copies of the figures.
     #[arg(long, value_name = "DIR", default_value = "target/paper")]
     out: PathBuf,
@@ -29,7 +33,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.gain {
         Some(path) => print_gain(path),
         None if arguments.schema => print(&json(&schema())),
-        None => write_results(&arguments.out),
+        None => write_results(&arguments.out, arguments.optimum.as_deref()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -40,9 +44,12 @@ fn main() -> ExitCode {
     }
 }
 
+fn read(path: &Path) -> Result<String, Error> {
+    fs::read_to_string(path).map_err(|source| Error::File { path: path.to_owned(), source })
+}
+
 fn print_gain(path: &Path) -> Result<(), Error> {
-    let text = fs::read_to_string(path).map_err(|source| Error::File { path: path.to_owned(), source })?;
-    let result = ModelFile::parse(&text)?.design()?;
+    let result = ModelFile::parse(&read(path)?)?.design()?;
     print(&json(&result))
 }
 
@@ -54,9 +61,13 @@ fn print(line: &str) -> Result<(), Error> {
     }
 }
 
-fn write_results(out: &Path) -> Result<(), Error> {
+fn write_results(out: &Path, optimum: Option<&Path>) -> Result<(), Error> {
+    let optima = match optimum {
+        Some(path) => Optimum::parse(&read(path)?)?,
+        None => Vec::new(),
+    };
     let progress = Progress::shown(parts(FLIGHTS));
-    let results = results(FLIGHTS, &progress)?;
+    let results = results(FLIGHTS, &optima, &progress)?;
     progress.stage("figures");
     let page = report(&results);
     let figures = page.all_figures();

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::bars::{BarResult, Optimum, OptimumResult, ShownFlight, bars, bars_parts};
 use crate::constrained_step::{
     CostResult, TradeOff, closed_loop_cost, closed_loop_cost_parts, trade_off, trade_off_parts,
 };
@@ -32,13 +33,20 @@ pub struct Results {
     pub flights: Vec<FlightResult>,
     /// Random flights.
     pub robustness: Vec<RobustnessResult>,
+    /// What the closed loop is measured by, with a bar for each figure.
+    pub bars: Vec<BarResult>,
+    /// The best flights that a nonlinear solver finds for some of them; empty when it was not run.
+    pub optimum: Vec<OptimumResult>,
+    /// Tracks of the bars' figures.
+    #[serde(skip)]
+    pub shown: Vec<ShownFlight>,
 }
 
-/// Computes all results, with so many random flights of each controller.
+/// Computes all results, with so many random flights of each controller, and measures the optimal flights that are given.
 ///
 /// # Errors
 /// [`Error::Design`] when a design that must exist does not, [`Error::Solver`].
-pub fn results(random_flights: u32, progress: &Progress) -> Result<Results, Error> {
+pub fn results(random_flights: u32, optima: &[Optimum], progress: &Progress) -> Result<Results, Error> {
     progress.stage("eigenvalues");
     let (figure4, gains) = eigenvalues_and_gains()?;
     progress.stage("steps under limits, timed on one core");
@@ -49,6 +57,8 @@ pub fn results(random_flights: u32, progress: &Progress) -> Result<Results, Erro
     let flights = flights(progress);
     progress.stage("random flights");
     let robustness = robustness(random_flights, progress);
+    progress.stage("bars");
+    let bars = bars(&robustness, optima, progress);
     Ok(Results {
         table2: table2()?,
         table3: table3()?,
@@ -58,12 +68,19 @@ pub fn results(random_flights: u32, progress: &Progress) -> Result<Results, Erro
         trade_off,
         flights,
         robustness,
+        bars: bars.results,
+        optimum: bars.optima,
+        shown: bars.shown,
     })
 }
 
 /// How often [`results`] reports progress.
 pub fn parts(random_flights: u32) -> u64 {
-    closed_loop_cost_parts() + trade_off_parts() + flights_parts() + robustness_parts(random_flights)
+    closed_loop_cost_parts()
+        + trade_off_parts()
+        + flights_parts()
+        + robustness_parts(random_flights)
+        + bars_parts()
 }
 
 /// What results.json contains, as a JSON Schema.

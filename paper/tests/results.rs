@@ -2,12 +2,13 @@
 
 use std::sync::OnceLock;
 
+use paper::bars::{BarResult, OptimumResult};
 use paper::{CostResult, FlightResult, Page, Progress, Results, png, report, results, schema};
 
 /// All results, with few random flights.
 fn all() -> &'static Results {
     static RESULTS: OnceLock<Results> = OnceLock::new();
-    RESULTS.get_or_init(|| results(4, &Progress::hidden()).unwrap())
+    RESULTS.get_or_init(|| results(4, &[], &Progress::hidden()).unwrap())
 }
 
 fn page() -> Page {
@@ -128,6 +129,44 @@ fn random_flights_arrive() {
     }
 }
 
+/// Every flight of the table of bars, of each of the three kinds, with the random flights and the times.
+#[test]
+fn bars_are_reported_for_every_kind() {
+    let rows =
+        ["cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin", "random"];
+    for controller in ["LMPC", "SS-MPC", "DLQR"] {
+        for row in rows.into_iter().chain(["sample-time"]) {
+            let of = |bar: &&BarResult| bar.row == row && bar.controller == controller;
+            assert!(all().bars.iter().any(|bar| of(&bar)), "{row} {controller}");
+        }
+    }
+    let speed =
+        |bar: &&BarResult| bar.row == "random" && bar.figure.starts_with("speed") && bar.controller == "LMPC";
+    let random = all().robustness.iter().find(|result| result.controller == "LMPC, defaults").unwrap();
+    let share = 100.0 * f64::from(random.speed_violations) / f64::from(random.flights);
+    assert_eq!(all().bars.iter().find(speed).unwrap().value, Some(share));
+}
+
+/// Optimal flights stand beside those of the controllers, with what they cost more.
+#[test]
+fn the_report_compares_with_the_optimum() {
+    let settled = |bar: &&BarResult| {
+        bar.flight == "5 m north" && bar.figure.starts_with("settled") && bar.controller == "DLQR"
+    };
+    let dlqr_s = all().bars.iter().find(settled).unwrap().value.unwrap();
+    let optimum = OptimumResult {
+        flight: "5 m north".to_owned(),
+        objective: "settling time".to_owned(),
+        settled_s: Some(dlqr_s / 1.5),
+        squared_distance_m2_s: 20.0,
+        beyond_limit_percent: 0.0,
+        computed_in_s: 3.0,
+    };
+    assert!(page().html().contains("was not computed in this run"));
+    let html = report(&Results { optimum: vec![optimum], ..all().clone() }).html();
+    assert!(html.contains("(+50 %)"), "DLQR takes half as long again");
+}
+
 /// The schema in the tree is that of the code, and the results have what it requires.
 #[test]
 fn the_schema_is_kept() {
@@ -146,6 +185,7 @@ fn the_schema_is_kept() {
         ("flights", "controller rms_m final_m overshoot effort"),
         ("closed_loop_cost", "problem controller n cost ratio_to_optimum median_us p99_us worst_iterations"),
         ("robustness", "controller flights arrived worst_m median_m violations"),
+        ("bars", "row flight controller figure value bound passed lost"),
     ] {
         for name in names.split(' ') {
             assert!(

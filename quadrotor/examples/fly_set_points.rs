@@ -68,8 +68,7 @@ impl SetPoint {
             position_m: Vector3::from(self.position) + (velocity_m_s + acceleration_m_s2 / 2.0 * t) * t,
             velocity_m_s: velocity_m_s + acceleration_m_s2 * t,
             acceleration_m_s2,
-            yaw_rad: self.yaw,
-            yaw_rate_rad_s: 0.0,
+            ..PositionReference::goal([0.0; 3], self.yaw)
         }
     }
 }

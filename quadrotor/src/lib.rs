@@ -132,6 +132,7 @@ pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
 pub use control::control_loop::{ControlLoop, PreparedDesign};
 pub use control::control_state::ControlState;
+pub use control::flat_attitude::FlatAttitude;
 pub use control::measurement::{Instruments, Measurement};
 pub use control::mixer::Mixer;
 pub use control::rotor_monitor::RotorMonitor;

@@ -58,6 +58,7 @@ fn circle(time_us: u64) -> Inputs {
         acceleration_m_s2: towards * (-RADIUS_M * RATE * RATE),
         yaw_rad: angle + TAU / 4.0,
         yaw_rate_rad_s: RATE,
+        ..PositionReference::goal([0.0; 3], 0.0)
     };
     disturbed(Inputs { reference, ..Inputs::default() })
 }

@@ -4,6 +4,7 @@ mod book;
 mod demo;
 mod fmu;
 mod library;
+mod optimum;
 mod paper;
 mod program;
 mod progress;
@@ -52,6 +53,8 @@ enum Task {
     /// Fails if a flight misses its goal.
     Demo,
     /// Recomputes the paper's tables and figures: target/paper/report.html, results.json and PNG files.
+    ///
+    /// With Python 3.10 or newer, the report compares three flights with optima of a nonlinear solver.
     Paper {
         /// Prints gains, closed-loop eigenvalues and condition numbers for the discrete model in this file as JSON instead.
         #[arg(long, value_name = "MODEL.toml")]

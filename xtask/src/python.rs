@@ -53,6 +53,13 @@ const BOOK_LAYERS: [Layer; 1] = [Layer {
     made_from: "made-from.txt",
 }];
 
+/// So has the nonlinear solver, whose packages are the largest.
+const OPTIMUM_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing the nonlinear solver's Python packages (first time; downloads about 95 MB)",
+    lists: &[Pinned { file: "optimum.txt", complete: true }],
+    made_from: "made-from.txt",
+}];
+
 /// What an environment is for.
 #[derive(Clone, Copy)]
 pub enum Packages {
@@ -62,6 +69,8 @@ pub enum Packages {
     Tests,
     /// The book.
     Book,
+    /// The optimal flights of the paper's report.
+    Optimum,
 }
 
 impl Packages {
@@ -71,6 +80,7 @@ impl Packages {
             Self::Demo => ("venv", &LAYERS, 1),
             Self::Tests => ("venv", &LAYERS, 2),
             Self::Book => ("venv-book", &BOOK_LAYERS, 1),
+            Self::Optimum => ("venv-optimum", &OPTIMUM_LAYERS, 1),
         }
     }
 }

@@ -63,5 +63,6 @@ fn smooth(time_s: f64) -> PositionReference {
         acceleration_m_s2: way * acceleration,
         yaw_rad: HEADING_RAD * position,
         yaw_rate_rad_s: HEADING_RAD * velocity,
+        ..PositionReference::goal([0.0; 3], 0.0)
     }
 }

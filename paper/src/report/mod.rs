@@ -2,6 +2,8 @@
 //!
 //! Each section is a file; `page` is what they write to.
 
+mod bar_figures;
+mod bars;
 mod claim;
 mod cost_figures;
 mod flight_figures;
@@ -30,6 +32,7 @@ pub fn report(results: &Results) -> Page {
     claim::section(&mut page, results);
     flights::section(&mut page, results);
     robustness::section(&mut page, results);
+    bars::section(&mut page, results);
     gaps::section(&mut page, results);
     page
 }

@@ -9,6 +9,7 @@ mod circumstances;
 mod gusts;
 mod trial;
 
+use quadrotor::Configuration;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -69,6 +70,17 @@ impl Asking {
             Self::Raw(mission) => mission.name(),
         }
     }
+
+    fn configuration(self, pilot: &Pilot) -> Configuration {
+        match self {
+            Self::Shaped => {
+                let mut configuration = pilot.configuration(Mission::Step);
+                configuration.reference.shaping = true;
+                configuration
+            }
+            Self::Raw(mission) => pilot.configuration(mission),
+        }
+    }
 }
 
 /// All controllers under `flights` circumstances, on all cores. Each flight has its own generator, so that the
@@ -77,15 +89,26 @@ pub fn robustness(flights: u32, progress: &Progress) -> Vec<RobustnessResult> {
     entries()
         .into_iter()
         .map(|(asking, pilot)| {
-            let trials: Vec<Trial> = (0..flights)
-                .into_par_iter()
-                .map(|index| {
-                    let trial = fly(&pilot, asking, index);
-                    progress.advance();
-                    trial
-                })
-                .collect();
-            summary(pilot.name, asking, &trials)
+            let configuration = asking.configuration(&pilot);
+            summary(pilot.name, asking, &trials(&configuration, flights, progress))
+        })
+        .collect()
+}
+
+/// Shaped random flights of one configuration.
+pub fn shaped_flights(name: &str, configuration: &Configuration, flights: u32) -> RobustnessResult {
+    let mut configuration = *configuration;
+    configuration.reference.shaping = true;
+    summary(name.to_owned(), Asking::Shaped, &trials(&configuration, flights, &Progress::hidden()))
+}
+
+fn trials(configuration: &Configuration, flights: u32, progress: &Progress) -> Vec<Trial> {
+    (0..flights)
+        .into_par_iter()
+        .map(|index| {
+            let trial = fly(configuration, index);
+            progress.advance();
+            trial
         })
         .collect()
 }

@@ -1,11 +1,10 @@
 //! One random flight.
 
 use nalgebra::Vector3;
-use quadrotor::{Disturbance, Inputs, Limits, Outputs, PositionReference, Simulation};
+use quadrotor::{Configuration, Disturbance, Inputs, Limits, Outputs, PositionReference, Simulation};
 
-use super::Asking;
 use super::circumstances::{Circumstances, DURATION_S};
-use crate::flights::{GOAL_M, HEADING_RAD, Mission, Pilot, tilt_rad};
+use crate::flights::{GOAL_M, HEADING_RAD, tilt_rad};
 
 /// How often the flight is observed.
 const STEP_US: u64 = 50_000;
@@ -27,15 +26,10 @@ pub struct Trial {
     pub speed_exceeded: bool,
 }
 
-/// Flies.
-pub fn fly(pilot: &Pilot, asking: Asking, index: u32) -> Trial {
+/// Flies a configuration under the circumstances of a number.
+pub fn fly(configuration: &Configuration, index: u32) -> Trial {
     let circumstances = Circumstances::new(index);
-    let mission = match asking {
-        Asking::Shaped => Mission::Step,
-        Asking::Raw(mission) => mission,
-    };
-    let mut configuration = circumstances.applied(pilot.configuration(mission));
-    configuration.reference.shaping = asking == Asking::Shaped;
+    let configuration = circumstances.applied(*configuration);
     let inputs = |time_us: u64| Inputs {
         reference: PositionReference::goal(GOAL_M, HEADING_RAD),
         disturbance: Disturbance { wind_m_s: circumstances.wind_m_s(time_us), ..Disturbance::default() },

@@ -48,6 +48,7 @@ impl AltitudeController {
         let sight = horizon_m(fastest, weakest);
         let error = Vector1::new((seen.position_m - reference.position.x).clamp(-sight, sight));
         let rate_m_s = reference.velocity.x;
+        let lag_s = configuration.airframe.rotor_time_constant_s;
         let sample = Sample {
             measured,
             increment: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
@@ -57,7 +58,8 @@ impl AltitudeController {
                 seen.acceleration_m_s2 - reference.acceleration.x,
             ),
             error,
-            input_reference: reference.acceleration,
+            // The rotors answer late: z̈ = G − T z⃛.
+            input_reference: reference.acceleration + reference.jerk * lag_s,
             disturbance: Vector1::new(seen.disturbance_m_s2),
             upper: &altitude_bounds(limits, range, rate_m_s),
             ..Sample::default()
@@ -68,6 +70,11 @@ impl AltitudeController {
         let applied = Vector1::new(wanted.x.clamp(range.0, range.1));
         self.controller.apply(&applied);
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
+    }
+
+    /// The part of the last command that the reference requires, m/s² down.
+    pub(crate) fn reference_m_s2(&self) -> f64 {
+        self.controller.input_reference().x
     }
 
     /// Expresses the acceleration that was applied last in other terms.

@@ -1,13 +1,13 @@
 //! The cascade of Figure 2: position → tilt, altitude → thrust, attitude → torques.
 
-use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
+use nalgebra::{Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{tilt_angles, turned};
 use crate::control::activity::Activity;
 use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
 use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
+use crate::control::flat_attitude::FlatAttitude;
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
@@ -16,9 +16,9 @@ use crate::design::controller_limits::{COMMANDED_TILT_SHARE, least_thrust_n, thr
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
-use crate::guidance::setpoint::Setpoint;
 use crate::{
-    AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Wrench, wrench_of_rotors,
+    AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, PositionReference, RigidBody, Wrench,
+    wrench_of_rotors,
 };
 
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
@@ -108,18 +108,17 @@ impl Cascade {
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        setpoint: &Setpoint,
+        reference: &PositionReference,
         time_us: u64,
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
-        let reference = &setpoint.reference;
         let motion = ReferenceMotion {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
-            jerk: setpoint.jerk_m_s3.xy(),
-            snap: Vector2::zeros(),
+            jerk: reference.jerk_m_s3.xy(),
+            snap: reference.snap_m_s4.xy(),
             interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
         };
         let tilt_rad = configuration.limits.tilt_rad;
@@ -143,55 +142,79 @@ impl Cascade {
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        setpoint: &Setpoint,
+        reference: &PositionReference,
         time_us: u64,
     ) {
         let period_us = configuration.controllers.altitude.sample_time_us;
-        let reference = &setpoint.reference;
         let axis = |vector: &Vector3<f64>| [vector.z].into();
         let motion = ReferenceMotion {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
-            jerk: axis(&setpoint.jerk_m_s3),
-            snap: Vector1::zeros(),
+            jerk: axis(&reference.jerk_m_s3),
+            snap: axis(&reference.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
         let (applied, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);
-        self.feedback_m_s2.z = applied - motion.acceleration.x;
+        self.feedback_m_s2.z = applied - self.altitude.reference_m_s2();
         self.activity.altitude = activity;
     }
 
-    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds, rad/s.
+    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds, rad/s. The reference of now, and the one of when
+    /// the rotors will have answered.
     pub(crate) fn sample_attitude(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        (setpoint, heading): (&Setpoint, &Heading),
-        time_us: u64,
+        (reference, answered): (&PositionReference, &PositionReference),
     ) -> [f64; 4] {
-        let period_s = configuration.controllers.attitude.sample_time_s();
-        // The thrust answers as late as the rotors do.
+        self.reference_m_s2 = reference.acceleration_m_s2;
+        let upright = upright(&seen.body);
+        let attitude = self.required_attitude(configuration, upright, reference);
+        let later = self.required_attitude(configuration, upright, answered);
+        self.tilt_reference_rad = [attitude.roll_rad, attitude.pitch_rad];
         let lag_s = configuration.airframe.rotor_time_constant_s;
-        let mut ahead = setpoint.reference.acceleration_m_s2;
-        ahead.z += setpoint.jerk_m_s3.z * lag_s;
-        self.reference_m_s2 = ahead;
-        // While the thrust pushes sideways or down, where it should push next cannot be followed, and a way upright that bends with it
-        // takes longer.
-        let now = if upright(&seen.body) < UPRIGHT { Vector3::zeros() } else { self.acceleration_m_s2() };
-        let (tilt, reference) = attitude_reference(configuration, heading.yaw_rad, &now);
-        self.tilt_reference_rad = tilt;
-        let next_yaw_rad = heading.yaw_rad + heading.yaw_rate_rad_s * period_s;
-        let next = now + setpoint.jerk_m_s3 * period_s;
-        let (_, next) = attitude_reference(configuration, next_yaw_rad, &next);
-        let rate = turned(&reference, &next) / period_s;
-
-        let thrust_n = thrust(configuration, now.z, upright(&seen.body));
+        let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
+            - attitude.angular_acceleration_rad_s2;
+        let required = AttitudeReference {
+            attitude: attitude.attitude,
+            rate_rad_s: attitude.body_rate_rad_s,
+            acceleration_rad_s2: attitude.angular_acceleration_rad_s2,
+            jerk_rad_s3: change / lag_s,
+        };
+        let vertical = answered.acceleration_m_s2.z + self.feedback_m_s2.z;
+        let thrust_n = thrust(configuration, vertical, upright);
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
-        self.command_rotors(configuration, design, seen, (&reference, &rate), thrust_n, time_us)
+        self.command_rotors(configuration, design, seen, &required, thrust_n)
+    }
+
+    /// The attitude and its motion that a reference requires together with what feedback adds to it. While the thrust pushes
+    /// sideways or down it is level: where the thrust should push cannot be followed, and a way upright that bends with it takes
+    /// longer.
+    fn required_attitude(
+        &self,
+        configuration: &Configuration,
+        upright: f64,
+        reference: &PositionReference,
+    ) -> FlatAttitude {
+        if upright < UPRIGHT {
+            let none = Vector3::zeros();
+            return FlatAttitude::new(&none, &none, &none, &Heading::of(reference));
+        }
+        let wanted = reference.acceleration_m_s2 + self.feedback_m_s2;
+        let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
+        let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);
+        // Commands that are cut off do not move with the reference.
+        let kept = if horizontal == wanted.xy() { 1.0 } else { 0.0 };
+        FlatAttitude::new(
+            &within,
+            &(reference.jerk_m_s3 * kept),
+            &(reference.snap_m_s4 * kept),
+            &Heading::of(reference),
+        )
     }
 
     /// A sample of the attitude controller alone, for an attitude and a thrust from outside.
@@ -205,35 +228,32 @@ impl Cascade {
     ) -> [f64; 4] {
         let (phi, theta, _) = target.attitude.euler_angles();
         self.tilt_reference_rad = [phi, theta];
-        let reference = (&target.attitude, &target.body_rate_rad_s);
+        let period_us = configuration.controllers.attitude.sample_time_us;
+        let since_s = interval_s(&mut self.sampled.attitude_us, time_us, period_us);
+        let required = AttitudeReference {
+            attitude: target.attitude,
+            rate_rad_s: target.body_rate_rad_s,
+            acceleration_rad_s2: self.turning.go_on(&target.body_rate_rad_s, since_s),
+            jerk_rad_s3: Vector3::zeros(),
+        };
         let thrust_n = (target.thrust_n, least_thrust_n(configuration, upright(&seen.body).max(UPRIGHT)));
-        self.command_rotors(configuration, design, seen, reference, thrust_n, time_us)
+        self.command_rotors(configuration, design, seen, &required, thrust_n)
     }
 
-    /// Rotor speeds that turn the body to an attitude, whose rate, rad/s, is in its own axes, under a thrust, N, which may be
-    /// reduced for the torques to a least one, N.
+    /// Rotor speeds that turn the body as required, under a thrust, N, which may be reduced for the torques to a least one, N.
     fn command_rotors(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        reference: (&UnitQuaternion<f64>, &Vector3<f64>),
+        required: &AttitudeReference,
         (thrust_n, least_thrust_n): (f64, f64),
-        time_us: u64,
     ) -> [f64; 4] {
         let controllers = &configuration.controllers;
         let period_s = controllers.attitude.sample_time_s();
-        let since_s = interval_s(&mut self.sampled.attitude_us, time_us, controllers.attitude.sample_time_us);
-        let (attitude, rate_rad_s) = reference;
-        let reference = AttitudeReference {
-            attitude: *attitude,
-            rate_rad_s: *rate_rad_s,
-            acceleration_rad_s2: self.turning.go_on(rate_rad_s, since_s),
-            jerk_rad_s3: Vector3::zeros(),
-        };
         let thrust_range_n = (thrust_n, least_thrust_n);
         let (asked, activity) =
-            self.attitude.step(configuration, design, &seen.rotation(), &reference, thrust_range_n);
+            self.attitude.step(configuration, design, &seen.rotation(), required, thrust_range_n);
         let wanted = Wrench { thrust_n, torque_n_m: asked.torque_n_m() };
         let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
         let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
@@ -248,19 +268,6 @@ impl Cascade {
         self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
         rotor_command_rad_s
     }
-}
-
-/// φ, θ and the attitude whose thrust axis makes an acceleration, NED, m/s².
-fn attitude_reference(
-    configuration: &Configuration,
-    yaw_rad: f64,
-    wanted: &Vector3<f64>,
-) -> ([f64; 2], UnitQuaternion<f64>) {
-    // m a = m g e₃ − F b₃: the thrust axis points along g e₃ − a
-    let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
-    let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - wanted.z);
-    let (phi, theta) = tilt_angles(&axis, yaw_rad);
-    ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
 }
 
 /// Cosine of the tilt: the down component of the body's down axis.

@@ -146,6 +146,12 @@ impl ControlState {
         self.guidance.reference(time_us)
     }
 
+    /// What the cascade will track at `time_us`, as far as it is known now: see [`PositionReference::expected_after`] for a
+    /// reference that is not shaped.
+    pub fn preview(&self, time_us: u64) -> PositionReference {
+        self.guidance.preview(time_us)
+    }
+
     /// φ and θ that the position controller asks of the attitude controller, rad.
     pub fn tilt_reference_rad(&self) -> [f64; 2] {
         self.cascade.tilt_reference_rad()
@@ -223,6 +229,9 @@ impl ControlState {
         time_us: u64,
     ) -> Result<(), ControlError> {
         let configuration = &design.configuration;
+        if let Target::Reference(reference) = target {
+            self.guidance.watch(reference, &configuration.limits, time_us);
+        }
         let clocks = self.clocks(&configuration.controllers);
         let due = Due {
             position: clocks.position.ticks(time_us),
@@ -276,22 +285,31 @@ impl ControlState {
         }
         let configuration = &self.limits.in_force(&design.configuration);
         if due.position {
-            let setpoint = self.guidance.setpoint(time_us);
-            self.cascade.sample_position(configuration, cascade, seen, &setpoint, time_us);
-        }
-        if due.altitude {
-            let setpoint = self.guidance.setpoint(time_us);
-            self.cascade.sample_altitude(configuration, cascade, seen, &setpoint, time_us);
-        }
-        if due.attitude {
-            let heading = self.guidance.sample_heading(reference, limits, time_us);
-            self.rotor_command_rad_s = self.cascade.sample_attitude(
+            self.cascade.sample_position(
                 configuration,
                 cascade,
                 seen,
-                (&self.guidance.setpoint(time_us), &heading),
+                &self.guidance.reference(time_us),
                 time_us,
             );
+        }
+        if due.altitude {
+            self.cascade.sample_altitude(
+                configuration,
+                cascade,
+                seen,
+                &self.guidance.reference(time_us),
+                time_us,
+            );
+        }
+        if due.attitude {
+            self.guidance.sample_heading(reference, limits, time_us);
+            // A command takes effect as late as the rotors answer, and in the middle of the time for which it is held.
+            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
+            let answered_us = time_us + lag_us + configuration.controllers.attitude.sample_time_us / 2;
+            let references = (self.guidance.reference(time_us), self.guidance.preview(answered_us));
+            self.rotor_command_rad_s =
+                self.cascade.sample_attitude(configuration, cascade, seen, (&references.0, &references.1));
         }
     }
 

@@ -1,9 +1,6 @@
 //! The three controllers of the cascade, designed from a configuration.
 
-use lmpc::{
-    Augmented, DesignError, LaguerreBasis, LmpcDesign, StateSpace, Weighting, Weights, spectral_radius,
-};
-use nalgebra::{DMatrix, DVector};
+use lmpc::{Augmented, DesignError, LaguerreBasis, LmpcDesign, Weighting, Weights, spectral_radius};
 
 use crate::configuration::validation::validate;
 use crate::design::attitude_design::AttitudeDesign;

@@ -48,7 +48,11 @@ impl HeadingShaper {
     /// The heading at `time_us`.
     pub fn heading(&self, time_us: u64) -> Heading {
         let now = self.profile.at(self.elapsed_s(time_us));
-        Heading { yaw_rad: now.position + self.offset_rad, yaw_rate_rad_s: now.velocity }
+        Heading {
+            yaw_rad: now.position + self.offset_rad,
+            yaw_rate_rad_s: now.velocity,
+            yaw_acceleration_rad_s2: now.acceleration,
+        }
     }
 
     /// Turns to another goal; the plan is kept while goal and limits stay. A problem that has no solution leaves the old plan in

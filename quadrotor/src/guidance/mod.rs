@@ -1,6 +1,9 @@
 //! From what the vehicle is asked for to the set-points that the controllers track.
 
 pub(crate) mod attitude_target;
+pub(crate) mod continuation;
+pub(crate) mod derivative_estimator;
+pub(crate) mod direct_reference;
 pub(crate) mod eased_limits;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
@@ -10,7 +13,6 @@ pub(crate) mod motion_profile;
 pub(crate) mod position_reference;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
-pub(crate) mod setpoint;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
 #[cfg(feature = "shaper")]

@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 /// Where the vehicle is asked to be, in NED.
 ///
 /// With shaping on, position and yaw are a goal, and velocity is the velocity to pass it with. With
-/// shaping off it is one point of a trajectory: velocity and acceleration are fed forward.
+/// shaping off it is one point of a trajectory: velocity, acceleration, jerk and snap are fed forward.
+///
+/// Jerk and snap that are both zero count as unknown: the control loop estimates them from successive accelerations. So does a
+/// yaw acceleration of zero, from successive yaw rates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionReference {
     /// Position, m.
@@ -15,10 +18,16 @@ pub struct PositionReference {
     pub velocity_m_s: Vector3<f64>,
     /// Acceleration, m/s².
     pub acceleration_m_s2: Vector3<f64>,
+    /// Jerk, m/s³.
+    pub jerk_m_s3: Vector3<f64>,
+    /// Snap, m/s⁴.
+    pub snap_m_s4: Vector3<f64>,
     /// Heading ψ, rad; any number of turns.
     pub yaw_rad: f64,
     /// Rate of the heading, rad/s.
     pub yaw_rate_rad_s: f64,
+    /// Angular acceleration of the heading, rad/s².
+    pub yaw_acceleration_rad_s2: f64,
 }
 
 impl PositionReference {
@@ -28,8 +37,11 @@ impl PositionReference {
             position_m: position_m.into(),
             velocity_m_s: Vector3::zeros(),
             acceleration_m_s2: Vector3::zeros(),
+            jerk_m_s3: Vector3::zeros(),
+            snap_m_s4: Vector3::zeros(),
             yaw_rad,
             yaw_rate_rad_s: 0.0,
+            yaw_acceleration_rad_s2: 0.0,
         }
     }
 
@@ -40,8 +52,11 @@ impl PositionReference {
             ("reference.position", finite(&self.position_m)),
             ("reference.velocity", finite(&self.velocity_m_s)),
             ("reference.acceleration", finite(&self.acceleration_m_s2)),
+            ("reference.jerk", finite(&self.jerk_m_s3)),
+            ("reference.snap", finite(&self.snap_m_s4)),
             ("reference.yaw", self.yaw_rad.is_finite()),
             ("reference.yaw_rate", self.yaw_rate_rad_s.is_finite()),
+            ("reference.yaw_acceleration", self.yaw_acceleration_rad_s2.is_finite()),
         ];
         checks.into_iter().find(|(_, finite)| !finite).map(|(name, _)| name)
     }

@@ -3,10 +3,9 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::wrapped;
+use crate::guidance::direct_reference::DirectReference;
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
-use crate::guidance::setpoint::Setpoint;
 #[cfg(feature = "shaper")]
 use crate::guidance::shaper::Shaper;
 use crate::{Limits, PositionReference};
@@ -18,18 +17,8 @@ pub enum Guidance {
     /// Jerk-limited.
     #[cfg(feature = "shaper")]
     Shaped(Shaper),
-    /// Position, velocity and acceleration as given; the heading within its rate limit.
-    Direct(Direct),
-}
-
-/// State of a reference that is passed on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Direct {
-    latest: PositionReference,
-    /// Jerk of the trajectory, from its last two accelerations, NED, m/s³.
-    jerk_m_s3: Vector3<f64>,
-    time_us: u64,
-    yaw_time_us: u64,
+    /// As given; the heading within its rate limit.
+    Direct(DirectReference),
 }
 
 #[cfg_attr(not(feature = "shaper"), allow(unused_variables, irrefutable_let_patterns))]
@@ -46,12 +35,8 @@ impl Guidance {
         if shaping {
             return Self::Shaped(Shaper::at_rest(position_m, yaw_rad, limits, time_us));
         }
-        Self::Direct(Direct {
-            latest: PositionReference::goal((*position_m).into(), yaw_rad),
-            jerk_m_s3: Vector3::zeros(),
-            time_us,
-            yaw_time_us: time_us,
-        })
+        let rest = PositionReference::goal((*position_m).into(), yaw_rad);
+        Self::Direct(DirectReference::new(&rest, time_us))
     }
 
     /// Whether it is shaped.
@@ -66,7 +51,14 @@ impl Guidance {
         if shaping {
             return Self::Shaped(Shaper::moving(&now, limits, time_us));
         }
-        Self::Direct(Direct { latest: now, jerk_m_s3: Vector3::zeros(), time_us, yaw_time_us: time_us })
+        Self::Direct(DirectReference::new(&now, time_us))
+    }
+
+    /// A look at the input between samples.
+    pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
+        if let Self::Direct(direct) = self {
+            direct.watch(reference, limits, time_us);
+        }
     }
 
     /// A sample of the reference of the position and altitude controllers.
@@ -86,7 +78,7 @@ impl Guidance {
         time_us: u64,
     ) -> Heading {
         if let Self::Direct(direct) = self {
-            direct.sample_yaw(reference, limits, time_us);
+            direct.sample_heading(reference, limits, time_us);
         }
         Heading::of(&self.reference(time_us))
     }
@@ -118,68 +110,9 @@ impl Guidance {
         }
     }
 
-    /// What is tracked at `time_us`, with its jerk.
-    pub fn setpoint(&self, time_us: u64) -> Setpoint {
-        /// Time over which a jerk is found, µs.
-        const STEP_US: u64 = 1000;
-        let jerk_m_s3 = match self {
-            #[cfg(feature = "shaper")]
-            Self::Shaped(shaper) => {
-                (shaper.reference(time_us + STEP_US).acceleration_m_s2
-                    - shaper.reference(time_us).acceleration_m_s2)
-                    / (STEP_US as f64 / 1e6)
-            }
-            Self::Direct(direct) => direct.jerk_m_s3,
-        };
-        Setpoint { reference: self.reference(time_us), jerk_m_s3 }
-    }
-}
-
-/// Multiple of the jerk limits beyond which a change of acceleration counts as a jump, not as motion.
-const JUMP: f64 = 10.0;
-
-impl Direct {
-    /// The latest reference, moved on by its derivatives since it was sampled.
-    fn reference(&self, time_us: u64) -> PositionReference {
-        let t = time_us.saturating_sub(self.time_us) as f64 / 1e6;
-        let yaw_t = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
-        let PositionReference { position_m: p, velocity_m_s: v, acceleration_m_s2: a, .. } = self.latest;
-        PositionReference {
-            position_m: p + (v + (a / 2.0 + self.jerk_m_s3 * (t / 6.0)) * t) * t,
-            velocity_m_s: v + (a + self.jerk_m_s3 * (t / 2.0)) * t,
-            acceleration_m_s2: a + self.jerk_m_s3 * t,
-            yaw_rad: self.latest.yaw_rad + self.latest.yaw_rate_rad_s * yaw_t,
-            yaw_rate_rad_s: self.latest.yaw_rate_rad_s,
-        }
-    }
-
-    fn sample(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
-        let change = reference.acceleration_m_s2 - self.latest.acceleration_m_s2;
-        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
-        // A reference that has just been taken over has no motion yet.
-        if elapsed_s > 0.0 {
-            let jerk = change / elapsed_s;
-            // A jump of the acceleration is not motion.
-            let smooth = jerk.xy().norm() <= JUMP * limits.jerk_horizontal_m_s3
-                && jerk.z.abs() <= JUMP * limits.jerk_vertical_m_s3;
-            self.jerk_m_s3 = if smooth { jerk } else { Vector3::zeros() };
-        }
-        let held = self.latest;
-        self.latest =
-            PositionReference { yaw_rad: held.yaw_rad, yaw_rate_rad_s: held.yaw_rate_rad_s, ..*reference };
-        self.time_us = time_us;
-    }
-
-    fn sample_yaw(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
-        let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
-        let most = limits.yaw_rate_rad_s * elapsed_s;
-        let held = &mut self.latest;
-        let turned = wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
-        held.yaw_rad += turned;
-        // A heading that moves has a rate, also when none was given.
-        let given = reference.yaw_rate_rad_s;
-        let rate = if given == 0.0 && elapsed_s > 0.0 { turned / elapsed_s } else { given };
-        held.yaw_rate_rad_s = rate.clamp(-limits.yaw_rate_rad_s, limits.yaw_rate_rad_s);
-        self.yaw_time_us = time_us;
+    /// What will be tracked at `time_us`, as far as it is known now: exactly if it is shaped, unless the goal changes. A reference
+    /// that is passed on is carried on by its derivatives for a short time: see [`PositionReference::expected_after`].
+    pub fn preview(&self, time_us: u64) -> PositionReference {
+        self.reference(time_us)
     }
 }

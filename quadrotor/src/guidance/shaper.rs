@@ -47,7 +47,7 @@ impl Shaper {
             limits: EasedLimits::new(limits),
             offset_m: Vector3::zeros(),
             plan: WayPlan::going_on(&rest),
-            heading: HeadingShaper::moving(&Heading { yaw_rad, yaw_rate_rad_s: 0.0 }, limits, time_us),
+            heading: HeadingShaper::moving(&Heading::fixed(yaw_rad), limits, time_us),
         }
     }
 
@@ -75,8 +75,8 @@ impl Shaper {
     /// The shaped reference at `time_us`.
     pub fn reference(&self, time_us: u64) -> PositionReference {
         let now = self.plan.at(self.elapsed_s(time_us));
-        let Heading { yaw_rad, yaw_rate_rad_s } = self.heading.heading(time_us);
-        PositionReference { position_m: now.position_m + self.offset_m, yaw_rad, yaw_rate_rad_s, ..now }
+        let way = PositionReference { position_m: now.position_m + self.offset_m, ..now };
+        self.heading.heading(time_us).on(&way)
     }
 
     /// Plans anew if the goal or the limits have changed, and only the heading if only that has. A problem that has no

@@ -105,7 +105,8 @@ impl WayPlan {
         Some(Self { bearing_rad, axes })
     }
 
-    /// Position, velocity and acceleration so many seconds after its beginning. The heading is zero.
+    /// Position, velocity, acceleration and jerk so many seconds after its beginning; between two jumps of the jerk the snap is
+    /// zero. The heading is zero.
     pub fn at(&self, time_s: f64) -> PositionReference {
         let motions = self.axes.map(|axis| axis.at(time_s));
         let turn = Rotation2::new(self.bearing_rad);
@@ -118,8 +119,8 @@ impl WayPlan {
             position_m: world(|motion| motion.position),
             velocity_m_s: world(|motion| motion.velocity),
             acceleration_m_s2: world(|motion| motion.acceleration),
-            yaw_rad: 0.0,
-            yaw_rate_rad_s: 0.0,
+            jerk_m_s3: world(|motion| motion.jerk),
+            ..PositionReference::goal([0.0; 3], 0.0)
         }
     }
 

@@ -44,7 +44,7 @@ pub fn smooth_flight(goal_m: [f64; 3], yaw_rad: f64, duration_s: f64) -> impl In
                 velocity_m_s: way * velocity,
                 acceleration_m_s2: way * acceleration,
                 yaw_rad: yaw_rad * position,
-                yaw_rate_rad_s: 0.0,
+                ..PositionReference::goal([0.0; 3], 0.0)
             },
             ..Inputs::default()
         }

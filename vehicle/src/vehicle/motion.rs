@@ -39,8 +39,14 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Takes a motion over.
+    /// Takes a motion over, up to its acceleration.
     pub fn from(state: PositionReference, set_point: PositionSetPoint, time_us: u64) -> Self {
+        let state = PositionReference {
+            velocity_m_s: state.velocity_m_s,
+            acceleration_m_s2: state.acceleration_m_s2,
+            yaw_rate_rad_s: state.yaw_rate_rad_s,
+            ..at_rest(state.position_m, state.yaw_rad)
+        };
         Self { state, set_point, since_us: time_us }
     }
 

@@ -27,7 +27,7 @@ impl PathSteering {
         time_us: u64,
     ) -> Self {
         let heading = HeadingShaper::moving(&Heading::of(now), limits, time_us);
-        Self { flight, after_m, heading, goal: Heading { yaw_rad, yaw_rate_rad_s: 0.0 } }
+        Self { flight, after_m, heading, goal: Heading::fixed(yaw_rad) }
     }
 
     /// The same on another piece.
@@ -63,7 +63,6 @@ impl PathSteering {
     /// The reference at a time, µs.
     pub fn reference(&mut self, limits: &Limits, time_us: u64) -> PositionReference {
         self.heading.update(&self.goal, limits, time_us);
-        let Heading { yaw_rad, yaw_rate_rad_s } = self.heading.heading(time_us);
-        PositionReference { yaw_rad, yaw_rate_rad_s, ..self.flight.at(time_us) }
+        self.heading.heading(time_us).on(&self.flight.at(time_us))
     }
 }

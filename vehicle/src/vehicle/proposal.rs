@@ -162,7 +162,7 @@ impl<'a> Proposal<'a> {
             }
             (Steering::Goal(goal), None) => goal.yaw_rate_rad_s = 0.0,
             (Steering::Path(path), Some((yaw_rad, yaw_rate_rad_s))) => {
-                path.turn_to(Heading { yaw_rad, yaw_rate_rad_s });
+                path.turn_to(Heading { yaw_rate_rad_s, ..Heading::fixed(yaw_rad) });
             }
             (Steering::Path(path), None) => {
                 path.turn_to(Heading { yaw_rate_rad_s: 0.0, ..path.goal() });

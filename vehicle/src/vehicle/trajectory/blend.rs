@@ -78,6 +78,7 @@ impl Blend {
         PositionReference {
             velocity_m_s: self.velocity_in_m_s + change * share,
             acceleration_m_s2: change * rate,
+            jerk_m_s3: change * self.rate_slope(time_s),
             ..at_rest(self.entry_m() + self.velocity_in_m_s * time_s + change * way_s, 0.0)
         }
     }
@@ -94,6 +95,16 @@ impl Blend {
         let slip_m_s = (reference.velocity_m_s - self.velocity_in_m_s).norm();
         let passes = (0.0..LATEST_S).contains(&elapsed_s) && beside_m < NEAR_M && slip_m_s < NEAR_M_S;
         passes.then_some(elapsed_s)
+    }
+
+    /// The slope ẅ of the rate of the change, 1/s²: constant on either ramp.
+    fn rate_slope(&self, time_s: f64) -> f64 {
+        let slope = 1.0 / (self.ramp_s * (self.duration_s - self.ramp_s));
+        match time_s {
+            _ if time_s < self.ramp_s => slope,
+            _ if time_s > self.duration_s - self.ramp_s => -slope,
+            _ => 0.0,
+        }
     }
 
     /// Share w of the change of velocity that is made after a time, its rate ẇ, 1/s, and its integral x, s: ẇ is a trapezoid.
@@ -152,6 +163,11 @@ mod tests {
                 prop_assert!((now.velocity_m_s - velocity).norm() < 1e-4, "{} {velocity}", now.velocity_m_s);
                 let (a, jerk) = (now.acceleration_m_s2, (now.acceleration_m_s2 - acceleration) / STEP_S);
                 acceleration = a;
+                let since_s = (step as f64 - 0.5) * STEP_S;
+                let ramps = [0.0, blend.ramp_s, blend.duration_s - blend.ramp_s, blend.duration_s];
+                if ramps.iter().all(|ramp_s| (since_s - ramp_s).abs() > STEP_S) {
+                    prop_assert!((before.jerk_m_s3 - jerk).norm() < 1e-6, "{} {jerk}", before.jerk_m_s3);
+                }
                 prop_assert!(a.xy().norm() <= limits.acceleration_horizontal_m_s2 * 1.0001);
                 prop_assert!(a.z.abs() <= limits.acceleration_vertical_m_s2 * 1.0001);
                 prop_assert!(jerk.xy().norm() <= limits.jerk_horizontal_m_s3 * 1.0001);

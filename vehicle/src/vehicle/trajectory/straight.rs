@@ -66,6 +66,7 @@ impl Straight {
         PositionReference {
             velocity_m_s: self.direction * now.velocity,
             acceleration_m_s2: self.direction * now.acceleration,
+            jerk_m_s3: self.direction * now.jerk,
             ..at_rest(self.from_m + self.direction * now.position, 0.0)
         }
     }

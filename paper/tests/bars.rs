@@ -1,0 +1,121 @@
+//! The bars against flights and numbers computed here. Whether a bar is kept is reported, not tested.
+
+use std::sync::OnceLock;
+
+use paper::bars::{BarResult, Flyer, Plan, Track, flown, plans};
+use quadrotor::{Configuration, ControllerKind, Inputs, PositionReference, Simulation};
+
+fn all_plans() -> &'static [Plan] {
+    static PLANS: OnceLock<Vec<Plan>> = OnceLock::new();
+    PLANS.get_or_init(|| plans(&Configuration::default()))
+}
+
+fn plan(name: &str) -> &'static Plan {
+    all_plans().iter().find(|plan| plan.name == name).unwrap()
+}
+
+fn find<'a>(results: &'a [BarResult], flyer: Flyer, figure: &str) -> &'a BarResult {
+    let of = |result: &&BarResult| result.controller == flyer.name() && result.figure.starts_with(figure);
+    results.iter().find(of).unwrap()
+}
+
+/// Every flight that the controllers are held against, once.
+#[test]
+fn the_table_has_every_row() {
+    let count = |row: &str| all_plans().iter().filter(|plan| plan.row.name() == row).count();
+    let rows = ["cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin"];
+    assert_eq!(rows.map(count), [2, 11, 4, 4, 1, 12, 4, 4]);
+    assert_eq!(rows.map(count).iter().sum::<usize>(), all_plans().len());
+    let mut names: Vec<&str> = all_plans().iter().map(|plan| plan.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), all_plans().len());
+}
+
+/// A step flown by the engine alone, observed every millisecond with sums written here.
+#[test]
+fn figures_of_a_step_are_those_of_a_flight_of_ones_own() {
+    let goal_m = 5.0;
+    let mut configuration = Configuration::default();
+    configuration.reference.shaping = false;
+    configuration.controllers.governor = false;
+    configuration.controllers.kind = ControllerKind::Dlqr;
+    let inputs = Inputs { reference: PositionReference::goal([goal_m, 0.0, 0.0], 0.0), ..Inputs::default() };
+    let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
+    let (mut farthest_m, mut last_away_s, mut squared, mut largest_tilt) = (0.0_f64, 0.0, 0.0, 0.0_f64);
+    for millisecond in 1..=25_000_u64 {
+        simulation.advance_to(1_000 * millisecond, &inputs).unwrap();
+        let outputs = simulation.outputs();
+        let distance_m = (outputs.position_m - inputs.reference.position_m).norm();
+        farthest_m = farthest_m.max(outputs.position_m.x);
+        squared += 1e-3 * distance_m * distance_m;
+        if distance_m > 0.02 {
+            last_away_s = millisecond as f64 * 1e-3;
+        }
+        let [phi, theta] = [outputs.attitude_rad.x, outputs.attitude_rad.y];
+        largest_tilt = largest_tilt.max((phi.cos() * theta.cos()).acos());
+    }
+    let results = flown(plan("5 m north"), &[Flyer::Regulator]).results;
+    let value = |figure: &str| find(&results, Flyer::Regulator, figure).value.unwrap();
+    assert!((value("overshoot") - 100.0 * (farthest_m / goal_m - 1.0)).abs() < 0.01);
+    assert!((value("settled") - last_away_s).abs() < 0.011, "{} {last_away_s}", value("settled"));
+    assert!((value("integral") / squared - 1.0).abs() < 1e-3);
+    let excess = 100.0 * (largest_tilt / configuration.limits.tilt_rad - 1.0);
+    assert!(value("beyond a limit") >= excess - 0.01, "{} {excess}", value("beyond a limit"));
+}
+
+/// A bar compares with the faster of the two regulators, and says what it compares.
+#[test]
+fn settling_times_are_held_against_the_regulators() {
+    let flyers = [Flyer::LaguerreMpc, Flyer::Regulator, Flyer::GovernedRegulator];
+    let results = flown(plan("1 m north"), &flyers).results;
+    let of = |flyer| find(&results, flyer, "settled");
+    let fastest = of(Flyer::Regulator).value.unwrap().min(of(Flyer::GovernedRegulator).value.unwrap());
+    let bound = of(Flyer::LaguerreMpc).bound.unwrap();
+    assert!((fastest..fastest + 0.01).contains(&bound), "{bound} {fastest}");
+    for result in &results {
+        assert_eq!(result.passed, result.bound.map(|bound| result.value.is_some_and(|value| value <= bound)));
+    }
+}
+
+/// What the geometric controller reaches on the paths: the feed-forward is right, so that errors are millimetres where the
+/// rotors can follow. On the fastest circle the yaw torque saturates.
+#[test]
+fn the_geometric_controller_follows_paths() {
+    for (name, most_cm) in [
+        ("figure-eight of 6 m at 0.7 rad/s", 0.1),
+        ("figure-eight of 6 m at 0.85 rad/s", 0.3),
+        ("circle of 4 m at 1.2 rad/s", 0.2),
+        ("circle of 4 m at 1.5 rad/s", 4.0),
+    ] {
+        let results = flown(plan(name), &[Flyer::Geometric]).results;
+        let rms_cm = find(&results, Flyer::Geometric, "RMS").value.unwrap();
+        assert!(rms_cm < most_cm, "{name}: {rms_cm}");
+    }
+    assert!(flown(plan("1 m north"), &[Flyer::Geometric]).results.is_empty());
+}
+
+/// What cannot be designed is reported with its reason, and keeps no bar.
+#[test]
+fn a_flight_that_is_refused_is_lost() {
+    let mut refused = plan("1 m north").clone();
+    refused.configuration.airframe.mass_kg = -1.0;
+    let results = flown(&refused, &[Flyer::LaguerreMpc]).results;
+    assert_eq!(results.len(), 1);
+    assert_eq!((results[0].value, results[0].passed), (None, Some(false)));
+    assert!(results[0].lost.as_deref().unwrap().contains("airframe.mass"), "{results:?}");
+}
+
+#[test]
+fn a_track_has_a_line_per_moment() {
+    let flown = flown(plan("1 m north"), &[Flyer::Regulator]);
+    let track: &Track = &flown.tracks[0].1;
+    let csv = track.csv();
+    assert_eq!(csv.lines().count(), track.moments.len() + 1);
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert!(csv.lines().all(|line| line.split(',').count() == columns));
+    let last: Vec<f64> =
+        csv.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect();
+    assert_eq!(last[0], 20.0);
+    assert!((last[1] - 1.0).abs() < 1e-3);
+}
