@@ -11,7 +11,6 @@ use crate::{ControllerState, Sample, Step};
 /// | law | what of the [`Sample`] it reads |
 /// | --- | --- |
 /// | [`StateFeedback`](crate::StateFeedback) | `increment`, `error`, `input_reference` |
-/// | [`DeviationFeedback`](crate::DeviationFeedback) | `deviation`, `disturbance`, `error`, `input_reference` |
 /// | [`LaguerreMpc`](crate::LaguerreMpc) | the same, `upper`, and `measured` for limits of the state |
 /// | … [`with_model_increment`](crate::LaguerreMpc::with_model_increment) | `deviation` and `disturbance` instead of `increment` |
 /// | [`StateSpaceMpc`](crate::StateSpaceMpc) | `deviation`, `disturbance`, `input_reference`, `preview`, `upper` |

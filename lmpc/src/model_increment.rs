@@ -4,10 +4,14 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 
 use crate::{DesignError, StateSpace, validate};
 
-/// Δx that leads to a state under a driving input: x − A⁻¹(x − B u). Under limits it stands for the measured
-/// motion, in which an actuator that answers late looks like a disturbance.
+/// The motion Δx which, by a model, leads to a state x under a driving input u: x − A⁻¹(x − B u).
+///
+/// Given to an incremental law as its increment, with the input v(k−1) + d(k) that drives the deviation from the reference, it makes
+/// the law one of the deviation. Gain and eigenvalues stay the same. What differs is a jump of the reference, which moves x at
+/// once but is no motion of the past that the integral action would have to undo, and an actuator that answers late, which looks
+/// like a disturbance in the measured motion. The integral action is then the estimated disturbance d.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ModelIncrement<const N: usize, const P: usize> {
+pub struct ModelIncrement<const N: usize, const P: usize> {
     /// I − A⁻¹
     by_state: SMatrix<f64, N, N>,
     /// A⁻¹ B
@@ -16,7 +20,11 @@ pub(crate) struct ModelIncrement<const N: usize, const P: usize> {
 
 impl<const N: usize, const P: usize> ModelIncrement<N, P> {
     /// For a plant of N states and P inputs whose A can be inverted.
-    pub(crate) fn new(plant: &StateSpace) -> Result<Self, DesignError> {
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`] when the sizes differ from the const generics, [`DesignError::NotFinite`] when A cannot be
+    /// inverted.
+    pub fn new(plant: &StateSpace) -> Result<Self, DesignError> {
         validate::shape("A", plant.a(), (N, N))?;
         validate::shape("B", plant.b(), (N, P))?;
         let inverse = plant.a().clone().try_inverse().ok_or(DesignError::NotFinite { name: "A⁻¹" })?;
@@ -29,7 +37,7 @@ impl<const N: usize, const P: usize> ModelIncrement<N, P> {
     }
 
     /// Δx(k) of the state x(k), under the input u(k−1).
-    pub(crate) fn that_led_to(&self, state: &SVector<f64, N>, driving: &SVector<f64, P>) -> SVector<f64, N> {
+    pub fn that_led_to(&self, state: &SVector<f64, N>, driving: &SVector<f64, P>) -> SVector<f64, N> {
         self.by_state * state + self.by_input * driving
     }
 }

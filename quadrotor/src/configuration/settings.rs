@@ -178,8 +178,7 @@ pub struct ControllerSettings<const P: usize> {
 /// | attitude a, N_p | 0.93, 120 | turning upside down under the torque limits overshoots by 3 %; 0.9 to 0.95 by 6 to 2 % |
 /// | altitude R | 1 | closes at ω = (1/(ΔT √R))^(1/3) = 2.7 rad/s: a tenth of what rotor lag and sampling allow |
 /// | position R | 1200 | closes at (g/(ΔT √R))^(1/3) = 1.8 rad/s: a quarter of the attitude loop's bandwidth |
-/// | attitude bandwidth | from the airframe | at most 0.6/(rotor lag + ΔT/2), and √(α/0.06) rad/s of the angular acceleration α in hover: 11.9 rad/s for the paper's roll and pitch, 3.4 for its yaw |
-/// | attitude rate weight | 2 | the closed loop has a damping of 0.65 |
+/// | attitude bandwidth | from the airframe | at most 0.8/(rotor lag + ΔT/2), and √(α/0.06) rad/s of the angular acceleration α in hover: 11.9 rad/s for the paper's roll and pitch, 3.4 for its yaw |
 impl Default for Controllers {
     fn default() -> Self {
         let altitude = ControllerSettings {
@@ -205,7 +204,7 @@ impl Default for Controllers {
             mass_factor: 1.0,
             altitude,
             position: position.with_weights([1.0; 2], [0.5; 2], [1.0; 2]),
-            attitude: attitude.with_weights([1.0; 3], [2.0; 3], [1.0; 3]),
+            attitude: attitude.with_weights([1.0; 3], [0.5; 3], [1.0; 3]),
         }
     }
 }

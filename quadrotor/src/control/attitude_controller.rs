@@ -1,6 +1,8 @@
 //! Attitude: from the attitude and body rates to torques.
 
-use lmpc::{ControllerState, Sample, Step};
+use core::f64::consts::{PI, TAU};
+
+use lmpc::{ControllerState, ModelIncrement, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +15,11 @@ use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_MANY, TURN_MANY};
 use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration};
+
+/// Tilt error from which a vehicle is upside down, rad: its reference may lean by the rest.
+const UPSIDE_DOWN_RAD: f64 = PI - 0.6;
+/// Rate from which a turn has begun, rad/s.
+const BEGUN_RAD_S: f64 = 0.3;
 
 /// What is known of the vehicle's rotation, measured or estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +77,24 @@ struct Deviation {
 }
 
 impl Deviation {
+    /// What of it can be planned with over some times, s, of lean and of turn, under angular accelerations, rad/s²: a rotation that is too
+    /// fast to be braked in this time is braked, and where it has come to is of no interest.
+    fn in_sight(&self, sight_s: [f64; 2], acceleration_rad_s2: [f64; 2]) -> Self {
+        let [lean, turn] = [0, 1].map(|law| sight_s[law] * acceleration_rad_s2[law]);
+        let mut seen = *self;
+        let rate = self.rate_rad_s.xy().norm();
+        if rate > lean {
+            (seen.angle_rad.x, seen.angle_rad.y) = (0.0, 0.0);
+            seen.rate_rad_s.x *= lean / rate;
+            seen.rate_rad_s.y *= lean / rate;
+        }
+        if libm::fabs(self.rate_rad_s.z) > turn {
+            seen.angle_rad.z = 0.0;
+            seen.rate_rad_s.z = turn.copysign(self.rate_rad_s.z);
+        }
+        seen
+    }
+
     fn since(&self, before: &Self) -> Self {
         Self {
             angle_rad: self.angle_rad - before.angle_rad,
@@ -160,21 +185,25 @@ impl AttitudeController {
             torque_n_m: seen.torque_n_m,
             delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
         };
-        let [roll_n_m, pitch_n_m, _] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
+        let [roll_n_m, pitch_n_m, yaw_n_m] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
         let most_n_m = roll_n_m.min(pitch_n_m);
         let beside = spin.beside(most_n_m);
         let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
 
         let reference_acceleration = to_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
+        let error_rad = going_on(&attitude_error(&reference.attitude, &seen.attitude), &rate_error_rad_s);
         let deviation = Deviation {
-            angle_rad: leaning_at_most(&attitude_error(&reference.attitude, &seen.attitude), largest_rad),
+            angle_rad: leaning_at_most(&error_rad, largest_rad),
             rate_rad_s: rate_error_rad_s,
             acceleration_rad_s2: reached - reference_acceleration,
         };
+        let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
+        let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;
+        let deviation = deviation.in_sight(design.attitude.sight_s, [lean_rad_s2, turn_rad_s2]);
         let told = Seen {
             deviation,
-            increment: deviation.since(&self.deviation),
+            increment: self.increment(design.attitude.motion.as_ref(), &deviation, &seen.disturbance_rad_s2),
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
@@ -200,6 +229,21 @@ impl AttitudeController {
             inertia_kg_m2,
         };
         (asked, activity(&lean, &turn))
+    }
+
+    /// The motion since the last sample: by the model, if there is one, else as it was measured.
+    fn increment(
+        &self,
+        motion: Option<&ModelIncrement<AXIS_STATES, 1>>,
+        deviation: &Deviation,
+        disturbance_rad_s2: &Vector3<f64>,
+    ) -> Deviation {
+        let Some(motion) = motion else { return deviation.since(&self.deviation) };
+        let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
+        let axes =
+            [0, 1, 2].map(|axis| motion.that_led_to(&deviation.states(axis), &Vector1::new(driving[axis])));
+        let of = |state: usize| Vector3::from(axes.map(|axis| axis[state]));
+        Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) }
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -253,6 +297,19 @@ impl AttitudeController {
             self.turn.apply(&turn);
         }
     }
+}
+
+/// An error in which a vehicle that is upside down goes on turning as it does, rad: the shortest way changes its direction with every
+/// small lean, and the next one is no better than the one that was begun.
+fn going_on(error_rad: &Vector3<f64>, rate_error_rad_s: &Vector3<f64>) -> Vector3<f64> {
+    let (lean, rate) = (error_rad.xy(), rate_error_rad_s.xy());
+    let (tilt, speed) = (lean.norm(), rate.norm());
+    if tilt < UPSIDE_DOWN_RAD || speed < BEGUN_RAD_S {
+        return *error_rad;
+    }
+    let left = if rate.dot(&lean) > 0.0 { TAU - tilt } else { tilt };
+    let way = rate * (-left / speed);
+    Vector3::new(way.x, way.y, error_rad.z)
 }
 
 /// An error whose lean is shortened to a largest one, rad.

@@ -171,8 +171,9 @@ impl Cascade {
         (reference, answered): (&PositionReference, &PositionReference),
     ) -> [f64; 4] {
         self.reference_m_s2 = reference.acceleration_m_s2;
-        let attitude = self.required_attitude(configuration, reference);
-        let later = self.required_attitude(configuration, answered);
+        let upright = upright(&seen.body);
+        let attitude = self.required_attitude(configuration, upright, reference);
+        let later = self.required_attitude(configuration, upright, answered);
         self.tilt_reference_rad = [attitude.roll_rad, attitude.pitch_rad];
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
@@ -184,18 +185,25 @@ impl Cascade {
             jerk_rad_s3: change / lag_s,
         };
         let vertical = answered.acceleration_m_s2.z + self.feedback_m_s2.z;
-        let thrust_n = thrust(configuration, vertical, upright(&seen.body));
+        let thrust_n = thrust(configuration, vertical, upright);
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
         self.command_rotors(configuration, design, seen, &required, thrust_n)
     }
 
-    /// The attitude and its motion that a reference requires together with what feedback adds to it.
+    /// The attitude and its motion that a reference requires together with what feedback adds to it. While the thrust pushes
+    /// sideways or down it is level: where the thrust should push cannot be followed, and a way upright that bends with it takes
+    /// longer.
     fn required_attitude(
         &self,
         configuration: &Configuration,
+        upright: f64,
         reference: &PositionReference,
     ) -> FlatAttitude {
+        if upright < UPRIGHT {
+            let none = Vector3::zeros();
+            return FlatAttitude::new(&none, &none, &none, &Heading::of(reference));
+        }
         let wanted = reference.acceleration_m_s2 + self.feedback_m_s2;
         let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
         let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);

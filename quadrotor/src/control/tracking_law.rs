@@ -3,11 +3,11 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Controller, ControllerState, DesignError, DeviationFeedback, LaguerreMpc, Limit, LmpcDesign, Quantity,
-    Sample, SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
-    StateSpaceMpcWeights, Step,
+    Augmented, Controller, ControllerState, DesignError, Dlqr, Limit, LmpcDesign, Quantity, Sample,
+    SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
+    StateSpaceMpcWeights, Step, Weights,
 };
-use nalgebra::{DMatrix, SVector};
+use nalgebra::DMatrix;
 
 use crate::design::capacities::FEW_TERMS;
 use crate::{ControllerKind, ControllerSettings};
@@ -17,20 +17,13 @@ use crate::{ControllerKind, ControllerSettings};
 #[allow(clippy::large_enum_variant)] // A design is made once and holds one of each loop.
 pub(crate) enum TrackingLaw<const N: usize, const P: usize, const S: usize, const L: usize> {
     /// Laguerre MPC with few terms.
-    FewTerms(LaguerreMpc<N, P, P, S>),
+    FewTerms(StabilizedMpc<N, P, P, S>),
     /// Laguerre MPC with many.
-    ManyTerms(LaguerreMpc<N, P, P, L>),
-    /// Laguerre MPC about a stabilizing feedback, with few terms.
-    StabilizedFew(StabilizedMpc<N, P, P, S>),
-    /// The same with many.
-    StabilizedMany(StabilizedMpc<N, P, P, L>),
+    ManyTerms(StabilizedMpc<N, P, P, L>),
     /// State-space MPC.
     StateSpace(StateSpaceMpc<N, P, P, L>),
-    /// Laguerre MPC without limits, or the regulator: increments from the measured motion, which contains what
-    /// disturbs it.
-    Incremental(StateFeedback<N, P, P>),
-    /// The regulator by the deviation from its reference, told of what disturbs it.
-    ByDeviation(DeviationFeedback<N, P, P>),
+    /// The regulator, or the paper's Laguerre MPC without limits.
+    Linear(StateFeedback<N, P, P>),
 }
 
 impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw<N, P, S, L> {
@@ -39,28 +32,21 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         kind: ControllerKind,
         settings: &ControllerSettings<P>,
         design: &LmpcDesign,
-        limits: &[Limit],
+        weights: &Weights,
     ) -> Result<Self, DesignError> {
-        Ok(match kind {
-            ControllerKind::Lmpc if limits.is_empty() => {
-                Self::Incremental(StateFeedback::from_design(design)?)
-            }
-            // Under limits it goes by the motion that the model explains: in the measured motion an actuator that answers
-            // late looks like a disturbance.
-            ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
-                Self::FewTerms(LaguerreMpc::with_model_increment(design, limits)?)
-            }
-            ControllerKind::Lmpc => Self::ManyTerms(LaguerreMpc::with_model_increment(design, limits)?),
+        match kind {
+            ControllerKind::Lmpc => Self::of_gain(design.gain()),
             ControllerKind::StateSpaceMpc => {
-                Self::StateSpace(StateSpaceMpc::new(&state_space_of(settings, design)?, limits)?)
+                let design = state_space(settings, design.model(), weights, design.dlqr())?;
+                Ok(Self::StateSpace(StateSpaceMpc::new(&design, &[])?))
             }
-            ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
-        })
+            ControllerKind::Dlqr => Self::of_gain(design.dlqr().gain()),
+        }
     }
 
-    /// Increments of the measured motion by a gain K on \[Δx; y − r\].
+    /// By a gain K on \[Δx; y − r\].
     pub(crate) fn of_gain(gain: &DMatrix<f64>) -> Result<Self, DesignError> {
-        Ok(Self::Incremental(StateFeedback::new(gain)?))
+        Ok(Self::Linear(StateFeedback::new(gain)?))
     }
 
     /// The controller of this kind with the weights of a stabilized Laguerre design under limits. A slack of 1 costs `slack_cost`.
@@ -73,34 +59,24 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     ) -> Result<Self, DesignError> {
         Ok(match kind {
             ControllerKind::Lmpc if settings.terms as usize <= FEW_TERMS => {
-                Self::StabilizedFew(StabilizedMpc::new(design, limits, slack_cost)?)
+                Self::FewTerms(StabilizedMpc::new(design, limits, slack_cost)?)
             }
-            ControllerKind::Lmpc => Self::StabilizedMany(StabilizedMpc::new(design, limits, slack_cost)?),
+            ControllerKind::Lmpc => Self::ManyTerms(StabilizedMpc::new(design, limits, slack_cost)?),
             ControllerKind::StateSpaceMpc => {
                 let limits: Vec<Limit> = limits.iter().map(plain).collect();
-                Self::StateSpace(StateSpaceMpc::new(&state_space(settings, design)?, &limits)?)
+                let design = state_space(settings, design.model(), design.weights(), design.dlqr())?;
+                Self::StateSpace(StateSpaceMpc::new(&design, &limits)?)
             }
-            ControllerKind::Dlqr => Self::Incremental(StateFeedback::new(design.dlqr().gain())?),
+            ControllerKind::Dlqr => Self::of_gain(design.dlqr().gain())?,
         })
-    }
-
-    /// The regulator of a design, by the deviation from its reference.
-    pub(crate) fn by_deviation(design: &LmpcDesign) -> Result<Self, DesignError> {
-        let regulator = DeviationFeedback::new(design.model().plant(), design.dlqr().gain())?;
-        Ok(Self::ByDeviation(regulator))
     }
 
     /// The regulator, which knows no limits; `None` of the others.
     pub(crate) fn regulator(&self) -> Option<&StateFeedback<N, P, P>> {
         match self {
-            Self::Incremental(regulator) => Some(regulator),
+            Self::Linear(regulator) => Some(regulator),
             _ => None,
         }
-    }
-
-    /// Whether it goes by the measured motion; else it must be told of disturbances.
-    pub(crate) fn is_incremental(&self) -> bool {
-        matches!(self, Self::Incremental(_) | Self::StabilizedFew(_) | Self::StabilizedMany(_))
     }
 
     /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
@@ -117,11 +93,8 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         match self {
             Self::FewTerms(controller) => controller,
             Self::ManyTerms(controller) => controller,
-            Self::StabilizedFew(controller) => controller,
-            Self::StabilizedMany(controller) => controller,
             Self::StateSpace(controller) => controller,
-            Self::Incremental(controller) => controller,
-            Self::ByDeviation(controller) => controller,
+            Self::Linear(controller) => controller,
         }
     }
 }
@@ -145,39 +118,17 @@ fn plain(limit: &SignalLimit) -> Limit {
 /// State-space MPC with the same weights, and the regulator's cost of what comes after the horizon.
 fn state_space<const P: usize>(
     settings: &ControllerSettings<P>,
-    design: &StabilizedDesign,
+    model: &Augmented,
+    weights: &Weights,
+    regulator: &Dlqr,
 ) -> Result<StateSpaceMpcDesign, DesignError> {
-    let (q, states) = (design.weights().q(), design.model().plant().states());
+    let (q, states) = (weights.q(), model.plant().states());
     let weights = StateSpaceMpcWeights {
         output: q.view((states, states), (P, P)).into_owned(),
-        moves: design.weights().r().clone(),
+        moves: weights.r().clone(),
         increment: q.view((0, 0), (states, states)).into_owned(),
-        terminal: Some(design.dlqr().cost().clone()),
+        terminal: Some(regulator.cost().clone()),
     };
     let (horizon, moves) = (settings.prediction_horizon as usize, settings.control_horizon as usize);
-    StateSpaceMpcDesign::with_weights(design.model().plant(), &weights, horizon, moves)
-}
-
-/// State-space MPC with the same weights: Q on y − r and on the increments of the rates, R on the moves, and the
-/// regulator's cost of what comes after the horizon.
-fn state_space_of<const P: usize>(
-    settings: &ControllerSettings<P>,
-    design: &LmpcDesign,
-) -> Result<StateSpaceMpcDesign, DesignError> {
-    let diagonal =
-        |weights: &SVector<f64, P>| DMatrix::from_fn(P, P, |i, j| if i == j { weights[i] } else { 0.0 });
-    let states = design.model().plant().states();
-    let mut damping = DMatrix::zeros(states, states);
-    for (channel, weight) in settings.rate_weight.iter().enumerate() {
-        let rate = channel * (states / P) + 1;
-        damping[(rate, rate)] = *weight;
-    }
-    let weights = StateSpaceMpcWeights {
-        output: diagonal(&settings.output_weight),
-        moves: diagonal(&settings.increment_weight),
-        increment: damping,
-        terminal: Some(design.dlqr().cost().clone()),
-    };
-    let (horizon, moves) = (settings.prediction_horizon as usize, settings.control_horizon as usize);
-    StateSpaceMpcDesign::with_weights(design.model().plant(), &weights, horizon, moves)
+    StateSpaceMpcDesign::with_weights(model.plant(), &weights, horizon, moves)
 }

@@ -2,9 +2,9 @@
 
 use crate::{Airframe, Configuration, Mixer, PredictionModel};
 
-/// Bandwidth times delay, the rotors' lag and half a sample time. The model knows the delay: the regulator of 0.6 keeps
-/// stable when the lag is 3.8 times as long as believed, or the torque 3.8 times as large.
-const DELAY_SHARE: f64 = 0.6;
+/// Bandwidth times delay, the rotors' lag and half a sample time. The model knows the delay: the regulator of 0.8 keeps
+/// stable when the lag is 3 times as long as believed, or the torque 3 times as large.
+const DELAY_SHARE: f64 = 0.8;
 /// Largest deviation that is corrected in proportion, rad: beyond it the torque saturates. The program foresees that, so it
 /// can be small: a degree and a half of lean moves the vehicle by 0.25 m/s².
 const PROPORTIONAL_RAD: f64 = 0.06;
@@ -25,6 +25,8 @@ pub(crate) struct AttitudeBandwidth {
     pub(crate) lean_rad_s: f64,
     /// Of yaw, rad/s.
     pub(crate) turn_rad_s: f64,
+    /// How many times longer a turn takes under the largest torque than a lean of the same angle.
+    pub(crate) longer: f64,
 }
 
 impl AttitudeBandwidth {
@@ -40,7 +42,9 @@ impl AttitudeBandwidth {
         let fastest = share / (airframe.rotor_time_constant_s + sample_time_s / 2.0);
         let [roll, pitch, yaw] = available_rad_s2(airframe, mixer);
         let closed = |acceleration: f64| fastest.min(libm::sqrt(acceleration / proportional_rad));
-        Self { lean_rad_s: closed(roll.min(pitch)), turn_rad_s: closed(yaw) }
+        let lean = roll.min(pitch);
+        // t = 2 √(e/α) from rest to rest.
+        Self { lean_rad_s: closed(lean), turn_rad_s: closed(yaw), longer: libm::sqrt(lean / yaw) }
     }
 }
 
@@ -72,14 +76,16 @@ mod tests {
         let lean = (2.0 * 0.275 * room_n / 0.1063 / 0.06_f64).sqrt();
         let turn = (4.0 * room_n * 6e-7 / 2.7e-5 / 0.2122 / 0.06_f64).sqrt();
         assert!((found.lean_rad_s - lean).abs() < 1e-12 && (lean - 11.92).abs() < 0.01, "{found:?}");
+        assert!((found.longer - lean / turn).abs() < 1e-12);
         assert!((found.turn_rad_s - turn).abs() < 1e-12 && (turn - 3.39).abs() < 0.01, "{found:?}");
     }
 
-    /// 0.6/(0.1 + 0.005) rad/s.
+    /// 0.8/(0.1 + 0.005) rad/s; manoeuvres take as long as they did.
     #[test]
     fn slow_rotors_bound_it_otherwise() {
         let found = bandwidth(|configuration| configuration.airframe.rotor_time_constant_s = 0.1);
-        assert!((found.lean_rad_s - 0.6 / 0.105).abs() < 1e-12, "{found:?}");
+        assert!((found.lean_rad_s - 0.8 / 0.105).abs() < 1e-12, "{found:?}");
+        assert!((found.longer - bandwidth(|_| ()).longer).abs() < 1e-12);
     }
 
     /// Twice the inertia under twice the torque: the same bandwidth; the slower of two axes counts.

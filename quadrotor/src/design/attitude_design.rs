@@ -2,18 +2,19 @@
 
 use alloc::vec::Vec;
 
-use lmpc::{DesignError, Limit, LmpcDesign};
-use nalgebra::SVector;
+use lmpc::{Augmented, DesignError, ModelIncrement, StateSpace};
+use nalgebra::{DMatrix, SVector};
 
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::attitude_bandwidth::AttitudeBandwidth;
 use crate::design::attitude_limits::{lean_limits, turn_limits};
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
-use crate::design::cascade_design::{DesignReport, laguerre_design};
-use crate::design::controller_limits::placed;
+use crate::design::cascade_design::{DesignReport, weighted_design};
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::lagged_attitude_model;
+use crate::design::loop_weights::loop_weights;
+use crate::design::stabilized_law::StabilizedLaw;
 use crate::{Airframe, Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
 
 /// States of one axis: angle, rate, and the angular acceleration that the rotors have reached.
@@ -24,8 +25,11 @@ pub(crate) type LeanLaw = TrackingLaw<{ 2 * AXIS_STATES }, 2, LEAN_FEW, LEAN_MAN
 /// Yaw: ψ, ψ̇, ψ̈ by the rotors; input ψ̈ as commanded.
 pub(crate) type TurnLaw = TrackingLaw<AXIS_STATES, 1, TURN_FEW, TURN_MANY>;
 
-/// Most times by which yaw is taken to be slower than roll and pitch: beyond it its horizon ends earlier.
-const SLOWEST_TURN: f64 = 8.0;
+/// Most times by which a turn is taken to be longer than a lean: beyond it the horizon ends earlier.
+const LONGEST_TURN: f64 = 8.0;
+
+/// Error of the attitude, rad, the cost of which stands for that of a violated limit: upside down.
+const SIGHT_RAD: f64 = core::f64::consts::PI;
 
 /// The laws of the attitude controller.
 ///
@@ -37,6 +41,11 @@ pub(crate) struct AttitudeDesign {
     pub(crate) turn: TurnLaw,
     /// Rate per error with which small leans are closed, 1/s: half of the bandwidth.
     pub(crate) closing_1_s: f64,
+    /// How far ahead limits are kept, s, by the laws of lean and of turn.
+    pub(crate) sight_s: [f64; 2],
+    /// The motion of one axis by its model, which stands for the measured one; `None` with the paper's models, which do not know
+    /// why the vehicle answers late.
+    pub(crate) motion: Option<ModelIncrement<AXIS_STATES, 1>>,
     /// The closed loop of roll and pitch; with the paper's models nobody needs it.
     pub(crate) closed: Option<AttitudeLoop>,
 }
@@ -50,37 +59,60 @@ impl AttitudeDesign {
         let controllers = &configuration.controllers;
         let settings = &controllers.attitude;
         let bandwidth = AttitudeBandwidth::new(configuration, mixer);
-        let slower = (bandwidth.lean_rad_s / bandwidth.turn_rad_s).clamp(1.0, SLOWEST_TURN);
-        let lean_settings = scaled(settings, [0, 1], bandwidth.lean_rad_s, 1.0);
-        let turn_settings = scaled(settings, [2], bandwidth.turn_rad_s, slower);
+        let longer = bandwidth.longer.clamp(1.0, LONGEST_TURN);
+        let lean_settings = of_axes(settings, [0, 1], 1.0);
+        let turn_settings = of_axes(settings, [2], longer);
 
-        let lag_s = match controllers.model {
-            PredictionModel::InnerLoops => configuration.airframe.rotor_time_constant_s,
-            PredictionModel::Paper => 0.0,
-        };
         let sample_time_s = settings.sample_time_s();
-        let lean = laguerre_design(&lean_settings, lagged_attitude_model(2, lag_s, sample_time_s)?)?;
-        let turn = laguerre_design(&turn_settings, lagged_attitude_model(1, lag_s, sample_time_s)?)?;
-        let lean_samples = placed(&lean_settings, ATTITUDE);
-        let turn_samples = placed(&turn_settings, &later(ATTITUDE, slower));
-        let lean_limits = lean_limits(&configuration.airframe, mixer, &lean_samples);
-        let closed = match controllers.model {
-            PredictionModel::InnerLoops => Some(closed_loop(controllers.kind, &lean, lag_s, sample_time_s)?),
-            PredictionModel::Paper => None,
-        };
-        let report = DesignReport::of(&lean)?.worse(&DesignReport::of(&turn)?);
-        let design = Self {
-            lean: law(configuration, &lean_settings, &lean, &lean_limits)?,
-            turn: law(configuration, &turn_settings, &turn, &turn_limits(&turn_samples))?,
-            closing_1_s: bandwidth.lean_rad_s / 2.0,
-            closed,
-        };
-        Ok((design, report))
+        let lean_bandwidth = [bandwidth.lean_rad_s; 2].into();
+        let turn_bandwidth = [bandwidth.turn_rad_s].into();
+        let kind = controllers.kind;
+        let closing_1_s = bandwidth.lean_rad_s / 2.0;
+        let last = ATTITUDE.iter().copied().max().unwrap_or(0) as f64;
+        let sight_s = [last * sample_time_s, last * longer * sample_time_s];
+        match controllers.model {
+            PredictionModel::InnerLoops => {
+                let lag_s = configuration.airframe.rotor_time_constant_s;
+                let axis = lagged_attitude_model(1, lag_s, sample_time_s)?;
+                let both = lagged_attitude_model(2, lag_s, sample_time_s)?;
+                let limits = lean_limits(&configuration.airframe, mixer, ATTITUDE);
+                let lean =
+                    StabilizedLaw::new(kind, &lean_settings, &lean_bandwidth, &limits, SIGHT_RAD, &both)?;
+                let limits = turn_limits(&configuration.airframe, mixer, &later(ATTITUDE, longer));
+                let turn =
+                    StabilizedLaw::new(kind, &turn_settings, &turn_bandwidth, &limits, SIGHT_RAD, &axis)?;
+                let design = Self {
+                    lean: lean.law,
+                    turn: turn.law,
+                    closing_1_s,
+                    sight_s,
+                    motion: Some(ModelIncrement::new(&axis)?),
+                    closed: Some(closed_loop(&axis, &lean.gain, lag_s, sample_time_s)?),
+                };
+                Ok((design, lean.report.worse(&turn.report)))
+            }
+            PredictionModel::Paper => {
+                let (lean, lean_report) = prompt_law(
+                    kind,
+                    &lean_settings,
+                    &lean_bandwidth,
+                    &lagged_attitude_model(2, 0.0, sample_time_s)?,
+                )?;
+                let (turn, turn_report) = prompt_law(
+                    kind,
+                    &turn_settings,
+                    &turn_bandwidth,
+                    &lagged_attitude_model(1, 0.0, sample_time_s)?,
+                )?;
+                let design = Self { lean, turn, closing_1_s, sight_s, motion: None, closed: None };
+                Ok((design, lean_report.worse(&turn_report)))
+            }
+        }
     }
 
     /// Whether it goes by the measured motion; else it must be told of disturbances and of what the reference needs.
     pub(crate) fn is_incremental(&self) -> bool {
-        self.lean.is_incremental()
+        self.motion.is_none() && !self.lean.sees_deviation_alone()
     }
 
     /// What the design depends on is the same.
@@ -94,21 +126,19 @@ impl AttitudeDesign {
     }
 }
 
-/// Settings of some axes, with weights for a bandwidth ω, rad/s, and with times that are longer.
-fn scaled<const P: usize>(
+/// Settings of some axes, with times that are longer.
+fn of_axes<const P: usize>(
     settings: &ControllerSettings<3>,
     axes: [usize; P],
-    bandwidth_rad_s: f64,
     longer: f64,
 ) -> ControllerSettings<P> {
-    let (t, w) = (settings.sample_time_s(), bandwidth_rad_s);
-    let of = |weights: &SVector<f64, 3>, unit: f64| axes.map(|axis| weights[axis] / (unit * unit));
-    let output = of(&settings.output_weight, 1.0);
-    let rate = of(&settings.rate_weight, t * w * w);
-    let increment = of(&settings.increment_weight, t * w * w * w);
+    let of = |weights: &SVector<f64, 3>| axes.map(|axis| weights[axis]);
+    let weights = [&settings.output_weight, &settings.rate_weight, &settings.increment_weight].map(of);
+    let [output, rate, increment] = weights;
     ControllerSettings {
         scale: libm::pow(settings.scale, 1.0 / longer),
         prediction_horizon: libm::ceil(f64::from(settings.prediction_horizon) * longer) as u32,
+        damping_weight: of(&settings.damping_weight).into(),
         ..settings.with_weights(output, rate, increment)
     }
 }
@@ -118,39 +148,34 @@ fn later(samples: &[usize], times: f64) -> Vec<usize> {
     samples.iter().map(|sample| libm::round(*sample as f64 * times) as usize).collect()
 }
 
-/// The law of a finished design. With the paper's models limits are left to the mixer: increments from a torque that was
-/// cut off would lose the damping that it had asked for, because the rotors answer late, which those models do not know.
-fn law<const N: usize, const P: usize, const S: usize, const L: usize>(
-    configuration: &Configuration,
+/// The law on a model whose rotors answer at once, as the paper has it: without limits, which are left to the mixer. Increments
+/// from a torque that was cut off would lose the damping that it had asked for, because the rotors answer late, which this model
+/// does not know.
+fn prompt_law<const N: usize, const P: usize, const S: usize, const L: usize>(
+    kind: ControllerKind,
     settings: &ControllerSettings<P>,
-    design: &LmpcDesign,
-    limits: &[Limit],
-) -> Result<TrackingLaw<N, P, S, L>, DesignError> {
-    let controllers = &configuration.controllers;
-    match (controllers.model, controllers.kind) {
-        (PredictionModel::Paper, ControllerKind::Lmpc) => {
-            TrackingLaw::new(controllers.kind, settings, design, &[])
-        }
-        (PredictionModel::InnerLoops, ControllerKind::Dlqr) => TrackingLaw::by_deviation(design),
-        _ => TrackingLaw::new(controllers.kind, settings, design, limits),
-    }
+    bandwidth_rad_s: &SVector<f64, P>,
+    plant: &StateSpace,
+) -> Result<(TrackingLaw<N, P, S, L>, DesignReport), DesignError> {
+    let augmented = Augmented::new(plant);
+    let weights = loop_weights(&augmented, settings, bandwidth_rad_s)?;
+    let design = weighted_design(settings, &augmented, &weights)?;
+    Ok((TrackingLaw::new(kind, settings, &design, &weights)?, DesignReport::of(&design)?))
 }
 
 /// Roll and pitch answer alike unless they have different weights; then the slower one counts.
 fn closed_loop(
-    kind: ControllerKind,
-    lean: &LmpcDesign,
+    axis: &StateSpace,
+    gain: &DMatrix<f64>,
     lag_s: f64,
     sample_time_s: f64,
 ) -> Result<AttitudeLoop, DesignError> {
-    let gain = if kind == ControllerKind::Lmpc { lean.gain() } else { lean.dlqr().gain() };
-    let plant = lagged_attitude_model(1, lag_s, sample_time_s)?;
-    let axis = |axis: usize| {
-        let states = gain.view((axis, axis * AXIS_STATES), (1, AXIS_STATES));
+    let of = |index: usize| {
+        let states = gain.view((index, index * AXIS_STATES), (1, AXIS_STATES));
         let mut of_axis = states.into_owned().resize(1, AXIS_STATES + 1, 0.0);
-        of_axis[(0, AXIS_STATES)] = gain[(axis, 2 * AXIS_STATES + axis)];
-        AttitudeLoop::new(&plant, &of_axis, lag_s, sample_time_s)
+        of_axis[(0, AXIS_STATES)] = gain[(index, 2 * AXIS_STATES + index)];
+        AttitudeLoop::new(axis, &of_axis, lag_s, sample_time_s)
     };
-    let (roll, pitch) = (axis(0)?, axis(1)?);
+    let (roll, pitch) = (of(0)?, of(1)?);
     Ok(if pitch.delay_s() > roll.delay_s() { pitch } else { roll })
 }

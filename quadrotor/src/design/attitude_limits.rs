@@ -2,15 +2,16 @@
 
 use alloc::vec::Vec;
 
-use lmpc::{Limit, Quantity};
+use lmpc::SignalLimit;
 use nalgebra::{DMatrix, Vector2, Vector3};
 
+use crate::design::attitude_design::AXIS_STATES;
 use crate::design::capacities::{LEAN_BOUNDS, TURN_BOUNDS};
 use crate::{Airframe, Mixer};
 
 /// The commanded angular accelerations about roll and pitch, rad/s², at some samples: how far each rotor's thrust may differ
 /// from the mean, N, up and down.
-pub(crate) fn lean_limits(airframe: &Airframe, mixer: &Mixer, samples: &[usize]) -> Vec<Limit> {
+pub(crate) fn lean_limits(airframe: &Airframe, mixer: &Mixer, samples: &[usize]) -> [SignalLimit; 1] {
     let [roll, pitch, _] = airframe.inertia_kg_m2;
     let by_roll = mixer.tilting_thrusts_n(&Vector2::new(roll, 0.0));
     let by_pitch = mixer.tilting_thrusts_n(&Vector2::new(0.0, pitch));
@@ -19,15 +20,21 @@ pub(crate) fn lean_limits(airframe: &Airframe, mixer: &Mixer, samples: &[usize])
         let thrust_n = if axis == 0 { by_roll[rotor] } else { by_pitch[rotor] };
         if bound < 4 { thrust_n } else { -thrust_n }
     });
-    let samples = samples.to_vec();
-    [Limit { quantity: Quantity::Input, directions, samples, soft: false }].into()
+    let (weakest, strongest) = airframe.thrust_range_n();
+    let limit = SignalLimit::of_inputs(2 * AXIS_STATES, 2, directions, samples.to_vec());
+    [limit.giving_way_by((strongest - weakest) / 8.0)]
 }
 
 /// The commanded angular acceleration about yaw, rad/s²: at this sample what roll and pitch leave, and later on what the
 /// rotors can do about yaw alone.
-pub(crate) fn turn_limits(samples: &[usize]) -> Vec<Limit> {
+pub(crate) fn turn_limits(airframe: &Airframe, mixer: &Mixer, samples: &[usize]) -> [SignalLimit; 2] {
     let (present, later): (Vec<_>, Vec<_>) = samples.iter().copied().partition(|sample| *sample == 0);
-    [present, later].map(|samples| Limit::range(Quantity::Input, 1, samples)).into()
+    let (weakest, strongest) = airframe.thrust_range_n();
+    let [_, _, yaw_n_m] = mixer.largest_torques_n_m((strongest - weakest) / 8.0);
+    [present, later].map(|samples| {
+        SignalLimit::of_inputs(AXIS_STATES, 1, SignalLimit::range(1), samples)
+            .giving_way_by(yaw_n_m / airframe.inertia_kg_m2[2])
+    })
 }
 
 /// What the rotors have room for at one sample.

@@ -1,9 +1,6 @@
 //! The three controllers of the cascade, designed from a configuration.
 
-use lmpc::{
-    Augmented, DesignError, LaguerreBasis, LmpcDesign, StateSpace, Weighting, Weights, spectral_radius,
-};
-use nalgebra::{DMatrix, DVector};
+use lmpc::{Augmented, DesignError, LaguerreBasis, LmpcDesign, Weighting, Weights, spectral_radius};
 
 use crate::configuration::validation::validate;
 use crate::design::attitude_design::AttitudeDesign;
@@ -175,24 +172,6 @@ fn attitude_design(
 fn estimator_design(configuration: &Configuration) -> Result<EstimatorDesign, ConfigurationError> {
     EstimatorDesign::new(configuration)
         .map_err(|source| ConfigurationError::Design { part: "Kalman predictor", source })
-}
-
-pub(crate) fn laguerre_design<const P: usize>(
-    settings: &ControllerSettings<P>,
-    plant: StateSpace,
-) -> Result<LmpcDesign, DesignError> {
-    let augmented = Augmented::new(&plant);
-
-    // Q = diag(0, w_rate, …, w_output, …) on [Δx_m; y − r], x_m = [y₁ ẏ₁ … y₂ ẏ₂ …]; R = diag(w_increment)
-    let mut q = DVector::zeros(augmented.states());
-    let states = augmented.plant().states();
-    for channel in 0..P {
-        q[channel * (states / P) + 1] = settings.rate_weight[channel];
-        q[states + channel] = settings.output_weight[channel];
-    }
-    let r = DMatrix::from_diagonal(&DVector::from_column_slice(settings.increment_weight.as_slice()));
-    let weights = Weights::new(&augmented, DMatrix::from_diagonal(&q), r)?;
-    weighted_design(settings, &augmented, &weights)
 }
 
 /// The Laguerre design of a model with finished weights.

@@ -1,8 +1,6 @@
-//! What the predictive controllers keep within, as [`Limit`]s and their values at a sample.
+//! What commands keep within.
 
-use alloc::vec::Vec;
-
-use crate::{Configuration, ControllerSettings, GRAVITY_M_S2};
+use crate::{Configuration, GRAVITY_M_S2};
 
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
@@ -10,18 +8,6 @@ pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
 /// Share of the tilt limit that is commanded. When a raw step saturates the torques the attitude overshoots
 /// its command, by half in the worst of many steps tried.
 pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.94;
-
-/// Growth of predicted moves up to which limits are placed on them.
-const GROWTH: f64 = 10.0;
-
-/// The samples on which limits of a controller are placed: within its horizon, and before α^m L(m) grows. With
-/// α a > 1 the moves that exponential weighting predicts grow without bound, and so would the limits' rows.
-pub(crate) fn placed<const P: usize>(settings: &ControllerSettings<P>, samples: &[usize]) -> Vec<usize> {
-    let growing = settings.alpha * settings.scale;
-    let kept =
-        |m: &usize| *m < settings.prediction_horizon as usize && libm::pow(growing, *m as f64) <= GROWTH;
-    samples.iter().copied().filter(kept).collect()
-}
 
 /// Thrust, N, that an attitude target keeps whatever its torques need: what holds the altitude at a tilt of the given cosine, as
 /// far as the altitude controller may use it.

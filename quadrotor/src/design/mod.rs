@@ -20,4 +20,5 @@ pub(crate) mod reduced_attitude;
 pub(crate) mod rotor_loss_design;
 pub(crate) mod side_force;
 pub(crate) mod stability;
+pub(crate) mod stabilized_law;
 pub(crate) mod translation_design;

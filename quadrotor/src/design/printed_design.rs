@@ -30,7 +30,7 @@ pub(crate) fn printed_design<const N: usize, const P: usize, const S: usize, con
             let augmented = Augmented::new(&with_idle_states);
             let weights = loop_weights(&augmented, settings, bandwidth_rad_s)?;
             let design = weighted_design(settings, &augmented, &weights)?;
-            TrackingLaw::new(kind, settings, &design, &[])?
+            TrackingLaw::new(kind, settings, &design, &weights)?
         }
     };
     Ok((design, law))

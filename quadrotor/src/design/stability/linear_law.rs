@@ -69,16 +69,6 @@ impl<const C: usize> LinearLaw<C> {
         })
     }
 
-    /// The same law for an input in other units, of which one of the old ones has `scale`.
-    pub(crate) fn scaled(&self, scale: f64) -> Self {
-        Self {
-            increment: self.increment.map(|gain| gain * scale),
-            deviation: self.deviation.map(|gain| gain * scale),
-            error: self.error * scale,
-            ..*self
-        }
-    }
-
     /// The feedback of a sample.
     pub(crate) fn feedback(&self, sample: &ChannelSample<C>) -> f64 {
         let sum = |gains: &[f64; C], values: &[f64; C]| {

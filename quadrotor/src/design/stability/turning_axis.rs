@@ -1,5 +1,7 @@
 //! One axis of the attitude under its controller, for small signals.
 
+use lmpc::ModelIncrement;
+
 use crate::control::attitude_reference::SMOOTHING_S;
 use crate::control::estimator::lag_kept;
 use crate::design::attitude_design::AXIS_STATES;
@@ -12,6 +14,7 @@ use crate::{CascadeDesign, Configuration};
 pub(crate) struct TurningAxis {
     /// From angles to angular accelerations of the believed inertia.
     law: LinearLaw<AXIS_STATES>,
+    motion: Option<ModelIncrement<AXIS_STATES, 1>>,
     is_incremental: bool,
     /// Inertia that the controller believes in, as a multiple of the true one.
     believed: f64,
@@ -95,6 +98,7 @@ impl TurningAxis {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         Self {
             law,
+            motion: design.attitude.motion,
             is_incremental: design.attitude.is_incremental(),
             believed: configuration.controllers.mass_factor,
             sample_time_s,
@@ -141,7 +145,12 @@ impl TurningAxis {
         let reached = state.acceleration / self.believed;
         let deviation = [seen[0] - reference[0], seen[1] - reference[1], reached - ahead];
         state.feedback = self.law.feedback(&ChannelSample {
-            increment: core::array::from_fn(|place| deviation[place] - state.deviation[place]),
+            increment: match &self.motion {
+                Some(motion) => {
+                    motion.that_led_to(&deviation.into(), &[state.feedback + state.estimate[2]].into()).into()
+                }
+                None => core::array::from_fn(|place| deviation[place] - state.deviation[place]),
+            },
             deviation,
             held: state.feedback,
             disturbance: state.estimate[2],
