@@ -23,6 +23,9 @@ struct Arguments {
     /// Optimal flights that xtask/python/optimum.py found, to compare with.
     #[arg(long, value_name = "OPTIMUM.json", conflicts_with_all = ["gain", "schema"])]
     optimum: Option<PathBuf>,
+    /// Random flights of each controller; fewer for a first look.
+    #[arg(long, value_name = "FLIGHTS", default_value_t = FLIGHTS, value_parser = clap::value_parser!(u32).range(1..))]
+    random: u32,
     /// Directory for report.html, results.json and PNG copies of the figures.
     #[arg(long, value_name = "DIR", default_value = "target/paper")]
     out: PathBuf,
@@ -33,7 +36,7 @@ fn main() -> ExitCode {
     let outcome = match &arguments.gain {
         Some(path) => print_gain(path),
         None if arguments.schema => print(&json(&schema())),
-        None => write_results(&arguments.out, arguments.optimum.as_deref()),
+        None => write_results(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -61,13 +64,14 @@ fn print(line: &str) -> Result<(), Error> {
     }
 }
 
-fn write_results(out: &Path, optimum: Option<&Path>) -> Result<(), Error> {
-    let optima = match optimum {
+fn write_results(arguments: &Arguments) -> Result<(), Error> {
+    let out = &arguments.out;
+    let optima = match &arguments.optimum {
         Some(path) => Optimum::parse(&read(path)?)?,
         None => Vec::new(),
     };
-    let progress = Progress::shown(parts(FLIGHTS));
-    let results = results(FLIGHTS, &optima, &progress)?;
+    let progress = Progress::shown(parts(arguments.random));
+    let results = results(arguments.random, &optima, &progress)?;
     progress.stage("figures");
     let page = report(&results);
     let figures = page.all_figures();

@@ -33,8 +33,8 @@ fn second_section(page: &mut Page, results: &Results) {
     page.heading("Figures 8–13: a control horizon of 30 with N = 1 and N = 9, and all N up to 15");
     page.paragraph(
         "(58) with N<sub>c</sub> = 30 gives a = 0.9672 for N = 1 and a = 0.7408 for N = 9. The paper shows similar flights for both. \
-         With its α = 1.2 the design with N = 1 is rejected, because its closed loop is unstable; with the Riccati solution as \
-         terminal weight it flies, slowly. The tables list rejected designs.",
+         With its α = 1.2 and our R, the design with N = 1 is rejected, because its closed loop is unstable; the paper gives no R, and with a \
+         larger one the loop can be stable. With the Riccati solution as terminal weight it flies, slowly. The tables list rejected designs.",
     );
     for mission in Mission::ALL {
         page.subheading(title(mission));

@@ -51,7 +51,7 @@ pub fn eigenvalues(page: &mut Page, results: &Results) {
     page.figures(vec![sweep_figure(results)]);
     if results.figure4.len() < 3 * 15 {
         page.paragraph(
-            "Missing rows: with so few terms the closed loop is unstable, and the design is rejected.",
+            "Missing rows: with so few terms and our R, the closed loop is unstable, and the design is rejected.",
         );
     }
     let rows: Vec<Vec<String>> = results
