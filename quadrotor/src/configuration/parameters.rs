@@ -142,6 +142,7 @@ pub static PARAMETERS: &[Parameter] = &[
     },
     boolean!("controller.governor", STRUCTURAL, controllers.governor, "Whether a distant set-point is moved closer for the position and altitude controllers, so that the vehicle can brake in time; without it large steps overshoot"),
     real!("controller.mass_factor", One, STRUCTURAL, 0.5..=1.5, controllers.mass_factor, "Mass in the controllers' model as a multiple of the true mass"),
+    boolean!("controller.learning", STRUCTURAL, controllers.learning, "Whether mass and drag are learned in flight, from thrust and acceleration, beginning with controller.mass_factor and airframe.drag"),
     sample_time!("controller.altitude.sample_time", altitude, "Sample time of the altitude controller"),
     integer!("controller.altitude.terms", 1..=MOST_TERMS, controllers.altitude.terms, "N: Laguerre terms of the altitude controller"),
     real!("controller.altitude.scale", One, STRUCTURAL, 0.0..=0.99, controllers.altitude.scale, "a: Laguerre scaling factor of the altitude controller"),
