@@ -74,6 +74,12 @@ impl AltitudeController {
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
     }
 
+    /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
+    pub(crate) fn feed_forward(&mut self, drag_1_s: f64) {
+        let more = self.reference.velocity * drag_1_s;
+        self.controller.turn_feedback(|feedback| feedback - more);
+    }
+
     /// Expresses the acceleration that was applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector1<f64>) -> Vector1<f64>) {
         self.controller.apply(&term(&self.controller.applied()));

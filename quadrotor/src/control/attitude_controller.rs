@@ -138,6 +138,12 @@ impl AttitudeController {
         self.attitude = *attitude;
     }
 
+    /// Expresses what was asked for last in other terms.
+    pub(crate) fn translate(&mut self, term: impl Fn(&Vector3<f64>) -> Vector3<f64>) {
+        self.controller.turn_feedback(|torque| term(torque));
+        self.integral_n_m = term(&self.integral_n_m);
+    }
+
     /// Goes on under another law of the same torque. An incremental law has the torque that its reference needs in its
     /// feedback, the others beside it.
     pub(crate) fn hand_over(&mut self, before: &CascadeDesign, after: &LoopDesign) {

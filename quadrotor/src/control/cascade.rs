@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::{tilt_angles, turned};
 use crate::control::activity::Activity;
 use crate::control::altitude_controller::AltitudeController;
-use crate::control::attitude_controller::AttitudeController;
+use crate::control::attitude_controller::{AttitudeController, VehicleRotation};
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
@@ -81,17 +81,28 @@ impl Cascade {
         self.tilt_reference_rad
     }
 
-    /// Goes on from the commands of one design under another one, without a step of thrust or torques.
+    /// Goes on from the commands of one design under another one, without a step of torques.
     pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
-        if let Some(belief) =
-            MassBelief::changed(&before.configuration.controllers, &after.configuration.controllers)
-        {
+        self.attitude.hand_over(&before.cascade, after);
+    }
+
+    /// Goes on under another belief in mass, inertia and drag, without a step of thrust or torques.
+    pub(crate) fn believe(&mut self, before: &Configuration, after: &Configuration) {
+        if let Some(belief) = MassBelief::changed(&before.controllers, &after.controllers) {
             self.horizontal = self.horizontal.map(|acceleration| belief.horizontal(acceleration));
             self.vertical = self.vertical.map(|acceleration| belief.vertical(acceleration));
             self.position.translate(|acceleration| belief.horizontal(acceleration));
             self.altitude.translate(|acceleration| belief.vertical(acceleration));
         }
-        self.attitude.hand_over(&before.cascade, after);
+        let drag_1_s = after.drag_1_s() - before.drag_1_s();
+        if drag_1_s != Vector3::zeros() {
+            self.position.feed_forward(&drag_1_s.xy());
+            self.altitude.feed_forward(drag_1_s.z);
+        }
+        let inertia = before.believed_inertia_kg_m2().x / after.believed_inertia_kg_m2().x;
+        if inertia != 1.0 {
+            self.attitude.translate(|torque| torque * inertia);
+        }
     }
 
     /// The acceleration that is commanded at `time_us`, NED, m/s².
@@ -116,7 +127,7 @@ impl Cascade {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
-            acceleration_ahead: setpoint.acceleration_ahead_m_s2.xy(),
+            acceleration_ahead: with_drag(configuration, setpoint).xy(),
             interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
         };
         let limits = &configuration.limits;
@@ -154,7 +165,7 @@ impl Cascade {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
-            acceleration_ahead: axis(&setpoint.acceleration_ahead_m_s2),
+            acceleration_ahead: axis(&with_drag(configuration, setpoint)),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
@@ -219,24 +230,30 @@ impl Cascade {
         let period_us = configuration.controllers.attitude.sample_time_us;
         let period_s = configuration.controllers.attitude.sample_time_s();
         let body = &seen.body;
-        let gyroscopic = gyroscopic_torque(configuration, &body.body_rate_rad_s);
+        // The controller acts on the inertia that it was designed for; all torques grow with the one that is believed in now.
+        let scale = configuration.believed_inertia_kg_m2().x / design.inertia_kg_m2.x;
+        let designed = configuration.with_inertia_kg_m2(&design.inertia_kg_m2);
+        let gyroscopic = gyroscopic_torque(&designed, &body.body_rate_rad_s);
+        let rotation = seen.rotation();
+        let disturbance_n_m = rotation.disturbance_n_m / scale;
+        let bounds = attitude_bounds(&design.mixer, (thrust_n, least_thrust_n), &(gyroscopic * scale));
         let (torque, activity) = self.attitude.step(
-            configuration,
+            &designed,
             design,
-            &seen.rotation(),
+            &VehicleRotation { disturbance_n_m, ..rotation },
             reference,
-            &attitude_bounds(&design.mixer, (thrust_n, least_thrust_n), &gyroscopic),
+            &bounds.map(|bound| bound / scale),
             interval_s(&mut self.sampled.attitude_us, time_us, period_us),
         );
         // The rotors answer late; until then a spinning body has turned under the torque.
         let lag_s = configuration.airframe.rotor_time_constant_s + period_s / 2.0;
         let lead = UnitQuaternion::from_scaled_axis(Vector3::z() * (-body.body_rate_rad_s.z * lag_s));
-        let wanted = Wrench { thrust_n, torque_n_m: lead * (torque + gyroscopic) };
+        let wanted = Wrench { thrust_n, torque_n_m: lead * ((torque + gyroscopic) * scale) };
         let rotor_command_rad_s = design.mixer.rotor_speeds_rad_s(&wanted, least_thrust_n);
         let made = wrench_of_rotors(&configuration.airframe, &rotor_command_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
-        self.attitude.apply(design, &(lead.inverse() * made.torque_n_m - gyroscopic));
+        self.attitude.apply(design, &(lead.inverse() * made.torque_n_m / scale - gyroscopic));
         rotor_command_rad_s
     }
 }
@@ -252,6 +269,12 @@ fn attitude_reference(
     let axis = Vector3::new(-horizontal.x, -horizontal.y, GRAVITY_M_S2 - vertical);
     let (phi, theta) = tilt_angles(&axis, yaw_rad);
     ([phi, theta], UnitQuaternion::from_euler_angles(phi, theta, yaw_rad))
+}
+
+/// Acceleration, NED, m/s², that thrust and gravity must make for a set-point to be followed against the drag.
+fn with_drag(configuration: &Configuration, setpoint: &Setpoint) -> Vector3<f64> {
+    let drag = configuration.drag_1_s().component_mul(&setpoint.reference.velocity_m_s);
+    setpoint.acceleration_ahead_m_s2 + drag
 }
 
 /// Cosine of the tilt: the down component of the body's down axis.

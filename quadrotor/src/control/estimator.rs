@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::turned;
 use crate::control::mass_belief::MassBelief;
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::loop_design::LoopDesign;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// Time over which the vehicle's falling short of its commands is averaged, s.
@@ -36,7 +35,7 @@ pub(crate) struct Command {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimator {
     body: RigidBody,
-    /// Acceleration that thrust and gravity do not explain, NED, m/s².
+    /// Acceleration that thrust, gravity and drag do not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
@@ -92,7 +91,7 @@ impl Estimator {
             && disturbances.chain(&self.rotor_speed_rad_s).all(|number| number.is_finite())
     }
 
-    /// Acceleration beside the commanded one, NED, m/s²: what thrust and gravity do not explain, and what the
+    /// Acceleration beside the commanded one, NED, m/s²: what thrust, gravity and drag do not explain, and what the
     /// vehicle falls short of its commands in the long run.
     pub(crate) fn disturbance_m_s2(&self) -> Vector3<f64> {
         self.disturbance_m_s2 + self.shortfall_m_s2
@@ -103,15 +102,22 @@ impl Estimator {
         self.disturbance_rad_s2
     }
 
-    /// Goes on under another design, for an unchanged vehicle: a thrust that is believed to accelerate more, or less, leaves the
-    /// less, or more, to the disturbance.
-    pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
-        let (configuration, controllers) = (&before.configuration, &after.configuration.controllers);
-        let Some(belief) = MassBelief::changed(&configuration.controllers, controllers) else { return };
-        let thrust_n = wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n;
-        let thrust = self.body.rotation() * Vector3::z() * (thrust_n / configuration.believed_mass_kg());
+    /// Speeds of the rotors by their model at the next sample, rad/s.
+    pub(crate) fn rotor_speed_rad_s(&self) -> &[f64; 4] {
+        &self.rotor_speed_rad_s
+    }
+
+    /// Goes on under another belief in mass, inertia and drag, for an unchanged vehicle: what thrust and drag are believed to accelerate
+    /// more, or less, leaves less, or more, to the disturbance.
+    pub(crate) fn believe(&mut self, before: &Configuration, after: &Configuration) {
+        self.disturbance_m_s2 +=
+            (after.drag_1_s() - before.drag_1_s()).component_mul(&self.body.velocity_m_s);
+        let inertia = before.believed_inertia_kg_m2().component_div(&after.believed_inertia_kg_m2());
+        self.disturbance_rad_s2.component_mul_assign(&inertia);
+        let Some(belief) = MassBelief::changed(&before.controllers, &after.controllers) else { return };
+        let thrust_n = wrench_of_rotors(&before.airframe, &self.rotor_speed_rad_s).thrust_n;
+        let thrust = self.body.rotation() * Vector3::z() * (thrust_n / before.believed_mass_kg());
         self.disturbance_m_s2 -= belief.growth_under(&thrust);
-        self.disturbance_rad_s2 = belief.difference(&self.disturbance_rad_s2);
         self.shortfall_m_s2 = belief.difference(&self.shortfall_m_s2);
         self.answer_z_m_s2 = belief.vertical(&Vector1::new(self.answer_z_m_s2)).x;
     }
@@ -148,6 +154,7 @@ impl Estimator {
         let answer = Vector3::new(commanded.x, commanded.y, self.answer_z_m_s2);
         self.shortfall_m_s2 +=
             (acceleration - answer - self.shortfall_m_s2) * shortfall_share(design.sample_time_s);
+        let drag = configuration.drag_1_s().component_mul(&self.body.velocity_m_s);
         // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;
@@ -160,7 +167,7 @@ impl Estimator {
             let estimate = [self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]];
             let next = design.translation.predict(
                 &estimate.into(),
-                &Vector1::new(acceleration[i]),
+                &Vector1::new(acceleration[i] - drag[i]),
                 &Vector1::new(measured.position_m[i]),
             );
             (self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]) =

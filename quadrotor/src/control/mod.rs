@@ -13,6 +13,7 @@ pub(crate) mod estimator;
 pub(crate) mod governor;
 pub(crate) mod instants;
 mod largest_share;
+mod learning;
 pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;

@@ -81,6 +81,12 @@ impl PositionController {
         (applied, ControllerActivity::of(&step, &wanted, &applied))
     }
 
+    /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
+    pub(crate) fn feed_forward(&mut self, drag_1_s: &Vector2<f64>) {
+        let more = tilt_of(&drag_1_s.component_mul(&self.reference.velocity));
+        self.controller.turn_feedback(|feedback| feedback - more);
+    }
+
     /// Expresses the acceleration that was applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
         let applied = acceleration_of(&self.controller.applied());

@@ -6,7 +6,7 @@ use lmpc::{
     Augmented, DesignError, Discretization, LaguerreBasis, Limit, LmpcDesign, StateFeedback, StateSpace,
     Weighting, Weights, spectral_radius,
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use crate::configuration::validation::validate;
 use crate::control::tracking_law::TrackingLaw;
@@ -45,6 +45,8 @@ pub struct CascadeDesign {
     pub(crate) attitude_gains: StateFeedback<6, 3, 3>,
     pub(crate) estimator: EstimatorDesign,
     pub(crate) mixer: Mixer,
+    /// Moments of inertia that the attitude controller was designed for, kg·m².
+    pub(crate) inertia_kg_m2: Vector3<f64>,
     reports: [DesignReport; 3],
 }
 
@@ -67,6 +69,7 @@ impl CascadeDesign {
             attitude_gains: attitude.gains,
             estimator: estimator_design(configuration)?,
             mixer: Mixer::new(&configuration.airframe)?,
+            inertia_kg_m2: configuration.believed_inertia_kg_m2(),
             reports: [altitude.report, position.report, attitude.report],
         })
     }
@@ -105,6 +108,7 @@ impl CascadeDesign {
             self.estimator = designed;
         }
         self.mixer = mixer;
+        self.inertia_kg_m2 = configuration.believed_inertia_kg_m2();
         Ok(redesigned)
     }
 
