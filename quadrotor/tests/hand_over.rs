@@ -24,6 +24,8 @@ const KINDS: [ControllerKind; 3] =
 fn base(kind: ControllerKind) -> Configuration {
     let mut configuration = Configuration::default();
     configuration.controllers.kind = kind;
+    // What a design believes in is what flies.
+    configuration.controllers.learning = false;
     configuration.airframe.drag_n_s_m = [0.1; 3];
     configuration.limits.speed_horizontal_m_s = 5.0;
     configuration

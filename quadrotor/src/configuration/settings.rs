@@ -32,6 +32,22 @@ impl Configuration {
         self.airframe.mass_kg * self.controllers.mass_factor
     }
 
+    /// The same with another belief in the mass, and so in the inertia.
+    pub(crate) fn with_mass_factor(&self, mass_factor: f64) -> Self {
+        Self { controllers: Controllers { mass_factor, ..self.controllers }, ..*self }
+    }
+
+    /// The same with a belief in these moments of inertia, kg·m².
+    pub(crate) fn with_inertia_kg_m2(&self, inertia_kg_m2: &Vector3<f64>) -> Self {
+        let inertia_kg_m2 = (inertia_kg_m2 / self.controllers.mass_factor).into();
+        Self { airframe: Airframe { inertia_kg_m2, ..self.airframe }, ..*self }
+    }
+
+    /// Drag per mass that the controllers believe in, along the world axes, 1/s.
+    pub(crate) fn drag_1_s(&self) -> Vector3<f64> {
+        Vector3::from(self.airframe.drag_n_s_m) / self.believed_mass_kg()
+    }
+
     /// Moments of inertia that the controllers believe in, kg·m²: they grow with the mass.
     pub(crate) fn believed_inertia_kg_m2(&self) -> Vector3<f64> {
         Vector3::from(self.airframe.inertia_kg_m2) * self.controllers.mass_factor
@@ -127,6 +143,9 @@ pub struct Controllers {
     /// Mass that the controllers believe in, as a multiple of the true one: a way to fly with a wrong
     /// model.
     pub mass_factor: f64,
+    /// Whether mass and drag are learned in flight: what was learned then takes the place of `mass_factor` and the
+    /// airframe's drag, which it begins with.
+    pub learning: bool,
     /// Altitude controller on (9), input G.
     pub altitude: ControllerSettings<1>,
     /// Position controller on (15), inputs θ, φ for outputs x, y.
@@ -202,6 +221,7 @@ impl Default for Controllers {
             model: PredictionModel::default(),
             governor: true,
             mass_factor: 1.0,
+            learning: true,
             altitude,
             position: position.with_weights([1.0; 2], [0.5; 2], [1.0; 2]),
             attitude: attitude.with_weights([1.0; 3], [0.5; 3], [1.0; 3]),

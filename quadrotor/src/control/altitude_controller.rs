@@ -70,11 +70,11 @@ impl AltitudeController {
             deviation: Vector3::new(
                 error.x,
                 seen.velocity_m_s - rate_m_s,
-                seen.acceleration_m_s2 - reference.acceleration.x,
+                seen.acceleration_m_s2 - reference.thrust.x,
             ),
             error,
             // The rotors answer late: z̈ = G − T z⃛.
-            input_reference: reference.acceleration + reference.jerk * lag_s,
+            input_reference: reference.thrust + reference.jerk * lag_s,
             disturbance: Vector1::new(seen.disturbance_m_s2),
             upper: &altitude_bounds(limits, range, rate_m_s),
             ..Sample::default()
@@ -92,8 +92,19 @@ impl AltitudeController {
         self.controller.input_reference().x
     }
 
-    /// Expresses the acceleration that was applied last in other terms.
+    /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
+    pub(crate) fn feed_forward(&mut self, drag_1_s: f64) {
+        let more = self.reference.velocity * drag_1_s;
+        self.controller.turn_feedback(|feedback| feedback - more);
+    }
+
+    /// Expresses the accelerations that were measured and applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector1<f64>) -> Vector1<f64>) {
-        self.controller.apply(&term(&self.controller.applied()));
+        let applied = term(&self.controller.applied());
+        self.controller = self.controller.map(
+            |state| Vector3::new(state.x, state.y, term(&Vector1::new(state.z)).x),
+            Vector1::clone_owned,
+        );
+        self.controller.apply(&applied);
     }
 }

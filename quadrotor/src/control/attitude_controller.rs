@@ -256,18 +256,21 @@ impl AttitudeController {
         self.attitude = *attitude;
     }
 
+    /// Goes on with the same torque under a belief in another inertia: `ratio` is the one before over the one now.
+    pub(crate) fn believe(&mut self, ratio: f64) {
+        self.lean.turn_feedback(|lean| lean * ratio);
+        self.turn.turn_feedback(|turn| turn * ratio);
+        self.integral_rad_s2 *= ratio;
+    }
+
     /// Goes on under another law of the same torque. An incremental law has what its reference needs in its feedback, the
     /// others beside it.
     pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
-        let believed = |design: &LoopDesign| design.configuration.believed_inertia_kg_m2();
-        let (one, other) = (believed(before), believed(after));
         let is_incremental = after.cascade.attitude.is_incremental();
-        if one == other && before.cascade.attitude.is_incremental() == is_incremental {
+        if before.cascade.attitude.is_incremental() == is_incremental {
             return;
         }
-        // The same torque is another angular acceleration of another inertia.
-        let ratio = one.component_div(&other);
-        let applied = self.applied_rad_s2().component_mul(&ratio);
+        let applied = self.applied_rad_s2();
         let reference = joined(&self.lean.input_reference(), &self.turn.input_reference());
         let reference = if is_incremental { Vector3::zeros() } else { reference };
         self.lean = ControllerState::new(self.lean.measured(), applied.xy(), reference.xy());

@@ -82,11 +82,14 @@ impl Cascade {
         self.tilt_reference_rad
     }
 
-    /// Goes on from the commands of one design under another one, without a step of thrust or torques.
+    /// Goes on from the commands of one design under another one, without a step of torques.
     pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
-        if let Some(belief) =
-            MassBelief::changed(&before.configuration.controllers, &after.configuration.controllers)
-        {
+        self.attitude.hand_over(before, after);
+    }
+
+    /// Goes on under another belief in mass, inertia and drag, without a step of thrust or torques.
+    pub(crate) fn believe(&mut self, before: &Configuration, after: &Configuration) {
+        if let Some(belief) = MassBelief::changed(&before.controllers, &after.controllers) {
             let commanded = self.acceleration_m_s2();
             let horizontal = belief.horizontal(&commanded.xy());
             let vertical = belief.vertical(&Vector1::new(commanded.z));
@@ -94,7 +97,15 @@ impl Cascade {
             self.position.translate(|acceleration| belief.horizontal(acceleration));
             self.altitude.translate(|acceleration| belief.vertical(acceleration));
         }
-        self.attitude.hand_over(before, after);
+        let drag_1_s = after.drag_1_s() - before.drag_1_s();
+        if drag_1_s != Vector3::zeros() {
+            self.position.feed_forward(&drag_1_s.xy());
+            self.altitude.feed_forward(drag_1_s.z);
+        }
+        let inertia = before.believed_inertia_kg_m2().x / after.believed_inertia_kg_m2().x;
+        if inertia != 1.0 {
+            self.attitude.believe(inertia);
+        }
     }
 
     /// The acceleration that is commanded, NED, m/s².
@@ -117,6 +128,7 @@ impl Cascade {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
+            thrust: against_drag(configuration, reference).xy(),
             jerk: reference.jerk_m_s3.xy(),
             snap: reference.snap_m_s4.xy(),
             interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
@@ -131,7 +143,7 @@ impl Cascade {
             most_horizontal(vertical.max(0.0), tilt_rad),
             |wanted| within_tilt(wanted, vertical, tilt_rad),
         );
-        let feedback = applied - motion.acceleration;
+        let feedback = applied - motion.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
         self.activity.position = activity;
     }
@@ -151,6 +163,7 @@ impl Cascade {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
+            thrust: axis(&against_drag(configuration, reference)),
             jerk: axis(&reference.jerk_m_s3),
             snap: axis(&reference.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
@@ -170,7 +183,7 @@ impl Cascade {
         seen: &Observation,
         (reference, answered): (&PositionReference, &PositionReference),
     ) -> [f64; 4] {
-        self.reference_m_s2 = reference.acceleration_m_s2;
+        self.reference_m_s2 = against_drag(configuration, reference);
         let upright = upright(&seen.body);
         let attitude = self.required_attitude(configuration, upright, reference);
         let later = self.required_attitude(configuration, upright, answered);
@@ -184,7 +197,7 @@ impl Cascade {
             acceleration_rad_s2: attitude.angular_acceleration_rad_s2,
             jerk_rad_s3: change / lag_s,
         };
-        let vertical = answered.acceleration_m_s2.z + self.feedback_m_s2.z;
+        let vertical = against_drag(configuration, answered).z + self.feedback_m_s2.z;
         let thrust_n = thrust(configuration, vertical, upright);
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
@@ -204,7 +217,7 @@ impl Cascade {
             let none = Vector3::zeros();
             return FlatAttitude::new(&none, &none, &none, &Heading::of(reference));
         }
-        let wanted = reference.acceleration_m_s2 + self.feedback_m_s2;
+        let wanted = against_drag(configuration, reference) + self.feedback_m_s2;
         let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
         let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);
         // Commands that are cut off do not move with the reference.
@@ -268,6 +281,11 @@ impl Cascade {
         self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
         rotor_command_rad_s
     }
+}
+
+/// Acceleration, NED, m/s², that thrust and gravity must make for a reference to be followed against the drag.
+fn against_drag(configuration: &Configuration, reference: &PositionReference) -> Vector3<f64> {
+    reference.acceleration_m_s2 + configuration.drag_1_s().component_mul(&reference.velocity_m_s)
 }
 
 /// Cosine of the tilt: the down component of the body's down axis.

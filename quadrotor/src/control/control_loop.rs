@@ -1,5 +1,7 @@
 //! The control loop without a plant.
 
+use nalgebra::Vector3;
+
 use crate::control::control_error::ControlError;
 use crate::control::control_inputs::{ControlInputs, ControlSignal};
 use crate::control::control_state::ControlState;
@@ -179,6 +181,16 @@ impl ControlLoop {
             self.state.sample(&self.design, &inputs, instruments)?;
         }
         Ok(self.state.rotor_command_rad_s())
+    }
+
+    /// Mass that the controllers go by, kg: as learned in flight, or as configured.
+    pub fn believed_mass_kg(&self) -> f64 {
+        self.state.believed(&self.design.configuration).believed_mass_kg()
+    }
+
+    /// Linear drag along the world axes that the controllers go by, N·s/m: as learned in flight, or as configured.
+    pub fn believed_drag_n_s_m(&self) -> Vector3<f64> {
+        self.state.believed(&self.design.configuration).airframe.drag_n_s_m.into()
     }
 
     /// What the Kalman predictor takes the vehicle's motion for at `time_us`, while the loop flies by it.

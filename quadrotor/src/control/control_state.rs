@@ -7,13 +7,15 @@ use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
 use crate::control::instants::{Clocks, LATEST_US, Phases};
+use crate::control::learning::mass_and_drag::{FlightSample, MassAndDrag};
+use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
-    Activity, Configuration, ConfigurationError, ControlError, Controllers, Measurement, PositionReference,
-    RigidBody,
+    Activity, CascadeDesign, Configuration, ConfigurationError, ControlError, Controllers, Measurement,
+    PositionReference, RigidBody,
 };
 
 /// Everything that changes in a control loop, and all there is of it to save and restore.
@@ -31,6 +33,7 @@ pub struct ControlState {
     /// Limits of the commands.
     limits: CommandLimits,
     estimator: Estimator,
+    learned: MassAndDrag,
     cascade: Cascade,
     /// Commanded speeds of the rotors while armed, rad/s.
     rotor_command_rad_s: [f64; 4],
@@ -72,6 +75,7 @@ impl ControlState {
             guidance,
             limits: CommandLimits::new(&configuration.limits),
             estimator: estimator(configuration, &first, time_us),
+            learned: MassAndDrag::new(configuration),
             cascade,
             rotor_command_rad_s: start.rotor_speed_rad_s,
         })
@@ -88,6 +92,9 @@ impl ControlState {
                 reason: "its controllers do not sample when they would",
             });
         }
+        if !self.learned.is_possible(configuration) {
+            return Err(ConfigurationError::State { reason: "what it has learned is out of range" });
+        }
         Ok(())
     }
 
@@ -99,10 +106,19 @@ impl ControlState {
     /// The change takes effect at the next instant.
     pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
         let controllers = &after.configuration.controllers;
+        let mut believed = self.learned.in_place_of_belief(&before.configuration);
+        self.learned.reconfigure(&before.configuration, &after.configuration);
+        let (one, other) = (&before.configuration, &after.configuration);
+        if one.airframe.inertia_kg_m2 != other.airframe.inertia_kg_m2 {
+            // Another vehicle, not another belief.
+            let inertia = self.learned.in_place_of_belief(other).believed_inertia_kg_m2();
+            let share = one.controllers.mass_factor / other.controllers.mass_factor;
+            believed = believed.with_inertia_kg_m2(&(inertia * share));
+        }
         if self.armed {
             self.cascade.hand_over(before, after);
             self.limits.change(&after.configuration.limits, self.next_us);
-            self.estimator.hand_over(before, after);
+            self.believe(&believed, &after.configuration);
         }
         if !self.armed {
             self.limits = CommandLimits::new(&after.configuration.limits);
@@ -114,6 +130,13 @@ impl ControlState {
             Phases::default()
         };
         self.next_us = self.clocks(controllers).first_instant_us(self.next_us);
+    }
+
+    /// Goes on with what was learned by now in place of what was believed before.
+    fn believe(&mut self, believed: &Configuration, configuration: &Configuration) {
+        let learned = self.learned.in_place_of_belief(configuration);
+        self.cascade.believe(believed, &learned);
+        self.estimator.believe(believed, &learned);
     }
 
     /// Whether limits have been lowered that the present motion cannot keep yet.
@@ -134,6 +157,11 @@ impl ControlState {
     /// The law that flies.
     pub fn law(&self) -> ControlLaw {
         self.law
+    }
+
+    /// What the controllers take for the vehicle: the configuration with mass and drag as they were learned.
+    pub(crate) fn believed(&self, configuration: &Configuration) -> Configuration {
+        self.learned.in_place_of_belief(configuration)
     }
 
     /// Commanded speeds of the rotors, rad/s, in the order of the airframe's layout.
@@ -214,6 +242,7 @@ impl ControlState {
             self.limits = CommandLimits::new(&configuration.limits);
             let first = instruments.read(time_us).checked(time_us)?;
             self.estimator = estimator(configuration, &first, time_us);
+            self.learned.take_off(configuration);
         }
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
@@ -228,11 +257,10 @@ impl ControlState {
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<(), ControlError> {
-        let configuration = &design.configuration;
         if let Target::Reference(reference) = &inputs.target {
-            self.guidance.watch(reference, &configuration.limits, time_us);
+            self.guidance.watch(reference, &design.configuration.limits, time_us);
         }
-        let clocks = self.clocks(&configuration.controllers);
+        let clocks = self.clocks(&design.configuration.controllers);
         let due = Due {
             position: clocks.position.ticks(time_us),
             altitude: clocks.altitude.ticks(time_us),
@@ -242,6 +270,10 @@ impl ControlState {
             return Ok(());
         }
         let measurement = instruments.read(time_us).checked(time_us)?;
+        if due.attitude {
+            self.learn(&design.configuration, &measurement.motion, time_us);
+        }
+        let configuration = &self.learned.in_place_of_belief(&design.configuration);
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
         match &inputs.target {
             Target::Reference(reference) => {
@@ -249,7 +281,7 @@ impl ControlState {
                     let limits = &configuration.flyable_limits();
                     self.guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
                 }
-                self.track(design, &seen, reference, due, time_us);
+                self.track(design, configuration, &seen, reference, due, time_us);
             }
             // Only the attitude controller's clock counts for the other laws.
             _ if !due.attitude => return Ok(()),
@@ -269,15 +301,42 @@ impl ControlState {
             }
         }
         if due.attitude {
-            self.predict(design, &seen, time_us);
+            self.predict(&design.cascade, configuration, &seen, time_us);
         }
         Ok(())
+    }
+
+    /// Learns mass and drag from the motion until now, and goes on with them.
+    fn learn(&mut self, configuration: &Configuration, measured: &RigidBody, time_us: u64) {
+        if self.law == ControlLaw::RotorLoss {
+            self.learned.interrupt();
+            return;
+        }
+        let by_position = configuration.sensors.output_feedback;
+        let seen = if by_position { self.estimator.body_at(time_us) } else { *measured };
+        let sample = FlightSample {
+            motion: if by_position {
+                MeasuredMotion::Position(measured.position_m)
+            } else {
+                MeasuredMotion::Velocity(measured.velocity_m_s)
+            },
+            height_m: configuration.environment.ground_plane.then_some(-measured.position_m.z),
+            velocity_m_s: seen.velocity_m_s,
+            attitude: seen.rotation(),
+            rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),
+            rotor_command_rad_s: &self.rotor_command_rad_s,
+            time_us,
+        };
+        let believed = self.learned.in_place_of_belief(configuration);
+        self.learned.observe(configuration, &sample);
+        self.believe(&believed, configuration);
     }
 
     /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
     fn track(
         &mut self,
         design: &LoopDesign,
+        learned: &Configuration,
         seen: &Observation,
         reference: &PositionReference,
         due: Due,
@@ -288,7 +347,7 @@ impl ControlState {
         if due.position || due.altitude {
             self.limits.watch(&design.configuration, &self.guidance, &seen.body, time_us);
         }
-        let configuration = &self.limits.in_force(&design.configuration);
+        let configuration = &self.limits.in_force(learned);
         if due.position {
             self.cascade.sample_position(
                 configuration,
@@ -320,12 +379,17 @@ impl ControlState {
 
     /// Takes the estimate on to the next sample of the attitude controller. It runs beside controllers that do not ask for
     /// it, too, so that those which do can take over in flight.
-    fn predict(&mut self, design: &LoopDesign, seen: &Observation, time_us: u64) {
-        let configuration = &design.configuration;
+    fn predict(
+        &mut self,
+        design: &CascadeDesign,
+        configuration: &Configuration,
+        seen: &Observation,
+        time_us: u64,
+    ) {
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
         self.estimator.predict(
             configuration,
-            &design.cascade.estimator,
+            &design.estimator,
             &seen.measured,
             &self.rotor_command_rad_s,
             times,

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::turned;
 use crate::control::mass_belief::MassBelief;
 use crate::design::estimator_design::EstimatorDesign;
-use crate::design::loop_design::LoopDesign;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// Share of the difference between a rotor's speed and its command that is left after a time:
@@ -19,7 +18,7 @@ pub(crate) fn lag_kept(configuration: &Configuration, time_s: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimator {
     body: RigidBody,
-    /// Acceleration that thrust and gravity do not explain, NED, m/s².
+    /// Acceleration that thrust, gravity and drag do not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
@@ -67,7 +66,7 @@ impl Estimator {
             && disturbances.chain(&self.rotor_speed_rad_s).all(|number| number.is_finite())
     }
 
-    /// Acceleration that thrust and gravity do not explain, NED, m/s².
+    /// Acceleration that thrust, gravity and drag do not explain, NED, m/s².
     pub(crate) fn disturbance_m_s2(&self) -> Vector3<f64> {
         self.disturbance_m_s2
     }
@@ -82,15 +81,17 @@ impl Estimator {
         self.rotor_speed_rad_s
     }
 
-    /// Goes on under another design, for an unchanged vehicle: a thrust that is believed to accelerate more, or less, leaves the
-    /// less, or more, to the disturbance.
-    pub(crate) fn hand_over(&mut self, before: &LoopDesign, after: &LoopDesign) {
-        let (configuration, controllers) = (&before.configuration, &after.configuration.controllers);
-        let Some(belief) = MassBelief::changed(&configuration.controllers, controllers) else { return };
-        let thrust_n = wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n;
-        let thrust = self.body.rotation() * Vector3::z() * (thrust_n / configuration.believed_mass_kg());
+    /// Goes on under another belief in mass, inertia and drag, for an unchanged vehicle: what thrust and drag are believed to accelerate
+    /// more, or less, leaves less, or more, to the disturbance.
+    pub(crate) fn believe(&mut self, before: &Configuration, after: &Configuration) {
+        self.disturbance_m_s2 +=
+            (after.drag_1_s() - before.drag_1_s()).component_mul(&self.body.velocity_m_s);
+        let inertia = before.believed_inertia_kg_m2().component_div(&after.believed_inertia_kg_m2());
+        self.disturbance_rad_s2.component_mul_assign(&inertia);
+        let Some(belief) = MassBelief::changed(&before.controllers, &after.controllers) else { return };
+        let thrust_n = wrench_of_rotors(&before.airframe, &self.rotor_speed_rad_s).thrust_n;
+        let thrust = self.body.rotation() * Vector3::z() * (thrust_n / before.believed_mass_kg());
         self.disturbance_m_s2 -= belief.growth_under(&thrust);
-        self.disturbance_rad_s2 = belief.difference(&self.disturbance_rad_s2);
     }
 
     /// On to the next sample: from what was measured at this one and what is commanded until then.
@@ -118,6 +119,7 @@ impl Estimator {
         // v̇ = g e₃ − R e₃ F/m
         let thrust = rotation * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
         let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
+        let drag = configuration.drag_1_s().component_mul(&self.body.velocity_m_s);
         // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;
@@ -130,7 +132,7 @@ impl Estimator {
             let estimate = [self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]];
             let next = design.translation.predict(
                 &estimate.into(),
-                &Vector1::new(acceleration[i]),
+                &Vector1::new(acceleration[i] - drag[i]),
                 &Vector1::new(measured.position_m[i]),
             );
             (self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]) =

@@ -21,11 +21,6 @@ impl MassBelief {
         (before.mass_factor != after.mass_factor).then_some(Self { ratio })
     }
 
-    /// A difference of accelerations.
-    pub(crate) fn difference(&self, acceleration_m_s2: &Vector3<f64>) -> Vector3<f64> {
-        acceleration_m_s2 * self.ratio
-    }
-
     /// A horizontal acceleration.
     pub(crate) fn horizontal(&self, acceleration_m_s2: &Vector2<f64>) -> Vector2<f64> {
         acceleration_m_s2 * self.ratio

@@ -15,6 +15,7 @@ pub(crate) mod flat_attitude;
 pub(crate) mod governor;
 pub(crate) mod instants;
 mod largest_share;
+mod learning;
 pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;

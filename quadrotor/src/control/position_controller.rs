@@ -85,13 +85,13 @@ impl PositionController {
             deviation: turn.state(&by_axis([
                 error,
                 seen.velocity_m_s - reference.velocity,
-                seen.acceleration_m_s2 - reference.acceleration,
+                seen.acceleration_m_s2 - reference.thrust,
                 seen.jerk_m_s3 - reference.jerk,
                 seen.snap_m_s4 - reference.snap,
                 seen.asked_snap_m_s4,
             ])),
             error: turn.vector(&error),
-            input_reference: turn.vector(&reference.acceleration),
+            input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
             upper: &position_bounds(limits, most_m_s2, reference),
             ..Sample::default()
@@ -107,9 +107,24 @@ impl PositionController {
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
-    /// Expresses the acceleration that was applied last in other terms.
+    /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
+    pub(crate) fn feed_forward(&mut self, drag_1_s: &Vector2<f64>) {
+        let more = drag_1_s.component_mul(&self.reference.velocity);
+        self.controller.turn_feedback(|feedback| feedback - more);
+    }
+
+    /// Expresses the accelerations that were measured and applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
-        self.controller.apply(&term(&self.controller.applied()));
+        let applied = term(&self.controller.applied());
+        let measured = |state: &SVector<f64, POSITION_STATES>| {
+            by_axis(core::array::from_fn(|derivative| {
+                let value = Vector2::new(state[derivative], state[AXIS_STATES + derivative]);
+                // Position and velocity are what they are.
+                if derivative < 2 { value } else { term(&value) }
+            }))
+        };
+        self.controller = self.controller.map(measured, Vector2::clone_owned);
+        self.controller.apply(&applied);
     }
 }
 

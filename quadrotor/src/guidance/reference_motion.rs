@@ -12,6 +12,8 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub velocity: SVector<f64, AXES>,
     /// Acceleration.
     pub acceleration: SVector<f64, AXES>,
+    /// Acceleration that the thrust must make: with drag.
+    pub thrust: SVector<f64, AXES>,
     /// Jerk.
     pub jerk: SVector<f64, AXES>,
     /// Snap.
@@ -23,7 +25,15 @@ pub struct ReferenceMotion<const AXES: usize> {
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero = SVector::zeros();
-        Self { position: zero, velocity: zero, acceleration: zero, jerk: zero, snap: zero, interval_s: 0.0 }
+        Self {
+            position: zero,
+            velocity: zero,
+            acceleration: zero,
+            thrust: zero,
+            jerk: zero,
+            snap: zero,
+            interval_s: 0.0,
+        }
     }
 }
 
@@ -41,7 +51,7 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
             [
                 t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0,
                 t * (a + a_before) / 2.0,
-                a - a_before,
+                self.thrust[axis] - previous.thrust[axis],
                 self.jerk[axis] - previous.jerk[axis],
                 self.snap[axis] - previous.snap[axis],
             ]

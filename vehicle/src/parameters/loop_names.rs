@@ -43,6 +43,7 @@ pub static LOOP_NAMES: &[LoopName] = &[
     kept("controller.model", "CTRL_MODEL"),
     renamed("controller.governor", "CTRL_GOVERNOR", "C_GOVERNOR"),
     renamed("controller.mass_factor", "CTRL_MASS_FACTOR", "C_MASSF"),
+    kept("controller.learning", "CTRL_LEARNING"),
     renamed("controller.altitude.sample_time", "ALT_SAMPLE_TIME", "C_ALT_DT"),
     renamed("controller.altitude.terms", "ALT_TERMS", "C_ALT_N"),
     renamed("controller.altitude.scale", "ALT_SCALE", "C_ALT_A"),

@@ -27,6 +27,12 @@ pub(crate) fn judged(
     design: &CascadeDesign,
     flown: Option<&Configuration>,
 ) -> Result<StabilityReport, ConfigurationError> {
+    let controllers = &configuration.controllers;
+    if controllers.learning && controllers.mass_factor != 1.0 {
+        // What flies is what will have been learned.
+        let learned = configuration.with_mass_factor(1.0);
+        return judged(&learned, &CascadeDesign::new(&learned)?, flown);
+    }
     let report = report(configuration, design)?;
     if let Some(each) = report.unstable() {
         let default = Configuration::default();

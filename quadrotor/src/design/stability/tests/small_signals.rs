@@ -55,6 +55,7 @@ fn small_deviations_decay_as_the_report_says() {
             for mass_factor in [0.8, 1.0] {
                 let mut configuration = unshaped(kind, output_feedback);
                 configuration.controllers.mass_factor = mass_factor;
+                configuration.controllers.learning = false;
                 let report = designed(&configuration).expect("a design").stability;
                 let [_, _, yaw, _, _, altitude] = report.loops();
                 let cases: [(_, Seen, _); 2] = [

@@ -1,0 +1,536 @@
+//! The vehicle's mass and drag, learned from thrust and acceleration in flight.
+
+use nalgebra::{SVector, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::control::learning::bounded_estimate::{BoundedEstimate, Prior};
+use crate::control::learning::excitation::{Excitation, Shown};
+use crate::control::learning::motion_equation::{
+    MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
+};
+use crate::{Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
+
+/// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
+/// acceleration by other forces, NED, m/s².
+const UNKNOWNS: usize = 7;
+type Unknowns = SVector<f64, UNKNOWNS>;
+
+/// Range of the learned mass, as a multiple of the airframe's.
+const MASS_RANGE: [f64; 2] = [0.4, 2.5];
+/// Most inertia that a learned mass stands for, as a multiple of the configured one.
+const MOST_INERTIA_SHARE: f64 = 2.0;
+/// Most drag per mass, 1/s, unless half of that of the airframe is more. Published ones of quadrotors are from 0.1 to 1.
+const MOST_DRAG_1_S: f64 = 2.0;
+/// Most acceleration by other forces, m/s².
+const MOST_FORCE_M_S2: f64 = 30.0;
+
+/// Deviations before anything is learned. A payload or a wrong model is taken for as likely as a force of a third of the weight:
+/// at first a vertical push counts as both, and what the thrust then does to the acceleration tells which it was.
+const MASS_DEVIATION: f64 = 0.3;
+const DRAG_DEVIATION_1_S: f64 = 0.2;
+const FORCE_DEVIATION_M_S2: f64 = 3.0;
+/// How fast each may wander, per √s: the thrust sags with the battery, drag stays as it is, the wind changes.
+const MASS_WANDERING: f64 = 0.003;
+const DRAG_WANDERING_1_S: f64 = 0.003;
+const FORCE_WANDERING_M_S2: f64 = 0.3;
+
+/// Deviation of the equation of motion without noise of sensors, m/s²: what the model of rotors and their lag misses.
+const MODEL_NOISE_M_S2: f64 = 0.03;
+
+/// An acceleration along the thrust that is off by this much, m/s², and by so many deviations of the noise, is another vehicle or
+/// another force: a payload that was dropped, a gust.
+const SURPRISE_M_S2: f64 = 0.75;
+const SURPRISE_DEVIATIONS: f64 = 5.0;
+/// Time over which a force is averaged, to which its change is compared, s.
+const STEADY_FORCE_S: f64 = 3.0;
+/// Time after a surprise, or a start, in which there is no other one, s.
+const SETTLING_S: f64 = 1.5;
+
+/// Less thrust than this share of the weight is free fall, which shows no mass.
+const LEAST_THRUST_SHARE: f64 = 0.2;
+/// Slower than this, m/s, by the filtered velocity, it may stand on something that carries it.
+const AT_REST_M_S: f64 = 0.02;
+/// So high above a ground plane, m, feet that reach down do not touch it.
+const CLEARANCE_M: f64 = 0.1;
+/// Share of a rotor's range of speeds from its ends at which it is saturated.
+const SATURATED_SHARE: f64 = 1e-3;
+
+/// An instant of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FlightSample<'a> {
+    /// What is measured of the motion.
+    pub(crate) motion: MeasuredMotion,
+    /// The velocity that the controllers go by, NED, m/s.
+    pub(crate) velocity_m_s: Vector3<f64>,
+    /// Height above the ground plane, if there is one, m.
+    pub(crate) height_m: Option<f64>,
+    /// FRD into NED.
+    pub(crate) attitude: UnitQuaternion<f64>,
+    /// Speeds of the rotors, measured or by their model, rad/s.
+    pub(crate) rotor_speed_rad_s: &'a [f64; 4],
+    /// Commanded speeds of the rotors until now, rad/s.
+    pub(crate) rotor_command_rad_s: &'a [f64; 4],
+    /// When, µs.
+    pub(crate) time_us: u64,
+}
+
+/// Learns mass and drag, with the forces beside them.
+///
+/// What can be told apart, and what cannot: in hover the weight and a steady vertical force are the same, and so are drag in
+/// steady cruise and a steady force against it. Both then keep what they were taken for, and integral action makes up for either.
+/// Changes of thrust and of speed tell them apart.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct MassAndDrag {
+    equation: MotionEquation,
+    excitation: Excitation,
+    estimate: BoundedEstimate<UNKNOWNS>,
+    /// When the latest equation was made, µs.
+    latest_us: Option<u64>,
+    /// Force per mass beside thrust and drag, averaged over seconds, NED, m/s².
+    steady_force_m_s2: Vector3<f64>,
+    /// Time in which there is no surprise, s.
+    settling_s: f64,
+}
+
+impl MassAndDrag {
+    /// What a configuration believes in.
+    pub(crate) fn new(configuration: &Configuration) -> Self {
+        Self {
+            equation: MotionEquation::new(),
+            excitation: Excitation::new(),
+            estimate: BoundedEstimate::new(&prior(configuration), &believed(configuration)),
+            latest_us: None,
+            steady_force_m_s2: Vector3::zeros(),
+            settling_s: SETTLING_S,
+        }
+    }
+
+    /// The learned mass as a multiple of the airframe's.
+    pub(crate) fn mass_factor(&self) -> f64 {
+        1.0 / self.estimate.mean()[0]
+    }
+
+    /// The learned mass, kg.
+    pub(crate) fn mass_kg(&self, configuration: &Configuration) -> f64 {
+        configuration.airframe.mass_kg * self.mass_factor()
+    }
+
+    /// The learned drag along the world axes, N·s/m.
+    pub(crate) fn drag_n_s_m(&self, configuration: &Configuration) -> Vector3<f64> {
+        self.estimate.mean().fixed_rows::<3>(1) * self.mass_kg(configuration)
+    }
+
+    /// Moments of inertia for a learned mass as a share of those that are configured. The mass does not tell them: a model that
+    /// is wrong is so in both, a load near the centre only in the mass. Torques for too little inertia cost the attitude its
+    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and never to shrink.
+    fn inertia_share(&self, configuration: &Configuration) -> f64 {
+        (self.mass_factor() / configuration.controllers.mass_factor).clamp(1.0, MOST_INERTIA_SHARE)
+    }
+
+    /// A configuration with what was learned in place of what was believed, if it is to learn.
+    pub(crate) fn in_place_of_belief(&self, configuration: &Configuration) -> Configuration {
+        let mut learned = *configuration;
+        if configuration.controllers.learning {
+            let inertia_kg_m2 = configuration.believed_inertia_kg_m2() * self.inertia_share(configuration);
+            learned.controllers.mass_factor = self.mass_factor();
+            learned = learned.with_inertia_kg_m2(&inertia_kg_m2);
+            learned.airframe.drag_n_s_m = self.drag_n_s_m(configuration).into();
+        }
+        learned
+    }
+
+    /// Goes on under another configuration. What it believes in is learned anew if that has changed.
+    pub(crate) fn reconfigure(&mut self, before: &Configuration, after: &Configuration) {
+        let told = |configuration: &Configuration| {
+            let Configuration { airframe, controllers, .. } = configuration;
+            (*airframe, controllers.mass_factor, controllers.learning)
+        };
+        let (one, other) = (told(before), told(after));
+        if (one.1, one.2) != (other.1, other.2) {
+            *self = Self::new(after);
+        } else if one != other {
+            // Another vehicle that is known: what was found of its mass beside the belief stays.
+            let mut mean = believed(after);
+            mean[0] = self.estimate.mean()[0];
+            self.estimate = BoundedEstimate::new(&prior(after), &mean);
+            self.interrupt();
+        }
+    }
+
+    /// Begins another flight: what was learned stays until it is seen to be wrong.
+    pub(crate) fn take_off(&mut self, configuration: &Configuration) {
+        self.estimate.open(&prior(configuration), &[true; UNKNOWNS]);
+        self.settling_s = SETTLING_S;
+        self.interrupt();
+    }
+
+    /// Nothing can be learned from what happens now.
+    pub(crate) fn interrupt(&mut self) {
+        self.equation = MotionEquation::new();
+        self.excitation = Excitation::new();
+        self.latest_us = None;
+    }
+
+    /// Learns from an instant of a flight.
+    pub(crate) fn observe(&mut self, configuration: &Configuration, sample: &FlightSample<'_>) {
+        if !configuration.controllers.learning {
+            return;
+        }
+        let thrust_m_s2 = thrust_per_mass_m_s2(configuration, sample);
+        if !flies(configuration, sample, thrust_m_s2) {
+            self.interrupt();
+            return;
+        }
+        let FlightSample { motion, velocity_m_s: estimated_velocity_m_s, attitude, time_us, .. } = *sample;
+        let sampled = Sampled { motion, estimated_velocity_m_s, attitude, thrust_m_s2, time_us };
+        let Some(terms) = self.equation.observe(sampled) else { return };
+        let Some(latest_us) = self.latest_us.replace(sample.time_us) else { return };
+        let interval_s = (sample.time_us - latest_us) as f64 / 1e6;
+        if !terms.is_finite() {
+            self.interrupt();
+        } else if terms.velocity_m_s.norm() > AT_REST_M_S && !is_saturated(configuration, sample) {
+            self.learn(configuration, &terms, interval_s);
+        }
+    }
+
+    fn learn(&mut self, configuration: &Configuration, terms: &Terms, interval_s: f64) {
+        let prior = &prior(configuration);
+        let noise_m_s2 = noise_m_s2(&configuration.sensors, interval_s);
+        self.settling_s = (self.settling_s - interval_s).max(0.0);
+        let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2;
+        if self.settling_s == 0.0 && libm::fabs(self.change_along_thrust_m_s2(terms)) > surprise_m_s2 {
+            // What the filter remembers is of before. Drag does not jump.
+            self.estimate.open(prior, &learned_from(&Shown { mass: true, drag: [false; 3] }));
+            self.steady_force_m_s2 = self.force_m_s2();
+            self.settling_s = SETTLING_S;
+            self.interrupt();
+            return;
+        }
+        let shown = self.excitation.observe(terms, interval_s, noise_m_s2);
+        let learned = learned_from(&shown);
+        self.estimate.forget(prior, interval_s);
+        // Filtered equations repeat one another for as long as the filter remembers.
+        let variance = noise_m_s2 * noise_m_s2 * (2.0 * MEMORY_S / interval_s).max(1.0);
+        for axis in 0..3 {
+            let value = terms.specific_force_m_s2[axis];
+            self.estimate.update(prior, &learned, &row(terms, axis), (value, variance));
+        }
+        let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
+        self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+    }
+
+    /// By how much the acceleration along the thrust differs from what mass, drag and the force of the last seconds explain, m/s².
+    fn change_along_thrust_m_s2(&self, terms: &Terms) -> f64 {
+        let change = terms.to_body * (self.force_m_s2() - self.steady_force_m_s2);
+        (self.innovation(terms) + change).z
+    }
+
+    /// Acceleration by forces beside thrust and drag, NED, m/s².
+    fn force_m_s2(&self) -> Vector3<f64> {
+        self.estimate.mean().fixed_rows::<3>(4).into_owned()
+    }
+
+    /// What the estimate does not explain of an equation, m/s².
+    fn innovation(&self, terms: &Terms) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| {
+            self.estimate.innovation(&row(terms, axis), terms.specific_force_m_s2[axis])
+        })
+    }
+
+    /// Whether a learner can have been in this state: saved states may come from anywhere.
+    pub(crate) fn is_possible(&self, configuration: &Configuration) -> bool {
+        self.estimate.is_possible(&prior(configuration)) && (0.0..=SETTLING_S).contains(&self.settling_s)
+    }
+}
+
+/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses.
+fn noise_m_s2(sensors: &Sensors, interval_s: f64) -> f64 {
+    let sensed_m_s2 = if sensors.output_feedback {
+        sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions()
+    } else {
+        sensors.velocity_noise_m_s * libm::sqrt(interval_s) * noise_of_velocities()
+    };
+    libm::hypot(MODEL_NOISE_M_S2, sensed_m_s2)
+}
+
+/// One axis of Rᵀ(a − g e₃) = −μ t e₃ − Rᵀ diag(v) κ + Rᵀ d.
+fn row(terms: &Terms, axis: usize) -> Unknowns {
+    let mut row = Unknowns::zeros();
+    row[0] = if axis == 2 { -terms.thrust_m_s2 } else { 0.0 };
+    for world in 0..3 {
+        row[1 + world] = -terms.velocity_m_s[(axis, world)];
+        row[4 + world] = terms.to_body[(axis, world)];
+    }
+    row
+}
+
+/// Forces are always learned, mass and drag where they show.
+fn learned_from(shown: &Shown) -> [bool; UNKNOWNS] {
+    let [north, east, down] = shown.drag;
+    [shown.mass, north, east, down, true, true, true]
+}
+
+/// Thrust of the rotors per mass of the airframe, m/s².
+fn thrust_per_mass_m_s2(configuration: &Configuration, sample: &FlightSample<'_>) -> f64 {
+    let airframe = &configuration.airframe;
+    wrench_of_rotors(airframe, sample.rotor_speed_rad_s).thrust_n / airframe.mass_kg
+}
+
+/// Whether an instant belongs to a flight that shows a mass: clear of the ground, and not in free fall.
+fn flies(configuration: &Configuration, sample: &FlightSample<'_>, thrust_m_s2: f64) -> bool {
+    let airframe = &configuration.airframe;
+    let reach_m = airframe.arm_length_m * airframe.layout.reach();
+    let is_clear = sample.height_m.is_none_or(|height_m| height_m > reach_m + CLEARANCE_M);
+    is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
+}
+
+/// Whether a rotor is commanded to an end of its range, where it need not do as it is told.
+fn is_saturated(configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
+    let airframe = &configuration.airframe;
+    let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
+    let margin = SATURATED_SHARE * (fastest - slowest);
+    let is_free = |speed: &f64| *speed > slowest + margin && *speed < fastest - margin;
+    !sample.rotor_command_rad_s.iter().all(is_free)
+}
+
+/// What a configuration believes in.
+fn believed(configuration: &Configuration) -> Unknowns {
+    let mut mean = Unknowns::zeros();
+    mean[0] = 1.0 / configuration.controllers.mass_factor;
+    mean.fixed_rows_mut::<3>(1).copy_from(&configuration.drag_1_s());
+    mean
+}
+
+fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
+    let of = |mass: f64, drag: f64, force: f64| {
+        Unknowns::from_fn(|i, _| match i {
+            0 => mass,
+            1..4 => drag,
+            _ => force,
+        })
+    };
+    let [lightest, heaviest] = MASS_RANGE;
+    let mut most = of(1.0 / lightest, MOST_DRAG_1_S, MOST_FORCE_M_S2);
+    for (axis, drag_1_s) in configuration.drag_1_s().iter().enumerate() {
+        most[1 + axis] = most[1 + axis].max(2.0 * drag_1_s);
+    }
+    // The variance grows by 2σ²/T per second.
+    let memory_s = |deviation: f64, wandering: f64| 2.0 * deviation * deviation / (wandering * wandering);
+    Prior {
+        deviation: of(MASS_DEVIATION, DRAG_DEVIATION_1_S, FORCE_DEVIATION_M_S2),
+        memory_s: of(
+            memory_s(MASS_DEVIATION, MASS_WANDERING),
+            memory_s(DRAG_DEVIATION_1_S, DRAG_WANDERING_1_S),
+            memory_s(FORCE_DEVIATION_M_S2, FORCE_WANDERING_M_S2),
+        ),
+        range: [of(1.0 / heaviest, 0.0, -MOST_FORCE_M_S2), most],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
+    use proptest::prelude::*;
+
+    use super::{FlightSample, MassAndDrag};
+    use crate::control::learning::motion_equation::MeasuredMotion;
+    use crate::{Configuration, GRAVITY_M_S2};
+
+    /// One instant of a flight, as it would be recorded.
+    #[derive(Clone, Copy)]
+    struct Recorded {
+        velocity_m_s: Vector3<f64>,
+        attitude: UnitQuaternion<f64>,
+        rotor_speed_rad_s: [f64; 4],
+        time_us: u64,
+    }
+
+    impl Recorded {
+        fn sample(&self) -> FlightSample<'_> {
+            FlightSample {
+                motion: MeasuredMotion::Velocity(self.velocity_m_s),
+                velocity_m_s: self.velocity_m_s,
+                height_m: None,
+                attitude: self.attitude,
+                rotor_speed_rad_s: &self.rotor_speed_rad_s,
+                rotor_command_rad_s: &self.rotor_speed_rad_s,
+                time_us: self.time_us,
+            }
+        }
+    }
+
+    /// A flight of 20 s to and fro and up and down, of a vehicle with a mass, kg, and drag, N·s/m, under a constant force, N:
+    /// velocities are chosen, thrust and attitude follow from m v̇ = m g e₃ − F b₃ − c v + f.
+    fn flight(mass_kg: f64, drag_n_s_m: f64, force_n: &Vector3<f64>) -> Vec<Recorded> {
+        let k1 = Configuration::default().airframe.thrust_coefficient_n_s2;
+        (0..2_000_u64)
+            .map(|sample| {
+                let t = sample as f64 * 0.01;
+                let wave = |amplitude: f64, omega: f64| {
+                    (amplitude * (omega * t).sin(), amplitude * omega * (omega * t).cos())
+                };
+                let axes = [wave(4.0, 0.7), wave(3.0, 0.9), wave(1.5, 1.3)];
+                let velocity_m_s = Vector3::from(axes.map(|(velocity, _)| velocity));
+                let acceleration = Vector3::from(axes.map(|(_, acceleration)| acceleration));
+                let weight = Vector3::z() * (GRAVITY_M_S2 * mass_kg);
+                let thrust_n = weight + force_n - velocity_m_s * drag_n_s_m - acceleration * mass_kg;
+                let attitude =
+                    UnitQuaternion::rotation_between(&Vector3::z(), &thrust_n).expect("never upside down");
+                let speed = (thrust_n.norm() / (4.0 * k1)).sqrt();
+                Recorded { velocity_m_s, attitude, rotor_speed_rad_s: [speed; 4], time_us: 10_000 * sample }
+            })
+            .collect()
+    }
+
+    fn learned(configuration: &Configuration, flight: &[Recorded]) -> MassAndDrag {
+        let mut learner = MassAndDrag::new(configuration);
+        for instant in flight {
+            learner.observe(configuration, &instant.sample());
+        }
+        learner
+    }
+
+    fn believing(mass_factor: f64) -> Configuration {
+        let mut configuration = Configuration::default();
+        configuration.controllers.mass_factor = mass_factor;
+        configuration
+    }
+
+    /// Mass, drag and force of the analytic flight, from a belief that is wrong by half.
+    #[test]
+    fn it_converges_to_the_truth() {
+        for (mass_kg, drag, belief) in [(0.7, 0.2, 0.5), (0.7, 0.0, 1.5), (1.2, 0.3, 1.0), (0.4, 0.1, 1.0)] {
+            let configuration = believing(belief);
+            let force_n = Vector3::new(0.4, -0.3, 0.0);
+            let learner = learned(&configuration, &flight(mass_kg, drag, &force_n));
+            let found_kg = learner.mass_kg(&configuration);
+            assert!((found_kg / mass_kg - 1.0).abs() < 0.03, "{found_kg} of {mass_kg} kg");
+            let found = learner.drag_n_s_m(&configuration);
+            // Mostly along the axes that it moved on fast.
+            assert!((found.xy() - Vector3::repeat(drag).xy()).norm() < 0.05, "{found} of {drag} N·s/m");
+        }
+    }
+
+    /// Batch least squares over the differences of a recorded flight, which knows nothing of filters, priors or forgetting.
+    #[test]
+    fn it_agrees_with_batch_least_squares() {
+        let configuration = believing(1.0);
+        let airframe = &configuration.airframe;
+        let record = flight(0.9, 0.25, &Vector3::new(0.2, 0.1, -0.1));
+        let mut rows = DMatrix::zeros(3 * (record.len() - 1), 7);
+        let mut values = DVector::zeros(rows.nrows());
+        for (pair, at) in record.windows(2).zip((0..).step_by(3)) {
+            let thrust = |instant: &Recorded| {
+                let speed = instant.rotor_speed_rad_s[0];
+                let newton = 4.0 * airframe.thrust_coefficient_n_s2 * speed * speed;
+                instant.attitude * Vector3::z() * (newton / airframe.mass_kg)
+            };
+            let t = (thrust(&pair[0]) + thrust(&pair[1])) / 2.0;
+            let v = (pair[0].velocity_m_s + pair[1].velocity_m_s) / 2.0;
+            let a = (pair[1].velocity_m_s - pair[0].velocity_m_s) / 0.01;
+            for axis in 0..3 {
+                (rows[(at + axis, 0)], rows[(at + axis, 1 + axis)], rows[(at + axis, 4 + axis)]) =
+                    (-t[axis], -v[axis], 1.0);
+                values[at + axis] = a[axis] - if axis == 2 { GRAVITY_M_S2 } else { 0.0 };
+            }
+        }
+        let batch = rows.svd(true, true).solve(&values, 1e-12).expect("solvable");
+        let learner = learned(&configuration, &record);
+        let mass_kg = airframe.mass_kg / batch[0];
+        assert!((learner.mass_kg(&configuration) / mass_kg - 1.0).abs() < 0.02, "{mass_kg}");
+        let drag = batch.fixed_rows::<3>(1) * mass_kg;
+        assert!((learner.drag_n_s_m(&configuration) - drag).xy().norm() < 0.05, "{drag}");
+    }
+
+    /// What shows nothing changes nothing: standing, near the ground, in free fall, saturated, switched off, or hovering under a
+    /// force that grows slowly.
+    #[test]
+    fn nothing_is_learned_where_nothing_shows() {
+        let record = flight(1.0, 0.2, &Vector3::zeros());
+        let mut configuration = believing(1.0);
+        let fresh = MassAndDrag::new(&configuration);
+        let unchanged = |configuration: &Configuration, change: &dyn Fn(&mut FlightSample<'_>)| {
+            let mut learner = fresh;
+            for instant in &record {
+                let mut sample = instant.sample();
+                change(&mut sample);
+                learner.observe(configuration, &sample);
+            }
+            (learner.mass_factor(), learner.drag_n_s_m(configuration)) == (1.0, Vector3::zeros())
+        };
+        assert!(!unchanged(&configuration, &|_| ()), "the flight itself is learned from");
+        let still = MeasuredMotion::Velocity(Vector3::zeros());
+        assert!(unchanged(&configuration, &|sample| sample.motion = still), "at rest");
+        assert!(unchanged(&configuration, &|sample| sample.height_m = Some(0.3)), "on the ground");
+        assert!(unchanged(&configuration, &|sample| sample.rotor_speed_rad_s = &[60.0; 4]), "in free fall");
+        const FASTEST: &[f64; 4] = &[450.0, 300.0, 300.0, 300.0];
+        assert!(unchanged(&configuration, &|sample| sample.rotor_command_rad_s = FASTEST), "saturated");
+        let nan = MeasuredMotion::Velocity(Vector3::repeat(f64::NAN));
+        assert!(unchanged(&configuration, &|sample| sample.motion = nan), "not finite");
+        configuration.controllers.learning = false;
+        assert!(unchanged(&configuration, &|_| ()), "switched off");
+    }
+
+    /// A side force of a third of the weight comes and goes: it is not taken for mass.
+    #[test]
+    fn a_steady_side_force_is_no_mass() {
+        let configuration = believing(1.0);
+        let calm = flight(0.7, 0.0, &Vector3::zeros());
+        let pushed = flight(0.7, 0.0, &Vector3::new(0.0, 2.3, 0.0));
+        let record: Vec<_> = calm[..1_000].iter().chain(&pushed[1_000..]).copied().collect();
+        let factor = learned(&configuration, &record).mass_factor();
+        assert!((factor - 1.0).abs() < 0.08, "{factor}");
+    }
+
+    /// A load of 30 % of the mass comes or goes in the middle of the flight.
+    #[test]
+    fn a_load_is_found() {
+        for mass_kg in [0.49, 0.91] {
+            let configuration = believing(1.0);
+            let (before, after) =
+                (flight(0.7, 0.0, &Vector3::zeros()), flight(mass_kg, 0.0, &Vector3::zeros()));
+            let record: Vec<_> = before[..1_000].iter().chain(&after[1_000..1_500]).copied().collect();
+            let found_kg = learned(&configuration, &record).mass_kg(&configuration);
+            assert!((found_kg / mass_kg - 1.0).abs() < 0.06, "{found_kg} of {mass_kg} kg within 5 s");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        /// Whatever it is fed, mass and drag stay within their bounds, and the state is one that can be restored.
+        #[test]
+        fn bounds_are_never_left(
+            belief in 0.5..1.5,
+            samples in prop::collection::vec(
+                ([any::<f64>(), any::<f64>(), any::<f64>()], any::<bool>(), -3.2..3.2, 0.0..600.0, 0_u64..50_000),
+                1..300,
+            ),
+            tame in any::<bool>(),
+        ) {
+            let configuration = believing(belief);
+            let mut learner = MassAndDrag::new(&configuration);
+            let mut time_us = 0;
+            for (motion, by_position, tilt, speed, interval_us) in samples {
+                time_us += interval_us;
+                let scaled = |number: f64| if tame && number.is_finite() { 30.0 * number.sin() } else { number };
+                let motion = Vector3::from(motion.map(scaled));
+                let rotors = [speed; 4];
+                learner.observe(&configuration, &FlightSample {
+                    motion: if by_position { MeasuredMotion::Position(motion) } else { MeasuredMotion::Velocity(motion) },
+                    velocity_m_s: motion,
+                    height_m: None,
+                    attitude: UnitQuaternion::from_euler_angles(tilt, 0.3 * tilt, 0.0),
+                    rotor_speed_rad_s: &rotors,
+                    rotor_command_rad_s: &rotors,
+                    time_us,
+                });
+                prop_assert!((0.4 - 1e-12..=2.5 + 1e-12).contains(&learner.mass_factor()));
+                let drag_1_s = learner.drag_n_s_m(&configuration) / learner.mass_kg(&configuration);
+                prop_assert!(drag_1_s.iter().all(|drag| (0.0..=2.0 + 1e-12).contains(drag)));
+                prop_assert!(learner.is_possible(&configuration));
+            }
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Mass and drag of the vehicle, learned in flight.
+
+pub(crate) mod bounded_estimate;
+pub(crate) mod excitation;
+pub(crate) mod mass_and_drag;
+pub(crate) mod motion_equation;
