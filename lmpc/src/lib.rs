@@ -42,6 +42,7 @@ extern crate alloc;
 
 mod active_set;
 mod augmented;
+mod bounds;
 mod capacity;
 mod controller;
 mod controller_state;
