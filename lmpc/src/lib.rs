@@ -42,6 +42,7 @@ extern crate alloc;
 
 mod active_set;
 mod augmented;
+mod balancing;
 mod bounds;
 mod capacity;
 mod controller;
@@ -52,6 +53,7 @@ mod dlqr;
 mod eigenvalues;
 mod error;
 mod exponential;
+mod hessenberg_qr;
 mod kalman;
 mod laguerre;
 mod laguerre_mpc;
