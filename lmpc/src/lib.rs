@@ -74,6 +74,7 @@ mod state_space_mpc;
 mod state_space_mpc_design;
 mod stein;
 mod step;
+mod unit_scaling;
 mod validate;
 mod weighting;
 
