@@ -62,6 +62,7 @@ mod limit;
 mod limit_row;
 mod model_increment;
 mod moves_walk;
+mod optimal_gain;
 mod prediction;
 mod quadratic_program;
 mod reachability;

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::limit_row::PredictionWalk;
 use crate::moves_walk::MovesWalk;
+use crate::optimal_gain::OptimalGain;
 use crate::validate::symmetrized;
 use crate::{DesignError, Quantity, StateSpace, spectral_radius, validate};
 
@@ -89,7 +90,8 @@ impl StateSpaceMpcDesign {
     /// # Errors
     /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
     /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::MovesBeyondHorizon`] unless
-    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable.
+    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable,
+    /// [`DesignError::IllConditioned`] when rounding may change its gain by more than 10⁻⁴ of its size.
     pub fn with_weights(
         plant: &StateSpace,
         weights: &StateSpaceMpcWeights,
@@ -140,14 +142,15 @@ impl StateSpaceMpcDesign {
     /// Gains of the unconstrained law Δu(k) = −K_x x(k) − K_u u(k−1) for a reference of zero.
     ///
     /// # Errors
-    /// [`DesignError::IllConditioned`] when H cannot be factored.
+    /// [`DesignError::IllConditioned`] when rounding may change them by more than 10⁻⁴ of their size.
     pub fn gains(&self) -> Result<(DMatrix<f64>, DMatrix<f64>), DesignError> {
-        let p = self.plant.inputs();
-        let factor = self.hessian.clone().cholesky().ok_or_else(|| DesignError::IllConditioned {
-            condition: crate::condition_number(&self.hessian),
-        })?;
-        let first = |gradient: &DMatrix<f64>| factor.solve(gradient).rows(0, p).into_owned();
-        Ok((first(&self.gradient_state), first(&self.gradient_input)))
+        let (n, p) = (self.plant.states(), self.plant.inputs());
+        let unknowns = self.hessian.nrows();
+        let mut gradient = self.gradient_state.clone().resize_horizontally(n + p, 0.0);
+        gradient.columns_mut(n, p).copy_from(&self.gradient_input);
+        let first_move = DMatrix::identity(p, unknowns);
+        let gain = OptimalGain::new("H", &self.hessian, &gradient, &first_move)?.first_move;
+        Ok((gain.columns(0, n).into_owned(), gain.columns(n, p).into_owned()))
     }
 
     /// H of the quadratic form.
