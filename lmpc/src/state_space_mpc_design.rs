@@ -10,8 +10,8 @@ use crate::{DesignError, Quantity, StateSpace, spectral_radius, validate};
 
 /// Design of a state-space MPC.
 ///
-/// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without direct feed-through (D = 0). The
-/// unknowns are the first N_c moves Δu; the input stays where it is after them. U = 1 u₋₁ + T ΔU makes the
+/// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without the
+/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; the input stays where it is after them. U = 1 u₋₁ + T ΔU makes the
 /// cost (34) the quadratic form
 ///
 /// ```text
@@ -233,7 +233,7 @@ impl FurtherCost {
     }
 }
 
-/// F and Φ of (33) with D = 0: Y = \[y(k) … y(k+N−1)\] from x(k) and U = \[u(k) … u(k+N−1)\].
+/// F and Φ of (33), where D is zero: Y = \[y(k) … y(k+N−1)\] from x(k) and U = \[u(k) … u(k+N−1)\].
 fn condensed(plant: &StateSpace, horizon: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
     let mut f = DMatrix::zeros(q * horizon, n);
