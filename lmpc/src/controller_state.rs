@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::relaxable::RelaxableWarmStart;
 use crate::{Sample, Solution, Status, Step};
 
-/// Difference that the actuators' own arithmetic may make between an input asked for and applied, relative to the
-/// larger of the two and of the integral action.
+/// Relative difference that the actuators' own arithmetic may make between an input asked for and applied.
 const ROUNDING: f64 = 1e-9;
 
 /// All that a [`Controller`](crate::Controller) of N states and P inputs remembers from one sample to the next: the
@@ -62,10 +61,7 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
         for input in 0..P {
             // Rounding of the actuators' own arithmetic is not saturation.
             let held = self.feedback[input] - integral[input];
-            let size = libm::fabs(applied[input]).max(libm::fabs(integral[input]));
-            if libm::fabs(cut[input]) > ROUNDING * size.max(libm::fabs(applied[input] - cut[input]))
-                && held.is_finite()
-            {
+            if libm::fabs(cut[input]) > ROUNDING * (1.0 + libm::fabs(applied[input])) && held.is_finite() {
                 self.feedback[input] = held;
             }
         }

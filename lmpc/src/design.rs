@@ -7,8 +7,7 @@ use nalgebra::{Complex, DMatrix};
 use crate::laguerre::InputBasis;
 use crate::optimal_gain::OptimalGain;
 use crate::{
-    Augmented, DesignError, Dlqr, LaguerreBasis, Prediction, Weighting, Weights, condition_number,
-    eigenvalues, spectral_radius,
+    Augmented, DesignError, Dlqr, LaguerreBasis, Prediction, Weighting, Weights, eigenvalues, spectral_radius,
 };
 
 /// Without constraints the optimum η = −Ω⁻¹Ψx (50) makes the first move Δu(k) = L(0)ᵀη = −K x.
@@ -84,9 +83,12 @@ impl LmpcDesign {
 
         // K = L(0)ᵀ Ω⁻¹ Ψ
         let first_move = InputBasis::new(bases).row();
-        let OptimalGain { unknowns: coefficient_gain, first_move: gain, error: gain_error } =
-            OptimalGain::new("Omega", prediction.omega(), prediction.psi(), &first_move)?;
-        let condition_number = condition_number(prediction.omega());
+        let OptimalGain {
+            unknowns: coefficient_gain,
+            first_move: gain,
+            condition: condition_number,
+            error: gain_error,
+        } = OptimalGain::new("Omega", prediction.omega(), prediction.psi(), &first_move)?;
 
         let closed_loop = model.a() - model.b() * &gain;
         let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
@@ -163,7 +165,7 @@ impl LmpcDesign {
         self.spectral_radius
     }
 
-    /// Condition number of Ω. It bounds what rounding may do to the coefficients; what it does to the gain is
+    /// Condition number of Ω, finite. It bounds what rounding may do to the coefficients; what it does to the gain is
     /// [`LmpcDesign::gain_error`].
     pub fn condition_number(&self) -> f64 {
         self.condition_number

@@ -15,6 +15,8 @@ pub(crate) struct OptimalGain {
     pub(crate) unknowns: DMatrix<f64>,
     /// S H⁻¹G.
     pub(crate) first_move: DMatrix<f64>,
+    /// Condition number of H, finite.
+    pub(crate) condition: f64,
     /// What share of the first move's gain rounding may have changed, at most.
     pub(crate) error: f64,
 }
@@ -28,21 +30,23 @@ impl OptimalGain {
     /// unknowns, states and inputs make no difference.
     ///
     /// # Errors
-    /// [`DesignError::IllConditioned`] when that is more than 10⁻⁴ of the gain.
+    /// [`DesignError::IllConditioned`] when that is more than 10⁻⁴ of the gain, or when H is singular.
     pub(crate) fn new(
         name: &'static str,
         h: &DMatrix<f64>,
         g: &DMatrix<f64>,
         s: &DMatrix<f64>,
     ) -> Result<Self, DesignError> {
+        let condition = condition_number(h);
         let refused = |error: f64| DesignError::IllConditioned {
             name,
-            condition: condition_number(h),
+            condition,
             // A NaN too.
             error: if error < 1.0 { error } else { 1.0 },
             allowed: ALLOWED_ERROR,
         };
-        let factor = h.clone().cholesky().ok_or_else(|| refused(1.0))?;
+        // A singular H leaves the moves after the first undetermined, which limits are about.
+        let factor = h.clone().cholesky().filter(|_| condition.is_finite()).ok_or_else(|| refused(1.0))?;
         let unknowns = factor.solve(g);
         let first_move = s * &unknowns;
         let sizes = h.diagonal().map(libm::sqrt);
@@ -65,6 +69,10 @@ impl OptimalGain {
             let share = if rounding > 0.0 { rounding / gain } else { 0.0 };
             error = if share > error || share.is_nan() { share } else { error };
         }
-        if error <= ALLOWED_ERROR { Ok(Self { unknowns, first_move, error }) } else { Err(refused(error)) }
+        if error <= ALLOWED_ERROR {
+            Ok(Self { unknowns, first_move, condition, error })
+        } else {
+            Err(refused(error))
+        }
     }
 }
