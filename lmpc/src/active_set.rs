@@ -54,11 +54,11 @@ impl<const N: usize> ActiveSet<N> {
         self.constraints().contains(&constraint)
     }
 
-    /// Splits a normal by Gram and Schmidt's method, twice, which is enough (Kahan).
-    pub(crate) fn split(&self, normal: &SVector<f64, N>) -> Split<N> {
+    /// Qᵀv and v − Q Qᵀv by Gram and Schmidt's method, twice, which is enough (Kahan).
+    fn orthogonal_part(&self, vector: &SVector<f64, N>) -> (SVector<f64, N>, SVector<f64, N>) {
         let n = self.unknowns;
         let mut within = SVector::zeros();
-        let mut rest = *normal;
+        let mut rest = *vector;
         for _ in 0..2 {
             let rest = &mut rest.as_mut_slice()[..n];
             for j in 0..self.count {
@@ -69,6 +69,13 @@ impl<const N: usize> ActiveSet<N> {
                 subtract_scaled(rest, q_j, along);
             }
         }
+        (within, rest)
+    }
+
+    /// Splits a normal into what depends on the active ones and the rest.
+    pub(crate) fn split(&self, normal: &SVector<f64, N>) -> Split<N> {
+        let n = self.unknowns;
+        let (within, mut rest) = self.orthogonal_part(normal);
         let mut rest_squared = dot(&rest.as_slice()[..n], &rest.as_slice()[..n]);
         if rest_squared <= DEPENDENT * DEPENDENT || self.count == n {
             rest.fill(0.0);
@@ -137,12 +144,7 @@ impl<const N: usize> ActiveSet<N> {
     /// excess = V z₀ − h. Returns the column of the most negative one, if any.
     pub(crate) fn solve_multipliers(&mut self, excess: &SVector<f64, N>) -> Option<usize> {
         // Rᵀ y = excess, R u = y
-        let mut y = SVector::<f64, N>::zeros();
-        for i in 0..self.count {
-            let known: f64 = (0..i).map(|k| self.r[(k, i)] * y[k]).sum();
-            y[i] = (excess[i] - known) / self.r[(i, i)];
-        }
-        let u = self.back_substituted(&y);
+        let u = self.back_substituted(&self.forward_substituted(excess));
         let mut worst = None;
         for j in 0..self.count {
             self.multipliers[j] = u[j];
@@ -151,6 +153,28 @@ impl<const N: usize> ActiveSet<N> {
             }
         }
         worst
+    }
+
+    /// The point nearest to z where Vᵀz = `bounds`: (I − Q Qᵀ) z + Q R⁻ᵀ bounds.
+    pub(crate) fn nearest(&self, z: &SVector<f64, N>, bounds: &SVector<f64, N>) -> SVector<f64, N> {
+        let n = self.unknowns;
+        let mut nearest = if self.count == n { SVector::zeros() } else { self.orthogonal_part(z).1 };
+        let along = self.forward_substituted(bounds);
+        for j in 0..self.count {
+            let q_j = self.q.column(j);
+            subtract_scaled(&mut nearest.as_mut_slice()[..n], &q_j.as_slice()[..n], -along[j]);
+        }
+        nearest
+    }
+
+    /// R⁻ᵀ x on the active columns.
+    fn forward_substituted(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
+        let mut y = SVector::zeros();
+        for i in 0..self.count {
+            let known: f64 = (0..i).map(|k| self.r[(k, i)] * y[k]).sum();
+            y[i] = (x[i] - known) / self.r[(i, i)];
+        }
+        y
     }
 
     /// R⁻¹ y on the active columns.

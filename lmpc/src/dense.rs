@@ -14,6 +14,11 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
+/// Σ |aᵢ bᵢ|: what the rounding of their dot product is relative to.
+pub(crate) fn dot_of_magnitudes(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| libm::fabs(x * y)).sum()
+}
+
 /// a ← a − t b.
 pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
     for (x, y) in a.iter_mut().zip(b) {
@@ -23,7 +28,7 @@ pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{dot, subtract_scaled};
+    use super::{dot, dot_of_magnitudes, subtract_scaled};
     use alloc::vec::Vec;
 
     /// Whole numbers, whose sums are exact in any order: Σ i (i + 1) = n (n + 1)(n + 2) / 3.
@@ -33,6 +38,11 @@ mod tests {
             let (a, b): (Vec<f64>, Vec<f64>) = (1..=n).map(|i| (f64::from(i), f64::from(i + 1))).unzip();
             assert_eq!(dot(&a, &b), f64::from(n * (n + 1) * (n + 2) / 3), "{n} elements");
         }
+    }
+
+    #[test]
+    fn magnitudes_do_not_cancel() {
+        assert_eq!(dot_of_magnitudes(&[1.0, -2.0, 3.0], &[4.0, 5.0, -6.0]), 32.0);
     }
 
     #[test]

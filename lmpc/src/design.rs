@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use nalgebra::{Complex, DMatrix};
 
 use crate::laguerre::InputBasis;
+use crate::optimal_gain::OptimalGain;
 use crate::{
-    Augmented, DesignError, Dlqr, LaguerreBasis, Prediction, Weighting, Weights, condition_number,
-    eigenvalues, spectral_radius,
+    Augmented, DesignError, Dlqr, LaguerreBasis, Prediction, Weighting, Weights, eigenvalues, spectral_radius,
 };
 
 /// Without constraints the optimum η = −Ω⁻¹Ψx (50) makes the first move Δu(k) = L(0)ᵀη = −K x.
@@ -49,6 +49,7 @@ pub struct LmpcDesign {
     closed_loop: DMatrix<f64>,
     spectral_radius: f64,
     condition_number: f64,
+    gain_error: f64,
     model: Augmented,
     bases: Vec<LaguerreBasis>,
     alpha: f64,
@@ -60,7 +61,7 @@ impl LmpcDesign {
     ///
     /// # Errors
     /// [`DesignError::Unstable`] when the closed loop is not stable, [`DesignError::IllConditioned`] when
-    /// Ω cannot be factored, and those of [`Dlqr::new`], [`Prediction::new`] and [`Weights::new`].
+    /// rounding may change the gain by more than 10⁻⁴ of its size, and those of [`Dlqr::new`], [`Prediction::new`] and [`Weights::new`].
     pub fn new(
         model: &Augmented,
         weights: &Weights,
@@ -81,17 +82,13 @@ impl LmpcDesign {
         )?;
 
         // K = L(0)ᵀ Ω⁻¹ Ψ
-        let factor =
-            prediction.omega().clone().cholesky().ok_or_else(|| DesignError::IllConditioned {
-                condition: condition_number(prediction.omega()),
-            })?;
-        let coefficient_gain = factor.solve(prediction.psi());
-        let condition_number = condition_number(prediction.omega());
-        if !condition_number.is_finite() {
-            return Err(DesignError::IllConditioned { condition: condition_number });
-        }
         let first_move = InputBasis::new(bases).row();
-        let gain = &first_move * &coefficient_gain;
+        let OptimalGain {
+            unknowns: coefficient_gain,
+            first_move: gain,
+            condition: condition_number,
+            error: gain_error,
+        } = OptimalGain::new("Omega", prediction.omega(), prediction.psi(), &first_move)?;
 
         let closed_loop = model.a() - model.b() * &gain;
         let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
@@ -108,6 +105,7 @@ impl LmpcDesign {
             closed_loop,
             spectral_radius,
             condition_number,
+            gain_error,
             model: model.clone(),
             bases: bases.to_vec(),
             alpha: cost.alpha,
@@ -167,8 +165,14 @@ impl LmpcDesign {
         self.spectral_radius
     }
 
-    /// Condition number of Ω, finite.
+    /// Condition number of Ω, finite. It bounds what rounding may do to the coefficients; what it does to the gain is
+    /// [`LmpcDesign::gain_error`].
     pub fn condition_number(&self) -> f64 {
         self.condition_number
+    }
+
+    /// What share of the gain rounding may have changed, at most: an estimate, usually ten times too large.
+    pub fn gain_error(&self) -> f64 {
+        self.gain_error
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::riccati::gain;
+use crate::weighting::check_alpha;
 use crate::{DesignError, solve_riccati};
 
 /// Discrete linear quadratic regulator Δu = −K x with a prescribed degree of stability.
@@ -13,7 +14,7 @@ use crate::{DesignError, solve_riccati};
 pub struct Dlqr {
     gain: DMatrix<f64>,
     cost: DMatrix<f64>,
-    lambda: f64,
+    radius: f64,
 }
 
 impl Dlqr {
@@ -31,13 +32,49 @@ impl Dlqr {
         if !(lambda > 0.0 && lambda <= 1.0) {
             return Err(DesignError::Lambda { value: lambda });
         }
-        // P solves the Riccati equation of (A/λ, B/λ, Q, R)
-        let (a_scaled, b_scaled) = (a / lambda, b / lambda);
+        Self::of_radius(a, b, q, r, lambda)
+    }
+
+    /// K_w and P_w of (54): minimises J_w (51), Σ α^(−2j) (xᵀQx + ΔuᵀRΔu), of which the future weighs less than the present,
+    /// for an infinite horizon, α ≥ 1. It is what a Laguerre MPC of many terms over a long horizon with
+    /// [`Weighting::Literal`](crate::Weighting::Literal) has as its gain.
+    ///
+    /// The optimum stabilises x̂(j) = α^(−j) x(j) (53), (55), whose cost is a plain sum. Of x itself that says only that it
+    /// grows more slowly than αʲ: |λ| < α for every eigenvalue of A − B K_w (56)–(57). With α > 1 the loop need not be
+    /// stable; check its [spectral radius](crate::spectral_radius). For α = 1 it is [`Dlqr::new`] with λ = 1. The regulator
+    /// of [`Weighting::Exponential`](crate::Weighting::Exponential) is stable whatever α, because it transforms Q and R as
+    /// well.
+    ///
+    /// Only modes on or outside the circle of radius α must be controllable and observable through Q.
+    ///
+    /// # Errors
+    /// [`DesignError::Alpha`], and those of [`solve_riccati`].
+    pub fn exponentially_weighted(
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+        q: &DMatrix<f64>,
+        r: &DMatrix<f64>,
+        alpha: f64,
+    ) -> Result<Self, DesignError> {
+        check_alpha(alpha)?;
+        Self::of_radius(a, b, q, r, alpha)
+    }
+
+    /// The regulator that keeps all eigenvalues inside the circle of that radius.
+    fn of_radius(
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+        q: &DMatrix<f64>,
+        r: &DMatrix<f64>,
+        radius: f64,
+    ) -> Result<Self, DesignError> {
+        // P solves the Riccati equation of (A/ρ, B/ρ, Q, R)
+        let (a_scaled, b_scaled) = (a / radius, b / radius);
         let cost = solve_riccati(&a_scaled, &b_scaled, q, r)?;
-        // K = (R + λ⁻² BᵀPB)⁻¹ λ⁻² BᵀPA: the form of (54)
+        // K = (R + ρ⁻² BᵀPB)⁻¹ ρ⁻² BᵀPA: (54)
         let gain = gain(&a_scaled, &b_scaled, r, &cost)
             .ok_or(DesignError::NotPositiveDefinite { name: "R + BᵀPB" })?;
-        Ok(Self { gain, cost, lambda })
+        Ok(Self { gain, cost, radius })
     }
 
     /// K, p×n: Δu = −K x.
@@ -50,8 +87,8 @@ impl Dlqr {
         &self.cost
     }
 
-    /// λ, the degree of stability it was designed for.
-    pub fn lambda(&self) -> f64 {
-        self.lambda
+    /// What every closed-loop eigenvalue is smaller than: the λ or α that it was designed for.
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 }

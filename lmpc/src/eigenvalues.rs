@@ -2,12 +2,12 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::linalg::Hessenberg;
+use nalgebra::{Complex, DMatrix};
 
+use crate::balancing::balanced;
+use crate::hessenberg_qr::hessenberg_eigenvalues;
 use crate::{DesignError, validate};
-
-/// QR sweeps per eigenvalue after which the iteration is given up; it needs two or three.
-const SWEEPS_PER_EIGENVALUE: usize = 200;
 
 /// All eigenvalues of a square matrix, in the order in which the Schur form has them.
 ///
@@ -20,9 +20,8 @@ pub fn eigenvalues(name: &'static str, matrix: &DMatrix<f64>) -> Result<Vec<Comp
     if size == 0 {
         return Ok(Vec::new());
     }
-    let schur = Schur::try_new(matrix.clone(), f64::EPSILON, SWEEPS_PER_EIGENVALUE * size)
-        .ok_or(DesignError::Eigenvalues { name })?;
-    Ok(schur.complex_eigenvalues().iter().copied().collect())
+    let hessenberg = Hessenberg::new(balanced(matrix.clone())).unpack_h();
+    hessenberg_eigenvalues(hessenberg).ok_or(DesignError::Eigenvalues { name })
 }
 
 /// Largest magnitude of the eigenvalues.

@@ -147,14 +147,20 @@ pub enum DesignError {
         /// Doubling steps made.
         iterations: usize,
     },
-    /// The quadratic form Ω cannot be factored.
+    /// The unknowns of the quadratic cost depend on one another so much that the gain is not right.
     #[error(
-        "the matrix Omega is singular in floating point (condition number {}); use fewer terms, a smaller scale, lambda = 1, a longer horizon, or exponential weighting (alpha > 1)",
+        "the matrix {name} is ill-conditioned (condition number {}): rounding can change the gain by {error:.0e} of its size, at most {allowed:.0e} is allowed; use fewer terms or moves, a smaller scale, lambda = 1, or exponential weighting (alpha > 1)",
         Magnitude(*condition)
     )]
     IllConditioned {
-        /// Condition number of Ω.
+        /// The matrix of the quadratic cost: Omega of a Laguerre MPC, H of a state-space MPC.
+        name: &'static str,
+        /// Its condition number.
         condition: f64,
+        /// Share of the gain that rounding can change, 1 at most.
+        error: f64,
+        /// Largest share that is accepted.
+        allowed: f64,
     },
     /// An eigenvalue iteration did not converge.
     #[error("the eigenvalues of {name} were not found")]

@@ -90,8 +90,8 @@ impl KalmanDesign {
     }
 }
 
-/// The run-time predictor (26) for N states, P inputs and Q outputs, without direct feed-through: no
-/// allocation.
+/// The run-time predictor (26) for N states, P inputs and Q outputs: no allocation. A
+/// [direct term](StateSpace#the-direct-term-d) D u(k) is subtracted from the measurement by the caller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KalmanPredictor<const N: usize, const P: usize, const Q: usize> {
     a: SMatrix<f64, N, N>,

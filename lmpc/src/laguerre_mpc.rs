@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
 
+use crate::bounds::Bounds;
 use crate::controller_state::Decision;
 use crate::laguerre_walk::LaguerreWalk;
 use crate::limit_row::{LimitRow, limit_rows};
@@ -11,7 +12,7 @@ use crate::model_increment::ModelIncrement;
 use crate::relaxable::RelaxableProgram;
 use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Sample, StateFeedback, Step};
 
-/// Relative violation that rounding may leave.
+/// Violation that rounding may leave, relative to the bound and to what the left-hand side adds up.
 const ROUNDING: f64 = 1e-9;
 
 /// Constrained Laguerre MPC for a plant of N states, P inputs and Q outputs, with E ≥ ΣN + 1 unknowns: the
@@ -122,8 +123,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
             return self.unconstrained.step(state, sample);
         }
         let f = self.psi_state * known.delta + self.psi_output * known.error;
-        let room = |row: usize| self.rows[row].room(&known, sample.upper);
-        let (solution, status) = self.program.solve(&f, room, &mut state.warm_start);
+        let rooms = Rooms { rows: &self.rows, known: &known, upper: sample.upper };
+        let (solution, status) = self.program.solve(&f, &rooms, &mut state.warm_start);
         let first_move = self.first_move * solution.x;
         state.take(sample, &Decision::solved(state.feedback(), first_move, &solution, status))
     }
@@ -154,16 +155,37 @@ impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
         (self.input * known.input + self.step * known.step + self.measured * known.measured).x
     }
 
-    /// What is left for η.
-    fn room(&self, known: &Known<N, P, Q>, upper: &[f64]) -> f64 {
-        self.upper(upper) - self.base(known) - (self.state * known.delta + self.output * known.error).x
+    /// What the state does without further moves.
+    fn drift(&self, known: &Known<N, P, Q>) -> f64 {
+        (self.state * known.delta + self.output * known.error).x
     }
 
     fn holds_unconstrained(&self, known: &Known<N, P, Q>, upper: &[f64]) -> bool {
-        let upper = self.upper(upper);
-        let value = self.base(known)
-            + (self.unconstrained_state * known.delta + self.unconstrained_output * known.error).x;
-        value <= upper + ROUNDING * (1.0 + libm::fabs(upper))
+        let (upper, base) = (self.upper(upper), self.base(known));
+        let feedback = (self.unconstrained_state * known.delta + self.unconstrained_output * known.error).x;
+        let size = libm::fabs(upper).max(libm::fabs(base)).max(libm::fabs(feedback));
+        base + feedback <= upper + ROUNDING * size
+    }
+}
+
+/// What the limits leave for η at one sample.
+struct Rooms<'a, const N: usize, const P: usize, const Q: usize> {
+    rows: &'a [KnownPart<N, P, Q>],
+    known: &'a Known<N, P, Q>,
+    upper: &'a [f64],
+}
+
+impl<const N: usize, const P: usize, const Q: usize> Bounds for Rooms<'_, N, P, Q> {
+    fn bound(&self, row: usize) -> f64 {
+        let row = &self.rows[row];
+        row.upper(self.upper) - row.base(self.known) - row.drift(self.known)
+    }
+
+    fn size(&self, row: usize) -> f64 {
+        let row = &self.rows[row];
+        libm::fabs(row.upper(self.upper))
+            + libm::fabs(row.base(self.known))
+            + libm::fabs(row.drift(self.known))
     }
 }
 

@@ -10,7 +10,7 @@
 //! | L(m), A_l, a | [`LaguerreBasis`] | (38)–(43), (58) |
 //! | Ω, Ψ, φ(m) | [`Prediction`] | (46)–(50) |
 //! | K, η = −Ω⁻¹Ψx, and the eigenvalues of A − BK | [`LmpcDesign`] | (50) |
-//! | P, K of the infinite horizon | [`Dlqr`], [`solve_riccati`] | (54) |
+//! | P, K of the infinite horizon; K_w with α > 1 | [`Dlqr`], [`solve_riccati`] | (54) |
 //! | D, and the samples m of a limit | [`Limit`] of a [`Quantity`] | |
 //! | x(k), y − r, u_r(k), d(k), b | [`Sample`] | |
 //! | u(k), Δu(k), and how they were found | [`Step`], [`Status`] | |
@@ -33,7 +33,7 @@
 //! Every step of the design returns a [`DesignError`] when a precondition is violated. Of the const generics, N, P and Q
 //! are the numbers of states, inputs and outputs of the plant. E is the capacity of a program, at least its
 //! [number of unknowns](unknowns); W is the number of active limits that a [`ControllerState`] has room for.
-
+#![doc = include_str!("equations.md")]
 #![no_std]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
@@ -42,6 +42,8 @@ extern crate alloc;
 
 mod active_set;
 mod augmented;
+mod balancing;
+mod bounds;
 mod capacity;
 mod controller;
 mod controller_state;
@@ -52,6 +54,7 @@ mod dual_search;
 mod eigenvalues;
 mod error;
 mod exponential;
+mod hessenberg_qr;
 mod kalman;
 mod laguerre;
 mod laguerre_mpc;
@@ -60,6 +63,7 @@ mod limit;
 mod limit_row;
 mod model_increment;
 mod moves_walk;
+mod optimal_gain;
 mod prediction;
 mod quadratic_program;
 mod reachability;
@@ -75,6 +79,7 @@ mod state_space_mpc;
 mod state_space_mpc_design;
 mod stein;
 mod step;
+mod unit_scaling;
 mod validate;
 mod weighting;
 

@@ -7,11 +7,13 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::active_set::ActiveSet;
-use crate::dense::{dot, subtract_scaled};
+use crate::bounds::{Bounds, GivenBounds};
+use crate::dense::{dot, dot_of_magnitudes, subtract_scaled};
 use crate::{DesignError, validate};
 
-/// How far beyond its bound a constraint counts as met, relative to the size of the numbers in it.
-const FEASIBILITY: f64 = 1e-10;
+/// How far beyond its bound a constraint counts as met, relative to what its bound is made of and to the terms that its
+/// left-hand side adds up. Nothing here compares with a number that has a unit: the solution of a problem in other units is the same.
+const FEASIBILITY: f64 = 1e-12;
 
 /// min ½ xᵀHx + fᵀx subject to G x ≤ h, with at most N unknowns, H and G known at design time. Of vectors of
 /// N elements those beyond the unknowns are zero.
@@ -131,7 +133,9 @@ impl<const N: usize> QuadraticProgram<N> {
             // (G L⁻ᵀ)ᵀ = L⁻¹ Gᵀ
             let mut normal = SVector::<f64, N>::zeros();
             normal.rows_mut(0, unknowns).copy_from(&(&inverse * g.row(row).transpose()));
-            let length = normal.norm();
+            // Squares of tiny or huge elements leave the range of a double: those of the shares do not.
+            let largest = normal.amax();
+            let length = if largest > 0.0 { largest * normal.unscale(largest).norm() } else { 0.0 };
             // A row of zeros stays one: 0 ≤ h either holds or shows that there is no solution.
             let scale = if length > 0.0 { 1.0 / length } else { 1.0 };
             normals.push(normal * scale);
@@ -161,23 +165,22 @@ impl<const N: usize> QuadraticProgram<N> {
         warm_start: &mut WarmStart<N>,
         iteration_limit: u32,
     ) -> Solution<N> {
-        let bound = |row: usize| h.get(row).copied().unwrap_or(f64::INFINITY);
-        self.solve_with(f, bound, warm_start, iteration_limit)
+        self.solve_with(f, &GivenBounds(h), warm_start, iteration_limit)
     }
 
-    /// As [`QuadraticProgram::solve`], with the bound of each row from a function that is called a few times
-    /// per row, and with room for W constraints to be remembered.
+    /// As [`QuadraticProgram::solve`], with the bound of each row asked for a few times, and with room for W constraints to
+    /// be remembered.
     pub(crate) fn solve_with<const W: usize>(
         &self,
         f: &SVector<f64, N>,
-        h: impl Fn(usize) -> f64,
+        h: &impl Bounds,
         warm_start: &mut WarmStart<W>,
         iteration_limit: u32,
     ) -> Solution<N> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
         let z_0 = self.unconstrained(f);
         let magnitude = z_0.amax();
-        if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h(row).is_nan()) {
+        if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h.bound(row).is_nan()) {
             *warm_start = WarmStart::default();
             return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
         }
@@ -237,21 +240,21 @@ impl<const N: usize> QuadraticProgram<N> {
 }
 
 /// One run of the dual method.
-struct Search<'a, const N: usize, H: Fn(usize) -> f64> {
+struct Search<'a, const N: usize, H: Bounds> {
     program: &'a QuadraticProgram<N>,
-    h: H,
+    h: &'a H,
     z_0: SVector<f64, N>,
     z: SVector<f64, N>,
     active: ActiveSet<N>,
     iterations: u32,
 }
 
-impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
+impl<const N: usize, H: Bounds> Search<'_, N, H> {
     /// Starts from an earlier active set, without the constraints that would pull instead of push.
     fn resume<const W: usize>(&mut self, warm_start: &WarmStart<W>) {
         for constraint in warm_start.constraints() {
             // A repeated constraint depends on itself and is not added again.
-            if constraint < self.program.constraints() && (self.h)(constraint).is_finite() {
+            if constraint < self.program.constraints() && self.h.bound(constraint).is_finite() {
                 let split = self.active.split(&self.program.normals[constraint]);
                 self.active.add(constraint, &split, 0.0);
             }
@@ -259,7 +262,7 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
         loop {
             let mut excess = SVector::zeros();
             for (j, &constraint) in self.active.constraints().iter().enumerate() {
-                let bound = (self.h)(constraint) * self.program.scales[constraint];
+                let bound = self.h.bound(constraint) * self.program.scales[constraint];
                 excess[j] = self.program.along(constraint, &self.z_0) - bound;
             }
             match self.active.solve_multipliers(&excess) {
@@ -267,7 +270,7 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
                 None => break,
             }
         }
-        self.z = self.point();
+        self.meet_active();
     }
 
     fn run(&mut self, iteration_limit: u32) -> Outcome {
@@ -300,40 +303,43 @@ impl<const N: usize, H: Fn(usize) -> f64> Search<'_, N, H> {
                     Some((column, until)) if until < until_met => self.active.remove(column),
                     _ => {
                         self.active.add(constraint, &split, multiplier);
+                        self.meet_active();
                         break;
                     }
                 }
             }
         }
-        // What the steps have added up in rounding goes out here.
-        self.z = self.point();
         Outcome::Optimal
     }
 
-    /// z = z₀ − Σ u_j v_j: where all gradients balance.
-    fn point(&self) -> SVector<f64, N> {
-        let n = self.program.unknowns;
-        let mut z = self.z_0;
-        for (&constraint, &multiplier) in self.active.constraints().iter().zip(self.active.multipliers()) {
-            let normal = &self.program.normals[constraint].as_slice()[..n];
-            subtract_scaled(&mut z.as_mut_slice()[..n], normal, multiplier);
+    /// Puts z where the active constraints hold with equality, nearest to z₀: where the steps have led to but for
+    /// rounding, which is that of the bounds and not of the steps, however far z₀ lies.
+    fn meet_active(&mut self) {
+        let mut bounds = SVector::zeros();
+        for (j, &constraint) in self.active.constraints().iter().enumerate() {
+            bounds[j] = self.h.bound(constraint) * self.program.scales[constraint];
         }
-        z
+        self.z = self.active.nearest(&self.z_0, &bounds);
     }
 
     /// h − v·z of one constraint, scaled; negative when violated.
     fn slack(&self, constraint: usize) -> f64 {
-        (self.h)(constraint) * self.program.scales[constraint] - self.program.along(constraint, &self.z)
+        self.h.bound(constraint) * self.program.scales[constraint] - self.program.along(constraint, &self.z)
     }
 
     fn most_violated(&self) -> Option<usize> {
+        let n = self.program.unknowns;
+        let z = &self.z.as_slice()[..n];
         let (mut worst, mut least) = (None, 0.0);
-        let magnitude = self.z.norm();
-        for (constraint, scale) in self.program.scales.iter().enumerate() {
-            let bound = (self.h)(constraint) * scale;
-            let slack = bound - self.program.along(constraint, &self.z);
-            let rounding = FEASIBILITY * (1.0 + magnitude + libm::fabs(bound));
-            if slack < least && slack < -rounding && !self.active.contains(constraint) {
+        for (constraint, (normal, scale)) in self.program.normals.iter().zip(&self.program.scales).enumerate()
+        {
+            let normal = &normal.as_slice()[..n];
+            let bound = self.h.bound(constraint) * scale;
+            let slack = bound - dot(normal, z);
+            if slack < least
+                && slack < -FEASIBILITY * (dot_of_magnitudes(normal, z) + self.h.size(constraint) * scale)
+                && !self.active.contains(constraint)
+            {
                 (worst, least) = (Some(constraint), slack);
             }
         }

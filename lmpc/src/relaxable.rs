@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::bounds::Bounds;
 use crate::capacity::{SLACKS, iteration_limit};
 use crate::limit_row::LimitRow;
 use crate::{DesignError, Outcome, QuadraticProgram, Solution, Status, WarmStart};
@@ -72,12 +73,12 @@ impl<const E: usize> RelaxableProgram<E> {
     pub(crate) fn solve<const W: usize>(
         &self,
         f: &SVector<f64, E>,
-        h: impl Fn(usize) -> f64,
+        h: &impl Bounds,
         warm_start: &mut RelaxableWarmStart<W>,
     ) -> (Solution<E>, Status) {
         let [strict, further @ ..] = &self.stages;
         let [warm, further_warm @ ..] = &mut warm_start.stages;
-        let mut solution = strict.solve_with(f, &h, warm, self.iteration_limit);
+        let mut solution = strict.solve_with(f, h, warm, self.iteration_limit);
         let mut solved = Status::Optimal;
         for (program, warm) in further.iter().zip(further_warm) {
             // What one stage cannot settle in time the next may.
@@ -85,7 +86,7 @@ impl<const E: usize> RelaxableProgram<E> {
                 break;
             }
             let iterations = solution.iterations;
-            solution = program.solve_with(f, &h, warm, self.iteration_limit);
+            solution = program.solve_with(f, h, warm, self.iteration_limit);
             solution.iterations += iterations;
             solved = Status::Relaxed;
         }

@@ -16,6 +16,18 @@ pub enum Discretization {
 
 /// A discrete linear plant with n states, p inputs and q outputs: A_m, B_m, C_m of (35), without the
 /// disturbance.
+///
+/// # The direct term D
+///
+/// (24), (26), (29) and (33) have a term D u(k) in the output; (35) and this type have none. The outputs of the
+/// paper's plants (9), (15), (23) are positions and angles, and C picks them from the states: a force needs two
+/// integrations to move a position, so that D = 0. Nor could a law that computes u(k) from y(k) have it, because y(k)
+/// would depend on what it decides.
+///
+/// For a plant that has a direct term:
+/// * A law measures y(k) before it applies u(k): [`StateSpace::with_direct_term`] makes y(k) = C x(k) + D u(k−1) of it.
+/// * A [`KalmanPredictor`](crate::KalmanPredictor) knows u(k): give it y(k) − D u(k) as the measurement, which is (26). K and P
+///   of (27) do not depend on D.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
     a: DMatrix<f64>,
@@ -34,6 +46,32 @@ impl StateSpace {
         validate::shape("B", &b, (states, b.ncols().max(1)))?;
         validate::shape("C", &c, (c.nrows().max(1), states))?;
         Ok(Self { a, b, c })
+    }
+
+    /// From A, B, C and the direct term D, q×p, of an output that is measured just before the input changes:
+    /// y(k) = C x(k) + D u(k−1). The states are \[x(k); u(k−1)\]:
+    ///
+    /// ```text
+    /// A_m = [A 0]   B_m = [B]   C_m = [C D]
+    ///       [0 0]         [I]
+    /// ```
+    ///
+    /// # Errors
+    /// As [`StateSpace::new`].
+    pub fn with_direct_term(
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+        c: &DMatrix<f64>,
+        d: &DMatrix<f64>,
+    ) -> Result<Self, DesignError> {
+        let plant = Self::new(a.clone(), b.clone(), c.clone())?;
+        let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
+        validate::shape("D", d, (q, p))?;
+        let mut b_m = b.clone().resize_vertically(n + p, 0.0);
+        b_m.view_mut((n, 0), (p, p)).fill_with_identity();
+        let mut c_m = c.clone().resize_horizontally(n + p, 0.0);
+        c_m.view_mut((0, n), (q, p)).copy_from(d);
+        Self::new(a.clone().resize(n + p, n + p, 0.0), b_m, c_m)
     }
 
     /// From continuous matrices, ẋ = A_c x + B_c u, y = C x, sampled every `sample_time_s`.

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, SMatrix, SVector};
 
+use crate::bounds::Bounds;
 use crate::controller_state::Decision;
 use crate::limit_row::limit_rows;
 use crate::moves_walk::MovesWalk;
@@ -87,17 +88,43 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
                 f -= gradient * reference;
             }
         }
-        let room = |row: usize| {
-            let known = &self.known[row];
-            let upper = sample.upper.get(known.bound).copied().unwrap_or(f64::INFINITY);
-            upper
-                - known.state.dot(&sample.deviation)
-                - known.driving.dot(&driving)
-                - known.input.dot(&input)
-                - known.step.dot(&reference_step)
-        };
-        let (solution, status) = self.program.solve(&f, room, &mut state.warm_start);
+        let rooms =
+            Rooms { sample, rows: &self.known, driving: &driving, input: &input, step: &reference_step };
+        let (solution, status) = self.program.solve(&f, &rooms, &mut state.warm_start);
         let first_move = SVector::from_fn(|i, _| solution.x[i]);
         state.take(sample, &Decision::solved(feedback, first_move, &solution, status))
+    }
+}
+
+/// What the limits leave for the moves at one sample.
+struct Rooms<'a, const N: usize, const P: usize, const Q: usize> {
+    rows: &'a [Known<N, P>],
+    sample: &'a Sample<'a, N, P, Q>,
+    driving: &'a SVector<f64, P>,
+    input: &'a SVector<f64, P>,
+    step: &'a SVector<f64, P>,
+}
+
+impl<const N: usize, const P: usize, const Q: usize> Rooms<'_, N, P, Q> {
+    /// The bound, and what of the left-hand side is known.
+    fn terms(&self, row: usize) -> [f64; 5] {
+        let known = &self.rows[row];
+        [
+            self.sample.upper.get(known.bound).copied().unwrap_or(f64::INFINITY),
+            -known.state.dot(&self.sample.deviation),
+            -known.driving.dot(self.driving),
+            -known.input.dot(self.input),
+            -known.step.dot(self.step),
+        ]
+    }
+}
+
+impl<const N: usize, const P: usize, const Q: usize> Bounds for Rooms<'_, N, P, Q> {
+    fn bound(&self, row: usize) -> f64 {
+        self.terms(row).into_iter().sum()
+    }
+
+    fn size(&self, row: usize) -> f64 {
+        self.terms(row).into_iter().map(libm::fabs).sum()
     }
 }

@@ -4,13 +4,14 @@ use nalgebra::DMatrix;
 
 use crate::limit_row::PredictionWalk;
 use crate::moves_walk::MovesWalk;
+use crate::optimal_gain::OptimalGain;
 use crate::validate::symmetrized;
 use crate::{DesignError, Quantity, StateSpace, spectral_radius, validate};
 
 /// Design of a state-space MPC.
 ///
-/// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without direct feed-through (D = 0). The
-/// unknowns are the first N_c moves Δu; the input stays where it is after them. U = 1 u₋₁ + T ΔU makes the
+/// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without the
+/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; the input stays where it is after them. U = 1 u₋₁ + T ΔU makes the
 /// cost (34) the quadratic form
 ///
 /// ```text
@@ -89,7 +90,8 @@ impl StateSpaceMpcDesign {
     /// # Errors
     /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
     /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::MovesBeyondHorizon`] unless
-    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable.
+    /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable,
+    /// [`DesignError::IllConditioned`] when rounding may change its gain by more than 10⁻⁴ of its size.
     pub fn with_weights(
         plant: &StateSpace,
         weights: &StateSpaceMpcWeights,
@@ -140,14 +142,15 @@ impl StateSpaceMpcDesign {
     /// Gains of the unconstrained law Δu(k) = −K_x x(k) − K_u u(k−1) for a reference of zero.
     ///
     /// # Errors
-    /// [`DesignError::IllConditioned`] when H cannot be factored.
+    /// [`DesignError::IllConditioned`] when rounding may change them by more than 10⁻⁴ of their size.
     pub fn gains(&self) -> Result<(DMatrix<f64>, DMatrix<f64>), DesignError> {
-        let p = self.plant.inputs();
-        let factor = self.hessian.clone().cholesky().ok_or_else(|| DesignError::IllConditioned {
-            condition: crate::condition_number(&self.hessian),
-        })?;
-        let first = |gradient: &DMatrix<f64>| factor.solve(gradient).rows(0, p).into_owned();
-        Ok((first(&self.gradient_state), first(&self.gradient_input)))
+        let (n, p) = (self.plant.states(), self.plant.inputs());
+        let unknowns = self.hessian.nrows();
+        let mut gradient = self.gradient_state.clone().resize_horizontally(n + p, 0.0);
+        gradient.columns_mut(n, p).copy_from(&self.gradient_input);
+        let first_move = DMatrix::identity(p, unknowns);
+        let gain = OptimalGain::new("H", &self.hessian, &gradient, &first_move)?.first_move;
+        Ok((gain.columns(0, n).into_owned(), gain.columns(n, p).into_owned()))
     }
 
     /// H of the quadratic form.
@@ -230,7 +233,7 @@ impl FurtherCost {
     }
 }
 
-/// F and Φ of (33) with D = 0: Y = \[y(k) … y(k+N−1)\] from x(k) and U = \[u(k) … u(k+N−1)\].
+/// F and Φ of (33), where D is zero: Y = \[y(k) … y(k+N−1)\] from x(k) and U = \[u(k) … u(k+N−1)\].
 fn condensed(plant: &StateSpace, horizon: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
     let mut f = DMatrix::zeros(q * horizon, n);

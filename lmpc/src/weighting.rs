@@ -117,7 +117,7 @@ impl Weighting {
     }
 }
 
-fn check_alpha(alpha: f64) -> Result<(), DesignError> {
+pub(crate) fn check_alpha(alpha: f64) -> Result<(), DesignError> {
     if alpha >= 1.0 && alpha.is_finite() { Ok(()) } else { Err(DesignError::Alpha { value: alpha }) }
 }
 

@@ -3,8 +3,8 @@
 #![allow(clippy::excessive_precision)] // As the other implementation printed them.
 
 use lmpc::{
-    Augmented, DesignError, Discretization, LaguerreBasis, LmpcDesign, Prediction, StateSpace, Weighting,
-    Weights, condition_number,
+    Augmented, DesignError, Discretization, Dlqr, LaguerreBasis, LmpcDesign, Prediction, StateSpace,
+    Weighting, Weights, condition_number,
 };
 use nalgebra::{DMatrix, DVector, dmatrix};
 use proptest::prelude::*;
@@ -71,6 +71,26 @@ fn weighting_keeps_omega_well_conditioned_and_its_absence_does_not() {
         let plain =
             Prediction::new(model.a(), model.b(), &q, &r, &bases(&model, 5, 0.8187), 1000, None).unwrap();
         assert!(condition_number(plain.omega()) > 1e8, "{name}: {}", condition_number(plain.omega()));
+    }
+}
+
+/// The recipe as (51)–(55) print it has K_w of (54) as its gain when there are terms enough and samples enough, whether
+/// that is stable, as here, or not.
+#[test]
+fn the_literal_recipe_approaches_the_weighted_regulator() {
+    let inertia = [1.0 / 0.1063, 1.0 / 0.1063, 1.0 / 0.2122];
+    let model = Augmented::new(&double_integrators(&inertia, 0.05, Discretization::ForwardEuler));
+    let weights = Weights::output(&model, 1.0, 0.1).unwrap();
+    for alpha in [1.0, 1.1, 1.2] {
+        let regulator =
+            Dlqr::exponentially_weighted(model.a(), model.b(), weights.q(), weights.r(), alpha).unwrap();
+        let error = |terms: usize| {
+            let bases = bases(&model, terms, 0.7);
+            let design =
+                LmpcDesign::new(&model, &weights, &bases, 200, Weighting::Literal { alpha }).unwrap();
+            relative_difference(design.gain(), regulator.gain())
+        };
+        assert!(error(14) < 1e-4 && error(14) < error(5), "α = {alpha}: {:e}, {:e}", error(14), error(5));
     }
 }
 

@@ -1,7 +1,141 @@
 //! Eigenvalues, condition numbers and residuals against their closed forms.
 
 use lmpc::{DesignError, condition_number, eigenvalues, riccati_residual, spectral_radius};
-use nalgebra::{DMatrix, dmatrix};
+use nalgebra::{Complex, DMatrix, DVector, dmatrix};
+use proptest::prelude::*;
+
+/// The largest distance between two sets of as many eigenvalues, each taken once, nearest first.
+fn distance(found: &[Complex<f64>], expected: &[Complex<f64>]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let mut left = found.to_vec();
+    let mut largest = 0.0_f64;
+    for value in expected {
+        let apart = |other: &Complex<f64>| (other.re - value.re).hypot(other.im - value.im);
+        let nearest = (0..left.len()).min_by(|&i, &j| apart(&left[i]).total_cmp(&apart(&left[j]))).unwrap();
+        largest = largest.max(apart(&left.swap_remove(nearest)));
+    }
+    largest
+}
+
+/// x → the next one of n places, in a ring.
+fn cyclic_permutation(n: usize) -> DMatrix<f64> {
+    DMatrix::from_fn(n, n, |i, j| f64::from(u8::from((j + 1) % n == i)))
+}
+
+fn roots_of_unity(n: usize) -> Vec<Complex<f64>> {
+    (0..n)
+        .map(|k| (std::f64::consts::TAU * k as f64 / n as f64).sin_cos())
+        .map(|(sine, cosine)| Complex::new(cosine, sine))
+        .collect()
+}
+
+/// No shift that follows from a cyclic permutation's trailing block moves it.
+#[test]
+fn eigenvalues_of_cyclic_permutations_are_the_roots_of_unity() {
+    for n in 1..=80 {
+        let permutation = cyclic_permutation(n);
+        for matrix in [permutation.clone(), permutation.transpose(), -&permutation] {
+            let sign = if matrix.sum() < 0.0 { -1.0 } else { 1.0 };
+            let expected: Vec<_> = roots_of_unity(n).iter().map(|root| root * sign).collect();
+            let distance = distance(&eigenvalues("A", &matrix).unwrap(), &expected);
+            assert!(distance < 1e-13, "n = {n}: {distance:e}");
+        }
+    }
+}
+
+/// Several rings in one permutation: the roots of unity of each.
+#[test]
+fn eigenvalues_of_permutations_are_those_of_their_cycles() {
+    let mut matrix = DMatrix::zeros(33, 33);
+    let mut expected = Vec::new();
+    let mut start = 0;
+    for n in [10, 12, 11] {
+        matrix.view_mut((start, start), (n, n)).copy_from(&cyclic_permutation(n));
+        expected.extend(roots_of_unity(n));
+        start += n;
+    }
+    // The same places in another order.
+    let order: Vec<usize> = (0..33).map(|i| i * 7 % 33).collect();
+    let shuffled = DMatrix::from_fn(33, 33, |i, j| matrix[(order[i], order[j])]);
+    assert!(distance(&eigenvalues("A", &shuffled).unwrap(), &expected) < 1e-13);
+}
+
+/// Jordan blocks: a chain of n integrators has the eigenvalue 0 or 1 n times, which rounding spreads by ε^(1/n).
+#[test]
+fn defective_eigenvalues_are_found() {
+    for n in [2, 5, 12, 20] {
+        let chain = DMatrix::from_fn(n, n, |i, j| f64::from(u8::from(i + 1 == j)));
+        for (diagonal, matrix) in [(0.0, chain.clone()), (1.0, &chain + DMatrix::identity(n, n))] {
+            let expected = vec![Complex::new(diagonal, 0.0); n];
+            assert_eq!(distance(&eigenvalues("A", &matrix).unwrap(), &expected), 0.0, "n = {n}");
+        }
+    }
+}
+
+fn square(n: usize) -> impl Strategy<Value = DMatrix<f64>> {
+    prop::collection::vec(-1.0..1.0, n * n).prop_map(move |entries| DMatrix::from_vec(n, n, entries))
+}
+
+proptest! {
+    /// Orthogonal matrices have eigenvalues on the unit circle; their sum is the trace.
+    #[test]
+    fn eigenvalues_of_orthogonal_matrices_lie_on_the_unit_circle(matrix in (1usize..25).prop_flat_map(square)) {
+        let orthogonal = matrix.qr().q();
+        let values = eigenvalues("A", &orthogonal).unwrap();
+        let sum: Complex<f64> = values.iter().sum();
+        prop_assert!((sum.re - orthogonal.trace()).abs() < 1e-12 && sum.im.abs() < 1e-12);
+        for value in values {
+            prop_assert!((value.re.hypot(value.im) - 1.0).abs() < 1e-12, "{value}");
+        }
+    }
+
+    /// A rotated block diagonal of numbers and pairs has them as its eigenvalues, in states of any unit.
+    #[test]
+    fn eigenvalues_do_not_depend_on_the_states(
+        (n, root) in (2usize..14).prop_flat_map(|n| (Just(n), square(n))),
+        values in prop::collection::vec((-2.0..2.0, 0.1..2.0), 7),
+        units in prop::collection::vec(-12.0..12.0, 14),
+    ) {
+        let (mut blocks, mut expected) = (DMatrix::zeros(n, n), Vec::new());
+        for pair in 0..n / 2 {
+            let (re, im): (f64, f64) = values[pair];
+            blocks.view_mut((2 * pair, 2 * pair), (2, 2)).copy_from(&dmatrix![re, -im; im, re]);
+            expected.extend([Complex::new(re, im), Complex::new(re, -im)]);
+        }
+        if n % 2 == 1 {
+            blocks[(n - 1, n - 1)] = values[6].0;
+            expected.push(Complex::new(values[6].0, 0.0));
+        }
+        let rotation = root.qr().q();
+        let matrix = rotation.transpose() * blocks * rotation;
+        let unit = DVector::from_fn(n, |i, _| 10_f64.powf(units[i]));
+        let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] * unit[i] / unit[j]);
+        let distance = distance(&eigenvalues("A", &scaled).unwrap(), &expected);
+        prop_assert!(distance < 1e-10, "{distance:e}");
+    }
+}
+
+/// (x − 1)(x − 2) … (x − 12), by its coefficients: roots as sensitive as ε · 12¹² / 6!² or so.
+#[test]
+fn eigenvalues_of_a_companion_matrix_of_high_degree_are_its_roots() {
+    let n = 12;
+    let mut coefficients = vec![1.0];
+    for root in 1..=n {
+        let mut product = coefficients.clone();
+        product.push(0.0);
+        for (i, coefficient) in coefficients.iter().enumerate() {
+            product[i + 1] -= f64::from(root) * coefficient;
+        }
+        coefficients = product;
+    }
+    let size = n as usize;
+    let companion = DMatrix::from_fn(size, size, |i, j| {
+        if i == 0 { -coefficients[j + 1] } else { f64::from(u8::from(i == j + 1)) }
+    });
+    let expected: Vec<_> = (1..=n).map(|root| Complex::new(f64::from(root), 0.0)).collect();
+    let distance = distance(&eigenvalues("A", &companion).unwrap(), &expected);
+    assert!(distance < 1e-4, "{distance:e}");
+}
 
 #[test]
 fn eigenvalues_of_a_companion_matrix_are_the_roots_of_its_polynomial() {

@@ -172,3 +172,19 @@ fn wrong_covariances_are_refused_by_name() {
     let error = KalmanDesign::new(&blind, &noise()).unwrap_err();
     assert!(matches!(error, DesignError::Undetectable { .. }), "{error}");
 }
+
+/// (26) with D u(k) in the measurement is (26) without it on y − D u: both written out, one through the predictor.
+#[test]
+fn a_direct_term_is_subtracted_from_the_measurement() {
+    let (plant, direct) = (plant(), 0.7);
+    let design = KalmanDesign::new(&plant, &noise()).unwrap();
+    let predictor = KalmanPredictor::<2, 1, 1>::new(&plant, &design).unwrap();
+    let (mut estimate, mut expected) = (Vector2::new(0.4, -0.1), dmatrix![0.4; -0.1]);
+    for k in 0..30 {
+        let (u, y) = (f64::from(k).sin(), f64::from(2 * k).cos());
+        let innovation = y - ((plant.c() * &expected)[0] + direct * u);
+        expected = plant.a() * &expected + plant.b() * u + design.gain() * innovation;
+        estimate = predictor.predict(&estimate, &Vector1::new(u), &Vector1::new(y - direct * u));
+        assert!((estimate.x - expected[0]).hypot(estimate.y - expected[1]) < 1e-13, "sample {k}");
+    }
+}

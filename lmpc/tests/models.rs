@@ -1,7 +1,10 @@
 //! Discretisation and augmentation.
 
-use lmpc::{Augmented, DesignError, Discretization, StateSpace};
-use nalgebra::{DMatrix, dmatrix};
+use lmpc::{
+    Augmented, Controller, ControllerState, DesignError, Discretization, LaguerreBasis, LmpcDesign, Sample,
+    StateFeedback, StateSpace, Weighting, Weights,
+};
+use nalgebra::{DMatrix, Vector1, Vector2, dmatrix};
 
 mod common;
 use common::double_integrators;
@@ -75,4 +78,49 @@ fn wrong_models_are_refused_by_name() {
         let error = StateSpace::from_continuous(&a, &b, &c, time, Discretization::ForwardEuler).unwrap_err();
         assert!(matches!(error, DesignError::SampleTime { .. }), "{error}");
     }
+}
+
+/// (24) with D, measured before the input changes: y(k) = C x(k) + D u(k−1), simulated.
+#[test]
+fn a_direct_term_shows_the_input_before() {
+    let (a, b) = (dmatrix![0.9, 0.4; -0.2, 0.7], dmatrix![1.0, 0.5; -0.3, 2.0]);
+    let (c, d) = (dmatrix![1.0, -1.0], dmatrix![3.0, 0.5]);
+    let plant = StateSpace::with_direct_term(&a, &b, &c, &d).unwrap();
+    let (mut x, mut before) = (dmatrix![0.3; -0.8], dmatrix![0.0; 0.0]);
+    let mut state = dmatrix![0.3; -0.8; 0.0; 0.0];
+    for k in 0..20 {
+        let expected = &c * &x + &d * &before;
+        assert!((plant.c() * &state - expected).amax() < 1e-14, "sample {k}");
+        before = dmatrix![f64::from(k).sin(); f64::from(k * k).cos()];
+        x = &a * x + &b * &before;
+        state = plant.a() * state + plant.b() * &before;
+    }
+    let wrong = StateSpace::with_direct_term(&a, &b, &c, &dmatrix![3.0]).unwrap_err();
+    assert_eq!(wrong, DesignError::Dimension { name: "D", expected: (1, 2), actual: (1, 1) });
+}
+
+/// Laguerre MPC brings an output with a direct term to its set-point: the prediction knows it.
+#[test]
+fn a_direct_term_is_predicted() {
+    let (a, b, c, d) = (dmatrix![0.8], dmatrix![0.5], dmatrix![1.0], dmatrix![4.0]);
+    let plant = StateSpace::with_direct_term(&a, &b, &c, &d).unwrap();
+    let model = Augmented::new(&plant);
+    let weights = Weights::output(&model, 1.0, 0.1).unwrap();
+    let bases = [LaguerreBasis::new(6, 0.5).unwrap()];
+    let design = LmpcDesign::new(&model, &weights, &bases, 60, Weighting::Terminal { lambda: 1.0 }).unwrap();
+    let law = StateFeedback::<2, 1, 1>::from_design(&design).unwrap();
+    let mut controller = ControllerState::<2, 1>::at_rest();
+    let (set_point, mut x, mut u) = (Vector1::new(3.0), 0.0, 0.0);
+    for _ in 0..100 {
+        let measured = Vector2::new(x, u);
+        let sample = Sample {
+            measured,
+            increment: measured - controller.measured(),
+            error: Vector1::new(x + 4.0 * u) - set_point,
+            ..Sample::default()
+        };
+        u = law.step(&mut controller, &sample).input.x;
+        x = 0.8 * x + 0.5 * u;
+    }
+    assert!((x + 4.0 * u - set_point.x).abs() < 1e-9, "{}", x + 4.0 * u);
 }

@@ -76,6 +76,69 @@ fn scipy_val_two_inputs_with_full_r() {
     assert!(relative_difference(dlqr.gain(), &k) < 1e-12);
 }
 
+/// (54) for α > 1 as SciPy 1.17 has it: `solve_discrete_are(A/α, B/α, Q, R)`, and K_w from it. α = 1.2 leaves the paper's
+/// altitude unstable: its largest eigenvalue is between 1 and α.
+#[test]
+fn scipy_val_exponential_weighting() {
+    let [(_, model), ..] = paper_plants();
+    let q = model.c().transpose() * model.c();
+    for (alpha, p, k, radius) in [
+        (
+            1.2,
+            dmatrix![
+                40.526670599121374, 9.237364570616094, 7.376337036985669;
+                9.237364570616094, 2.66368878415497, 1.1945399841973516;
+                7.376337036985669, 1.1945399841973516, 3.2671229585371124
+            ],
+            dmatrix![0.36055155203300165, 0.11009102778120823, 0.04128615661740345],
+            1.019021777981837,
+        ),
+        (
+            1.02,
+            dmatrix![
+                825.6073852687264, 243.36171098121784, 76.60345572407937;
+                243.36171098121784, 99.37906756576879, 17.090355222845382;
+                76.60345572407937, 17.090355222845382, 11.728884395918566
+            ],
+            dmatrix![10.104067085889145, 4.36054910083541, 0.6630091218320759],
+            0.9524969868274412,
+        ),
+    ] {
+        let dlqr = Dlqr::exponentially_weighted(model.a(), model.b(), &q, &dmatrix![1.0], alpha).unwrap();
+        assert!(relative_difference(dlqr.cost(), &p) < 1e-10, "α = {alpha}");
+        assert!(relative_difference(dlqr.gain(), &k) < 1e-10, "α = {alpha}");
+        let found = spectral_radius("A − BK", &(model.a() - model.b() * dlqr.gain())).unwrap();
+        assert!((found - radius).abs() < 1e-9, "α = {alpha}: {found}");
+        assert_eq!(dlqr.radius(), alpha);
+    }
+    let dlqr = Dlqr::exponentially_weighted(
+        &dmatrix![1.2, 0.3, 0.0; 0.0, 0.5, -1.1; 0.4, 0.0, 0.9],
+        &dmatrix![1.0, 0.0; 0.0, 0.5; 0.2, -1.0],
+        &dmatrix![1.0, 0.0, 0.0; 0.0, 0.0, 0.0; 0.0, 0.0, 2.0],
+        &dmatrix![1.0, 0.2; 0.2, 0.5],
+        1.5,
+    )
+    .unwrap();
+    let k = dmatrix![
+        0.5355128788919987, 0.1412717729945747, 0.07024866279766297;
+        -0.24405591226776088, 0.01646290248958202, -0.6251590638180076
+    ];
+    assert!(relative_difference(dlqr.gain(), &k) < 1e-12);
+}
+
+/// A mode inside the circle of radius α may be out of reach, one outside must not.
+#[test]
+fn exponential_weighting_asks_for_modes_beyond_alpha_alone() {
+    let (b, q, r) = (dmatrix![1.0; 0.0], DMatrix::identity(2, 2), dmatrix![1.0]);
+    let weighted = |mode: f64| Dlqr::exponentially_weighted(&dmatrix![0.5, 1.0; 0.0, mode], &b, &q, &r, 1.2);
+    assert!(weighted(1.1).is_ok());
+    assert!(matches!(weighted(1.3), Err(DesignError::Uncontrollable { .. })), "{:?}", weighted(1.3));
+    for alpha in [0.99, 0.0, f64::NAN, f64::INFINITY] {
+        let error = Dlqr::exponentially_weighted(&q, &b, &q, &r, alpha).unwrap_err();
+        assert!(matches!(error, DesignError::Alpha { .. }), "{error}");
+    }
+}
+
 /// A random matrix with entries in ±1.
 fn matrix(rows: usize, columns: usize) -> impl Strategy<Value = DMatrix<f64>> {
     prop::collection::vec(-1.0..1.0, rows * columns)
@@ -125,6 +188,22 @@ proptest! {
             let dlqr = Dlqr::new(model.a(), model.b(), &q, &r, lambda).unwrap();
             let radius = spectral_radius("A − BK", &(model.a() - model.b() * dlqr.gain())).unwrap();
             prop_assert!(radius < lambda, "{name}: {radius}");
+        }
+    }
+}
+
+proptest! {
+    /// (57): |λ| < α, and of the transformed loop (55) |λ| < 1.
+    #[test]
+    fn exponential_weighting_bounds_the_eigenvalues_by_alpha(alpha in 1.0..1.5, weight in 0.01..100.0) {
+        for (name, model) in paper_plants() {
+            let q = model.c().transpose() * model.c();
+            let r = DMatrix::identity(model.inputs(), model.inputs()) * weight;
+            let dlqr = Dlqr::exponentially_weighted(model.a(), model.b(), &q, &r, alpha).unwrap();
+            let closed = model.a() - model.b() * dlqr.gain();
+            let radius = spectral_radius("A − BK", &closed).unwrap();
+            prop_assert!(radius < alpha, "{name}: {radius}");
+            prop_assert!(spectral_radius("(A − BK)/α", &(closed / alpha)).unwrap() < 1.0);
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Plants that several tests share.
 #![allow(dead_code)] // Each test binary uses its own selection.
 
+pub mod double_double;
+pub mod quadratic_problem;
+
 use lmpc::{Augmented, Discretization, LaguerreBasis, StateSpace};
 use nalgebra::DMatrix;
 
