@@ -56,7 +56,8 @@ pub(crate) fn horizontal(
     duration_s: f64,
 ) -> Result<Motion<6>, DesignError> {
     let airframe = &configuration.airframe;
-    let (lag, drag) = (1.0 / airframe.rotor_time_constant_s, airframe.drag_n_s_m[axis] / airframe.mass_kg);
+    let (lag, drag) =
+        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[axis] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ẋ = v,  v̇ = g φ − d v/m: under the thrust of hover
     (a[(0, 1)], a[(1, 2)], a[(1, 1)]) = (1.0, GRAVITY_M_S2, -drag);
@@ -67,7 +68,8 @@ pub(crate) fn horizontal(
 /// Position down, velocity, acceleration by the rotors' thrust, and the commanded one.
 pub(crate) fn vertical(configuration: &Configuration, duration_s: f64) -> Result<Motion<4>, DesignError> {
     let airframe = &configuration.airframe;
-    let (lag, drag) = (1.0 / airframe.rotor_time_constant_s, airframe.drag_n_s_m[2] / airframe.mass_kg);
+    let (lag, drag) =
+        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[2] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ż = w,  ẇ = f − d w/m,  ḟ = (f_c − f)/τ
     (a[(0, 1)], a[(1, 2)], a[(1, 1)], a[(2, 2)], a[(2, 3)]) = (1.0, 1.0, -drag, -lag, lag);

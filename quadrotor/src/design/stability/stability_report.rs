@@ -227,7 +227,7 @@ fn horizontal(
         let over_pitch = over(name, axis, moving, pitch)?;
         if roll == pitch { Ok(over_pitch) } else { Ok(over_pitch.worse(over(name, axis, moving, roll)?)) }
     };
-    let [drag_x, drag_y, _] = configuration.airframe.drag_n_s_m;
+    let [drag_x, drag_y, _] = configuration.airframe.hover_drag_n_s_m();
     let north_loop = worst("north", 0, north)?;
     let east_loop = if north == east && drag_x == drag_y {
         LoopStability { name: "east", ..north_loop }
