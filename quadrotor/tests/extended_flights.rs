@@ -71,6 +71,7 @@ fn each_option_can_be_flown() {
     let [(_, nothing), options @ ..] = OPTIONS;
     for (name, change) in options.into_iter().chain([("everything", everything as Change)]) {
         let [excursion, hover, overshoot, settled_s] = figures(&configuration(change));
+        println!("{name:20} {excursion:6.4} m {:5.2} % {settled_s:5.2} s", 100.0 * overshoot);
         assert!(excursion < 0.2 && hover < 0.02, "{name}: {excursion} {hover}");
         assert!(overshoot < 0.1 && settled_s < 12.0, "{name}: {overshoot} {settled_s}");
         assert_ne!(mark(change), mark(nothing), "{name}");
@@ -132,6 +133,10 @@ fn impossible_airframes_are_refused() {
         refused(|airframe| airframe.products_of_inertia_kg_m2 = [0.0, 0.02, 0.0]),
         "airframe.inertia is no rigid body's: its principal moments 1.026e-1, 1.063e-1 and 2.159e-1 kg*m^2 must be positive, \
          and each at most the sum of the other two; reduce airframe.inertia.xy, .xz and .yz"
+    );
+    assert_eq!(
+        refused(|airframe| airframe.rotor_spin.inertia_kg_m2 = 0.06),
+        "airframe.rotor.inertia = 0.06 kg*m^2 must be at most 0.05305 kg*m^2: airframe.inertia.z includes all four rotors"
     );
     // Half of 0.9438 N·m of pitch torque over 6.8647 N.
     assert_eq!(

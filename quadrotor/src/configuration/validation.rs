@@ -63,6 +63,7 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     }
     validate_inertia(&airframe.inertia_kg_m2)?;
     validate_products_of_inertia(airframe)?;
+    validate_rotor_inertia(airframe)?;
     validate_centre_of_gravity(airframe, largest_n_m)?;
     validate_battery(airframe)?;
     validate_spin(configuration, largest_n_m)?;
@@ -106,6 +107,22 @@ fn validate_products_of_inertia(airframe: &Airframe) -> Result<(), Configuration
     }
     let [smallest, middle, largest] = airframe.principal_moments_kg_m2();
     Err(ConfigurationError::Inertia { smallest, middle, largest })
+}
+
+/// The rotors turn with the body, too: its moment about the down axis contains theirs.
+fn validate_rotor_inertia(airframe: &Airframe) -> Result<(), ConfigurationError> {
+    let [_, _, z] = airframe.inertia_kg_m2;
+    let value = airframe.rotor_spin.inertia_kg_m2;
+    if value <= z / 4.0 {
+        return Ok(());
+    }
+    Err(ConfigurationError::Inconsistent {
+        name: "airframe.rotor.inertia",
+        value: Quantity { value, unit: "kg*m^2" },
+        relation: "at most",
+        limit: rounded_down(z / 4.0, "kg*m^2"),
+        reason: "airframe.inertia.z includes all four rotors",
+    })
 }
 
 /// Share of the roll and pitch torques in hover that an offset centre of gravity may take; the rest is left for control.

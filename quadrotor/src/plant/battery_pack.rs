@@ -50,6 +50,11 @@ pub fn cell_voltage_v(remaining: f64) -> f64 {
 }
 
 impl BatteryPack {
+    /// Share of its commanded speed that a rotor goes to at a voltage, V.
+    pub fn speed_share(&self, voltage_v: f64) -> f64 {
+        if self.sag { voltage_v / self.voltage_v } else { 1.0 }
+    }
+
     /// What the pack gives to a load of `power_w` when `discharge` of its charge is drawn.
     ///
     /// U I = P and U = U_oc − R I make U = (U_oc + √(U_oc² − 4 R P))/2. A pack gives no more than U_oc²/4R; beyond that the

@@ -59,7 +59,9 @@ impl Plant {
         if self.is_held(state, inputs) { Vector3::new(0.0, 0.0, acceleration.z) } else { acceleration }
     }
 
-    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it.
+    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it. Its
+    /// slope jumps where a foot touches the ground, where a rotor with different lags meets its command, and where the
+    /// thrust or the voltage reaches a bound.
     /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
     /// [`Plant::step`] adds the rule that holds it still.
     pub fn derivative(&self, state: &PlantState, inputs: &PlantInputs) -> PlantState {
@@ -81,7 +83,7 @@ impl Plant {
     fn rotor_acceleration_rad_s2(&self, state: &PlantState, inputs: &PlantInputs) -> [f64; 4] {
         let Actuation::RotorSpeeds(mut command_rad_s) = inputs.actuation else { return [0.0; 4] };
         if self.airframe.battery.sag {
-            let share = self.battery(state).voltage_v / self.airframe.battery.voltage_v;
+            let share = self.airframe.battery.speed_share(self.battery(state).voltage_v);
             command_rad_s = command_rad_s.map(|command| command * share);
         }
         core::array::from_fn(|rotor| {

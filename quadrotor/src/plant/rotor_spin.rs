@@ -30,6 +30,12 @@ impl Airframe {
         if goal_rad_s < present_rad_s { rising_s * self.rotor_spin.fall_time_ratio } else { rising_s }
     }
 
+    /// Near hover, the reaction to spin-up is the drag torque's rate of change times this, s: J_r Ω̇ = J_r/(2k₂Ω) · d(k₂Ω²)/dt.
+    pub(crate) fn spin_up_lead_s(&self) -> f64 {
+        let drag_per_speed = 2.0 * self.torque_coefficient_n_m_s2 * self.hover_rotor_speed_rad_s();
+        self.rotor_spin.inertia_kg_m2 / drag_per_speed
+    }
+
     /// Torque of the spinning rotors on the body, FRD, N·m, for rotor speeds and accelerations in the order of the layout.
     ///
     /// The angular momentum of body and rotors is Jω + h with h = Σ s J_r Ω e₃, s = 1 for a rotor that turns clockwise seen
