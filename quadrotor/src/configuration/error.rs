@@ -11,6 +11,13 @@ use crate::{Cause, NoiseEffect, Quantity, ValueRange};
 const REMEDY: &str =
     "lower the loop's output weight, raise its increment weight, or lower airframe.rotor.time_constant";
 
+/// A mass to 10 g, or to two digits if it is less than 100 g.
+fn rounded(mass_kg: f64, to: fn(f64) -> f64) -> f64 {
+    let digits = 2.0 - (libm::floor(libm::log10(mass_kg)) + 1.0).min(0.0);
+    let scale = libm::pow(10.0, digits);
+    to(mass_kg * scale) / scale
+}
+
 /// Why a configuration was refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -29,7 +36,7 @@ pub enum ConfigurationError {
     #[error(
         "{} kg is too heavy: these rotors carry {} kg; raise airframe.rotor.speed_max",
         mass_kg,
-        libm::floor(carried_kg * 100.0) / 100.0
+        rounded(*carried_kg, libm::floor)
     )]
     TooHeavy {
         /// airframe.mass.
@@ -41,7 +48,7 @@ pub enum ConfigurationError {
     #[error(
         "{} kg is too light: these rotors carry {} kg when idle; lower airframe.rotor.speed_min",
         mass_kg,
-        libm::ceil(idle_kg * 100.0) / 100.0
+        rounded(*idle_kg, libm::ceil)
     )]
     TooLight {
         /// airframe.mass.

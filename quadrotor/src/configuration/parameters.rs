@@ -98,7 +98,7 @@ const START: Mutability = Mutability::Start;
 /// All parameters, in the order in which they are documented.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static PARAMETERS: &[Parameter] = &[
-    real!("airframe.mass", Kilogram, STRUCTURAL, 0.05..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
+    real!("airframe.mass", Kilogram, STRUCTURAL, 0.005..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
     real!("airframe.arm_length", Metre, STRUCTURAL, 0.02..=5.0, airframe.arm_length_m, "Arm length l from the centre of mass to each rotor (Table 1)"),
     real!("airframe.inertia.x", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[0], "Moment of inertia J_x about the forward axis (Table 1)"),
     real!("airframe.inertia.y", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[1], "Moment of inertia J_y about the right axis (Table 1)"),
@@ -178,9 +178,9 @@ pub static PARAMETERS: &[Parameter] = &[
     real!("controller.attitude.rate_weight.phi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[0], "Q: weight of the increment of the roll rate"),
     real!("controller.attitude.rate_weight.theta", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[1], "Q: weight of the increment of the pitch rate"),
     real!("controller.attitude.rate_weight.psi", One, TUNABLE, 0.0..=1e9, controllers.attitude.rate_weight[2], "Q: weight of the increment of the yaw rate"),
-    real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque"),
-    real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque"),
-    real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque"),
+    real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e15, controllers.attitude.increment_weight[0], "R: weight of the increment of the roll torque"),
+    real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e15, controllers.attitude.increment_weight[1], "R: weight of the increment of the pitch torque"),
+    real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e15, controllers.attitude.increment_weight[2], "R: weight of the increment of the yaw torque"),
     real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; commands stay within 60 % of it, the rest is a margin for overshoot when torques saturate"),
     real!("limits.tilt_rate", RadianPerSecond, TUNABLE, 0.05..=20.0, limits.tilt_rate_rad_s, "Largest rate of the tilt command"),
     real!("limits.tilt_acceleration", RadianPerSecondSquared, TUNABLE, 0.1..=500.0, limits.tilt_acceleration_rad_s2, "Largest angular acceleration of the tilt command"),

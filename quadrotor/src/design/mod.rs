@@ -3,6 +3,9 @@
 pub(crate) mod capacities;
 pub(crate) mod cascade_design;
 pub(crate) mod controller_limits;
+pub(crate) mod default_bandwidths;
+pub(crate) mod default_limits;
+pub(crate) mod default_reach;
 pub(crate) mod estimator_design;
 pub(crate) mod flyable_limits;
 pub mod limited_samples;

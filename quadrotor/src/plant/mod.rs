@@ -7,6 +7,7 @@ pub(crate) mod ground;
 pub(crate) mod overload;
 pub(crate) mod plant_inputs;
 pub(crate) mod plant_state;
+pub(crate) mod presets;
 pub(crate) mod rigid_body;
 pub(crate) mod rotor_fault;
 pub(crate) mod rotor_layout;

@@ -29,7 +29,7 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--seed", "-1"), 2, "--seed: must be a non-negative integer, not `-1`"),
     (("--autopilot", "betaflight"), 2, "--autopilot: must be px4, ardupilot or generic, not `betaflight`"),
     (("--sped", "3"), 2, "'--speed' (see --help)"),
-    (("--set", "FRAME_MASS=99"), 2, "--set: FRAME_MASS = 99 kg; allowed 0.05–50 kg"),
+    (("--set", "FRAME_MASS=99"), 2, "--set: FRAME_MASS = 99 kg; allowed 0.005–50 kg"),
     (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9; allowed 2 (Land), 4 (Terminate)"),
     (("--set", "NO_SUCH=1"), 2, "--set: unknown parameter NO_SUCH; --list-parameters shows them all"),
     (("--set", "airframe.mas=1"), 2, "--set: unknown parameter airframe.mas; did you mean airframe.mass?"),
