@@ -89,8 +89,10 @@ const NOTHING: &[&str] = &[];
 const ATTITUDE: &[&str] = &["initial.attitude."];
 const BODY_VELOCITY: &[&str] = &["initial.velocity.", "initial.attitude."];
 // The rotors begin at hover speed when armed.
-const ROTOR_SPEEDS: &[&str] = &["armed", "airframe.mass", "airframe.rotor.thrust_coefficient"];
-const WRENCH: &[&str] = &["armed", "airframe.mass", "airframe.arm_length", "airframe.rotor."];
+const ROTOR_SPEEDS: &[&str] =
+    &["armed", "airframe.preset", "airframe.mass", "airframe.rotor.thrust_coefficient"];
+const WRENCH: &[&str] =
+    &["armed", "airframe.preset", "airframe.mass", "airframe.arm_length", "airframe.rotor."];
 const ACCELERATIONS: &[&str] =
     &["armed", "airframe.", "disturbance.force.", "wind.velocity.", "environment.", "initial."];
 const TILT_REFERENCE: &[&str] = NOTHING;

@@ -118,6 +118,12 @@ pub enum ConfigurationError {
         /// Greatest allowed value, at which the lowest foot touches the ground, m.
         greatest_m: f64,
     },
+    /// A preset that has not been applied.
+    #[error("airframe.preset = {name} is not applied; fly Configuration::resolved()")]
+    Unresolved {
+        /// Name of the preset.
+        name: &'static str,
+    },
     /// A function that this build was made without.
     #[error("{name} = true needs the cargo feature \"shaper\"")]
     Unavailable {

@@ -3,13 +3,16 @@
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
-    Airframe, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS,
-    Parameter, Quantity,
+    Airframe, AirframePreset, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer,
+    Mutability, PARAMETERS, Parameter, Quantity,
 };
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
     PARAMETERS.iter().try_for_each(|parameter| parameter.check(configuration))?;
+    if configuration.preset != AirframePreset::Paper {
+        return Err(ConfigurationError::Unresolved { name: configuration.preset.name() });
+    }
     if configuration.reference.shaping && !cfg!(feature = "shaper") {
         return Err(ConfigurationError::Unavailable { name: "reference.shaping" });
     }

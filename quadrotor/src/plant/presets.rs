@@ -97,7 +97,7 @@ impl AirframePreset {
     pub const ALL: [Self; 5] = [Self::Paper, Self::Crazyflie, Self::Hummingbird, Self::Iris, Self::Heavy];
 
     /// Its name: `paper`, `crazyflie`, `hummingbird`, `iris` or `heavy`.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Paper => "paper",
             Self::Crazyflie => "crazyflie",
@@ -113,7 +113,7 @@ impl AirframePreset {
     }
 
     /// What it is, for a person.
-    pub fn description(self) -> &'static str {
+    pub const fn description(self) -> &'static str {
         match self {
             Self::Paper => "Vehicle of Chipofya, Lee and Chong 2015, 0.7 kg",
             Self::Crazyflie => "Bitcraze Crazyflie 2.x, 28 g",
