@@ -2,22 +2,16 @@
 
 use quadrotor::Airframe;
 
+use super::battery_pack::{BatteryPack, DRIVE_EFFICIENCY};
 use crate::fault::BatteryFault;
 
-/// Cells in series.
-pub const CELLS: usize = 3;
-/// Share of the electric power that becomes mechanical power of the rotors.
-const DRIVE_EFFICIENCY: f64 = 0.75;
-/// Autopilot and radio, W.
-const AVIONICS_W: f64 = 3.0;
-/// Of the whole pack, Ω.
-const RESISTANCE_OHM: f64 = 0.03;
-/// Below this the pack is not believed to go, V: it bounds the current.
-const LOWEST_VOLTAGE_V: f64 = 8.0;
+/// Below this a cell is not believed to go, V: it bounds the current.
+const LOWEST_CELL_V: f64 = 8.0 / 3.0;
 
 /// State of the battery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Battery {
+    pack: BatteryPack,
     /// Drawn since it was full, A·s.
     drawn_as: f64,
     /// Energy drawn, J.
@@ -32,10 +26,12 @@ pub struct Battery {
     stuck: f64,
 }
 
-impl Default for Battery {
-    fn default() -> Self {
-        let voltage_v = open_circuit_v(1.0);
+impl Battery {
+    /// A full pack.
+    pub fn new(pack: BatteryPack) -> Self {
+        let voltage_v = open_circuit_v(1.0, pack.cells);
         Self {
+            pack,
             drawn_as: 0.0,
             energy_j: 0.0,
             current_a: 0.0,
@@ -45,23 +41,27 @@ impl Default for Battery {
             stuck: 1.0,
         }
     }
-}
 
-impl Battery {
+    /// Cells in series.
+    pub fn cells(&self) -> u8 {
+        self.pack.cells
+    }
+
     /// `dt_s` of turning rotors.
     pub fn step(&mut self, airframe: &Airframe, rotor_speed_rad_s: &[f64; 4], capacity_ah: f64, dt_s: f64) {
         // P = Σ k₂ ω² · ω: drag torque times speed.
         let k2 = airframe.torque_coefficient_n_m_s2;
         let mechanical_w: f64 = rotor_speed_rad_s.iter().map(|speed| k2 * speed * speed * speed).sum();
-        let power_w = mechanical_w / DRIVE_EFFICIENCY + AVIONICS_W;
-        let open_v = open_circuit_v(self.charge(capacity_ah));
-        self.current_a = power_w / self.terminal_v.max(LOWEST_VOLTAGE_V);
-        self.terminal_v = open_v - self.current_a * RESISTANCE_OHM;
+        let power_w = mechanical_w / DRIVE_EFFICIENCY + self.pack.avionics_w;
+        let open_v = open_circuit_v(self.charge(capacity_ah), self.pack.cells);
+        self.current_a = power_w / self.terminal_v.max(LOWEST_CELL_V * f64::from(self.pack.cells));
+        self.terminal_v = open_v - self.current_a * self.pack.resistance_ohm;
         self.voltage_v = match self.fault {
             None => self.terminal_v,
             Some(BatteryFault::Stuck) => self.voltage_v,
             Some(BatteryFault::Off | BatteryFault::Wrong) => {
-                open_circuit_v(self.remaining(capacity_ah)) - self.current_a * RESISTANCE_OHM
+                open_circuit_v(self.remaining(capacity_ah), self.pack.cells)
+                    - self.current_a * self.pack.resistance_ohm
             }
         };
         self.drawn_as += self.current_a * dt_s;
@@ -118,24 +118,25 @@ impl Battery {
 }
 
 /// Voltage without load: 4.2 V per full cell, 3.7 V at the knee of a tenth, 3.3 V empty.
-fn open_circuit_v(remaining: f64) -> f64 {
+fn open_circuit_v(remaining: f64, cells: u8) -> f64 {
     let cell =
         if remaining > 0.1 { 3.7 + 0.5 * (remaining - 0.1) / 0.9 } else { 3.3 + 0.4 * remaining / 0.1 };
-    cell * CELLS as f64
+    cell * f64::from(cells)
 }
 
 #[cfg(test)]
 mod tests {
     use quadrotor::Airframe;
 
-    use super::Battery;
+    use super::battery_pack::{BatteryPack, DRIVE_EFFICIENCY};
+    use super::{Battery, BatteryPack};
     use crate::fault::BatteryFault;
 
     #[test]
     fn hovering_lasts_about_half_an_hour_and_idling_longer() {
         let airframe = Airframe::default();
         let minutes = |speed: f64| {
-            let mut battery = Battery::default();
+            let mut battery = Battery::new(BatteryPack::default());
             let mut seconds = 0.0;
             while battery.remaining(2.2) > 0.0 {
                 battery.step(&airframe, &[speed; 4], 2.2, 1.0);
@@ -152,7 +153,7 @@ mod tests {
     #[test]
     fn a_broken_gauge_reads_wrong() {
         let airframe = Airframe::default();
-        let mut battery = Battery::default();
+        let mut battery = Battery::new(BatteryPack::default());
         let step = |battery: &mut Battery, fault: Option<BatteryFault>, seconds: usize| {
             for _ in 0..seconds {
                 battery.fail(fault, 2.2);
@@ -177,7 +178,7 @@ mod tests {
 
     #[test]
     fn thrust_makes_the_voltage_sag() {
-        let mut battery = Battery::default();
+        let mut battery = Battery::new(BatteryPack::default());
         let rest = battery.voltage_v();
         battery.step(&Airframe::default(), &[400.0; 4], 2.2, 0.001);
         assert!(battery.voltage_v() < rest - 0.1 && battery.current_a() > 5.0);
