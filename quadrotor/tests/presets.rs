@@ -22,11 +22,14 @@ fn unshaped(preset: AirframePreset) -> Configuration {
     configuration
 }
 
-/// Slower loops need longer: the demo's durations are those of the paper's airframe.
+/// Slower loops and weaker rotors need longer: the demo's durations are those of the paper's airframe.
 fn patience(configuration: &Configuration) -> f64 {
-    let paper = default_bandwidths(&Configuration::default().airframe).unwrap();
-    let own = default_bandwidths(&configuration.airframe).unwrap();
-    (paper.position_rad_s / own.position_rad_s).max(1.0)
+    let paper = Configuration::default();
+    let bandwidth = |of: &Configuration| default_bandwidths(&of.airframe).unwrap().position_rad_s;
+    let acceleration = |of: &Configuration| of.limits.acceleration_vertical_m_s2;
+    let slower = bandwidth(&paper) / bandwidth(configuration);
+    let weaker = (acceleration(&paper) / acceleration(configuration)).sqrt();
+    slower.max(weaker).max(1.0)
 }
 
 /// Deceleration by drag at a speed, m/s².
