@@ -4,7 +4,9 @@ mod common;
 
 use clap::Parser;
 use common::Bench;
-use mavlink::dialects::common::{MavCmd, MavFrame, MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA};
+use mavlink::dialects::common::{
+    MavCmd, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+};
 use quadrotor::{AirframePreset, Configuration};
 use sitl::configuration::{Arguments, Settings};
 use sitl::hil::{ActuatorControls, Mount, Rig, STEP_US};
@@ -62,9 +64,13 @@ fn each_preset_takes_off_flies_to_a_goal_and_lands() {
         assert!((15.0..45.0).contains(&minutes), "{preset:?}: {minutes} minutes");
         let cell_v = flying.battery().voltage_v() / f64::from(settings.battery.cells);
         assert!((3.8..4.2).contains(&cell_v), "{preset:?}: {cell_v} V");
-        let hover =
-            bench.parameters().into_iter().find(|value| value.param_id.to_str() == Ok("MPC_THR_HOVER"));
-        let share = f64::from(hover.expect("there").param_value);
+        bench.send(MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
+            param_index: -1,
+            target_system: 1,
+            target_component: 1,
+            param_id: "MPC_THR_HOVER".into(),
+        }));
+        let share = f64::from(bench.parameters().last().expect("an answer").param_value);
         assert!((share - preset.airframe().hover_thrust_share()).abs() < 0.01, "{preset:?}: {share}");
 
         let target = OFFBOARD_GOAL.map(|value| value as f32);
@@ -120,7 +126,8 @@ fn an_external_autopilot_flies_each_preset() {
         fly(1.0, [hover + 0.03; 4]);
         let rising = fly(0.5, [hover; 4]).velocity_m_s;
         let still = fly(0.5, [hover; 4]).velocity_m_s;
-        assert!(rising.z < -0.1 && (still.z - rising.z).abs() < 0.05, "{preset:?}: {rising} {still}");
+        // What drag takes in half a second, and what the rotors were late by.
+        assert!(rising.z < -0.1 && (still.z / rising.z - 1.0).abs() < 0.15, "{preset:?}: {rising} {still}");
         // More on the left, motors 2 and 3: to the right in the autopilot's axes.
         let [less, more] = [hover - 0.01, hover + 0.01];
         let rates = fly(0.2, [less, more, more, less]).body_rate_rad_s;

@@ -28,6 +28,8 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--system-id", "x"), 2, "--system-id: `x` is not a whole number from 1 to 250"),
     (("--seed", "-1"), 2, "--seed: must be a non-negative integer, not `-1`"),
     (("--autopilot", "betaflight"), 2, "--autopilot: must be px4, ardupilot or generic, not `betaflight`"),
+    (("--airframe", "crazyfly"), 2, "--airframe: unknown airframe `crazyfly`; allowed paper, crazyflie, hummingbird, iris, heavy or a FILE.toml; did you mean crazyflie?"),
+    (("--airframe", "/does/not/exist.toml"), 4, "cannot read /does/not/exist.toml"),
     (("--sped", "3"), 2, "'--speed' (see --help)"),
     (("--set", "FRAME_MASS=99"), 2, "--set: FRAME_MASS = 99 kg; allowed 0.005–50 kg"),
     (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9; allowed 2 (Land), 4 (Terminate)"),
