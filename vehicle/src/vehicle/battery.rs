@@ -128,7 +128,6 @@ fn open_circuit_v(remaining: f64, cells: u8) -> f64 {
 mod tests {
     use quadrotor::Airframe;
 
-    use super::battery_pack::{BatteryPack, DRIVE_EFFICIENCY};
     use super::{Battery, BatteryPack};
     use crate::fault::BatteryFault;
 
