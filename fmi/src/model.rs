@@ -1,5 +1,6 @@
 //! The model behind the interface.
 
+use std::borrow::Cow;
 use std::fmt::{Debug, Display};
 
 use serde::Serialize;
@@ -40,6 +41,12 @@ pub trait Model: Sized + 'static {
 
     /// Why parameters or a state are rejected, or a run fails. It is logged as it is displayed.
     type Error: Display;
+
+    /// The parameters as an importer reads them. A model some of whose parameters stand for others, as a preset does, overrides this to
+    /// show the values that it runs with.
+    fn as_read(parameters: &Self::Parameters) -> Cow<'_, Self::Parameters> {
+        Cow::Borrowed(parameters)
+    }
 
     /// A run at time 0.
     ///

@@ -89,7 +89,7 @@ impl<M: Model> Instance<M> {
     fn value(&mut self, variable: &Variable<M>) -> Result<Value, CallError> {
         Ok(match &variable.role {
             Role::Input(field) => field.get(&self.settings.inputs),
-            Role::Parameter { field, .. } => field.get(&self.settings.parameters),
+            Role::Parameter { field, .. } => field.get(&M::as_read(&self.settings.parameters)),
             Role::CalculatedParameter { get, .. } => finite(variable, Value::Real(get(self.model()?)))?,
             Role::Output { signal, .. } => finite(variable, signal.get(self.outputs()?))?,
         })

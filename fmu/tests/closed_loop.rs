@@ -3,7 +3,7 @@
 use fmi::Model;
 use fmi::variables::{Role, Signal, Variable};
 use fmu::{ClosedLoop, FlightError};
-use quadrotor::{Configuration, ControllerStatus, Inputs, PositionReference, Simulation};
+use quadrotor::{AirframePreset, Configuration, ControllerStatus, Inputs, PositionReference, Simulation};
 
 fn both() -> (ClosedLoop, Simulation) {
     let (configuration, inputs) = (Configuration::default(), Inputs::default());
@@ -64,6 +64,36 @@ fn changed_parameters_take_effect_in_the_run() {
     assert!(matches!(model.retune(&wrong), Err(FlightError::Configuration(_))));
     assert!(ClosedLoop::new(&wrong, &Inputs::default()).is_err());
     assert!(ClosedLoop::from_state(&wrong, &model.state()).is_err());
+}
+
+/// What runs, and what is read, is the preset with what is set beside it; saved states continue under it.
+#[test]
+fn a_preset_is_applied_to_the_run_and_to_what_is_read() {
+    let mut parameters = Configuration { preset: AirframePreset::Crazyflie, ..Configuration::default() };
+    parameters.airframe.mass_kg = 0.03;
+    let mut model = ClosedLoop::new(&parameters, &Inputs::default()).unwrap();
+    let mut flight = Simulation::new(&parameters.resolved().unwrap(), &Inputs::default()).unwrap();
+    model.advance_to(400_000, &inputs_at).unwrap();
+    flight.advance_to(400_000, &inputs_at).unwrap();
+    assert_eq!(model.outputs(), flight.outputs());
+    let read = ClosedLoop::as_read(&parameters);
+    assert_eq!((read.preset, read.airframe.mass_kg), (AirframePreset::Crazyflie, 0.03));
+    assert_eq!(read.limits, parameters.resolved().unwrap().limits);
+
+    let other = ClosedLoop::from_state(&parameters, &model.state()).unwrap();
+    assert_eq!(other.outputs(), model.outputs());
+    // A tunable limit in flight; back at its start value it follows the preset again.
+    let tuned = |speed_m_s| {
+        let mut tuned = parameters;
+        tuned.limits.speed_up_m_s = speed_m_s;
+        tuned
+    };
+    assert_eq!(ClosedLoop::as_read(&tuned(1.0)).limits.speed_up_m_s, 1.0);
+    assert_eq!(ClosedLoop::as_read(&tuned(4.0)).limits, read.limits);
+    model.retune(&tuned(1.0)).unwrap();
+    model.retune(&parameters).unwrap();
+    parameters.airframe.mass_kg = 3.0;
+    assert!(matches!(ClosedLoop::new(&parameters, &Inputs::default()), Err(FlightError::Configuration(_))));
 }
 
 /// The message of the log has the figures of the calculated parameters.

@@ -5,10 +5,8 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
 use crate::laguerre::InputBasis;
-use crate::{
-    Augmented, DesignError, Dlqr, LaguerreBasis, Weights, condition_number, solve_stein, spectral_radius,
-    validate,
-};
+use crate::optimal_gain::OptimalGain;
+use crate::{Augmented, DesignError, Dlqr, LaguerreBasis, Weights, solve_stein, spectral_radius, validate};
 
 /// Laguerre MPC with the plan
 ///
@@ -100,14 +98,11 @@ impl StabilizedDesign {
 
         let terms = plan.terms;
         let hessian = cost.view((states, states), (terms, terms)).into_owned();
-        let condition_number = condition_number(&hessian);
-        let factor = hessian
-            .cholesky()
-            .filter(|_| condition_number.is_finite())
-            .ok_or(DesignError::IllConditioned { condition: condition_number })?;
-        let coefficient_gain = factor.solve(&cost.view((states, 0), (terms, states)).into_owned());
+        let coupling = cost.view((states, 0), (terms, states)).into_owned();
+        let OptimalGain { unknowns: coefficient_gain, first_move, condition: condition_number, .. } =
+            OptimalGain::new("S of the coefficients", &hessian, &coupling, &InputBasis::new(bases).row())?;
         // Δu = −K_s x + L(0)ᵀ η with η = −S_ηη⁻¹ S_ηx x
-        let gain = stabilizing_gain + InputBasis::new(bases).row() * &coefficient_gain;
+        let gain = stabilizing_gain + first_move;
         let closed_loop = model.a() - model.b() * &gain;
         let spectral_radius = spectral_radius("A − BK", &closed_loop)?;
         if spectral_radius.is_nan() || spectral_radius >= 1.0 {

@@ -84,7 +84,7 @@ fn values_out_of_range_are_refused_by_name_value_and_range() {
     let mut configuration = Configuration::default();
     set(&mut configuration, "airframe.mass", -1.0);
     let message = Simulation::new(&configuration, &Inputs::default()).unwrap_err().to_string();
-    assert_eq!(message, "airframe.mass = -1 kg; allowed 0.05–50 kg");
+    assert_eq!(message, "airframe.mass = -1 kg; allowed 0.005–50 kg");
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub mod world;
 
 pub use mode::Mode;
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, BATTERY_CELLS, Battery, BatteryActions, Cause, Conduct, Failsafe,
+    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, Conduct, Failsafe,
     FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice,
     PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
     TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,

@@ -14,9 +14,10 @@ macro_rules! figure {
     };
 }
 
-const ALTITUDE: &[&str] = &["controller.altitude."];
-const POSITION: &[&str] = &["controller.position."];
-const ATTITUDE: &[&str] = &["controller.attitude.", "controller.mass_factor", "airframe.inertia."];
+// Under a preset the weights follow from the whole airframe.
+const ALTITUDE: &[&str] = &["controller.altitude.", "airframe."];
+const POSITION: &[&str] = &["controller.position.", "airframe."];
+const ATTITUDE: &[&str] = &["controller.attitude.", "controller.mass_factor", "airframe."];
 
 #[rustfmt::skip]
 pub(super) const CALCULATED: [Variable<ClosedLoop>; 9] = [

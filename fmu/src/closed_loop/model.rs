@@ -1,5 +1,7 @@
 //! The closed loop as an FMI model, over [`quadrotor::Simulation`].
 
+use std::borrow::Cow;
+
 use fmi::variables::{Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
@@ -44,12 +46,16 @@ impl Model for ClosedLoop {
     type Outputs = Outputs;
     type Error = FlightError;
 
+    fn as_read(configuration: &Configuration) -> Cow<'_, Configuration> {
+        Cow::Owned(configuration.as_read())
+    }
+
     fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, FlightError> {
-        Ok(Self(Simulation::new(configuration, inputs)?))
+        Ok(Self(Simulation::new(&configuration.resolved()?, inputs)?))
     }
 
     fn from_state(configuration: &Configuration, state: &SimulationState) -> Result<Self, FlightError> {
-        Ok(Self(Simulation::from_state(configuration, *state)?))
+        Ok(Self(Simulation::from_state(&configuration.resolved()?, *state)?))
     }
 
     fn state(&self) -> SimulationState {
@@ -69,7 +75,7 @@ impl Model for ClosedLoop {
     }
 
     fn retune(&mut self, configuration: &Configuration) -> Result<(), FlightError> {
-        Ok(self.0.reconfigure(configuration)?)
+        Ok(self.0.reconfigure(&configuration.resolved()?)?)
     }
 
     /// The controllers are the same: no need to design them again.

@@ -90,11 +90,18 @@ const NOTHING: &[&str] = &[];
 const ATTITUDE: &[&str] = &["initial.attitude."];
 const BODY_VELOCITY: &[&str] = &["initial.velocity.", "initial.attitude."];
 // The rotors begin at hover speed when armed.
-const ROTOR_SPEEDS: &[&str] = &["armed", "airframe.mass", "airframe.rotor.thrust_coefficient"];
+const ROTOR_SPEEDS: &[&str] =
+    &["armed", "airframe.preset", "airframe.mass", "airframe.rotor.thrust_coefficient"];
 // Of rotors in moving air, and close to the ground.
 const WRENCH: &[&str] = &["armed", "airframe.", "wind.velocity.", "environment.", "initial."];
-const BATTERY: &[&str] =
-    &["armed", "airframe.mass", "airframe.rotor.", "airframe.battery.", "initial.discharge"];
+const BATTERY: &[&str] = &[
+    "armed",
+    "airframe.preset",
+    "airframe.mass",
+    "airframe.rotor.",
+    "airframe.battery.",
+    "initial.discharge",
+];
 const ACCELERATIONS: &[&str] =
     &["armed", "airframe.", "disturbance.force.", "wind.velocity.", "environment.", "initial."];
 const TILT_REFERENCE: &[&str] = NOTHING;

@@ -2,6 +2,7 @@
 
 use quadrotor::{
     Configuration, ConfigurationError, Plant, PlantInputs, PlantState, Simulation, SimulationError,
+    wrench_of_rotors,
 };
 use thiserror::Error;
 
@@ -85,7 +86,7 @@ fn fly_plant(
         track.moments.push(Moment::of(
             time_s,
             &state,
-            &plant.wrench(&state),
+            &wrench_of_rotors(plant.airframe(), &state.rotor_speed_rad_s),
             plan.reference(time_s).position_m,
         ));
         let inputs = PlantInputs {

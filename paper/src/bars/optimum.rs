@@ -1,6 +1,6 @@
 //! The best flights of raw steps, found offline by a nonlinear solver: xtask/python/optimum.py.
 
-use quadrotor::{Configuration, Plant, PlantInputs, PlantState};
+use quadrotor::{Configuration, Plant, PlantInputs, PlantState, wrench_of_rotors};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +88,7 @@ impl Optimum {
             track.moments.push(Moment::of(
                 time_s,
                 state,
-                &plant.wrench(state),
+                &wrench_of_rotors(plant.airframe(), &state.rotor_speed_rad_s),
                 plan.reference(time_s).position_m,
             ));
         };

@@ -11,6 +11,13 @@ use crate::{Cause, NoiseEffect, Quantity, ValueRange};
 const REMEDY: &str =
     "lower the loop's output weight, raise its increment weight, or lower airframe.rotor.time_constant";
 
+/// A mass to 10 g, or to two digits if it is less than 100 g.
+fn rounded(mass_kg: f64, to: fn(f64) -> f64) -> f64 {
+    let digits = 2.0 - (libm::floor(libm::log10(mass_kg)) + 1.0).min(0.0);
+    let scale = libm::pow(10.0, digits);
+    to(mass_kg * scale) / scale
+}
+
 /// Why a configuration was refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -29,7 +36,7 @@ pub enum ConfigurationError {
     #[error(
         "{} kg is too heavy: these rotors carry {} kg; raise airframe.rotor.speed_max",
         mass_kg,
-        libm::floor(carried_kg * 100.0) / 100.0
+        rounded(*carried_kg, libm::floor)
     )]
     TooHeavy {
         /// airframe.mass.
@@ -41,7 +48,7 @@ pub enum ConfigurationError {
     #[error(
         "{} kg is too light: these rotors carry {} kg when idle; lower airframe.rotor.speed_min",
         mass_kg,
-        libm::ceil(idle_kg * 100.0) / 100.0
+        rounded(*idle_kg, libm::ceil)
     )]
     TooLight {
         /// airframe.mass.
@@ -123,6 +130,12 @@ pub enum ConfigurationError {
         z_m: f64,
         /// Greatest allowed value, at which the lowest foot touches the ground, m.
         greatest_m: f64,
+    },
+    /// A preset that has not been applied.
+    #[error("airframe.preset = {name} is not applied; fly Configuration::resolved()")]
+    Unresolved {
+        /// Name of the preset.
+        name: &'static str,
     },
     /// A function that this build was made without.
     #[error("{name} = true needs the cargo feature \"shaper\"")]

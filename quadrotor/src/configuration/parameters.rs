@@ -4,7 +4,7 @@
 use crate::configuration::parameter::{Access, Choice, Mutability, Parameter};
 use crate::configuration::unit::Unit;
 use crate::design::capacities::{MOST_MOVES, MOST_TERMS};
-use crate::{ControllerKind, PredictionModel};
+use crate::{AirframePreset, ControllerKind, PredictionModel};
 
 /// A real parameter: name, unit, variability, range, place and description.
 macro_rules! real {
@@ -103,6 +103,19 @@ static PREDICTION_MODEL: Choice = Choice {
     ],
 };
 
+/// What `airframe.preset` chooses from: [`AirframePreset::ALL`].
+static AIRFRAME_PRESET: Choice = Choice {
+    name: "AirframePreset",
+    description: "Airframe with published parameters",
+    items: &[
+        (AirframePreset::ALL[0].name(), AirframePreset::ALL[0].description()),
+        (AirframePreset::ALL[1].name(), AirframePreset::ALL[1].description()),
+        (AirframePreset::ALL[2].name(), AirframePreset::ALL[2].description()),
+        (AirframePreset::ALL[3].name(), AirframePreset::ALL[3].description()),
+        (AirframePreset::ALL[4].name(), AirframePreset::ALL[4].description()),
+    ],
+};
+
 const TUNABLE: Mutability = Mutability::Tunable;
 const STRUCTURAL: Mutability = Mutability::Structural;
 const START: Mutability = Mutability::Start;
@@ -110,7 +123,22 @@ const START: Mutability = Mutability::Start;
 /// All parameters, in the order in which they are documented.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static PARAMETERS: &[Parameter] = &[
-    real!("airframe.mass", Kilogram, STRUCTURAL, 0.05..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
+    Parameter {
+        name: "airframe.preset",
+        description: "Airframe: 1 = paper (0.7 kg), 2 = crazyflie (28 g), 3 = hummingbird (0.7 kg), 4 = iris (1.5 kg), 5 = heavy (10 kg). Parameters of airframe, limits and controller that are at their start values follow it; others keep the value that is set",
+        unit: Unit::One,
+        mutability: START,
+        access: Access::Enumeration {
+            choice: &AIRFRAME_PRESET,
+            get: |configuration| (1..).zip(AirframePreset::ALL).find(|(_, preset)| *preset == configuration.preset).map_or(1, |(item, _)| item),
+            set: |configuration, value| {
+                if let Some((_, preset)) = (1..).zip(AirframePreset::ALL).find(|(item, _)| *item == value) {
+                    configuration.preset = preset;
+                }
+            },
+        },
+    },
+    real!("airframe.mass", Kilogram, STRUCTURAL, 0.005..=50.0, airframe.mass_kg, "Mass m (Table 1)"),
     real!("airframe.arm_length", Metre, STRUCTURAL, 0.02..=5.0, airframe.arm_length_m, "Arm length l from the centre of mass to each rotor (Table 1)"),
     real!("airframe.inertia.x", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[0], "Moment of inertia J_x about the forward axis (Table 1)"),
     real!("airframe.inertia.y", KilogramSquareMetre, STRUCTURAL, 1e-6..=100.0, airframe.inertia_kg_m2[1], "Moment of inertia J_y about the right axis (Table 1)"),

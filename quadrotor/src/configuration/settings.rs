@@ -3,13 +3,17 @@
 use nalgebra::{SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::Airframe;
+use crate::{Airframe, AirframePreset};
 
 /// The whole configuration: plain data, checked when a [`Simulation`](crate::Simulation) is made of it.
 ///
 /// [`PARAMETERS`](crate::PARAMETERS) lists every field with its public name, unit and range.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Configuration {
+    /// The airframe that values at their start values stand for. Only [`Configuration::resolved`] applies it; what flies must have
+    /// [`AirframePreset::Paper`] here.
+    #[serde(default)]
+    pub preset: AirframePreset,
     /// The vehicle.
     pub airframe: Airframe,
     /// The world around it.

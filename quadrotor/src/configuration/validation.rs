@@ -3,39 +3,23 @@
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
-    Airframe, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS,
-    Parameter, Quantity,
+    Airframe, AirframePreset, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer,
+    Mutability, PARAMETERS, Parameter, Quantity,
 };
 
 /// Checks every parameter against its range and the values that depend on one another.
 pub(crate) fn validate(configuration: &Configuration) -> Result<(), ConfigurationError> {
     PARAMETERS.iter().try_for_each(|parameter| parameter.check(configuration))?;
+    if configuration.preset != AirframePreset::Paper {
+        return Err(ConfigurationError::Unresolved { name: configuration.preset.name() });
+    }
     if configuration.reference.shaping && !cfg!(feature = "shaper") {
         return Err(ConfigurationError::Unavailable { name: "reference.shaping" });
     }
 
+    validate_rotors(&configuration.airframe)?;
     let airframe = &configuration.airframe;
     let limits = &configuration.limits;
-    let (weakest, strongest) = airframe.thrust_range_n();
-    let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
-    if slowest >= fastest {
-        return Err(ConfigurationError::Inconsistent {
-            name: "airframe.rotor.speed_min",
-            value: Quantity { value: slowest, unit: "rad/s" },
-            relation: "below",
-            limit: Quantity { value: fastest, unit: "rad/s" },
-            reason: "that is airframe.rotor.speed_max",
-        });
-    }
-    let mass_kg = airframe.mass_kg;
-    let carried_kg = USABLE_THRUST_SHARE * strongest / GRAVITY_M_S2;
-    if mass_kg >= carried_kg {
-        return Err(ConfigurationError::TooHeavy { mass_kg, carried_kg });
-    }
-    let idle_kg = weakest / GRAVITY_M_S2;
-    if mass_kg <= idle_kg {
-        return Err(ConfigurationError::TooLight { mass_kg, idle_kg });
-    }
     let leaning_m_s2 = GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad);
     if limits.acceleration_horizontal_m_s2 >= leaning_m_s2 {
         return Err(ConfigurationError::Inconsistent {
@@ -69,6 +53,39 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     validate_spin(configuration, largest_n_m)?;
     validate_start(configuration)?;
     validate_sample_times(&configuration.controllers)
+}
+
+/// Checks what the airframe needs to fly at all: every value in its range, and rotors that carry it.
+pub(crate) fn validate_airframe(configuration: &Configuration) -> Result<(), ConfigurationError> {
+    let of_airframe = PARAMETERS.iter().filter(|parameter| parameter.name.starts_with("airframe."));
+    of_airframe.into_iter().try_for_each(|parameter| parameter.check(configuration))?;
+    validate_rotors(&configuration.airframe)?;
+    Mixer::new(&configuration.airframe).map(|_| ())
+}
+
+/// The rotors must carry the vehicle, with thrust to spare, and let it sink.
+fn validate_rotors(airframe: &Airframe) -> Result<(), ConfigurationError> {
+    let (weakest, strongest) = airframe.thrust_range_n();
+    let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
+    if slowest >= fastest {
+        return Err(ConfigurationError::Inconsistent {
+            name: "airframe.rotor.speed_min",
+            value: Quantity { value: slowest, unit: "rad/s" },
+            relation: "below",
+            limit: Quantity { value: fastest, unit: "rad/s" },
+            reason: "that is airframe.rotor.speed_max",
+        });
+    }
+    let mass_kg = airframe.mass_kg;
+    let carried_kg = USABLE_THRUST_SHARE * strongest / GRAVITY_M_S2;
+    if mass_kg >= carried_kg {
+        return Err(ConfigurationError::TooHeavy { mass_kg, carried_kg });
+    }
+    let idle_kg = weakest / GRAVITY_M_S2;
+    if mass_kg <= idle_kg {
+        return Err(ConfigurationError::TooLight { mass_kg, idle_kg });
+    }
+    Ok(())
 }
 
 /// Two moments of inertia may differ by so many times the third one.

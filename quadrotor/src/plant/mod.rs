@@ -10,6 +10,7 @@ pub(crate) mod inertia;
 pub(crate) mod overload;
 pub(crate) mod plant_inputs;
 pub(crate) mod plant_state;
+pub(crate) mod presets;
 pub(crate) mod rigid_body;
 pub(crate) mod rotor_aerodynamics;
 pub(crate) mod rotor_fault;

@@ -76,8 +76,21 @@ impl RotorLayout {
         Self::alternating([[x, y], [-x, y], [-x, -y], [x, -y]])
     }
 
+    /// The same rotors, each turning the other way.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let rotors = self.rotors.map(|rotor| {
+            let direction = match rotor.direction {
+                Direction::Clockwise => Direction::Counterclockwise,
+                Direction::Counterclockwise => Direction::Clockwise,
+            };
+            Rotor { direction, ..rotor }
+        });
+        Self { rotors }
+    }
+
     /// Rotors clockwise around the vehicle, the first of which turns clockwise.
-    fn alternating(places: [[f64; 2]; 4]) -> Self {
+    pub(crate) fn alternating(places: [[f64; 2]; 4]) -> Self {
         let directions = [Direction::Clockwise, Direction::Counterclockwise];
         Self {
             rotors: core::array::from_fn(|index| {

@@ -10,7 +10,9 @@ use vehicle::parameters::Speed;
 
 use super::help::{self, FILES, FLEET, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
-use super::{Addressed, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom};
+use super::{
+    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom,
+};
 use super::{Conventions, LogFilter};
 use crate::fleet::LockstepPhase;
 use crate::flight_log::LogStart;
@@ -79,6 +81,16 @@ pub struct Arguments {
     /// Autopilot whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT", help_heading = VEHICLE)]
     pub autopilot: Option<Conventions>,
+
+    /// Airframe: a preset or a TOML file [default: paper]
+    ///
+    /// Presets are paper (0.7 kg), crazyflie (28 g), hummingbird (0.7 kg), iris (1.5 kg) and heavy (10 kg). Limits, weights and
+    /// battery follow from the airframe. See "Airframes" below. Repeat it for single vehicles, with their system ids in front.
+    #[arg(
+        long, env = "LMPC_SITL_AIRFRAME", value_name = "[ID:]NAME|FILE.toml", value_delimiter = ';', help_heading = VEHICLE,
+        value_parser = OsStringValueParser::new().try_map(Addressed::of_airframe)
+    )]
+    pub airframe: Option<Vec<Addressed<AirframeChoice>>>,
 
     /// Start: LAT,LON,ALT or LAT,LON,ALT,HEADING
     ///
@@ -189,8 +201,8 @@ pub struct Arguments {
 
     /// Steady wind: m/s, and degrees it comes from
     ///
-    /// From 0 to 30 m/s. Wind pushes through drag (airframe.drag.x, .y and .z). In wind or gusts a vehicle has a drag of
-    /// 0.15 N s/m unless --set or --parameters give another. A warning appears if the vehicle cannot hold its position.
+    /// From 0 to 30 m/s. Wind pushes through drag (airframe.drag.x, .y and .z). In wind or gusts an airframe without drag
+    /// gets 0.15 N s/m per 0.7 kg unless --set or --parameters give another. A warning appears if the vehicle cannot hold its position.
     /// [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true, help_heading = SIMULATION)]
     pub wind: Option<WindFrom>,
@@ -321,6 +333,7 @@ impl Arguments {
             formation: self.formation.or(file.formation),
             clocks: self.clocks.or(file.clocks),
             autopilot: self.autopilot.or(file.autopilot),
+            airframe: self.airframe.or(file.airframe),
             home: self.home.or(file.home),
             speed: self.speed.or(file.speed),
             lockstep: self.lockstep.or(file.lockstep),

@@ -116,9 +116,10 @@ mod tests {
             ("speeed = 1", "line 1, `speeed = 1`: unknown setting `speeed`; did you mean `speed`?"),
             ("config = \"other.toml\"", "unknown setting `config`"),
             (
-                "[airframe]\nmass = 1",
-                "line 1, `[airframe]`: unknown setting `airframe`; settings have the names of the flags",
+                "[propeller]\nmass = 1",
+                "line 1, `[propeller]`: unknown setting `propeller`; settings have the names of the flags",
             ),
+            ("[airframe]\nmass = 1", "line 1, `[airframe]`: a setting is a string, a number"),
             ("speed = { x = 1 }", "or an array of them, not a table"),
             ("speed = [1, 2]", "--speed"),
             ("speed = = 3", "line 1, `speed = = 3`: "),

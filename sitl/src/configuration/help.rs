@@ -43,6 +43,17 @@ How to connect:
   pymavlink        mavutil.mavlink_connection('udpin:127.0.0.1:14540')
   MAVProxy         mavproxy.py --master=udpin:127.0.0.1:14550
 
+Airframes:
+  paper, crazyflie, hummingbird, iris and heavy have published parameters. A TOML
+  file has those of your own vehicle, by the names of --list-parameters:
+      preset = \"iris\"            # the rest; without it the file has everything
+      mass = 1.8
+      layout = \"x\"               # or plus, reversed, or the places of the rotors
+      inertia = { x = 0.03, y = 0.03, z = 0.06 }
+      [limits]
+      tilt = 0.5
+  --parameters and --set come on top.
+
 Faults, as UNIT=KIND:
   gyroscope, accelerometer, magnetometer, barometer, gps
       off, stuck, garbage, wrong, slow, delayed, intermittent
@@ -55,6 +66,7 @@ Faults, as UNIT=KIND:
 Examples:
   Links        lmpc-sitl --link tcpin:5760 --link udpin:0.0.0.0:14550
   Vehicle      lmpc-sitl --autopilot ardupilot --set airframe.mass=0.9
+  Airframe     lmpc-sitl --airframe crazyflie
   Fleet        lmpc-sitl --vehicles 5 --formation circle,6 --ports shared
   Wind         lmpc-sitl --wind 8,270 --gusts 1.5 --sensors realistic
   Mission      lmpc-sitl --mission survey.plan --autostart

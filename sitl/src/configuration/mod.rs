@@ -1,6 +1,8 @@
 //! Settings of a run: flags, then the environment, then the file, then defaults.
 
 mod addressed;
+mod airframe;
+mod airframe_file;
 mod arguments;
 mod conventions;
 pub mod environment;
@@ -26,6 +28,7 @@ mod wind_drag;
 mod wind_hold;
 
 pub use addressed::Addressed;
+pub use airframe::AirframeChoice;
 pub use arguments::Arguments;
 pub use conventions::Conventions;
 pub use formation::{Formation, Shape};

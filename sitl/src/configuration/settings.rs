@@ -12,10 +12,10 @@ use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
 use vehicle::world::{LocalFrame, WindSettings};
-use vehicle::{Conduct, Notice, Severity, TICK_US, VehicleSettings};
+use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
-use super::{Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
+use super::{AirframeChoice, Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
 use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
@@ -259,24 +259,30 @@ pub(super) fn vehicle(
             model: arguments.sensors.unwrap_or_default(),
             seed: arguments.seed.unwrap_or(1).wrapping_add(number as u64),
         },
+        battery: BatteryPack::default(),
         plans: Plans::default(),
         autostart: arguments.autostart.unwrap_or(false),
     };
+    let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
+    let airframe_note = chosen.map(|chosen| {
+        vehicle.configuration = chosen.configuration;
+        vehicle.battery = chosen.battery;
+        vehicle.conduct.battery_capacity_ah = chosen.battery.capacity_ah;
+        chosen.note
+    });
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
     vehicle.configuration.sensors.seed = noise_seed(arguments, number);
     let windy = wind.speed_m_s > 0.0 || gusts_m_s > 0.0;
-    if windy {
-        wind_drag::provide(&mut vehicle.configuration);
-    }
+    let drag_n_s_m = if windy { wind_drag::provide(&mut vehicle.configuration) } else { None };
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
-    let note = if windy { wind_drag::note(&vehicle.configuration, &chosen.names) } else { None };
+    let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
     if let Some(path) = mission_of(arguments, system_id) {
         let frame = LocalFrame::new(vehicle.origin);
         let home_m = Vector3::from(vehicle.configuration.initial.position_m);
         vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
     }
-    Ok((vehicle, note.into_iter().chain(chosen.warnings).collect()))
+    Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
 }
 
 /// Parameters that flags name: those of the noise, then `--set`.
@@ -320,6 +326,12 @@ fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
     })
 }
 
+/// The airframe of a system: its own, else that of all.
+fn airframe_of(arguments: &Arguments, system_id: u8) -> Option<&AirframeChoice> {
+    let of = |id: Option<u8>| arguments.airframe.iter().flatten().find(|choice| choice.system_id == id);
+    of(Some(system_id)).or_else(|| of(None)).map(|choice| &choice.value)
+}
+
 /// The plan of a system: its own, else that of all.
 fn mission_of(arguments: &Arguments, system_id: u8) -> Option<&Path> {
     let of = |id: Option<u8>| arguments.mission.iter().flatten().find(|file| file.system_id == id);
@@ -342,6 +354,16 @@ fn check_addresses(arguments: &Arguments, systems: &[u8]) -> Result<(), Failure>
             return Err(Failure::Value { name: "--mission".to_owned(), reason });
         }
         planned.push(file.system_id);
+    }
+    let mut built = Vec::new();
+    for choice in arguments.airframe.iter().flatten() {
+        choice.check("--airframe", &choice.value, systems)?;
+        if built.contains(&choice.system_id) {
+            let whose = choice.system_id.map_or("all".to_owned(), |id| format!("system {id}"));
+            let reason = format!("`{}` is a second airframe for {whose}; give one each", choice.value);
+            return Err(Failure::Value { name: "--airframe".to_owned(), reason });
+        }
+        built.push(choice.system_id);
     }
     arguments.fault.iter().flatten().try_for_each(|fault| fault.check("--fault", fault.value, systems))
 }

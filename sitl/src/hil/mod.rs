@@ -16,6 +16,7 @@ mod client;
 mod instruments;
 mod messages;
 mod mount;
+mod mounting;
 mod rig;
 mod settings;
 mod simulator;

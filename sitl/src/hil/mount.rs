@@ -2,12 +2,12 @@
 
 use core::f64::consts::FRAC_PI_4;
 
-use nalgebra::{UnitQuaternion, Vector3};
+use quadrotor::Direction;
 
 /// Where the autopilot's forward points, between the airframe's arms or along one. Its motors are numbered by PX4's
 /// convention, which puts the same number on the same rotor in both:
 ///
-/// | motor | x | + | airframe's rotor | turns, seen from above |
+/// | motor | x | + | rotor of a "+" | turns, seen from above |
 /// | --- | --- | --- | --- | --- |
 /// | 1 | front right | right | right | counter-clockwise |
 /// | 2 | back left | left | left | counter-clockwise |
@@ -23,21 +23,15 @@ pub enum Mount {
 }
 
 impl Mount {
-    /// The autopilot's axes into the airframe's, FRD: in x its forward lies between the front and the right rotor.
-    pub fn rotation(self) -> UnitQuaternion<f64> {
-        UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.yaw_rad())
-    }
-
-    /// Heading of the autopilot minus that of the airframe, rad.
-    pub fn yaw_rad(self) -> f64 {
-        match self {
-            Self::X => FRAC_PI_4,
-            Self::Plus => 0.0,
-        }
-    }
-
-    /// The airframe's front, right, back and left rotor of motors 1 to 4.
-    pub fn rotors([right, left, front, back]: [f64; 4]) -> [f64; 4] {
-        [front, right, back, left]
+    /// Where motors 1 to 4 are, as angles from the autopilot's forward to the right, rad, and which way they turn.
+    pub fn motors(self) -> [(f64, Direction); 4] {
+        let between = match self {
+            Self::X => 0.0,
+            Self::Plus => FRAC_PI_4,
+        };
+        let places = [FRAC_PI_4, -3.0 * FRAC_PI_4, -FRAC_PI_4, 3.0 * FRAC_PI_4];
+        let [first, second, third, fourth] = places.map(|angle_rad| angle_rad + between);
+        let (right, left) = (Direction::Clockwise, Direction::Counterclockwise);
+        [(first, left), (second, left), (third, right), (fourth, right)]
     }
 }

@@ -14,6 +14,7 @@ use super::actuator_controls::ActuatorControls;
 use super::instruments::Instruments;
 use super::messages;
 use super::mount::Mount;
+use super::mounting::Mounting;
 use crate::record::Digest;
 
 /// From one HIL_SENSOR to the next, µs: PX4's 250 Hz.
@@ -28,7 +29,7 @@ const SIGNAL_LOSS_US: u64 = 200_000;
 /// A vehicle on the ground, its rotors at rest.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    mount: Mount,
+    mounting: Mounting,
     frame: LocalFrame,
     wind: Wind,
     instruments: Instruments,
@@ -45,15 +46,16 @@ impl Rig {
     /// A rig on the ground at the origin.
     ///
     /// # Errors
-    /// [`ConfigurationError`] if the vehicle cannot fly.
+    /// [`ConfigurationError`] if the vehicle cannot fly, or its rotors do not turn as the autopilot's motors.
     pub fn new(settings: &VehicleSettings, mount: Mount) -> Result<Self, ConfigurationError> {
         let mut configuration = settings.configuration;
+        let mounting = Mounting::new(mount, &configuration.airframe.layout)?;
         configuration.environment.ground_plane = true;
-        configuration.initial.attitude_rad = [0.0, 0.0, settings.heading_rad - mount.yaw_rad()];
+        configuration.initial.attitude_rad = [0.0, 0.0, settings.heading_rad - mounting.yaw_rad];
         // Its checks are those of the airframe, too.
         CascadeDesign::new(&configuration)?;
         Ok(Self {
-            mount,
+            mounting,
             frame: LocalFrame::new(settings.origin),
             wind: Wind::new(settings.wind),
             instruments: Instruments::new(settings.wind.seed),
@@ -87,7 +89,7 @@ impl Rig {
         let airframe = self.plant.airframe();
         let (lowest, highest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
         let speed = |motor: f64| if controls.armed { lowest + motor * (highest - lowest) } else { 0.0 };
-        self.command_rad_s = Mount::rotors(controls.motors.map(speed));
+        self.command_rad_s = self.mounting.rotors(controls.motors.map(speed));
         self.controlled_us = Some(self.time_us);
     }
 
@@ -153,7 +155,7 @@ impl Rig {
         let body = &self.state.body;
         let acceleration = self.plant.acceleration_m_s2(&self.state, &self.inputs(*wind_m_s));
         let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
-        let mount = self.mount.rotation();
+        let mount = self.mounting.rotation();
         let attitude = body.rotation() * mount;
         TrueMotion {
             time_us: self.time_us,

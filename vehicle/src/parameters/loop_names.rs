@@ -145,7 +145,7 @@ mod tests {
     /// Longest name of a MAVLink parameter.
     const LONGEST: usize = 16;
     /// They describe the start of a flight and are set by the command line.
-    const START: [&str; 3] = ["initial.", "environment.", "reference."];
+    const START: [&str; 4] = ["initial.", "environment.", "reference.", "airframe.preset"];
 
     #[test]
     fn every_parameter_of_the_vehicle_has_a_name() {

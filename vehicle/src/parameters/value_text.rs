@@ -54,7 +54,7 @@ mod tests {
         }
         for (name, text, expected) in [
             ("controller.kind", "pid", "controller.kind = pid; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
-            ("FRAME_MASS", "heavy", "FRAME_MASS = heavy; allowed 0.05–50 kg"),
+            ("FRAME_MASS", "heavy", "FRAME_MASS = heavy; allowed 0.005–50 kg"),
             (
                 "NAV_DLL_ACT",
                 "true",

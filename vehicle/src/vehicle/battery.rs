@@ -1,17 +1,12 @@
 //! A lithium-polymer battery that the rotors drain.
 
-use quadrotor::{Airframe, BatteryOutput, BatteryPack, cell_voltage_v};
+use quadrotor::{Airframe, BatteryOutput, cell_voltage_v};
 
+use super::battery_pack::BatteryPack;
 use crate::fault::BatteryFault;
 
-/// Cells in series.
-pub const CELLS: usize = 3;
-/// Autopilot and radio, W.
-const AVIONICS_W: f64 = 3.0;
-/// Of the whole pack, Ω.
-const RESISTANCE_OHM: f64 = 0.03;
-/// Below this the pack is not believed to go, V: it bounds the current.
-const LOWEST_VOLTAGE_V: f64 = 8.0;
+/// Below this a cell is not believed to go, V: it bounds the current.
+const LOWEST_CELL_V: f64 = 8.0 / 3.0;
 
 /// Capacity of the battery, A·h: that of the pack whose voltage the rotors follow, or else the vehicle's setting.
 pub fn capacity_ah(airframe: &Airframe, setting_ah: f64) -> f64 {
@@ -22,6 +17,7 @@ pub fn capacity_ah(airframe: &Airframe, setting_ah: f64) -> f64 {
 /// State of the battery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Battery {
+    pack: BatteryPack,
     /// Drawn since it was full, A·s.
     drawn_as: f64,
     /// Energy drawn, J.
@@ -36,10 +32,12 @@ pub struct Battery {
     stuck: f64,
 }
 
-impl Default for Battery {
-    fn default() -> Self {
-        let voltage_v = cell_voltage_v(1.0) * CELLS as f64;
+impl Battery {
+    /// A full pack.
+    pub fn new(pack: BatteryPack) -> Self {
+        let voltage_v = cell_voltage_v(1.0) * f64::from(pack.cells);
         Self {
+            pack,
             drawn_as: 0.0,
             energy_j: 0.0,
             current_a: 0.0,
@@ -49,32 +47,37 @@ impl Default for Battery {
             stuck: 1.0,
         }
     }
-}
 
-impl Battery {
-    /// `dt_s` of turning rotors. `pack` is what the plant's battery gives, if the rotors follow its voltage
+    /// Cells in series.
+    pub fn cells(&self) -> u8 {
+        self.pack.cells
+    }
+
+    /// `dt_s` of turning rotors. `given` is what the plant's battery gives, if the rotors follow its voltage
     /// ([`BatteryPack::sag`](quadrotor::BatteryPack::sag)); without it the battery is modelled here. Its
     /// capacity is [`capacity_ah`].
     pub fn step(
         &mut self,
         airframe: &Airframe,
         rotor_speed_rad_s: &[f64; 4],
-        pack: Option<&BatteryOutput>,
+        given: Option<&BatteryOutput>,
         capacity_ah: f64,
         dt_s: f64,
     ) {
-        let (power_w, cells, resistance_ohm) = match pack {
-            Some(pack) => {
-                (self.current_a, self.terminal_v) = (pack.current_a, pack.voltage_v);
-                let BatteryPack { voltage_v, resistance_ohm, .. } = airframe.battery;
-                (pack.voltage_v * pack.current_a, voltage_v / cell_voltage_v(1.0), resistance_ohm)
+        let (power_w, cells, resistance_ohm) = match given {
+            Some(given) => {
+                (self.current_a, self.terminal_v) = (given.current_a, given.voltage_v);
+                let (voltage_v, resistance_ohm) =
+                    (airframe.battery.voltage_v, airframe.battery.resistance_ohm);
+                (given.voltage_v * given.current_a, voltage_v / cell_voltage_v(1.0), resistance_ohm)
             }
             None => {
-                let power_w = airframe.electric_power_w(rotor_speed_rad_s) + AVIONICS_W;
-                let open_v = cell_voltage_v(self.charge(capacity_ah)) * CELLS as f64;
-                self.current_a = power_w / self.terminal_v.max(LOWEST_VOLTAGE_V);
-                self.terminal_v = open_v - self.current_a * RESISTANCE_OHM;
-                (power_w, CELLS as f64, RESISTANCE_OHM)
+                let cells = f64::from(self.pack.cells);
+                let power_w = airframe.electric_power_w(rotor_speed_rad_s) + self.pack.avionics_w;
+                let open_v = cell_voltage_v(self.charge(capacity_ah)) * cells;
+                self.current_a = power_w / self.terminal_v.max(LOWEST_CELL_V * cells);
+                self.terminal_v = open_v - self.current_a * self.pack.resistance_ohm;
+                (power_w, cells, self.pack.resistance_ohm)
             }
         };
         self.voltage_v = match self.fault {
@@ -84,8 +87,8 @@ impl Battery {
                 cell_voltage_v(self.remaining(capacity_ah)) * cells - self.current_a * resistance_ohm
             }
         };
-        self.drawn_as = match pack {
-            Some(pack) => (1.0 - pack.remaining) * capacity_ah * 3600.0,
+        self.drawn_as = match given {
+            Some(given) => (1.0 - given.remaining) * capacity_ah * 3600.0,
             None => self.drawn_as + self.current_a * dt_s,
         };
         self.energy_j += power_w * dt_s;
@@ -142,16 +145,16 @@ impl Battery {
 
 #[cfg(test)]
 mod tests {
-    use quadrotor::{Airframe, BatteryOutput, BatteryPack};
+    use quadrotor::{Airframe, BatteryOutput};
 
-    use super::Battery;
+    use super::{Battery, BatteryPack};
     use crate::fault::BatteryFault;
 
     #[test]
     fn hovering_lasts_about_half_an_hour_and_idling_longer() {
         let airframe = Airframe::default();
         let minutes = |speed: f64| {
-            let mut battery = Battery::default();
+            let mut battery = Battery::new(BatteryPack::default());
             let mut seconds = 0.0;
             while battery.remaining(2.2) > 0.0 {
                 battery.step(&airframe, &[speed; 4], None, 2.2, 1.0);
@@ -168,7 +171,7 @@ mod tests {
     #[test]
     fn a_broken_gauge_reads_wrong() {
         let airframe = Airframe::default();
-        let mut battery = Battery::default();
+        let mut battery = Battery::new(BatteryPack::default());
         let step = |battery: &mut Battery, fault: Option<BatteryFault>, seconds: usize| {
             for _ in 0..seconds {
                 battery.fail(fault, 2.2);
@@ -193,7 +196,7 @@ mod tests {
 
     #[test]
     fn thrust_makes_the_voltage_sag() {
-        let mut battery = Battery::default();
+        let mut battery = Battery::new(BatteryPack::default());
         let rest = battery.voltage_v();
         battery.step(&Airframe::default(), &[400.0; 4], None, 2.2, 0.001);
         assert!(battery.voltage_v() < rest - 0.1 && battery.current_a() > 5.0);
@@ -202,9 +205,9 @@ mod tests {
     #[test]
     fn the_battery_of_the_plant_is_read() {
         let mut airframe = Airframe::default();
-        airframe.battery = BatteryPack { sag: true, voltage_v: 16.8, ..airframe.battery };
+        (airframe.battery.sag, airframe.battery.voltage_v) = (true, 16.8);
         let pack = BatteryOutput { voltage_v: 15.0, current_a: 8.0, remaining: 0.6 };
-        let mut battery = Battery::default();
+        let mut battery = Battery::new(BatteryPack::default());
         battery.step(&airframe, &[250.0; 4], Some(&pack), 5.0, 1.0);
         assert_eq!((battery.voltage_v(), battery.current_a(), battery.energy_j()), (15.0, 8.0, 120.0));
         assert!((battery.remaining(5.0) - 0.6).abs() < 1e-12 && (battery.drawn_ah() - 2.0).abs() < 1e-12);

@@ -1,5 +1,6 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
+use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
@@ -75,7 +76,7 @@ impl Conduct {
             stick_climb_m_s: 2.0,
             stick_sink_m_s: 1.5,
             stick_timeout_s: 0.5,
-            battery_capacity_ah: 2.2,
+            battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),

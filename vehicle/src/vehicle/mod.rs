@@ -38,6 +38,7 @@
 
 mod autostart;
 mod battery;
+mod battery_pack;
 mod closed_loop;
 mod conduct;
 mod decided;
@@ -79,7 +80,8 @@ mod takeoff;
 mod tick;
 mod trajectory;
 
-pub use battery::{Battery, CELLS as BATTERY_CELLS};
+pub use battery::Battery;
+pub use battery_pack::BatteryPack;
 pub use conduct::Conduct;
 pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
 pub use fence_watch::FenceRecord;

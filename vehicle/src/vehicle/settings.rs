@@ -3,6 +3,7 @@
 use quadrotor::Configuration;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
@@ -25,6 +26,9 @@ pub struct VehicleSettings {
     pub heading_rad: f64,
     /// The wind.
     pub wind: WindSettings,
+    /// The battery; its capacity is the one of `conduct`.
+    #[serde(default)]
+    pub battery: BatteryPack,
     /// What breaks when.
     #[serde(default)]
     pub faults: Vec<ScheduledFault>,
@@ -49,6 +53,7 @@ impl VehicleSettings {
             origin: Geodetic::default(),
             heading_rad: 0.0,
             wind: WindSettings::default(),
+            battery: BatteryPack::default(),
             faults: Vec::new(),
             sensors: SensorSettings::default(),
             plans: Plans::default(),

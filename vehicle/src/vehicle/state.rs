@@ -73,7 +73,7 @@ impl Vehicle {
         let machines = Machines {
             autostart: Autostart::new(settings.autostart && program.is_flown()),
             injection: Injection::new(settings.faults.clone()),
-            battery: Battery::default(),
+            battery: Battery::new(settings.battery),
             fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),

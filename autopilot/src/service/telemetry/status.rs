@@ -6,7 +6,7 @@ use mavlink::dialects::common::{
     MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
 };
 use vehicle::fence::Breach;
-use vehicle::{BATTERY_CELLS, LandedState, Vehicle};
+use vehicle::{LandedState, Vehicle};
 
 use crate::codec::{boot_ms, boot_us};
 
@@ -89,16 +89,26 @@ fn percent(vehicle: &Vehicle) -> i8 {
     (100.0 * vehicle.battery_remaining()).ceil() as i8
 }
 
+/// Cells before those of the extension of BATTERY_STATUS.
+const FIRST_EXTENDED_CELL: usize = 10;
+
+/// Voltages of some cells from the first one, mV, among those that there are.
+fn cells<const N: usize>(first: usize, count: u8, cell_mv: u16, none: u16) -> [u16; N] {
+    core::array::from_fn(|cell| if first + cell < usize::from(count) { cell_mv } else { none })
+}
+
 /// BATTERY_STATUS.
 pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
     let battery = vehicle.battery();
-    let cell_mv = (battery.voltage_v() / BATTERY_CELLS as f64 * 1e3).round() as u16;
+    let cell_mv = (battery.voltage_v() / f64::from(battery.cells()) * 1e3).round() as u16;
     MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
         current_consumed: (battery.drawn_ah() * 1e3).round() as i32,
         energy_consumed: (battery.energy_j() / 100.0).round() as i32,
         // Unknown.
         temperature: i16::MAX,
-        voltages: core::array::from_fn(|cell| if cell < BATTERY_CELLS { cell_mv } else { u16::MAX }),
+        voltages: cells(0, battery.cells(), cell_mv, u16::MAX),
+        // Older readers know ten cells, and 0 for none of the others.
+        voltages_ext: cells(FIRST_EXTENDED_CELL, battery.cells(), cell_mv, 0),
         current_battery: (battery.current_a() * 1e2).round() as i16,
         battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
         mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,

@@ -29,7 +29,7 @@ pub fn battery_status(source: &LogSource<'_>, row: &mut Row) {
     // Its model has no noise to be filtered; readers that ask for both show neither without.
     row.reals([battery.voltage_v(), battery.voltage_v(), battery.current_a(), battery.drawn_ah() * 1e3]);
     row.reals([vehicle.battery_remaining(), battery.time_remaining_s(capacity_ah)]);
-    row.bool(true).u8(vehicle::BATTERY_CELLS as u8);
+    row.bool(true).u8(battery.cells());
 }
 
 pub fn wind(source: &LogSource<'_>, row: &mut Row) {
