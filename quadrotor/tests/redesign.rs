@@ -37,7 +37,8 @@ fn weights_redesign_the_controller_that_has_them() {
         let position = redesigned(kind, |changed| changed.controllers.position.output_weight *= 2.0);
         assert_eq!(position, Redesigned { position: true, ..NONE });
         let attitude = redesigned(kind, |changed| changed.controllers.attitude.rate_weight *= 2.0);
-        assert_eq!(attitude, Redesigned { attitude: true, ..NONE });
+        // The position controller predicts the closed attitude loop.
+        assert_eq!(attitude, Redesigned { attitude: true, position: true, ..NONE });
     }
 }
 
@@ -49,19 +50,15 @@ fn noise_redesigns_the_estimator() {
     assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.sensors.velocity_noise_m_s = 0.1), NONE);
 }
 
-/// The attitude controller keeps the limits of the rotors; its weights follow from them.
+/// The controllers predict the rotors; the attitude controller keeps their limits.
 #[test]
-fn another_airframe_has_another_mixer_and_attitude_controller() {
-    let attitude = redesigned(ControllerKind::Lmpc, |changed| {
+fn another_airframe_has_other_controllers() {
+    let all = redesigned(ControllerKind::Lmpc, |changed| {
         changed.airframe.layout = RotorLayout::x();
         changed.airframe.rotor_speed_max_rad_s = 400.0;
     });
-    assert_eq!(attitude, Redesigned { attitude: true, ..NONE });
-    let none = redesigned(ControllerKind::Lmpc, |changed| {
-        changed.airframe.drag_n_s_m = [0.1; 3];
-        changed.controllers.mass_factor = 1.2;
-    });
-    assert_eq!(none, NONE);
+    assert_eq!(all, Redesigned { estimator: false, altitude: true, position: true, attitude: true });
+    assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.controllers.mass_factor = 1.2), NONE);
 }
 
 /// A configuration that is refused changes nothing, also when some of its controllers could be designed.

@@ -307,7 +307,7 @@ mod tests {
             // Roll and pitch that fit: those that do not take a part of the yaw with them.
             let tilt = mixer.tilting_thrusts_n(&Vector2::new(x, y)).map(f64::abs);
             let (down, up) = mixer.tilting_room_n((thrust, least));
-            let fits = (down.min(up) / tilt.into_iter().fold(0.0, f64::max)).min(1.0);
+            let fits = (0.9 * down.min(up) / tilt.into_iter().fold(0.0, f64::max)).min(1.0);
             let (x, y) = (fits * x, fits * y);
             let (low, high) = mixer.turning_range_n_m((thrust, least), &Vector2::new(x, y));
             prop_assert!(low <= 0.0 && high >= 0.0);
