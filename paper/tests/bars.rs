@@ -60,8 +60,19 @@ fn figures_of_a_step_are_those_of_a_flight_of_ones_own() {
     assert!((value("overshoot") - 100.0 * (farthest_m / goal_m - 1.0)).abs() < 0.01);
     assert!((value("settled") - last_away_s).abs() < 0.011, "{} {last_away_s}", value("settled"));
     assert!((value("integral") / squared - 1.0).abs() < 1e-3);
-    let excess = 100.0 * (largest_tilt / configuration.limits.tilt_rad - 1.0);
-    assert!(value("beyond a limit") >= excess - 0.01, "{} {excess}", value("beyond a limit"));
+    assert!(largest_tilt < configuration.limits.tilt_rad && value("beyond a limit") == 0.0);
+}
+
+/// Down 20 m the bare regulator falls at three times the sink rate, which is no comparison: the governed one is.
+#[test]
+fn a_regulator_that_breaks_limits_is_no_comparison() {
+    let results = flown(plan("20 m down"), &[Flyer::Regulator, Flyer::GovernedRegulator]).results;
+    let of = |flyer, figure| find(&results, flyer, figure);
+    assert!(of(Flyer::Regulator, "beyond a limit").value.unwrap() > 100.0);
+    let [bare, governed] =
+        [Flyer::Regulator, Flyer::GovernedRegulator].map(|flyer| of(flyer, "settled").value.unwrap());
+    let bound = of(Flyer::Regulator, "settled").bound.unwrap();
+    assert!(bare < governed && (bound - governed).abs() < 0.01, "{bare} {governed} {bound}");
 }
 
 /// A bar compares with the faster of the two regulators, and says what it compares.

@@ -13,6 +13,7 @@ Commands are written, not conclusions: the report flies them on its own plant an
 import argparse
 import json
 import math
+import sys
 import time
 import xml.etree.ElementTree as tree
 from concurrent.futures import ProcessPoolExecutor
@@ -186,7 +187,10 @@ def main():
     parser.add_argument("description", type=Path, help="modelDescription.xml, whose start values are the vehicle's")
     parser.add_argument("out", type=Path, help="JSON file for the results")
     arguments = parser.parse_args()
-    values = parameters(arguments.description)
+    try:
+        values = parameters(arguments.description)
+    except (OSError, tree.ParseError) as error:
+        sys.exit(f"error: cannot read {arguments.description}: {error}")
     tasks = [(values, step, fastest) for step in STEPS for fastest in (False, True)]
     with ProcessPoolExecutor() as pool:
         results = list(pool.map(best, tasks))

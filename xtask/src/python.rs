@@ -37,10 +37,11 @@ const LAYERS: [Layer; 2] = [
         made_from: "made-from.txt",
     },
     Layer {
-        what: "Installing the tests' Python packages (first time; downloads about 130 MB)",
+        what: "Installing the tests' Python packages (first time; downloads about 205 MB)",
         lists: &[
             Pinned { file: "requirements.txt", complete: false },
             Pinned { file: "programs.txt", complete: true },
+            Pinned { file: "optimum.txt", complete: true },
         ],
         made_from: "made-from-tests.txt",
     },

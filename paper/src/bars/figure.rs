@@ -27,7 +27,8 @@ pub enum Bar {
     None,
     /// A number.
     AtMost(f64),
-    /// A number, and no more than with the clipped regulator, with or without the governor.
+    /// A number, and no more than with the clipped regulator, with or without the governor, where it breaks no limit by more
+    /// than 25 %.
     NoMoreThanRegulator(f64),
     /// So many times the best of our controllers.
     TimesBest(f64),
@@ -42,6 +43,8 @@ const EXCESS: &str = "beyond a limit, %";
 
 /// The part of a cruise that counts: between these distances from the start, m.
 const CRUISE_M: [f64; 2] = [80.0, 230.0];
+/// A regulator that breaks a limit by more than this is no comparison, %.
+const COMPARABLE_EXCESS: f64 = 25.0;
 /// Slack of comparisons of settling times, s: half of the time between two moments.
 const SLACK_S: f64 = 0.005;
 
@@ -91,8 +94,8 @@ fn cruise(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
             Bar::AtMost(2.0),
         ),
         figure(
-            "mean speed below its limit, %",
-            100.0 * (1.0 - mean(&cruising, speed) / limit_m_s),
+            "mean speed off its limit, %",
+            100.0 * (1.0 - mean(&cruising, speed) / limit_m_s).abs(),
             Bar::AtMost(5.0),
         ),
         figure(OVERSHOOT, 100.0 * track.overshoot(goal_m), Bar::AtMost(4.0)),
@@ -102,7 +105,7 @@ fn cruise(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
 }
 
 fn excess_percent(plan: &Plan, track: &Track) -> f64 {
-    100.0 * track.limit_excess(&plan.configuration.limits, &plan.configuration.airframe)
+    100.0 * track.limit_excess(&plan.configuration.limits, &plan.configuration.airframe).max(0.0)
 }
 
 fn goal(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
@@ -209,12 +212,18 @@ fn spin(plan: &Plan, track: &Track) -> Vec<Figure> {
     ]
 }
 
+/// Whether a flight is that of a regulator that keeps its limits by and large: without limits everyone would be faster.
+fn is_comparable_regulator((flyer, figures): &(Flyer, Vec<Figure>)) -> bool {
+    let within = |figure: &Figure| figure.name != EXCESS || figure.value <= COMPARABLE_EXCESS;
+    flyer.is_regulator() && figures.iter().all(within)
+}
+
 /// The figures of one flight of everyone, with the bars that compare them.
 pub fn bound(figure: &Figure, others: &[(Flyer, Vec<Figure>)]) -> Option<f64> {
-    let of = |flyers: fn(Flyer) -> bool| {
+    let of = |compared: fn(&(Flyer, Vec<Figure>)) -> bool| {
         others
             .iter()
-            .filter(move |(flyer, _)| flyers(*flyer))
+            .filter(|other| compared(other))
             .flat_map(|(_, figures)| figures)
             .filter(|other| other.name == figure.name)
             .map(|other| other.value)
@@ -223,8 +232,8 @@ pub fn bound(figure: &Figure, others: &[(Flyer, Vec<Figure>)]) -> Option<f64> {
     let bound = match figure.bar {
         Bar::None => f64::INFINITY,
         Bar::AtMost(most) => most,
-        Bar::NoMoreThanRegulator(most) => most.min(of(Flyer::is_regulator) + SLACK_S),
-        Bar::TimesBest(times) => times * of(|flyer| flyer != Flyer::Geometric),
+        Bar::NoMoreThanRegulator(most) => most.min(of(is_comparable_regulator) + SLACK_S),
+        Bar::TimesBest(times) => times * of(|(flyer, _)| *flyer != Flyer::Geometric),
     };
     Some(bound).filter(|bound| bound.is_finite())
 }

@@ -37,7 +37,7 @@ pub struct OptimumResult {
     pub settled_s: Option<f64>,
     /// Integral of the squared distance from the goal, m²·s.
     pub squared_distance_m2_s: f64,
-    /// Largest share by which a limit of tilt, speed or thrust is exceeded, %; negative when none is reached.
+    /// Largest share by which a limit of tilt, speed or thrust is exceeded, %.
     pub beyond_limit_percent: f64,
     /// How long the solver took, s.
     pub computed_in_s: f64,
@@ -72,7 +72,7 @@ impl Optimum {
             settled_s: Some(track.settled_s()).filter(|time_s| time_s.is_finite()),
             squared_distance_m2_s: track.squared_distance_m2_s(),
             beyond_limit_percent: 100.0
-                * track.limit_excess(&plan.configuration.limits, &plan.configuration.airframe),
+                * track.limit_excess(&plan.configuration.limits, &plan.configuration.airframe).max(0.0),
             computed_in_s: self.computed_in_s,
         };
         (result, track)
