@@ -171,7 +171,7 @@ fn names_are_unique_and_quantities_complete() {
     assert_eq!(quantities.len(), ClosedLoop::QUANTITIES.len());
 }
 
-/// Angles within their turn; thrust and rotor speeds not negative; nothing else is bounded but counts and statuses.
+/// Angles within their turn; thrust, rotor speeds and the battery's figures not negative; nothing else is bounded but counts and statuses.
 #[test]
 fn outputs_have_the_ranges_of_their_definitions() {
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -180,7 +180,11 @@ fn outputs_have_the_ranges_of_their_definitions() {
         let expected = match (variable.name, variable.value_type()) {
             ("attitude.phi" | "attitude.psi" | "yaw_error", _) => range(-PI, PI),
             ("attitude.theta", _) => range(-FRAC_PI_2, FRAC_PI_2),
-            (name, Type::Real) if name == "thrust" || name.starts_with("rotor.speed[") => {
+            ("battery.remaining", _) => range(0.0, 1.0),
+            (name, Type::Real)
+                if ["thrust", "battery.voltage", "battery.current"].contains(&name)
+                    || name.starts_with("rotor.speed[") =>
+            {
                 (Some(Value::Real(0.0)), None)
             }
             (_, Type::Real | Type::Boolean) => (None, None),

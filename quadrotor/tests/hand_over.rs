@@ -126,7 +126,7 @@ struct Bump {
 /// A value of what a vehicle has none of by default: in cruise, about a tenth of a newton.
 fn small(name: &str) -> f64 {
     match name {
-        "airframe.rotor.inertia" => 1e-4,
+        "airframe.rotor.inertia" => 2e-5,
         "airframe.rotor.drag_coefficient" | "airframe.rotor.inflow_coefficient" => 2e-5,
         "airframe.rotor.lift_coefficient" => 1e-3,
         _ if name.starts_with("airframe.body_drag.") => 0.02,
