@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
+use crate::control::observed_motion::ObservedMotion;
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
@@ -22,6 +23,7 @@ const BRAKING_SHARE: f64 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AltitudeController {
     controller: ControllerState<3, 1, ALTITUDE_MANY>,
+    observed: ObservedMotion<3, 1>,
     reference: ReferenceMotion<1>,
 }
 
@@ -30,7 +32,7 @@ impl AltitudeController {
     /// counts as motion to be explained, and is damped from the first sample on.
     pub fn new(z_m: f64) -> Self {
         let start = ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros());
-        Self { controller: start, reference: ReferenceMotion::default() }
+        Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
     /// One sample: G, m/s² down, within `range`, and how it was found.
@@ -42,7 +44,7 @@ impl AltitudeController {
         reference: &ReferenceMotion<1>,
         range: (f64, f64),
     ) -> (f64, ControllerActivity) {
-        let law = &design.altitude;
+        let law = &design.altitude.law;
         let limits = &configuration.limits;
         let measured = Vector3::new(seen.position_m, seen.velocity_m_s, seen.acceleration_m_s2);
         let [[position, velocity, acceleration, ..]] = reference.increments_since(&self.reference);
@@ -64,14 +66,17 @@ impl AltitudeController {
         };
         let rate_m_s = reference.velocity.x;
         let lag_s = configuration.airframe.rotor_time_constant_s;
+        let deviation =
+            Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
+        let change = measured - self.controller.measured() - Vector3::new(position, velocity, acceleration);
+        let increment = match &design.altitude.motion {
+            Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
+            None => change,
+        };
         let sample = Sample {
             measured,
-            increment: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
-            deviation: Vector3::new(
-                error.x,
-                seen.velocity_m_s - rate_m_s,
-                seen.acceleration_m_s2 - reference.thrust.x,
-            ),
+            increment,
+            deviation,
             error,
             // The rotors answer late: z̈ = G − T z⃛.
             input_reference: reference.thrust + reference.jerk * lag_s,

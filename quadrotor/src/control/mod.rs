@@ -20,6 +20,7 @@ pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;
 pub(crate) mod observation;
+pub(crate) mod observed_motion;
 pub(crate) mod position_controller;
 pub(crate) mod rotor_loss;
 pub(crate) mod rotor_monitor;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
+use crate::control::observed_motion::ObservedMotion;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
 use crate::design::position_limits::{AXIS_STATES, POSITION_STATES, horizon_m, in_sight, position_bounds};
@@ -26,6 +27,7 @@ const ASKED: [usize; 4] = [5, 10, 15, 20];
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
     controller: ControllerState<POSITION_STATES, 2, POSITION_MANY>,
+    observed: ObservedMotion<POSITION_STATES, 2>,
     reference: ReferenceMotion<2>,
 }
 
@@ -35,7 +37,7 @@ impl PositionController {
         let zero = Vector2::zeros();
         let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
         let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
-        Self { controller: start, reference: ReferenceMotion::default() }
+        Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
     /// One sample: horizontal acceleration in NED, m/s², and how it was found. `most_m_s2` is the largest one, and `limited` brings
@@ -73,7 +75,7 @@ impl PositionController {
             &(seen.position_m - reference.position),
             horizon_m(limits.speed_horizontal_m_s, most_m_s2),
         );
-        let error = match design.position.regulator() {
+        let error = match design.position.law.regulator() {
             Some(regulator) if configuration.controllers.governor => {
                 governed(configuration, regulator, &error)
             }
@@ -86,7 +88,7 @@ impl PositionController {
         let (moved, asked_m_s) = if reference.is_at_rest() {
             (None, 0.0)
         } else {
-            let moved = design.position.moved(|sample| {
+            let moved = design.position.law.moved(|sample| {
                 let then = ahead(sample);
                 let state = turn.state(&(state_of(&then) - state_of(reference)));
                 (state, turn.vector(&(then.thrust - reference.thrust)))
@@ -94,17 +96,23 @@ impl PositionController {
             let speeds = ASKED.map(|sample| ahead(sample).velocity.norm());
             (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
         };
+        let deviation = by_axis([
+            error,
+            seen.velocity_m_s - reference.velocity,
+            seen.acceleration_m_s2 - reference.thrust,
+            seen.jerk_m_s3 - reference.jerk,
+            seen.snap_m_s4 - reference.snap,
+            seen.asked_snap_m_s4,
+        ]);
+        let change = measured - self.controller.measured() - explained;
+        let increment = match &design.position.motion {
+            Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
+            None => change,
+        };
         let sample = Sample {
             measured: turn.state(&measured),
-            increment: turn.state(&(measured - self.controller.measured() - explained)),
-            deviation: turn.state(&by_axis([
-                error,
-                seen.velocity_m_s - reference.velocity,
-                seen.acceleration_m_s2 - reference.thrust,
-                seen.jerk_m_s3 - reference.jerk,
-                seen.snap_m_s4 - reference.snap,
-                seen.asked_snap_m_s4,
-            ])),
+            increment: turn.state(&increment),
+            deviation: turn.state(&deviation),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
@@ -113,7 +121,7 @@ impl PositionController {
             ..Sample::default()
         };
         let mut turned = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
-        let mut step = design.position.step(&mut turned, &sample);
+        let mut step = design.position.law.step(&mut turned, &sample);
         let back = turn.inverse();
         self.controller = turned.map(|state| back.state(state), |input| back.vector(input));
         step.input = back.vector(&step.input);

@@ -7,7 +7,7 @@ use crate::design::attitude_design::AttitudeDesign;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::estimator_design::EstimatorDesign;
 use crate::design::translation_design::{
-    AltitudeLaw, PositionLaw, altitude_design, is_isotropic, position_design,
+    AltitudeDesign, PositionDesign, altitude_design, is_isotropic, position_design,
 };
 use crate::{Configuration, ConfigurationError, ControllerSettings, Mixer};
 
@@ -51,8 +51,8 @@ impl DesignReport {
 /// the paper's forward Euler would leave a bias of T²/2 times the acceleration of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CascadeDesign {
-    pub(crate) altitude: AltitudeLaw,
-    pub(crate) position: PositionLaw,
+    pub(crate) altitude: AltitudeDesign,
+    pub(crate) position: PositionDesign,
     pub(crate) attitude: AttitudeDesign,
     /// Whether the position controller does the same in all horizontal directions.
     pub(crate) position_is_isotropic: bool,

@@ -1,8 +1,9 @@
 //! The position and altitude controllers, designed from a configuration.
 
-use lmpc::{Discretization, StateSpace};
+use lmpc::{DesignError, Discretization, StateSpace};
 use nalgebra::{DMatrix, SVector};
 
+use crate::control::observed_motion::MotionModel;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::altitude_limits::altitude_limits;
 use crate::design::attitude_loop::AttitudeLoop;
@@ -12,12 +13,7 @@ use crate::design::linear_models::{altitude_model, altitude_model_with_lag, doub
 use crate::design::position_limits::{POSITION_STATES, position_limits};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
-use crate::{Configuration, ConfigurationError, ControllerSettings, PredictionModel};
-
-/// States z, v_z, z̈; input G.
-pub(crate) type AltitudeLaw = TrackingLaw<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
-/// States x, ẋ, ẍ, x⃛, the snap that the rotors make and the one that they are asked for, then those of y; inputs the commanded horizontal accelerations.
-pub(crate) type PositionLaw = TrackingLaw<POSITION_STATES, 2, POSITION_FEW, POSITION_MANY>;
+use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, PredictionModel};
 
 /// Bandwidth of position times the delay of the attitude and of the sampling.
 const DELAY_SHARE: f64 = 0.62;
@@ -25,10 +21,32 @@ const DELAY_SHARE: f64 = 0.62;
 const PRINTED_POSITION_RAD_S: f64 = 1.8;
 const PRINTED_ALTITUDE_RAD_S: f64 = 2.7;
 
+/// A law, and the model by which it sees the motion; by measured increments without one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct TranslationDesign<const N: usize, const P: usize, const S: usize, const L: usize> {
+    pub(crate) law: TrackingLaw<N, P, S, L>,
+    pub(crate) motion: Option<MotionModel<N, P>>,
+}
+
+/// States z, v_z, z̈; input G.
+pub(crate) type AltitudeDesign = TranslationDesign<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
+/// States x, ẋ, ẍ, x⃛, the snap that the rotors make and the one that they are asked for, then those of y; inputs the commanded
+/// horizontal accelerations.
+pub(crate) type PositionDesign = TranslationDesign<POSITION_STATES, 2, POSITION_FEW, POSITION_MANY>;
+
+/// The model of Laguerre MPC, whose kicks limits cut off.
+fn by_motion<const N: usize, const P: usize>(
+    kind: ControllerKind,
+    model: &StateSpace,
+    sample_time_s: f64,
+) -> Result<Option<MotionModel<N, P>>, DesignError> {
+    (kind == ControllerKind::Lmpc).then(|| MotionModel::new(model, sample_time_s)).transpose()
+}
+
 /// The altitude controller and the figures of its design.
 pub(crate) fn altitude_design(
     configuration: &Configuration,
-) -> Result<(AltitudeLaw, DesignReport), ConfigurationError> {
+) -> Result<(AltitudeDesign, DesignReport), ConfigurationError> {
     let controllers = &configuration.controllers;
     let settings = &controllers.altitude;
     let sample_time_s = settings.sample_time_s();
@@ -37,7 +55,7 @@ pub(crate) fn altitude_design(
             let lag_s = configuration.airframe.rotor_time_constant_s;
             let model = altitude_model_with_lag(lag_s, sample_time_s)?;
             let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
-            Ok(StabilizedLaw::new(
+            let (law, report) = StabilizedLaw::new(
                 controllers.kind,
                 settings,
                 &bandwidth,
@@ -45,13 +63,15 @@ pub(crate) fn altitude_design(
                 SIGHT_M,
                 &model,
             )?
-            .law_and_report())
+            .law_and_report();
+            let motion = by_motion(controllers.kind, &model, sample_time_s)?;
+            Ok((TranslationDesign { law, motion }, report))
         }
         PredictionModel::Paper => {
             let model = altitude_model(sample_time_s, Discretization::ZeroOrderHold)?;
             let bandwidth = [PRINTED_ALTITUDE_RAD_S].into();
             let (design, law) = printed_design(controllers.kind, settings, &bandwidth, &model)?;
-            Ok((law, DesignReport::of(&design)?))
+            Ok((TranslationDesign { law, motion: None }, DesignReport::of(&design)?))
         }
     };
     designed().map_err(|source| ConfigurationError::Design { part: "altitude controller", source })
@@ -61,7 +81,7 @@ pub(crate) fn altitude_design(
 pub(crate) fn position_design(
     configuration: &Configuration,
     attitude: Option<AttitudeLoop>,
-) -> Result<(PositionLaw, DesignReport), ConfigurationError> {
+) -> Result<(PositionDesign, DesignReport), ConfigurationError> {
     let controllers = &configuration.controllers;
     let settings = &controllers.position;
     let sample_time_s = settings.sample_time_s();
@@ -71,7 +91,7 @@ pub(crate) fn position_design(
             let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
             let model = StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))?;
             let bandwidth = [position_bandwidth_rad_s(configuration, &attitude); 2].into();
-            Ok(StabilizedLaw::new(
+            let (law, report) = StabilizedLaw::new(
                 controllers.kind,
                 settings,
                 &bandwidth,
@@ -79,14 +99,16 @@ pub(crate) fn position_design(
                 SIGHT_M,
                 &model,
             )?
-            .law_and_report())
+            .law_and_report();
+            let motion = by_motion(controllers.kind, &model, sample_time_s)?;
+            Ok((TranslationDesign { law, motion }, report))
         }
         None => {
             // Inputs are the accelerations −g θ and g φ.
             let model = double_integrators(&[1.0; 2], sample_time_s, Discretization::ZeroOrderHold)?;
             let bandwidth = [PRINTED_POSITION_RAD_S; 2].into();
             let (design, law) = printed_design(controllers.kind, settings, &bandwidth, &model)?;
-            Ok((law, DesignReport::of(&design)?))
+            Ok((TranslationDesign { law, motion: None }, DesignReport::of(&design)?))
         }
     };
     designed().map_err(|source| ConfigurationError::Design { part: "position controller", source })

@@ -1,5 +1,8 @@
 //! One axis of the position under its controller, for small signals.
 
+use nalgebra::SVector;
+
+use crate::control::observed_motion::{MotionModel, ObservedMotion};
 use crate::design::estimator_design::Axis;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::design::stability::loop_events::LoopEvent;
@@ -10,6 +13,7 @@ use crate::{CascadeDesign, Configuration};
 pub(crate) struct MovingAxis<const K: usize> {
     /// From positions to accelerations.
     law: LinearLaw<K>,
+    motion: Option<MotionModel<K, 1>>,
     output_feedback: bool,
     estimator: Axis,
 }
@@ -25,32 +29,46 @@ pub(crate) struct Moving {
     measured: [f64; 6],
     /// The commanded acceleration, m/s².
     pub(crate) feedback: f64,
+    /// The acceleration that the controller has found unexplained, m/s².
+    found: f64,
     /// Position, velocity and unexplained acceleration.
     estimate: [f64; 3],
 }
 
 impl Moving {
     /// Number of values.
-    pub(crate) const SIZE: usize = 12;
+    pub(crate) const SIZE: usize = 13;
     /// Place of the position among them.
     pub(crate) const POSITION: usize = 0;
 
     pub(crate) fn from_values(values: &[f64; Self::SIZE]) -> Self {
-        let [position, velocity, m0, m1, m2, m3, m4, m5, feedback, e0, e1, e2] = *values;
-        Self { position, velocity, measured: [m0, m1, m2, m3, m4, m5], feedback, estimate: [e0, e1, e2] }
+        let [position, velocity, m0, m1, m2, m3, m4, m5, feedback, found, e0, e1, e2] = *values;
+        Self {
+            position,
+            velocity,
+            measured: [m0, m1, m2, m3, m4, m5],
+            feedback,
+            found,
+            estimate: [e0, e1, e2],
+        }
     }
 
     pub(crate) fn values(&self) -> [f64; Self::SIZE] {
         let ([m0, m1, m2, m3, m4, m5], [e0, e1, e2]) = (self.measured, self.estimate);
-        [self.position, self.velocity, m0, m1, m2, m3, m4, m5, self.feedback, e0, e1, e2]
+        [self.position, self.velocity, m0, m1, m2, m3, m4, m5, self.feedback, self.found, e0, e1, e2]
     }
 }
 
 impl<const K: usize> MovingAxis<K> {
     /// Under this law, from m and m/s to m/s².
-    pub(crate) fn new(configuration: &Configuration, design: &CascadeDesign, law: LinearLaw<K>) -> Self {
+    pub(crate) fn new(
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        (law, motion): (LinearLaw<K>, Option<MotionModel<K, 1>>),
+    ) -> Self {
         Self {
             law,
+            motion,
             output_feedback: configuration.sensors.output_feedback,
             estimator: design.estimator.translation,
         }
@@ -66,9 +84,26 @@ impl<const K: usize> MovingAxis<K> {
             [state.position + noise[0], state.velocity + noise[1]]
         };
         let seen = [seen[0], seen[1], achieved[0], achieved[1], achieved[2], achieved[3]];
+        let deviation: [f64; K] = core::array::from_fn(|place| seen[place]);
+        let before: [f64; K] = core::array::from_fn(|place| state.measured[place]);
+        let change = SVector::from(deviation) - SVector::from(before);
+        let increment = match &self.motion {
+            Some(model) => {
+                let mut observed = ObservedMotion::new(before.into(), [state.found].into());
+                let increment =
+                    observed.increment(model, &deviation.into(), &change, &[state.feedback].into());
+                state.found = observed.disturbance()[0];
+                increment
+            }
+            None => {
+                // Nothing is found by measured increments.
+                state.found = 0.0;
+                change
+            }
+        };
         state.feedback = self.law.feedback(&ChannelSample {
-            increment: core::array::from_fn(|place| seen[place] - state.measured[place]),
-            deviation: core::array::from_fn(|place| seen[place]),
+            increment: increment.into(),
+            deviation,
             held: state.feedback,
             disturbance,
         });

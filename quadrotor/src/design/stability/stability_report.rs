@@ -5,6 +5,7 @@ use core::f64::consts::LN_2;
 
 use lmpc::DesignError;
 
+use crate::control::observed_motion::MotionModel;
 use crate::design::stability::linear_law::LinearLaw;
 use crate::design::stability::loop_stability::{LoopStability, Seen};
 use crate::design::stability::moving_axis::{Moving, MovingAxis};
@@ -90,8 +91,11 @@ impl StabilityReport {
             .has_feed_forward()
             .then(|| tilting([roll, pitch].map(|axis| axis.without_feed_forward())))
             .transpose()?;
-        let [down] = LinearLaw::of(&design.altitude);
-        let vertical = VerticalLoop::new(configuration, MovingAxis::new(configuration, design, down))?;
+        let [down] = LinearLaw::of(&design.altitude.law);
+        let vertical = VerticalLoop::new(
+            configuration,
+            MovingAxis::new(configuration, design, (down, design.altitude.motion)),
+        )?;
         let seen =
             Seen { angle: None, position: Some(vertical_loop::POSITION), command: vertical_loop::COMMAND };
         let altitude = LoopStability::of("altitude", &vertical, &noise, seen)?;
@@ -210,10 +214,11 @@ fn horizontal(
     [roll, pitch]: [TurningAxis; 2],
     noise: &Reading,
 ) -> Result<[LoopStability; 2], DesignError> {
-    let [north, east] = LinearLaw::of(&design.position);
+    let [north, east] = LinearLaw::of(&design.position.law);
     // (14): ẍ = −g θ, ÿ = g φ
-    let north = MovingAxis::new(configuration, design, north);
-    let east = MovingAxis::new(configuration, design, east);
+    let motion = design.position.motion.as_ref().map(MotionModel::first_channel);
+    let north = MovingAxis::new(configuration, design, (north, motion));
+    let east = MovingAxis::new(configuration, design, (east, motion));
     let seen = Seen {
         angle: Some(Turning::ANGLE),
         position: Some(Turning::SIZE + Moving::POSITION),

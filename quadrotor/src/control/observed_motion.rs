@@ -1,0 +1,117 @@
+//! The motion that leads to a state, and the disturbance behind it.
+
+use lmpc::{DesignError, StateSpace};
+use nalgebra::{DMatrix, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+/// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1 would be an incremental
+/// law by measured increments, which passes on the noise of the velocity undiminished, and forgets one half of a kick that a limit cuts
+/// off. At this one a disturbance is found within three samples.
+const NEW: f64 = 0.3;
+
+/// A model of N states and P inputs, channel by channel: the output, its rate, and others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MotionModel<const N: usize, const P: usize> {
+    /// A.
+    transition: SMatrix<f64, N, N>,
+    /// A⁻¹.
+    inverse: SMatrix<f64, N, N>,
+    /// B.
+    by_input: SMatrix<f64, N, P>,
+    /// E: what an acceleration of each output does in a sample, \[ΔT²/2 ΔT 0 …\].
+    by_disturbance: SMatrix<f64, N, P>,
+    sample_time_s: f64,
+}
+
+impl<const N: usize, const P: usize> MotionModel<N, P> {
+    /// # Errors
+    /// [`DesignError::NotFinite`] when A cannot be inverted.
+    pub(crate) fn new(plant: &StateSpace, sample_time_s: f64) -> Result<Self, DesignError> {
+        let fixed = |matrix: &DMatrix<f64>| SMatrix::from_fn(|row, column| matrix[(row, column)]);
+        let inverse = plant.a().clone().try_inverse().ok_or(DesignError::NotFinite { name: "A⁻¹" })?;
+        Ok(Self {
+            transition: fixed(plant.a()),
+            inverse: fixed(&inverse),
+            by_input: SMatrix::from_fn(|row, column| plant.b()[(row, column)]),
+            by_disturbance: SMatrix::from_fn(|row, channel| {
+                let place = row.checked_sub(N / P * channel);
+                match place {
+                    Some(0) => sample_time_s * sample_time_s / 2.0,
+                    Some(1) => sample_time_s,
+                    _ => 0.0,
+                }
+            }),
+            sample_time_s,
+        })
+    }
+}
+
+impl<const N: usize, const P: usize> MotionModel<N, P> {
+    /// That of the first channel alone, of K = N/P states.
+    pub(crate) fn first_channel<const K: usize>(&self) -> MotionModel<K, 1> {
+        MotionModel {
+            transition: self.transition.fixed_view::<K, K>(0, 0).into_owned(),
+            inverse: self.inverse.fixed_view::<K, K>(0, 0).into_owned(),
+            by_input: self.by_input.fixed_view::<K, 1>(0, 0).into_owned(),
+            by_disturbance: self.by_disturbance.fixed_view::<K, 1>(0, 0).into_owned(),
+            sample_time_s: self.sample_time_s,
+        }
+    }
+}
+
+/// What is known of the motion at the last sample.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ObservedMotion<const N: usize, const P: usize> {
+    /// x(k−1) − x_r(k−1).
+    deviation: SVector<f64, N>,
+    /// d, accelerations that the model does not explain.
+    disturbance: SVector<f64, P>,
+}
+
+impl<const N: usize, const P: usize> Default for ObservedMotion<N, P> {
+    fn default() -> Self {
+        Self { deviation: SVector::zeros(), disturbance: SVector::zeros() }
+    }
+}
+
+impl<const N: usize, const P: usize> ObservedMotion<N, P> {
+    /// With a deviation at the last sample and a disturbance.
+    pub(crate) fn new(deviation: SVector<f64, N>, disturbance: SVector<f64, P>) -> Self {
+        Self { deviation, disturbance }
+    }
+
+    /// d.
+    pub(crate) fn disturbance(&self) -> SVector<f64, P> {
+        self.disturbance
+    }
+
+    /// A sample: the deviation from the reference, and by how much it has changed since the last one without what the reference has
+    /// jumped by, under the feedback v(k−1). Returns the increment Δx(k) of the motion that leads to the deviation:
+    ///
+    /// ```text
+    /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
+    /// d    ← d + 0.3 ν/ΔT
+    /// Δx   = x − A⁻¹ (x − B v − E d)
+    /// ```
+    pub(crate) fn increment(
+        &mut self,
+        model: &MotionModel<N, P>,
+        deviation: &SVector<f64, N>,
+        change: &SVector<f64, N>,
+        feedback: &SVector<f64, P>,
+    ) -> SVector<f64, N> {
+        let driven = model.by_input * feedback;
+        let expected = model.transition * self.deviation - self.deviation
+            + driven
+            + model.by_disturbance * self.disturbance;
+        for channel in 0..P {
+            let rate = N / P * channel + 1;
+            let missed = (change[rate] - expected[rate]) / model.sample_time_s;
+            if missed.is_finite() {
+                self.disturbance[channel] += NEW * missed;
+            }
+        }
+        self.deviation = *deviation;
+        deviation - model.inverse * (deviation - driven - model.by_disturbance * self.disturbance)
+    }
+}
