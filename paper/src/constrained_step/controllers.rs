@@ -39,7 +39,7 @@ pub type Controller = Box<dyn FnMut(&Sample) -> Move + Send>;
 pub type Placing<'a> = Option<&'a [usize]>;
 
 /// A law as a controller.
-fn flying<const N: usize, const P: usize, const E: usize>(
+pub(super) fn flying<const N: usize, const P: usize, const E: usize>(
     axis: &Axis,
     law: impl Law<N, P, P, E> + Send + 'static,
 ) -> Controller {

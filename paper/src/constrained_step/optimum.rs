@@ -179,3 +179,33 @@ fn cost(axis: &Axis, unknowns: Unknowns) -> BTreeMap<(usize, usize), f64> {
     }
     entries
 }
+
+#[cfg(test)]
+mod tests {
+    use lmpc::{SignalLimit, StabilizedMpc, unknowns};
+
+    use super::super::axis::Axis;
+    use super::super::controllers::flying;
+    use super::super::flight::fly;
+    use super::optimum;
+
+    /// Our solver with 60 free moves and limits on all samples flies Clarabel's optimum.
+    #[test]
+    fn our_own_solver_flies_the_optimum() {
+        const MOVES: usize = 60;
+        let [_, altitude, ..] = Axis::all().unwrap();
+        let everywhere = |limit: &SignalLimit| SignalLimit { samples: (0..200).collect(), ..limit.clone() };
+        let limits: Vec<SignalLimit> = altitude.linear.limits.iter().map(everywhere).collect();
+        let design = altitude.linear.design(MOVES, 0.0).unwrap();
+        for step in &altitude.steps[..2] {
+            let law = StabilizedMpc::<3, 1, 1, { unknowns(1, MOVES) }>::new(
+                &design,
+                &limits,
+                altitude.linear.slack_cost,
+            );
+            let ours = fly(&altitude, step, flying::<3, 1, { unknowns(1, MOVES) }>(&altitude, law.unwrap()));
+            let theirs = optimum(&altitude, step).unwrap();
+            assert!((ours.cost / theirs - 1.0).abs() < 1e-4, "{}: {}, {theirs}", step.problem, ours.cost);
+        }
+    }
+}
