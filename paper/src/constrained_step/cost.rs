@@ -48,18 +48,22 @@ pub fn closed_loop_cost_parts() -> Result<u64, Error> {
     Ok(Axis::all()?.iter().map(|axis| axis.steps.len() as u64).sum())
 }
 
+fn rounded(a: f64) -> f64 {
+    (a * 1e4).round() / 1e4
+}
+
 type Entry = (Contender, Option<Controller>);
 
 fn contenders(axis: &Axis) -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
     for n in [1, 3, 5, 7, 9] {
-        let name = format!("LMPC, N = {n}, a = {}", axis.scale());
+        let name = format!("LMPC, N = {n}, a = {}", rounded(axis.scale()));
         entries.push(entry(name, n, laguerre(axis, n, axis.scale(), None))?);
     }
     // Without the stabilizing feedback, as the paper has it.
     for n in [5, 9] {
         let terminal = finite_laguerre(axis, n, axis.scale(), Weighting::Terminal { lambda: 1.0 });
-        let name = format!("finite LMPC, N = {n}, a = {}, terminal weight", axis.scale());
+        let name = format!("finite LMPC, N = {n}, a = {}, terminal weight", rounded(axis.scale()));
         entries.push(entry(name, n, terminal)?);
         let paper = finite_laguerre(axis, n, PAPER_SCALE, Weighting::exponential(PAPER_ALPHA, 1.0));
         let name = format!("finite LMPC, N = {n}, a = {PAPER_SCALE}, α = {PAPER_ALPHA}");
