@@ -24,6 +24,10 @@ fn main() -> Result<(), DesignError> {
     let controller = StabilizedMpc::<2, 1, 1, UNKNOWNS>::new(&design, &[speed], 1e6)?;
     let mut state = ControllerState::<2, 1, UNKNOWNS>::at_rest();
 
+    let moved = |x: &Vector2<f64>, input: f64| {
+        let next = plant.a() * x + plant.b() * input;
+        Vector2::new(next[0], next[1])
+    };
     let (mut x, mut last) = (Vector2::zeros(), Vector2::zeros());
     let mut fastest = 0.0_f64;
     for _ in 0..400 {
@@ -36,7 +40,7 @@ fn main() -> Result<(), DesignError> {
         };
         let step = controller.step(&mut state, &sample);
         last = x;
-        x = plant.a() * x + plant.b() * step.input;
+        x = moved(&x, step.input.x);
         fastest = fastest.max(x[1]);
     }
     println!("at {:.3} m, fastest {fastest:.3} m/s", x[0]);
