@@ -70,7 +70,7 @@ fn write_results(arguments: &Arguments) -> Result<(), Error> {
         Some(path) => Optimum::parse(&read(path)?)?,
         None => Vec::new(),
     };
-    let progress = Progress::shown(parts(arguments.random));
+    let progress = Progress::shown(parts(arguments.random)?);
     let results = results(arguments.random, &optima, &progress)?;
     progress.stage("figures");
     let page = report(&results);

@@ -75,12 +75,12 @@ pub fn results(random_flights: u32, optima: &[Optimum], progress: &Progress) -> 
 }
 
 /// How often [`results`] reports progress.
-pub fn parts(random_flights: u32) -> u64 {
-    closed_loop_cost_parts()
-        + trade_off_parts()
-        + flights_parts()
-        + robustness_parts(random_flights)
-        + bars_parts()
+///
+/// # Errors
+/// As [`results`].
+pub fn parts(random_flights: u32) -> Result<u64, Error> {
+    let studies = closed_loop_cost_parts()? + trade_off_parts()?;
+    Ok(studies + flights_parts() + robustness_parts(random_flights) + bars_parts())
 }
 
 /// What results.json contains, as a JSON Schema.

@@ -49,26 +49,31 @@ fn costs(start: &str, end: &str) -> impl Iterator<Item = &'static CostResult> {
         .filter(move |cost| cost.controller.starts_with(&start) && cost.controller.ends_with(&end))
 }
 
-/// The defaults: five coefficients within 1 % of the optimum, seven within 0.3 %, on all steps of one axis.
+/// Cost above the optimum of the controllers as they fly, on all steps of all loops. Before the loops were in the prediction, five
+/// coefficients cost less than 1 % on double integrators; the models that fly have up to six states per axis and limits of rates,
+/// for which five cost up to 6.9 % on the steps of 1 rad. Fifty free moves stay within 1 %, except for yaw, for which they end too early.
 #[test]
 fn few_coefficients_are_enough_on_steps_under_limits() {
-    for (start, bound, least) in [("LMPC, N = 5,", 1.01, 13), ("LMPC, N = 7,", 1.003, 13)] {
-        let one_axis = costs(start, "terminal weight").filter(|cost| !cost.problem.contains("north"));
+    for (start, bound) in
+        [("LMPC, N = 3,", 1.15), ("LMPC, N = 5,", 1.07), ("LMPC, N = 7,", 1.035), ("LMPC, N = 9,", 1.045)]
+    {
         let ratios: Vec<(f64, &str)> =
-            one_axis.map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
-        assert_eq!(ratios.len(), least);
+            costs(start, "").map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
+        assert_eq!(ratios.len(), 14);
         for (ratio, problem) in ratios {
             assert!(ratio < bound, "{start} {problem}: {ratio}");
         }
     }
-    // Both axes at once.
-    let both = costs("LMPC, N = 5,", "terminal weight").find(|cost| cost.problem.contains("north")).unwrap();
-    assert!(both.ratio_to_optimum.unwrap() < 1.01);
-    // And where it loses: one coefficient, and the paper's recipe beside fifty moves.
-    assert!(costs("LMPC, N = 1,", "terminal weight").all(|cost| cost.ratio_to_optimum.unwrap() > 1.05));
-    assert!(costs("LMPC, N = 5,", "α = 1.2").any(|cost| cost.ratio_to_optimum.unwrap() > 1.01));
+    // Where no limit is active, five are as good as the regulator, which is the optimum.
+    for problem in ["position step of 1 m", "altitude step of 1 m up", "altitude step of 1 m down"] {
+        let five = costs("LMPC, N = 5,", "").find(|cost| cost.problem == problem).unwrap();
+        assert!(five.ratio_to_optimum.unwrap() < 1.002, "{five:?}");
+    }
+    // And where it loses: one coefficient, and beside fifty moves.
+    assert!(costs("LMPC, N = 1,", "").any(|cost| cost.ratio_to_optimum.unwrap() > 1.3));
     for cost in costs("SS-MPC, N_c = 50, terminal", "weight") {
-        assert!(cost.ratio_to_optimum.unwrap() < 1.002, "{cost:?}");
+        let bound = if cost.problem.starts_with("yaw") { 1.06 } else { 1.01 };
+        assert!(cost.ratio_to_optimum.unwrap() < bound, "{cost:?}");
     }
 }
 
@@ -91,7 +96,7 @@ fn clarabel_flies_the_same_moves() {
         assert!((ours / theirs - 1.0).abs() < 1e-4, "{}: {ours}, {theirs}", clarabel.problem);
         compared += 1;
     }
-    assert_eq!(compared, 5);
+    assert_eq!(compared, 2);
 }
 
 fn flights(figure: &str, mission: &str) -> impl Iterator<Item = &'static FlightResult> {

@@ -140,6 +140,7 @@ pub use design::attitude_loop::AttitudeLoop;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::default_bandwidths::{Bandwidths, default_bandwidths};
 pub use design::limited_samples;
+pub use design::linear_loop::LinearLoop;
 pub use design::linear_models::{altitude_model, attitude_model, lagged_attitude_model, position_model};
 pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use design::stability::cause::Cause;

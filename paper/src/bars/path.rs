@@ -74,6 +74,8 @@ impl Path {
         PositionReference {
             velocity_m_s: self.derivative(time_s, 1),
             acceleration_m_s2: self.derivative(time_s, 2),
+            jerk_m_s3: self.derivative(time_s, 3),
+            snap_m_s4: self.derivative(time_s, 4),
             ..PositionReference::goal(self.derivative(time_s, 0).into(), 0.0)
         }
     }

@@ -1,192 +1,124 @@
-//! One axis of the cascade: its linear model, weights and limits.
+//! One loop of the cascade as it flies in hover, with the steps that it is measured by.
 
-use lmpc::{Augmented, DesignError, Discretization, Limit, Quantity, StateSpace, Weights};
-use nalgebra::{DMatrix, dmatrix, dvector};
-use quadrotor::{Airframe, ControllerSettings, Controllers, GRAVITY_M_S2, Limits, limited_samples};
+use lmpc::{Augmented, DesignError, Dlqr, LaguerreBasis, SignalLimit};
+use nalgebra::{DVector, DVectorView};
+use quadrotor::{Configuration, ConfigurationError, LinearLoop};
 
-/// Share of the tilt limit that the cascade commands: a raw step overshoots the command.
-const COMMANDED_TILT_SHARE: f64 = 0.6;
+/// Names of the loops.
+pub const AXES: [&str; 4] = ["position", "altitude", "roll", "yaw"];
 
-/// Samples of the altitude's limits: all of 1.5 s.
-static ALTITUDE: &[usize] = &[
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
-    29,
-];
-/// Samples of the position's limits: fifteen of 4.3 s, each gap a third longer than the one before.
-static POSITION: &[usize] = &[0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 27, 36, 48, 64, 85];
+/// A step from rest at the origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// "position step of 5 m".
+    pub problem: &'static str,
+    /// The set-point of each output, m or rad.
+    pub goal: Vec<f64>,
+}
 
-/// ÿ = gain · u with y m or rad, sampled with a zero-order hold, as the cascade has it.
+/// A loop of the cascade.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// "position", "altitude", "roll" or "yaw".
     pub name: &'static str,
-    /// Unit of the output, "m" or "rad".
-    pub unit: &'static str,
-    /// ÿ over u.
-    pub gain: f64,
-    /// ΔT, s.
-    pub sample_time_s: f64,
-    /// Q on y − r, on Δẏ, and R on Δu.
-    pub output_weight: f64,
-    /// See `output_weight`.
-    pub rate_weight: f64,
-    /// See `output_weight`.
-    pub increment_weight: f64,
-    /// Least and largest input.
-    pub input: [f64; 2],
-    /// Largest increment of the input per sample; infinite for none.
-    pub increment: f64,
-    /// Least and largest ẏ, soft; infinite for none.
-    pub rate: [f64; 2],
-    /// N_p.
-    pub horizon: usize,
-    /// a.
-    pub scale: f64,
-    /// Samples that limits are placed on.
-    pub limited: &'static [usize],
-    /// Set-points of the steps from rest at 0.
-    pub steps: &'static [f64],
+    /// Its model, weights, limits and default design.
+    pub linear: LinearLoop,
+    /// The steps.
+    pub steps: Vec<Step>,
 }
 
-const NONE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+fn steps(of: &[(&'static str, &[f64])]) -> Vec<Step> {
+    of.iter().map(|(problem, goal)| Step { problem, goal: goal.to_vec() }).collect()
+}
 
 impl Axis {
-    /// The four axes of the cascade's defaults; pitch is roll and east is north.
-    pub fn all() -> [Self; 4] {
-        let (controllers, limits, airframe) =
-            (Controllers::default(), Limits::default(), Airframe::default());
-        [
-            Self::position(&controllers, &limits),
-            Self::altitude(&controllers, &limits),
-            Self::roll(&controllers, &airframe),
-            Self::yaw(&controllers, &airframe),
-        ]
-    }
-
-    /// (10)–(11), north, with the tilt as u: ẍ = g u, the sign of θ turned.
-    fn position(controllers: &Controllers, limits: &Limits) -> Self {
-        let settings = &controllers.position;
-        let tilt = (COMMANDED_TILT_SHARE * limits.tilt_rad).tan();
-        let speed = limits.speed_horizontal_m_s;
-        Self {
-            input: [-tilt, tilt],
-            increment: limits.tilt_rate_rad_s * settings.sample_time_s(),
-            rate: [-speed, speed],
-            limited: POSITION,
-            steps: &[1.0, 5.0, 20.0],
-            ..Self::of("position", "m", GRAVITY_M_S2, settings, 0)
-        }
-    }
-
-    /// (7), z down: climbing is negative.
-    fn altitude(controllers: &Controllers, limits: &Limits) -> Self {
-        Self {
-            input: [GRAVITY_M_S2 * (1.0 - limits.thrust_max), GRAVITY_M_S2 * (1.0 - limits.thrust_min)],
-            rate: [-limits.speed_up_m_s, limits.speed_down_m_s],
-            limited: ALTITUDE,
-            steps: &[-1.0, -5.0, -20.0, 1.0, 5.0, 20.0],
-            ..Self::of("altitude", "m", 1.0, &controllers.altitude, 0)
-        }
-    }
-
-    /// (17).
-    fn roll(controllers: &Controllers, airframe: &Airframe) -> Self {
-        let torque = 2.0 * airframe.arm_length_m * rotor_room_n(airframe);
-        Self {
-            input: [-torque, torque],
-            limited: limited_samples::ATTITUDE,
-            steps: &[0.3, 1.0],
-            ..Self::of("roll", "rad", airframe.inertia_kg_m2[0].recip(), &controllers.attitude, 0)
-        }
-    }
-
-    /// (21), with τ_ψ.
-    fn yaw(controllers: &Controllers, airframe: &Airframe) -> Self {
-        let lever_m = airframe.torque_coefficient_n_m_s2 / airframe.thrust_coefficient_n_s2;
-        let torque = 4.0 * lever_m * rotor_room_n(airframe);
-        Self {
-            input: [-torque, torque],
-            limited: limited_samples::ATTITUDE,
-            steps: &[0.3, 1.0],
-            ..Self::of("yaw", "rad", airframe.inertia_kg_m2[2].recip(), &controllers.attitude, 2)
-        }
-    }
-
-    fn of<const P: usize>(
-        name: &'static str,
-        unit: &'static str,
-        gain: f64,
-        settings: &ControllerSettings<P>,
-        channel: usize,
-    ) -> Self {
-        Self {
-            name,
-            unit,
-            gain,
-            sample_time_s: settings.sample_time_s(),
-            output_weight: settings.output_weight[channel],
-            rate_weight: settings.rate_weight[channel],
-            increment_weight: settings.increment_weight[channel],
-            input: NONE,
-            increment: f64::INFINITY,
-            rate: NONE,
-            horizon: settings.prediction_horizon as usize,
-            scale: settings.scale,
-            limited: &[],
-            steps: &[],
-        }
-    }
-
-    /// The model.
+    /// The loops of the cascade with its defaults: north and east together, down, roll and pitch together, and yaw.
     ///
     /// # Errors
-    /// [`DesignError::SampleTime`].
-    pub fn model(&self) -> Result<StateSpace, DesignError> {
-        let (a, b, c) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; self.gain], dmatrix![1.0, 0.0]);
-        StateSpace::from_continuous(&a, &b, &c, self.sample_time_s, Discretization::ZeroOrderHold)
+    /// [`ConfigurationError`].
+    pub fn all() -> Result<[Self; 4], ConfigurationError> {
+        let configuration = Configuration::default();
+        Ok([
+            Self {
+                name: "position",
+                linear: LinearLoop::position(&configuration)?,
+                steps: steps(&[
+                    ("position step of 1 m", &[1.0, 0.0]),
+                    ("position step of 5 m", &[5.0, 0.0]),
+                    ("position step of 20 m", &[20.0, 0.0]),
+                    ("position step of 5 m north and 5 m east", &[5.0, 5.0]),
+                ]),
+            },
+            Self {
+                name: "altitude",
+                linear: LinearLoop::altitude(&configuration)?,
+                steps: steps(&[
+                    ("altitude step of 1 m up", &[-1.0]),
+                    ("altitude step of 5 m up", &[-5.0]),
+                    ("altitude step of 20 m up", &[-20.0]),
+                    ("altitude step of 1 m down", &[1.0]),
+                    ("altitude step of 5 m down", &[5.0]),
+                    ("altitude step of 20 m down", &[20.0]),
+                ]),
+            },
+            Self {
+                name: "roll",
+                linear: LinearLoop::roll_and_pitch(&configuration)?,
+                steps: steps(&[("roll step of 0.3 rad", &[0.3, 0.0]), ("roll step of 1 rad", &[1.0, 0.0])]),
+            },
+            Self {
+                name: "yaw",
+                linear: LinearLoop::yaw(&configuration)?,
+                steps: steps(&[("yaw step of 0.3 rad", &[0.3]), ("yaw step of 1 rad", &[1.0])]),
+            },
+        ])
     }
 
-    /// Q on \[Δy, Δẏ, y − r\] and R.
+    /// a of the default design.
+    pub fn scale(&self) -> f64 {
+        self.linear.scale
+    }
+
+    /// The state at a set-point: at rest there.
+    pub fn at_rest(&self, goal: &[f64]) -> DVector<f64> {
+        let per_channel = self.linear.model.states() / goal.len();
+        DVector::from_fn(self.linear.model.states(), |state, _| {
+            if state % per_channel == 0 { goal[state / per_channel] } else { 0.0 }
+        })
+    }
+
+    /// One basis per input.
     ///
     /// # Errors
-    /// As [`Weights::new`].
-    pub fn weights(&self, model: &Augmented) -> Result<Weights, DesignError> {
-        let q = DMatrix::from_diagonal(&dvector![0.0, self.rate_weight, self.output_weight]);
-        Weights::new(model, q, dmatrix![self.increment_weight])
+    /// As [`LaguerreBasis::new`].
+    pub fn bases(&self, terms: usize, scale: f64) -> Result<Vec<LaguerreBasis>, DesignError> {
+        (0..self.linear.model.inputs()).map(|_| LaguerreBasis::new(terms, scale)).collect()
     }
 
-    /// Limits on the given samples, and their bounds; increments only within the first `moves`, as there are none
-    /// later.
-    pub fn limits(&self, samples: &[usize], moves: usize) -> (Vec<Limit>, Vec<f64>) {
-        let mut limits = vec![Limit::range(Quantity::Input, 1, samples.iter().copied())];
-        let mut bounds = vec![self.input[1], -self.input[0]];
-        if self.increment.is_finite() {
-            let moving = samples.iter().copied().filter(|&sample| sample < moves);
-            limits.push(Limit::range(Quantity::Increment, 1, moving));
-            bounds.extend([self.increment; 2]);
-        }
-        if self.rate[1].is_finite() {
-            // The input at sample m shows in the state at m + 1.
-            let samples = samples.iter().map(|sample| sample + 1).collect();
-            let directions = dmatrix![0.0, 1.0; 0.0, -1.0];
-            limits.push(Limit { quantity: Quantity::State, directions, samples, soft: true });
-            bounds.extend([self.rate[1], -self.rate[0]]);
-        }
-        (limits, bounds)
+    /// The regulator of the same weights (54), α = 1.
+    ///
+    /// # Errors
+    /// As [`Dlqr::new`].
+    pub fn regulator(&self) -> Result<Dlqr, DesignError> {
+        let (model, weights) = (Augmented::new(&self.linear.model), &self.linear.weights);
+        Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0)
     }
 
-    /// The name of a step: "altitude step of 5 m down".
-    pub fn problem(&self, step: f64) -> String {
-        let direction = match self.name {
-            "altitude" if step < 0.0 => " up",
-            "altitude" => " down",
-            _ => "",
+    /// The limits and their bounds, each bound with the limit that it belongs to and its direction.
+    pub fn bounds(&self) -> impl Iterator<Item = (&SignalLimit, usize, f64)> {
+        let limits = self.linear.limits.iter();
+        limits
+            .flat_map(|limit| (0..limit.directions.nrows()).map(move |direction| (limit, direction)))
+            .zip(&self.linear.upper)
+            .map(|((limit, direction), upper)| (limit, direction, *upper))
+    }
+
+    /// Largest excess over a limit, as a share of it.
+    pub fn excess(&self, state: DVectorView<'_, f64>, input: DVectorView<'_, f64>) -> f64 {
+        let share = |(limit, direction, upper): (&SignalLimit, usize, f64)| {
+            let signal = &limit.state * state + &limit.input * input;
+            (limit.directions.row(direction) * signal)[0] / upper - 1.0
         };
-        format!("{} step of {} {}{direction}", self.name, step.abs(), self.unit)
+        self.bounds().map(share).fold(0.0, f64::max)
     }
-}
-
-/// By how much the thrust of each rotor can differ from that in hover without changing the sum, N.
-fn rotor_room_n(airframe: &Airframe) -> f64 {
-    (airframe.weight_n() - airframe.thrust_range_n().0) / 4.0
 }

@@ -7,13 +7,13 @@ use clarabel::solver::{
 use nalgebra::{DMatrix, DVector};
 
 use super::axis::Axis;
-use super::controllers::{Controller, Move, Placing, Sample, regulator};
+use super::controllers::{Controller, Move, Sample};
 use crate::error::Error;
 
-/// min Σ q (y − r)² + q_rate Δẏ² over N_p samples + R Δu² over N_c + the regulator's cost of the state at the end, in
-/// ΔU, under the limits.
+/// min Σ \[Δx; y − r\]ᵀ Q \[Δx; y − r\] over N_p samples + Δuᵀ R Δu over N_c + the regulator's cost of the state at the end, in ΔU,
+/// under the limits of inputs and states, sample by sample.
 ///
-/// Everything known is linear in w = \[y − r; ẏ; u(k−1)\].
+/// Everything known is linear in w = \[x without the set-point; u(k−1)\].
 pub struct ClarabelMoves {
     solver: DefaultSolver<f64>,
     /// Gradient over w.
@@ -21,45 +21,66 @@ pub struct ClarabelMoves {
     /// The limits' left-hand sides over w, and their bounds.
     known: DMatrix<f64>,
     bounds: DVector<f64>,
-    applied: f64,
+    applied: DVector<f64>,
 }
 
-/// A predicted quantity: by ΔU and by w.
+/// Predicted quantities: by ΔU and by w.
 #[derive(Clone)]
 struct Predicted {
-    moves: DVector<f64>,
-    known: DVector<f64>,
+    moves: DMatrix<f64>,
+    known: DMatrix<f64>,
 }
 
 impl Predicted {
-    fn plus(&self, other: &Self, factor: f64) -> Self {
-        Self { moves: &self.moves + factor * &other.moves, known: &self.known + factor * &other.known }
+    fn zero(rows: usize, moves: usize, known: usize) -> Self {
+        Self { moves: DMatrix::zeros(rows, moves), known: DMatrix::zeros(rows, known) }
+    }
+
+    fn times(&self, factor: &DMatrix<f64>) -> Self {
+        Self { moves: factor * &self.moves, known: factor * &self.known }
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self { moves: &self.moves + &other.moves, known: &self.known + &other.known }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self { moves: &self.moves - &other.moves, known: &self.known - &other.known }
     }
 }
 
-/// Limits G ΔU + K w ≤ b while they are collected.
-#[derive(Default)]
-struct Rows {
-    rows: Vec<(DVector<f64>, DVector<f64>, f64)>,
+/// Cost and limits of a program while they are collected: G ΔU + K w ≤ b.
+struct Condensed {
+    hessian: DMatrix<f64>,
+    gradient: DMatrix<f64>,
+    left: Vec<DMatrix<f64>>,
+    known: Vec<DMatrix<f64>>,
+    bounds: Vec<f64>,
 }
 
-impl Rows {
-    fn add(&mut self, value: &Predicted, [least, most]: [f64; 2]) {
-        for (sign, bound) in [(1.0, most), (-1.0, -least)] {
-            if bound.is_finite() {
-                self.rows.push((sign * &value.moves, sign * &value.known, bound));
-            }
+impl Condensed {
+    fn charge(&mut self, one: &Predicted, weight: &DMatrix<f64>) {
+        let weighted = 2.0 * one.moves.transpose() * weight;
+        self.hessian += &weighted * &one.moves;
+        self.gradient += &weighted * &one.known;
+    }
+
+    fn limit(&mut self, value: &Predicted, upper: f64) {
+        if value.moves.amax() > 0.0 {
+            self.left.push(value.moves.clone());
+            self.known.push(value.known.clone());
+            self.bounds.push(upper);
         }
     }
 }
 
 impl ClarabelMoves {
-    /// The program of an axis with `moves` unknowns and limits on some samples.
+    /// The program of a loop with `moves` unknowns per input.
     ///
     /// # Errors
     /// [`Error::Solver`] when Clarabel refuses it, [`Error::Design`] without a regulator.
-    pub fn new(axis: &Axis, moves: usize, placing: Placing<'_>) -> Result<Self, Error> {
-        let (hessian, gradient, rows) = condensed(axis, moves, regulator(axis)?.cost(), placing);
+    pub fn new(axis: &Axis, moves: usize) -> Result<Self, Error> {
+        let condensed = condensed(axis, moves, axis.regulator()?.cost());
         let failed = |reason: String| Error::Solver { problem: axis.name.to_owned(), reason };
         // Without presolve, gradient and bounds can be exchanged in place: no sample pays for a set-up.
         let settings = DefaultSettingsBuilder::default()
@@ -67,33 +88,42 @@ impl ClarabelMoves {
             .presolve_enable(false)
             .build()
             .map_err(|error| failed(error.to_string()))?;
-        let count = rows.rows.len();
-        let matrix = |width: usize, of: &dyn Fn(usize, usize) -> f64| DMatrix::from_fn(count, width, of);
-        let left = matrix(moves, &|row, column| rows.rows[row].0[column]);
-        let known = matrix(3, &|row, column| rows.rows[row].1[column]);
-        let bounds = DVector::from_fn(count, |row, _| rows.rows[row].2);
+        let count = condensed.bounds.len();
+        let stacked = |rows: &[DMatrix<f64>], width: usize| {
+            DMatrix::from_fn(count, width, |row, column| rows[row][(0, column)])
+        };
+        let unknowns = condensed.hessian.nrows();
+        let left = stacked(&condensed.left, unknowns);
+        let known = stacked(&condensed.known, condensed.gradient.ncols());
+        let bounds = DVector::from_vec(condensed.bounds);
         let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(count)];
-        let p = sparse(&hessian.upper_triangle());
+        let p = sparse(&condensed.hessian.upper_triangle());
         let solver =
-            DefaultSolver::new(&p, &vec![0.0; moves], &sparse(&left), bounds.as_slice(), &cones, settings)
+            DefaultSolver::new(&p, &vec![0.0; unknowns], &sparse(&left), bounds.as_slice(), &cones, settings)
                 .map_err(|error| failed(error.to_string()))?;
-        Ok(Self { solver, gradient, known, bounds, applied: 0.0 })
+        let applied = DVector::zeros(axis.linear.model.inputs());
+        Ok(Self { solver, gradient: condensed.gradient, known, bounds, applied })
     }
 
     /// One sample; the input is held when there is no solution.
     pub fn step(&mut self, sample: &Sample) -> Move {
-        let w = DVector::from_column_slice(&[sample.state[0] - sample.goal, sample.state[1], self.applied]);
+        let states = sample.deviation.len();
+        let known = states + self.applied.len();
+        let w = DVector::from_fn(known, |row, _| {
+            if row < states { sample.deviation[row] } else { self.applied[row - states] }
+        });
         let (q, b) = (&self.gradient * &w, &self.bounds - &self.known * &w);
         let updated = self.solver.update_q(&q.as_slice().to_vec()).is_ok()
             && self.solver.update_b(&b.as_slice().to_vec()).is_ok();
         if updated {
             self.solver.solve();
             if self.solver.solution.status == SolverStatus::Solved {
-                self.applied += self.solver.solution.x[0];
+                let moves = &self.solver.solution.x;
+                self.applied = DVector::from_fn(self.applied.len(), |row, _| self.applied[row] + moves[row]);
             }
         }
         let limited = self.solver.solution.z.iter().any(|multiplier| *multiplier > 1e-6);
-        Move { input: self.applied, iterations: self.solver.solution.iterations, limited }
+        Move { input: self.applied.clone(), iterations: self.solver.solution.iterations, limited }
     }
 
     /// As a controller.
@@ -102,56 +132,56 @@ impl ClarabelMoves {
     }
 }
 
-/// H, the gradient over w, and the limits. `end` weights \[Δy, Δẏ, y − r\] at the end of the horizon.
-fn condensed(
-    axis: &Axis,
-    moves: usize,
-    end: &DMatrix<f64>,
-    placing: Placing<'_>,
-) -> (DMatrix<f64>, DMatrix<f64>, Rows) {
-    let unit = |index: usize| Predicted {
-        moves: DVector::zeros(moves),
-        known: DVector::from_fn(3, |i, _| f64::from(u8::from(i == index))),
+/// `end` weights \[Δx; y − r\] at the end of the horizon.
+fn condensed(axis: &Axis, moves: usize, end: &DMatrix<f64>) -> Condensed {
+    let linear = &axis.linear;
+    let (model, q, r) = (&linear.model, linear.weights.q(), linear.weights.r());
+    let (states, inputs) = (model.states(), model.inputs());
+    let (unknowns, known) = (inputs * moves, states + inputs);
+    let mut state = Predicted::zero(states, unknowns, known);
+    state.known.view_mut((0, 0), (states, states)).fill_with_identity();
+    let mut input = Predicted::zero(inputs, unknowns, known);
+    input.known.view_mut((0, states), (inputs, inputs)).fill_with_identity();
+    let mut condensed = Condensed {
+        hessian: DMatrix::zeros(unknowns, unknowns),
+        gradient: DMatrix::zeros(unknowns, known),
+        left: Vec::new(),
+        known: Vec::new(),
+        bounds: Vec::new(),
     };
-    let time = axis.sample_time_s;
-    let (mut error, mut rate, mut input) = (unit(0), unit(1), unit(2));
-    let (mut hessian, mut gradient) = (DMatrix::zeros(moves, moves), DMatrix::zeros(moves, 3));
-    let mut charge = |one: &Predicted, other: &Predicted, weight: f64| {
-        hessian += 2.0 * weight * &one.moves * other.moves.transpose();
-        gradient += 2.0 * weight * &one.moves * other.known.transpose();
-    };
-    let mut rows = Rows::default();
-    for sample in 0..axis.horizon {
-        charge(&error, &error, axis.output_weight);
+    let of_outputs = q.view((states, states), (inputs, inputs)).into_owned();
+    let of_motion = q.view((0, 0), (states, states)).into_owned();
+    for sample in 0..linear.prediction_horizon {
         if sample < moves {
-            let mut increment = Predicted { moves: DVector::zeros(moves), known: DVector::zeros(3) };
-            increment.moves[sample] = 1.0;
-            charge(&increment, &increment, axis.increment_weight);
-            input = input.plus(&increment, 1.0);
-            if placing.contains(&sample) {
-                rows.add(&increment, [-axis.increment, axis.increment]);
-            }
+            let mut change = Predicted::zero(inputs, unknowns, known);
+            change.moves.view_mut((0, inputs * sample), (inputs, inputs)).fill_with_identity();
+            condensed.charge(&change, r);
+            input = input.plus(&change);
         }
-        let acceleration = input.plus(&input, axis.gain - 1.0);
-        let before = [error.clone(), rate.clone()];
-        error = error.plus(&rate, time).plus(&acceleration, time * time / 2.0);
-        rate = rate.plus(&acceleration, time);
-        if placing.contains(&sample) {
-            rows.add(&input, axis.input);
-            rows.add(&rate, axis.rate);
+        for (limit, direction, upper) in axis.bounds().filter(|(limit, ..)| limit.samples.contains(&sample)) {
+            // A limit of states holds at sample m ≥ 1, of the input at m ≥ 0.
+            let along = limit.directions.row(direction).into_owned();
+            let along = DMatrix::from_row_slice(1, along.len(), along.transpose().as_slice());
+            let value = state.times(&(&along * &limit.state)).plus(&input.times(&(&along * &limit.input)));
+            condensed.limit(&value, upper);
         }
-        if sample + 1 < axis.horizon {
-            charge(&acceleration, &acceleration, axis.rate_weight * time * time);
+        let next = state.times(model.a()).plus(&input.times(model.b()));
+        let motion = next.minus(&state);
+        condensed.charge(&state.times(model.c()), &of_outputs);
+        if sample + 1 < linear.prediction_horizon {
+            condensed.charge(&motion, &of_motion);
         } else {
-            let last = [error.plus(&before[0], -1.0), rate.plus(&before[1], -1.0), error.clone()];
-            for (i, one) in last.iter().enumerate() {
-                for (j, other) in last.iter().enumerate() {
-                    charge(one, other, end[(i, j)]);
-                }
-            }
+            let mut last = Predicted::zero(states + inputs, unknowns, known);
+            let error = next.times(model.c());
+            last.moves.rows_mut(0, states).copy_from(&motion.moves);
+            last.known.rows_mut(0, states).copy_from(&motion.known);
+            last.moves.rows_mut(states, inputs).copy_from(&error.moves);
+            last.known.rows_mut(states, inputs).copy_from(&error.known);
+            condensed.charge(&last, end);
         }
+        state = next;
     }
-    (hessian, gradient, rows)
+    condensed
 }
 
 fn sparse(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
@@ -161,17 +191,17 @@ fn sparse(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::controllers::{End, regulator, state_space_design};
+    use super::super::controllers::{End, state_space_design};
     use super::{Axis, condensed};
 
     /// Two condensations by different authors' hands: powers of A in one, a walk over samples in the other.
     #[test]
     fn it_is_the_program_of_the_state_space_design() {
-        for axis in Axis::all() {
+        for axis in Axis::all().unwrap() {
             for moves in [1, 7, 25] {
                 let ours = state_space_design(&axis, moves, End::Riccati).unwrap();
-                let (hessian, ..) = condensed(&axis, moves, regulator(&axis).unwrap().cost(), axis.limited);
-                let difference = (hessian / 2.0 - ours.hessian()).amax() / ours.hessian().amax();
+                let theirs = condensed(&axis, moves, axis.regulator().unwrap().cost());
+                let difference = (theirs.hessian / 2.0 - ours.hessian()).amax() / ours.hessian().amax();
                 assert!(difference < 1e-10, "{}, {moves} moves: {difference}", axis.name);
             }
         }

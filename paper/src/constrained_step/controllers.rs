@@ -1,29 +1,31 @@
-//! The controllers that fly a step on one axis.
+//! The controllers that fly a step on a loop of the cascade.
 
 use lmpc::{
-    Augmented, Controller as _, ControllerState, DesignError, Dlqr, LaguerreBasis, LaguerreMpc, LmpcDesign,
-    StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Step, Weighting,
+    Augmented, Controller as Law, ControllerState, DesignError, Limit, LmpcDesign, SignalLimit,
+    StabilizedMpc, StateSpaceMpc, StateSpaceMpcDesign, StateSpaceMpcWeights, Weighting, unknowns,
 };
-use nalgebra::{Vector1, Vector2, dmatrix};
+use nalgebra::{DVector, SVector};
 
 use super::axis::Axis;
 
 /// What a controller sees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sample {
-    /// y and ẏ.
-    pub state: [f64; 2],
-    /// Their increments since the last sample.
-    pub delta: [f64; 2],
-    /// r.
-    pub goal: f64,
+    /// x.
+    pub state: DVector<f64>,
+    /// Its increment since the last sample.
+    pub increment: DVector<f64>,
+    /// x without the set-point.
+    pub deviation: DVector<f64>,
+    /// y − r.
+    pub error: DVector<f64>,
 }
 
 /// What it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     /// u(k).
-    pub input: f64,
+    pub input: DVector<f64>,
     /// Iterations of the solver.
     pub iterations: u32,
     /// Whether limits were active.
@@ -33,39 +35,110 @@ pub struct Move {
 /// A controller with what it remembers.
 pub type Controller = Box<dyn FnMut(&Sample) -> Move + Send>;
 
-/// Samples that limits are placed on.
-pub type Placing<'a> = &'a [usize];
+/// Samples that all limits are placed on; `None` for those that fly.
+pub type Placing<'a> = Option<&'a [usize]>;
 
-/// Laguerre MPC of an axis, with E ≥ N + 1.
+/// A law as a controller.
+pub(super) fn flying<const N: usize, const P: usize, const E: usize>(
+    axis: &Axis,
+    law: impl Law<N, P, P, E> + Send + 'static,
+) -> Controller {
+    let upper = axis.linear.upper.clone();
+    let mut state = ControllerState::<N, P, E>::at_rest();
+    Box::new(move |sample| {
+        let now = lmpc::Sample {
+            measured: fixed(&sample.state),
+            increment: fixed(&sample.increment),
+            deviation: fixed(&sample.deviation),
+            error: fixed(&sample.error),
+            upper: &upper,
+            ..lmpc::Sample::default()
+        };
+        let step = law.step(&mut state, &now);
+        Move {
+            input: DVector::from_column_slice(step.input.as_slice()),
+            iterations: step.iterations,
+            limited: step.iterations > 0 || step.active > 0,
+        }
+    })
+}
+
+fn fixed<const N: usize>(vector: &DVector<f64>) -> SVector<f64, N> {
+    SVector::from_fn(|row, _| vector[row])
+}
+
+/// Calls a constructor with the sizes of a loop: states, inputs, unknowns for so many coefficients per input.
+macro_rules! sized {
+    ($axis:expr, $constructor:ident, $coefficients:expr, ($($argument:expr),*)) => {
+        match ($axis.linear.model.states(), $axis.linear.model.inputs()) {
+            (12, 2) => $constructor::<12, 2, { unknowns(2, $coefficients) }>($($argument),*),
+            (6, 2) => $constructor::<6, 2, { unknowns(2, $coefficients) }>($($argument),*),
+            (3, 1) => $constructor::<3, 1, { unknowns(1, $coefficients) }>($($argument),*),
+            actual => Err(DesignError::Dimension { name: "a loop of the cascade", expected: (12, 2), actual }),
+        }
+    };
+}
+
+/// Coefficients that the smaller and the larger programs have room for, as in flight.
+const FEW: usize = 7;
+const MANY: usize = 10;
+
+/// The Laguerre MPC of the cascade with N = `terms` ≤ 10 and a = `scale`.
 ///
 /// # Errors
-/// As [`LmpcDesign::new`] and [`LaguerreMpc::new`].
-pub fn laguerre<const E: usize>(
+/// As [`lmpc::StabilizedDesign::new`] and [`StabilizedMpc::new`].
+pub fn laguerre(
+    axis: &Axis,
+    terms: usize,
+    scale: f64,
+    placing: Placing<'_>,
+) -> Result<Controller, DesignError> {
+    fn sized<const N: usize, const P: usize, const E: usize>(
+        axis: &Axis,
+        terms: usize,
+        scale: f64,
+        limits: &[SignalLimit],
+    ) -> Result<Controller, DesignError> {
+        let design = axis.linear.design(terms, scale)?;
+        let law = StabilizedMpc::<N, P, P, E>::new(&design, limits, axis.linear.slack_cost)?;
+        Ok(flying::<N, P, E>(axis, law))
+    }
+    let limits: Vec<SignalLimit> = match placing {
+        None => axis.linear.limits.clone(),
+        Some(samples) => {
+            let placed = |limit: &SignalLimit| SignalLimit { samples: samples.to_vec(), ..limit.clone() };
+            axis.linear.limits.iter().map(placed).collect()
+        }
+    };
+    if terms <= FEW {
+        sized!(axis, sized, FEW, (axis, terms, scale, &limits))
+    } else {
+        sized!(axis, sized, MANY, (axis, terms, scale, &limits))
+    }
+}
+
+/// The paper's Laguerre MPC (45) over a finite horizon, without a stabilizing feedback, under the same limits.
+///
+/// # Errors
+/// As [`LmpcDesign::new`] and [`lmpc::LaguerreMpc::new`].
+pub fn finite_laguerre(
     axis: &Axis,
     terms: usize,
     scale: f64,
     weighting: Weighting,
-    placing: Placing<'_>,
 ) -> Result<Controller, DesignError> {
-    let model = Augmented::new(&axis.model()?);
-    let weights = axis.weights(&model)?;
-    let design =
-        LmpcDesign::new(&model, &weights, &[LaguerreBasis::new(terms, scale)?], axis.horizon, weighting)?;
-    // A Laguerre function moves for ever, pulses (a = 0) do not.
-    let moves = if scale == 0.0 { terms } else { usize::MAX };
-    let (limits, bounds) = axis.limits(placing, moves);
-    let controller = LaguerreMpc::<2, 1, 1, E>::new(&design, &limits)?;
-    let mut state = ControllerState::<2, 1, E>::at_rest();
-    Ok(Box::new(move |sample| {
-        let now = lmpc::Sample {
-            measured: sample.state.into(),
-            increment: sample.delta.into(),
-            error: Vector1::new(sample.state[0] - sample.goal),
-            upper: &bounds,
-            ..lmpc::Sample::default()
-        };
-        moved(&controller.step(&mut state, &now))
-    }))
+    fn sized<const N: usize, const P: usize, const E: usize>(
+        axis: &Axis,
+        design: &LmpcDesign,
+        limits: &[Limit],
+    ) -> Result<Controller, DesignError> {
+        Ok(flying::<N, P, E>(axis, lmpc::LaguerreMpc::<N, P, P, E>::new(design, limits)?))
+    }
+    let linear = &axis.linear;
+    let model = Augmented::new(&linear.model);
+    let bases = axis.bases(terms, scale)?;
+    let design = LmpcDesign::new(&model, &linear.weights, &bases, linear.prediction_horizon, weighting)?;
+    sized!(axis, sized, MANY, (axis, &design, &linear.plain_limits()))
 }
 
 /// What a state-space MPC counts at the end of its horizon.
@@ -77,71 +150,66 @@ pub enum End {
     Riccati,
 }
 
-/// State-space MPC of an axis with one unknown per move, with E ≥ N_c + 1.
+/// State-space MPC with one unknown per move: N_c = `moves` ≤ 50.
 ///
 /// # Errors
 /// As [`StateSpaceMpcDesign::with_weights`] and [`StateSpaceMpc::new`].
-pub fn state_space<const E: usize>(
-    axis: &Axis,
-    moves: usize,
-    end: End,
-    placing: Placing<'_>,
-) -> Result<Controller, DesignError> {
+pub fn state_space(axis: &Axis, moves: usize, end: End) -> Result<Controller, DesignError> {
+    fn sized<const N: usize, const P: usize, const E: usize>(
+        axis: &Axis,
+        design: &StateSpaceMpcDesign,
+    ) -> Result<Controller, DesignError> {
+        Ok(flying::<N, P, E>(axis, StateSpaceMpc::<N, P, P, E>::new(design, &axis.linear.plain_limits())?))
+    }
     let design = state_space_design(axis, moves, end)?;
-    let (limits, bounds) = axis.limits(placing, moves);
-    let controller = StateSpaceMpc::<2, 1, 1, E>::new(&design, &limits)?;
-    let mut state = ControllerState::<2, 1, E>::at_rest();
-    Ok(Box::new(move |sample| {
-        // The goal as the origin: nothing to preview, which would cost time for the same move.
-        let [y, rate] = sample.state;
-        let deviation = Vector2::new(y - sample.goal, rate);
-        let now = lmpc::Sample { deviation, upper: &bounds, ..lmpc::Sample::default() };
-        moved(&controller.step(&mut state, &now))
-    }))
+    if moves <= 25 {
+        sized!(axis, sized, 25, (axis, &design))
+    } else {
+        sized!(axis, sized, 50, (axis, &design))
+    }
 }
 
 /// Its design.
+///
+/// # Errors
+/// As [`StateSpaceMpcDesign::with_weights`].
 pub fn state_space_design(axis: &Axis, moves: usize, end: End) -> Result<StateSpaceMpcDesign, DesignError> {
+    let linear = &axis.linear;
+    let (states, outputs) = (linear.model.states(), linear.model.outputs());
+    let q = linear.weights.q();
     let weights = StateSpaceMpcWeights {
-        output: dmatrix![axis.output_weight],
-        moves: dmatrix![axis.increment_weight],
-        increment: dmatrix![0.0, 0.0; 0.0, axis.rate_weight],
+        output: q.view((states, states), (outputs, outputs)).into_owned(),
+        moves: linear.weights.r().clone(),
+        increment: q.view((0, 0), (states, states)).into_owned(),
         terminal: match end {
             End::Nothing => None,
-            End::Riccati => Some(regulator(axis)?.cost().clone()),
+            End::Riccati => Some(axis.regulator()?.cost().clone()),
         },
     };
-    StateSpaceMpcDesign::with_weights(&axis.model()?, &weights, axis.horizon, moves)
+    StateSpaceMpcDesign::with_weights(&linear.model, &weights, linear.prediction_horizon, moves)
 }
 
-/// The regulator of the axis (54), α = 1.
+/// The regulator with its inputs scaled back to their limits; it knows none of the states'.
 ///
 /// # Errors
-/// As [`Dlqr::new`].
-pub fn regulator(axis: &Axis) -> Result<Dlqr, DesignError> {
-    let model = Augmented::new(&axis.model()?);
-    let weights = axis.weights(&model)?;
-    Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0)
-}
-
-/// The regulator with its moves and inputs clipped to the limits; it knows none of the rate.
-///
-/// # Errors
-/// As [`Dlqr::new`].
+/// As [`lmpc::Dlqr::new`].
 pub fn clipped_regulator(axis: &Axis) -> Result<Controller, DesignError> {
-    let gain = regulator(axis)?.gain().clone();
-    let (range, increment) = (axis.input, axis.increment);
-    let mut input = 0.0;
+    let gain = axis.regulator()?.gain().clone();
+    let (axis, states, inputs) = (axis.clone(), axis.linear.model.states(), axis.linear.model.inputs());
+    let mut input = DVector::zeros(inputs);
     Ok(Box::new(move |sample| {
-        let state = [sample.delta[0], sample.delta[1], sample.state[0] - sample.goal];
-        let wanted: f64 = -gain.iter().zip(state).map(|(gain, state)| gain * state).sum::<f64>();
-        let before = input;
-        input = (before + wanted.clamp(-increment, increment)).clamp(range[0], range[1]);
-        Move { input, iterations: 0, limited: input != before + wanted }
+        let wanted = &input
+            - gain.columns(0, states) * &sample.increment
+            - gain.columns(states, inputs) * &sample.error;
+        // The largest multiple of it that keeps the limits of the input at hand.
+        let of_input = axis.bounds().filter(|(limit, ..)| limit.state.amax() == 0.0);
+        let share = of_input
+            .filter(|(limit, ..)| limit.samples.contains(&0))
+            .map(|(limit, direction, upper)| {
+                upper / (limit.directions.row(direction) * &limit.input * &wanted)[0].max(upper)
+            })
+            .fold(1.0, f64::min);
+        input = wanted * share;
+        Move { input: input.clone(), iterations: 0, limited: share < 1.0 }
     }))
-}
-
-fn moved(step: &Step<1>) -> Move {
-    let limited = step.iterations > 0 || step.active > 0;
-    Move { input: step.input.x, iterations: step.iterations, limited }
 }

@@ -16,7 +16,7 @@ pub struct CostResult {
     pub controller: String,
     /// Unknowns per input: N of LMPC, N_c of state-space MPC, 0 of the regulator.
     pub n: usize,
-    /// Σ q (y − r)² + q_rate Δẏ² + R Δu² of the whole step; null where the design was refused.
+    /// Σ \[Δx; y − r\]ᵀ Q \[Δx; y − r\] + Δuᵀ R Δu of the whole step; null where the design was refused.
     pub cost: Option<f64>,
     /// That over the least cost of the same step under all limits at all samples.
     pub ratio_to_optimum: Option<f64>,
@@ -66,7 +66,7 @@ pub(super) struct Contender {
     pub refused: Option<String>,
 }
 
-/// A design that is not stable is a result; any other refusal is a mistake.
+/// A design that is not stable, or too ill-conditioned, is a result; any other refusal is a mistake.
 pub(super) fn entry<T>(
     name: String,
     n: usize,
@@ -74,7 +74,7 @@ pub(super) fn entry<T>(
 ) -> Result<(Contender, Option<T>), Error> {
     match controller {
         Ok(controller) => Ok((Contender { name, n, refused: None }, Some(controller))),
-        Err(error @ DesignError::Unstable { .. }) => {
+        Err(error @ (DesignError::Unstable { .. } | DesignError::IllConditioned { .. })) => {
             Ok((Contender { name, n, refused: Some(error.to_string()) }, None))
         }
         Err(error) => Err(error.into()),

@@ -14,9 +14,8 @@ mod cost_result;
 mod flight;
 mod optimum;
 mod trade_off;
-mod two_axes;
 
-pub use axis::Axis;
+pub use axis::AXES;
 pub use cost::{closed_loop_cost, closed_loop_cost_parts};
 pub use cost_result::CostResult;
 pub use trade_off::{

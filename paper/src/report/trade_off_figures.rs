@@ -1,6 +1,6 @@
 //! The trade-off over N, a, α and the placing of limits.
 
-use crate::constrained_step::{ALPHAS, Axis, ExcessCost, LAST, PLACED_TERMS, SCALES, TERMS, TradeOff};
+use crate::constrained_step::{ALPHAS, AXES, ExcessCost, LAST, PLACED_TERMS, SCALES, TERMS, TradeOff};
 use crate::figures::{COLOURS, Figure, HeatMap, Line, Panel, heat_maps, line_chart};
 
 /// Range of the colours, %.
@@ -8,9 +8,10 @@ const RANGE: [f64; 2] = [0.01, 100.0];
 const UNIT: &str = "cost above the optimum, %, worst step of the axis";
 const EMPTY: &str = "rejected: unstable";
 
-fn of<'a>(trade_off: &'a TradeOff, axis: &Axis, grid: &'a str) -> impl Iterator<Item = &'a ExcessCost> {
-    let name = axis.name;
-    trade_off.designs.iter().filter(move |design| design.axis == name && design.grid == grid)
+/// The column of the scaling factor closest to a.
+fn nearest(a: f64) -> Option<usize> {
+    let distance = |column: &usize| (SCALES[*column] - a).abs();
+    (0..SCALES.len()).min_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
 fn names<T: ToString>(values: &[T]) -> Vec<String> {
@@ -19,29 +20,29 @@ fn names<T: ToString>(values: &[T]) -> Vec<String> {
 
 /// Excess over N and a with the terminal weight.
 pub fn scales_and_terms(trade_off: &TradeOff) -> Figure {
-    let map = |axis: &Axis| HeatMap {
-        title: format!("{}, default a = {}", axis.name, axis.scale),
+    let default = |axis: &str| trade_off.default_of(axis).map_or(f64::NAN, |design| design.a);
+    let map = |axis: &str| HeatMap {
+        title: format!("{axis}, default a = {:.2}", default(axis)),
         x_label: "a".to_owned(),
         y_label: "N".to_owned(),
         columns: names(&SCALES),
         rows: names(&TERMS),
         values: TERMS.map(|n| row(trade_off, axis, "N and a", |design| design.n == n)).to_vec(),
-        marked: SCALES.iter().position(|a| *a == axis.scale).map(|column| [4, column]),
+        marked: nearest(default(axis)).map(|column| [4, column]),
     };
     Figure {
         name: "trade-off-terms".to_owned(),
-        caption: "Terminal weight, default placing of limits: over N and a. a = 0 is state-space MPC with N moves. Framed: \
-                  the default. With few terms a decides everything; more terms at a fixed a do not always cost less, \
-                  because limits between the chosen samples and beyond the last one are not seen."
+        caption: "Default placing of limits: over N and a. a = 0 moves N times beside the stabilizing feedback. Framed: the column \
+                  closest to the default. Limits between the chosen samples are not seen, so that more terms do not always cost less."
             .to_owned(),
-        svg: heat_maps("Excess cost over N and a", UNIT, RANGE, EMPTY, 2, &Axis::all().map(|axis| map(&axis))),
+        svg: heat_maps("Excess cost over N and a", UNIT, RANGE, EMPTY, 2, &AXES.map(map)),
     }
 }
 
 /// Excess over α and a for N = 5.
 pub fn scales_and_alphas(trade_off: &TradeOff) -> Figure {
-    let map = |axis: &Axis| HeatMap {
-        title: format!("{}, N = 5", axis.name),
+    let map = |axis: &str| HeatMap {
+        title: format!("{axis}, N = 5"),
         x_label: "a".to_owned(),
         y_label: "α".to_owned(),
         columns: names(&SCALES),
@@ -54,23 +55,24 @@ pub fn scales_and_alphas(trade_off: &TradeOff) -> Figure {
     };
     Figure {
         name: "trade-off-alpha".to_owned(),
-        caption: "N = 5, default placing: over α and a; “1, P” is the Riccati solution as terminal weight. Framed: the \
-                  paper's α = 1.2 and a = 0.8187."
+        caption: "The paper's program over a finite horizon, without stabilizing feedback, on the same models and limits, N = 5: over α and \
+                  a; “1, P” is the Riccati solution as terminal weight. Framed: the paper's α = 1.2 and a = 0.8187."
             .to_owned(),
-        svg: heat_maps("Excess cost over α and a", UNIT, RANGE, EMPTY, 2, &Axis::all().map(|axis| map(&axis))),
+        svg: heat_maps("Excess cost of the paper's program over α and a", UNIT, RANGE, EMPTY, 2, &AXES.map(map)),
     }
 }
 
 fn row(
     trade_off: &TradeOff,
-    axis: &Axis,
+    axis: &str,
     grid: &str,
     in_row: impl Fn(&ExcessCost) -> bool,
 ) -> Vec<Option<f64>> {
     SCALES
         .iter()
         .map(|a| {
-            of(trade_off, axis, grid)
+            trade_off
+                .grid(axis, grid)
                 .find(|design| design.a == *a && in_row(design))
                 .and_then(|design| design.worst_excess_percent)
         })
@@ -79,42 +81,30 @@ fn row(
 
 /// Excess over the last sample with limits.
 pub fn placings(trade_off: &TradeOff) -> Figure {
-    let mut panels = Vec::new();
-    for axis in Axis::all() {
-        for (recipe, terminal) in [("terminal weight", true), ("α = 1.2, a = 0.8187", false)] {
-            let of_recipe = |n: usize| {
-                of(trade_off, &axis, "placing").filter(move |d| d.n == n && (d.alpha == 1.0) == terminal)
-            };
+    let panels: Vec<Panel> = AXES
+        .into_iter()
+        .map(|axis| {
+            let value = |design: &ExcessCost| design.worst_excess_percent.unwrap_or(f64::NAN).max(1e-3);
             let mut lines = Vec::new();
             for (index, n) in PLACED_TERMS.into_iter().enumerate() {
-                let value = |design: &ExcessCost| design.worst_excess_percent.unwrap_or(f64::NAN).max(1e-3);
-                let contiguous: Vec<[f64; 2]> = LAST
-                    .iter()
-                    .filter_map(|last| {
-                        of_recipe(n).find(|design| design.limited.iter().copied().eq(0..=*last))
-                    })
-                    .map(|design| [design.limited.len() as f64, value(design)])
+                let designs = || trade_off.grid(axis, "placing").filter(move |design| design.n == n);
+                let contiguous: Vec<[f64; 2]> = designs()
+                    .filter_map(|design| Some([design.limited.as_ref()?.len() as f64, value(design)]))
                     .collect();
                 lines.push(Line::new(format!("N = {n}"), COLOURS[index], contiguous).marked());
-                if let Some(own) = of_recipe(n).find(|design| design.limited == axis.limited) {
+                if let Some(own) = designs().find(|design| design.limited.is_none()) {
                     let across = [1.0, LAST[LAST.len() - 1] as f64 + 1.0].map(|x| [x, value(own)]);
                     lines.push(Line::new("", COLOURS[index], across.to_vec()).dashed());
                 }
             }
-            let panel = Panel::new(
-                format!("{}, {recipe}", axis.name),
-                "limits on the first … samples",
-                "cost above optimum, %",
-                lines,
-            );
-            panels.push(panel.logarithmic().with_range(7e-4, 1000.0));
-        }
-    }
+            Panel::new(axis, "limits on the first … samples", "cost above optimum, %", lines)
+                .logarithmic()
+                .with_range(7e-4, 1000.0)
+        })
+        .collect();
     Figure {
         name: "trade-off-placing".to_owned(),
-        caption: "Over the placing of limits: solid on the first samples without a gap, dashed on the default list of samples. \
-                  Left with the terminal weight and the default a, right with the paper's α and a."
-            .to_owned(),
+        caption: "Over the placing of limits: solid on the first samples without a gap, dashed on the samples that fly.".to_owned(),
         svg: line_chart("placing", "Excess cost over the placing of limits", 2, [490.0, 260.0], &panels),
     }
 }

@@ -112,7 +112,7 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
 }
 
 /// The same limit for a state-space MPC. One of a signal that mixes state and input is not placed.
-fn plain(limit: &SignalLimit) -> Limit {
+pub(crate) fn plain(limit: &SignalLimit) -> Limit {
     let of_input = limit.state.amax() == 0.0;
     let of_state = limit.input.amax() == 0.0;
     Limit {

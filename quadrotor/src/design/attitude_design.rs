@@ -26,10 +26,10 @@ pub(crate) type LeanLaw = TrackingLaw<{ 2 * AXIS_STATES }, 2, LEAN_FEW, LEAN_MAN
 pub(crate) type TurnLaw = TrackingLaw<AXIS_STATES, 1, TURN_FEW, TURN_MANY>;
 
 /// Most times by which a turn is taken to be longer than a lean: beyond it the horizon ends earlier.
-const LONGEST_TURN: f64 = 8.0;
+pub(crate) const LONGEST_TURN: f64 = 8.0;
 
 /// Error of the attitude, rad, the cost of which stands for that of a violated limit: upside down.
-const SIGHT_RAD: f64 = core::f64::consts::PI;
+pub(crate) const SIGHT_RAD: f64 = core::f64::consts::PI;
 
 /// The laws of the attitude controller.
 ///
@@ -127,7 +127,7 @@ impl AttitudeDesign {
 }
 
 /// Settings of some axes, with times that are longer.
-fn of_axes<const P: usize>(
+pub(crate) fn of_axes<const P: usize>(
     settings: &ControllerSettings<3>,
     axes: [usize; P],
     longer: f64,
@@ -144,7 +144,7 @@ fn of_axes<const P: usize>(
 }
 
 /// Samples that lie so many times later, the first of all as it is.
-fn later(samples: &[usize], times: f64) -> Vec<usize> {
+pub(crate) fn later(samples: &[usize], times: f64) -> Vec<usize> {
     samples.iter().map(|sample| libm::round(*sample as f64 * times) as usize).collect()
 }
 

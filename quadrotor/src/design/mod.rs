@@ -14,6 +14,7 @@ pub(crate) mod default_reach;
 pub(crate) mod estimator_design;
 pub(crate) mod flyable_limits;
 pub mod limited_samples;
+pub(crate) mod linear_loop;
 pub(crate) mod linear_models;
 pub(crate) mod loop_design;
 pub(crate) mod loop_weights;

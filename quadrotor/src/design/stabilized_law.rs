@@ -36,14 +36,11 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> StabilizedL
     ) -> Result<Self, DesignError> {
         let augmented = Augmented::new(model);
         let weights = loop_weights(&augmented, settings, bandwidth_rad_s)?;
-        let slow = loop_weights(&augmented, settings, &(bandwidth_rad_s * STABILIZING_SHARE))?;
-        let stabilizing = Dlqr::new(augmented.a(), augmented.b(), slow.q(), slow.r(), settings.lambda)?;
+        let stabilizing = stabilizing_gain(&augmented, settings, bandwidth_rad_s)?;
         let basis = LaguerreBasis::new(settings.terms as usize, settings.scale)?;
         let bases: [LaguerreBasis; P] = core::array::from_fn(|_| basis.clone());
-        let design =
-            StabilizedDesign::new(&augmented, &weights, stabilizing.gain(), &bases, settings.lambda)?;
-        let of_output = design.dlqr().cost()[(N, N)];
-        let slack_cost = VIOLATION * of_output * sight * sight;
+        let design = StabilizedDesign::new(&augmented, &weights, &stabilizing, &bases, settings.lambda)?;
+        let slack_cost = slack_cost(design.dlqr(), N, sight);
         let law = TrackingLaw::stabilized(kind, settings, &design, limits, slack_cost)?;
         let regulator = design.dlqr().gain();
         let regulated = augmented.a() - augmented.b() * regulator;
@@ -60,4 +57,19 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> StabilizedL
     pub(crate) fn law_and_report(self) -> (TrackingLaw<N, P, S, L>, DesignReport) {
         (self.law, self.report)
     }
+}
+
+/// K_s: the regulator of a fraction of the bandwidth.
+pub(crate) fn stabilizing_gain<const P: usize>(
+    model: &Augmented,
+    settings: &ControllerSettings<P>,
+    bandwidth_rad_s: &SVector<f64, P>,
+) -> Result<DMatrix<f64>, DesignError> {
+    let slow = loop_weights(model, settings, &(bandwidth_rad_s * STABILIZING_SHARE))?;
+    Ok(Dlqr::new(model.a(), model.b(), slow.q(), slow.r(), settings.lambda)?.gain().clone())
+}
+
+/// What a slack of 1 costs, for a plant of so many states, from an error of the output the cost of which stands for a violation.
+pub(crate) fn slack_cost(regulator: &Dlqr, states: usize, sight: f64) -> f64 {
+    VIOLATION * regulator.cost()[(states, states)] * sight * sight
 }

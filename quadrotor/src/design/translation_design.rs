@@ -87,9 +87,7 @@ pub(crate) fn position_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match attitude {
         Some(attitude) => {
-            let axis = attitude.under_position(sample_time_s)?;
-            let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
-            let model = StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))?;
+            let model = over_attitude(&attitude, sample_time_s)?;
             let bandwidth = [position_bandwidth_rad_s(configuration, &attitude); 2].into();
             let (law, report) = StabilizedLaw::new(
                 controllers.kind,
@@ -124,12 +122,19 @@ pub(crate) fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
 }
 
 /// Error of the output, m, the cost of which stands for that of a violated limit.
-const SIGHT_M: f64 = 20.0;
+pub(crate) const SIGHT_M: f64 = 20.0;
 
-fn position_bandwidth_rad_s(configuration: &Configuration, attitude: &AttitudeLoop) -> f64 {
+/// Both directions over the closed attitude loop.
+pub(crate) fn over_attitude(attitude: &AttitudeLoop, sample_time_s: f64) -> Result<StateSpace, DesignError> {
+    let axis = attitude.under_position(sample_time_s)?;
+    let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
+    StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))
+}
+
+pub(crate) fn position_bandwidth_rad_s(configuration: &Configuration, attitude: &AttitudeLoop) -> f64 {
     DELAY_SHARE / (attitude.delay_s() + configuration.controllers.position.sample_time_s() / 2.0)
 }
 
-fn altitude_bandwidth_rad_s(_configuration: &Configuration) -> f64 {
+pub(crate) fn altitude_bandwidth_rad_s(_configuration: &Configuration) -> f64 {
     2.7
 }
