@@ -201,6 +201,8 @@ class Attitude:
         slower = replace(
             self.settings.of(slice(2, 3)),
             scale=self.settings.scale ** (1 / longer),
+            alpha=self.settings.alpha ** (1 / longer),
+            lam=self.settings.lam ** (1 / longer),
             horizon=int(np.ceil(self.settings.horizon * longer)),
         )
         design = stabilized if model == INNER_LOOPS else printed
@@ -355,7 +357,7 @@ def test_the_loops_inside_are_those_of_the_airframe(slave, model_description, co
         {"prediction_horizon": 1000},
         {"alpha": 1.05},
         {"alpha": 1.0, "prediction_horizon": 60},
-        {"lambda": 0.97},
+        {"lambda": 0.99},
     ],
     ids=str,
 )

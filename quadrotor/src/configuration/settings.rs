@@ -160,8 +160,8 @@ pub struct Controllers {
     /// Attitude controller on (23) with the rotors' lag, outputs φ, θ, ψ. Its inputs are angular accelerations, J⁻¹ τ, so that
     /// its weights do not depend on the vehicle: they are multiples of those that close its loop at the bandwidth that the
     /// airframe allows, 1 for outputs, 1/(ΔT ω²)² for increments of rates and 1/(ΔT ω³)² for increments of inputs. Roll and
-    /// pitch have one bandwidth ω, yaw has another one; a and N_p are those of roll and pitch, and yaw has them in its own
-    /// time.
+    /// pitch have one bandwidth ω, yaw has another one; a, N_p, α and λ are those of roll and pitch, and yaw has them in
+    /// its own time.
     pub attitude: ControllerSettings<3>,
 }
 
