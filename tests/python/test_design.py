@@ -357,7 +357,7 @@ def test_the_loops_inside_are_those_of_the_airframe(slave, model_description, co
         {"prediction_horizon": 1000},
         {"alpha": 1.05},
         {"alpha": 1.0, "prediction_horizon": 60},
-        {"lambda": 0.99},
+        {"lambda": 0.998},
     ],
     ids=str,
 )
