@@ -77,6 +77,16 @@ pub enum DesignError {
         /// Given scaling factor.
         value: f64,
     },
+    /// With a degree of stability λ the costs of later samples grow, and those of the Laguerre functions must decay faster: a < λ.
+    #[error(
+        "Laguerre scaling factor a = {scale} is not below the degree of stability lambda = {lambda}; lower a or raise lambda"
+    )]
+    LaguerreDecay {
+        /// Given scaling factor.
+        scale: f64,
+        /// Given degree of stability.
+        lambda: f64,
+    },
     /// The control horizon must be positive for a ≈ e^(−N/N_c) to lie in [0, 1).
     #[error("control horizon N_c = {value} is outside (0, ∞)")]
     ControlHorizon {

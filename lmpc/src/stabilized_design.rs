@@ -62,7 +62,7 @@ impl StabilizedDesign {
     ///
     /// # Errors
     /// [`DesignError::Unstable`] when A − B K_s has an eigenvalue of magnitude λ or more, or when the closed loop is not stable;
-    /// [`DesignError::LaguerreScale`] when a ≥ λ; [`DesignError::BasisCount`], [`DesignError::IllConditioned`], and those of
+    /// [`DesignError::LaguerreDecay`] when a ≥ λ; [`DesignError::BasisCount`], [`DesignError::IllConditioned`], and those of
     /// [`Dlqr::new`].
     pub fn new(
         model: &Augmented,
@@ -78,7 +78,7 @@ impl StabilizedDesign {
         }
         let dlqr = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), lambda)?;
         if let Some(basis) = bases.iter().find(|basis| basis.scale() >= lambda) {
-            return Err(DesignError::LaguerreScale { value: basis.scale() });
+            return Err(DesignError::LaguerreDecay { scale: basis.scale(), lambda });
         }
         let stabilized = (model.a() - model.b() * stabilizing_gain) / lambda;
         let radius = spectral_radius("A − B K_s", &stabilized)?;

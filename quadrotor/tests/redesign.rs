@@ -1,6 +1,9 @@
 //! What a change of tunable parameters redesigns.
 
-use quadrotor::{CascadeDesign, Configuration, ControllerKind, Inputs, Redesigned, RotorLayout, Simulation};
+use quadrotor::{
+    CascadeDesign, Configuration, ControllerKind, Inputs, PredictionModel, Redesigned, RotorLayout,
+    Simulation,
+};
 
 const NONE: Redesigned = Redesigned { altitude: false, position: false, attitude: false, estimator: false };
 
@@ -40,6 +43,19 @@ fn weights_redesign_the_controller_that_has_them() {
         // The position controller predicts the closed attitude loop.
         assert_eq!(attitude, Redesigned { attitude: true, position: true, ..NONE });
     }
+}
+
+#[test]
+fn another_kind_and_other_models_redesign_all_controllers() {
+    let all = Redesigned { altitude: true, position: true, attitude: true, ..NONE };
+    assert_eq!(
+        redesigned(ControllerKind::Lmpc, |changed| changed.controllers.kind = ControllerKind::Dlqr),
+        all
+    );
+    assert_eq!(
+        redesigned(ControllerKind::Lmpc, |changed| changed.controllers.model = PredictionModel::Paper),
+        all
+    );
 }
 
 #[test]

@@ -86,9 +86,9 @@ def smooth(goal=GOAL, yaw: float = 0.5, duration: float = 10.0, name: str = "smo
 
     def checks(errors: Errors) -> list[Check]:
         return [
-            *(Check(f"RMS error {axis}", 1e3 * errors.rms[axis], 5.0, "mm") for axis in errors.position_axes),
-            *(Check(f"final error {axis}", 1e3 * abs(errors.final[axis]), 1.0, "mm") for axis in errors.position_axes),
-            Check("largest heading error", np.rad2deg(errors.largest["heading"]), 0.5, "deg"),
+            *(Check(f"RMS error {axis}", 1e3 * errors.rms[axis], 2.0, "mm") for axis in errors.position_axes),
+            *(Check(f"final error {axis}", 1e3 * abs(errors.final[axis]), 0.1, "mm") for axis in errors.position_axes),
+            Check("largest heading error", np.rad2deg(errors.largest["heading"]), 0.1, "deg"),
         ]
 
     return Flight(
@@ -109,7 +109,7 @@ def default() -> Flight:
         name="default",
         title="nothing set: the shaper flies to 5 m north, 5 m east, 10 m up",
         duration=12.0,
-        checks=lambda errors: [*overshoot_below(errors, 1.0), *arrived(errors), tilt_within_limit(errors)],
+        checks=lambda errors: [*overshoot_below(errors, 0.5), *arrived(errors), tilt_within_limit(errors)],
     )
 
 
@@ -119,7 +119,7 @@ def step() -> Flight:
         name="step",
         title="the same goal as a raw step, shaping off",
         duration=20.0,
-        checks=lambda errors: [*overshoot_below(errors, 20.0), *arrived(errors), tilt_within_limit(errors)],
+        checks=lambda errors: [*overshoot_below(errors, 4.0), *arrived(errors), tilt_within_limit(errors)],
         start_values={"reference.shaping": False},
     )
 

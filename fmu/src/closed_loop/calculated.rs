@@ -14,10 +14,11 @@ macro_rules! figure {
     };
 }
 
-// Under a preset the weights follow from the whole airframe.
-const ALTITUDE: &[&str] = &["controller.altitude.", "airframe."];
-const POSITION: &[&str] = &["controller.position.", "airframe."];
-const ATTITUDE: &[&str] = &["controller.attitude.", "controller.mass_factor", "airframe."];
+// The models have the loop inside, and bandwidths follow from the whole airframe.
+const ALTITUDE: &[&str] = &["controller.altitude.", "controller.model", "airframe."];
+const POSITION: &[&str] =
+    &["controller.position.", "controller.attitude.", "controller.kind", "controller.model", "airframe."];
+const ATTITUDE: &[&str] = &["controller.attitude.", "controller.model", "airframe."];
 
 #[rustfmt::skip]
 pub(super) const CALCULATED: [Variable<ClosedLoop>; 9] = [

@@ -155,13 +155,11 @@ pub struct Controllers {
     pub learning: bool,
     /// Altitude controller on (9), input G.
     pub altitude: ControllerSettings<1>,
-    /// Position controller on (15), inputs θ, φ for outputs x, y.
+    /// Position controller on (15), inputs θ, φ for outputs x, y. Below it is the closed attitude loop.
     pub position: ControllerSettings<2>,
     /// Attitude controller on (23) with the rotors' lag, outputs φ, θ, ψ. Its inputs are angular accelerations, J⁻¹ τ, so that
-    /// its weights do not depend on the vehicle: they are multiples of those that close its loop at the bandwidth that the
-    /// airframe allows, 1 for outputs, 1/(ΔT ω²)² for increments of rates and 1/(ΔT ω³)² for increments of inputs. Roll and
-    /// pitch have one bandwidth ω, yaw has another one; a and N_p are those of roll and pitch, and yaw has them in its own
-    /// time.
+    /// its weights do not depend on the vehicle. Roll and pitch have one bandwidth ω, yaw has another one; a, N_p, α and λ are those of roll and pitch, and yaw has them in
+    /// its own time.
     pub attitude: ControllerSettings<3>,
 }
 
@@ -183,13 +181,14 @@ pub struct ControllerSettings<const P: usize> {
     pub alpha: f64,
     /// λ, degree of stability.
     pub lambda: f64,
-    /// Diagonal of Q on y − r, per output.
+    /// Diagonal of Q on y − r, per output. This and the other weights are relative to the bandwidth ω of the loop: the stage cost of
+    /// an error e and an input u is w_output e² + w_damping (ė/ω)² + w_rate (ë/ω²)² + w_increment (u̇/ω³)².
     pub output_weight: SVector<f64, P>,
-    /// Weight of each output's rate over the bandwidth.
+    /// Weight of each output's rate over the bandwidth (damping).
     pub damping_weight: SVector<f64, P>,
-    /// Diagonal of Q on the increment of each output's rate (damping); the paper has 0.
+    /// Weight of each output's acceleration over the squared bandwidth; the paper has 0.
     pub rate_weight: SVector<f64, P>,
-    /// Diagonal of R on Δu, per input.
+    /// Weight of each input's rate of change over the cubed bandwidth.
     pub increment_weight: SVector<f64, P>,
 }
 
@@ -202,8 +201,8 @@ pub struct ControllerSettings<const P: usize> {
 /// | a | 0.7 altitude, 0.86 position | with N_p, least closed-loop cost on steps that saturate: within 1 % of the optimum at N = 5, 0.3 % at N = 7 |
 /// | N_p | 60 altitude, 150 position | the same |
 /// | attitude a, N_p | 0.93, 120 | turning upside down under the torque limits overshoots by 3 %; 0.9 to 0.95 by 6 to 2 % |
-/// | altitude R | 1 | closes at ω = (1/(ΔT √R))^(1/3) = 2.7 rad/s: a tenth of what rotor lag and sampling allow |
-/// | position R | 1200 | closes at (g/(ΔT √R))^(1/3) = 1.8 rad/s: a quarter of the attitude loop's bandwidth |
+/// | weights | 1, 0.5 of the acceleration | relative to the bandwidth: deviations of one size count alike |
+/// | position bandwidth | from the attitude loop | 0.62/(its delay + ΔT/2) |
 /// | attitude bandwidth | from the airframe | at most 0.8/(rotor lag + ΔT/2), and √(α/0.06) rad/s of the angular acceleration α in hover: 11.9 rad/s for the paper's roll and pitch, 3.4 for its yaw |
 impl Default for Controllers {
     fn default() -> Self {

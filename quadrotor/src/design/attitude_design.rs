@@ -126,7 +126,7 @@ impl AttitudeDesign {
     }
 }
 
-/// Settings of some axes, with times that are longer.
+/// Settings of some axes, with times that are longer: a, α and λ say what is left after a sample.
 pub(crate) fn of_axes<const P: usize>(
     settings: &ControllerSettings<3>,
     axes: [usize; P],
@@ -137,6 +137,8 @@ pub(crate) fn of_axes<const P: usize>(
     let [output, rate, increment] = weights;
     ControllerSettings {
         scale: libm::pow(settings.scale, 1.0 / longer),
+        alpha: libm::pow(settings.alpha, 1.0 / longer),
+        lambda: libm::pow(settings.lambda, 1.0 / longer),
         prediction_horizon: libm::ceil(f64::from(settings.prediction_horizon) * longer) as u32,
         damping_weight: of(&settings.damping_weight).into(),
         ..settings.with_weights(output, rate, increment)

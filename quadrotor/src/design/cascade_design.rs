@@ -148,10 +148,10 @@ impl Redesigned {
     /// What each design depends on, all of it in one place.
     fn between(one: &Configuration, other: &Configuration) -> Self {
         let (before, after) = (&one.controllers, &other.controllers);
-        let kind = before.kind != after.kind;
+        let every = before.kind != after.kind || before.model != after.model;
         Self {
-            altitude: kind || before.altitude != after.altitude || one.airframe != other.airframe,
-            position: kind || before.position != after.position || !AttitudeDesign::is_same(one, other),
+            altitude: every || before.altitude != after.altitude || one.airframe != other.airframe,
+            position: every || before.position != after.position || !AttitudeDesign::is_same(one, other),
             attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
                 || one.sensors.position_noise_m != other.sensors.position_noise_m
