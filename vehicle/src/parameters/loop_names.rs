@@ -40,10 +40,8 @@ pub static LOOP_NAMES: &[LoopName] = &[
     renamed("airframe.rotor.speed_max", "ROTOR_SPEED_MAX", "AF_ROT_MAX"),
     renamed("airframe.rotor.time_constant", "ROTOR_TIME_CONST", "AF_ROT_TAU"),
     renamed("controller.kind", "CTRL_KIND", "C_KIND"),
-    kept("controller.model", "CTRL_MODEL"),
     renamed("controller.governor", "CTRL_GOVERNOR", "C_GOVERNOR"),
     renamed("controller.mass_factor", "CTRL_MASS_FACTOR", "C_MASSF"),
-    kept("controller.learning", "CTRL_LEARNING"),
     renamed("controller.altitude.sample_time", "ALT_SAMPLE_TIME", "C_ALT_DT"),
     renamed("controller.altitude.terms", "ALT_TERMS", "C_ALT_N"),
     renamed("controller.altitude.scale", "ALT_SCALE", "C_ALT_A"),
@@ -105,6 +103,8 @@ pub static LOOP_NAMES: &[LoopName] = &[
     renamed("sensor.body_rate_noise", "SENS_RATE_NOISE", "SNSR_BDY_RT_NS"),
     renamed("sensor.seed", "SENS_SEED", "SENSOR_SEED"),
     // Newer than version 0.1.
+    kept("controller.model", "CTRL_MODEL"),
+    kept("controller.learning", "CTRL_LEARNING"),
     kept("airframe.inertia.xy", "FRAME_INERTIA_XY"),
     kept("airframe.inertia.xz", "FRAME_INERTIA_XZ"),
     kept("airframe.inertia.yz", "FRAME_INERTIA_YZ"),
@@ -191,7 +191,7 @@ mod tests {
 
     const FORMER: &str = "\
         AF_MASS AF_ARM AF_J_X AF_J_Y AF_J_Z AF_DRAG_X AF_DRAG_Y AF_DRAG_Z AF_ROT_K1 AF_ROT_K2 \
-        AF_ROT_MIN AF_ROT_MAX AF_ROT_TAU C_KIND CTRL_MODEL C_GOVERNOR C_MASSF C_ALT_DT C_ALT_N C_ALT_A \
+        AF_ROT_MIN AF_ROT_MAX AF_ROT_TAU C_KIND C_GOVERNOR C_MASSF C_ALT_DT C_ALT_N C_ALT_A \
         C_ALT_NP C_ALT_CNTRL_HRZN C_ALT_ALPHA C_ALT_LAM C_ALT_Q C_ALT_QD C_ALT_R C_POS_DT C_POS_N \
         C_POS_A C_POS_NP C_PS_CNTRL_HRZN C_POS_ALPHA C_POS_LAM C_POS_Q_X C_POS_Q_Y C_POS_QD_X \
         C_POS_QD_Y C_POS_R_THE C_POS_R_PHI C_ATT_DT C_ATT_N C_ATT_A C_ATT_NP C_ATT_CNTRL_HRZN \
