@@ -30,9 +30,9 @@ fn others(present: Value, description: &Description) -> Vec<Value> {
     let within = |value: f64| value.clamp(description.range.minimum, description.range.maximum);
     let values: Vec<Value> = match present {
         Value::Real(0.0) => [0.01, 0.001].map(|value| Value::Real(within(value) as f32)).into(),
-        Value::Real(present) => {
-            [0.97, 1.1, 2.0, 0.5].map(|factor| Value::Real(within(f64::from(present) * factor) as f32)).into()
-        }
+        Value::Real(present) => [0.97, 0.99, 1.1, 2.0, 0.5]
+            .map(|factor| Value::Real(within(f64::from(present) * factor) as f32))
+            .into(),
         Value::Integer(present) => {
             [1, -1, 2, -2, 3, -3].map(|step| Value::Integer(within(f64::from(present + step)) as i32)).into()
         }

@@ -3,7 +3,7 @@
 use crate::Configuration;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, thrust_range_n};
 
-/// Largest tilt that the position controller commands, rad: 0.6 of the tilt limit. The rest is room for the attitude
+/// Largest tilt that the position controller commands, rad: 0.94 of the tilt limit. The rest is room for the attitude
 /// to overshoot its command.
 pub fn commanded_tilt_rad(configuration: &Configuration) -> f64 {
     COMMANDED_TILT_SHARE * configuration.limits.tilt_rad
@@ -17,8 +17,8 @@ pub fn commanded_thrust_n(configuration: &Configuration) -> f64 {
 /// Largest steady horizontal force, N, that a hovering vehicle can hold its place against.
 ///
 /// A tilt θ whose thrust carries the weight m g pushes sideways with m g tan θ. The tilt goes up to
-/// [`commanded_tilt_rad`], and the thrust up to its limit F: m g tan θ ≤ √(F² − (m g)²). The predictive controllers keep
-/// the tilt within a polygon inscribed in its limit, which costs up to 2 %, depending on the direction.
+/// [`commanded_tilt_rad`], and the thrust up to its limit F: m g tan θ ≤ √(F² − (m g)²). All controllers reach it, in every
+/// direction.
 pub fn side_force_limit_n(configuration: &Configuration) -> f64 {
     let weight_n = configuration.airframe.weight_n();
     let strongest_n = commanded_thrust_n(configuration);

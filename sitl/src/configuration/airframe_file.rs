@@ -254,6 +254,7 @@ mod tests {
             rotor_speed_max_rad_s: 800.0,
             rotor_time_constant_s: 0.03,
             drag_n_s_m: [0.1, 0.0, 0.0],
+            ..Airframe::default()
         };
         assert!((read.airframe.rotor_speed_min_rad_s / expected.rotor_speed_min_rad_s - 1.0).abs() < 1e-12);
         let read_airframe =

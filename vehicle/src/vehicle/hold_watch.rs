@@ -13,8 +13,7 @@ const OFF_M: f64 = 1.0;
 const BACK_M: f64 = 0.5;
 /// Faster than this, m/s, it approaches its reference: it is about to hold it.
 const APPROACHING_M_S: f64 = 0.5;
-/// From this share of the largest command on, tilt and thrust are at their limits: the tilt's polygon of sixteen sides cuts
-/// 2 % off.
+/// From this share of the largest command on, tilt and thrust count as at their limits: there is nothing left to come back with.
 const AT_LIMIT: f64 = 0.97;
 /// Either must last this long, µs, before it is announced.
 const LASTING_US: u64 = 2_000_000;
@@ -158,10 +157,10 @@ mod tests {
     #[test]
     fn the_wind_is_named_where_it_pushes() {
         let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
-        scene.wind_m_s = Vector3::new(0.0, 20.2, 0.0);
+        scene.wind_m_s = Vector3::new(0.0, 32.2, 0.0);
         scene.configuration.airframe.drag_n_s_m = [0.15; 3];
         off(&mut scene, 2.0, 0.0, 1.0);
-        assert_eq!(look(&mut HoldWatch::default(), &mut scene), ["Cannot hold position in 20 m/s wind"]);
+        assert_eq!(look(&mut HoldWatch::default(), &mut scene), ["Cannot hold position in 32 m/s wind"]);
     }
 
     #[test]
