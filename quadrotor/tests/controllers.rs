@@ -185,8 +185,8 @@ fn large_programs_fly_too() {
 
 /// A vehicle that is on a moving reference when the flight begins stays there.
 #[test]
-fn predictive_controllers_take_over_in_motion() {
-    for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc] {
+fn every_kind_takes_over_in_motion() {
+    for kind in KINDS {
         let line = |time_us: u64| {
             let mut inputs = goal([4e-6 * time_us as f64, 0.0, -5.0], 0.0);
             inputs.reference.velocity_m_s.x = 4.0;

@@ -114,7 +114,7 @@ fn values_that_contradict_one_another_are_refused() {
         (
             "limits.acceleration.horizontal",
             9.0,
-            "limits.acceleration.horizontal = 9 m/s^2 must be below 3.691 m/s^2: \
+            "limits.acceleration.horizontal = 9 m/s^2 must be below 6.203 m/s^2: \
              the commanded tilt gives no more; raise limits.tilt",
         ),
         (

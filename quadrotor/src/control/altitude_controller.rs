@@ -70,7 +70,8 @@ impl AltitudeController {
             deviation: Vector3::new(
                 error.x,
                 seen.velocity_m_s - rate_m_s,
-                seen.acceleration_m_s2 - reference.thrust.x,
+                // What disturbs the vehicle accelerates it, too.
+                seen.acceleration_m_s2 + seen.disturbance_m_s2 - reference.thrust.x,
             ),
             error,
             // The rotors answer late: z̈ = G − T z⃛.

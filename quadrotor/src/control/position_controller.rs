@@ -85,7 +85,8 @@ impl PositionController {
             deviation: turn.state(&by_axis([
                 error,
                 seen.velocity_m_s - reference.velocity,
-                seen.acceleration_m_s2 - reference.thrust,
+                // What disturbs the vehicle accelerates it, too.
+                seen.acceleration_m_s2 + seen.disturbance_m_s2 - reference.thrust,
                 seen.jerk_m_s3 - reference.jerk,
                 seen.snap_m_s4 - reference.snap,
                 seen.asked_snap_m_s4,

@@ -68,7 +68,8 @@ impl<const K: usize> MovingAxis<K> {
         let seen = [seen[0], seen[1], achieved[0], achieved[1], achieved[2], achieved[3]];
         state.feedback = self.law.feedback(&ChannelSample {
             increment: core::array::from_fn(|place| seen[place] - state.measured[place]),
-            deviation: core::array::from_fn(|place| seen[place]),
+            // What disturbs the vehicle accelerates it, too.
+            deviation: core::array::from_fn(|place| seen[place] + if place == 2 { disturbance } else { 0.0 }),
             held: state.feedback,
             disturbance,
         });
