@@ -103,7 +103,7 @@ pub use riccati::{riccati_residual, solve_riccati};
 pub use sample::{Reference, Sample};
 pub use signal_limit::SignalLimit;
 pub use stabilized_design::StabilizedDesign;
-pub use stabilized_mpc::StabilizedMpc;
+pub use stabilized_mpc::{MovedSignals, StabilizedMpc};
 pub use state_feedback::StateFeedback;
 pub use state_space::{Discretization, StateSpace};
 pub use state_space_mpc::StateSpaceMpc;

@@ -58,6 +58,20 @@ pub struct StabilizedMpc<const N: usize, const P: usize, const Q: usize, const E
     slack_unit: f64,
 }
 
+/// How far the motion of a reference moves the limited signals of a controller: see [`StabilizedMpc::moved`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovedSignals {
+    values: [f64; SIGNALS],
+    count: usize,
+}
+
+impl MovedSignals {
+    /// In the order of [`Sample::moved`].
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
 /// The bounds of one limit.
 #[derive(Clone, Debug, PartialEq)]
 struct Directions {
@@ -71,6 +85,8 @@ struct Directions {
 #[derive(Clone, Debug, PartialEq)]
 struct Block<const N: usize, const P: usize, const Q: usize, const E: usize> {
     limit: usize,
+    /// m.
+    sample: usize,
     first_row: usize,
     /// Where its components are among all signals.
     first_signal: usize,
@@ -179,7 +195,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             for (index, limit) in limits.iter().enumerate() {
                 if limit.samples.contains(&m) {
                     let signal = &limit.state * &motion + &limit.input * &moves;
-                    signals += self.add_block(index, limit, &signal, inverse, signals);
+                    signals += self.add_block((index, m), limit, &signal, inverse, signals);
                 }
             }
             power = &plan.transition * power;
@@ -198,7 +214,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     /// Adds the rows of one limit at one sample; returns how many signals that are. A signal that no decision moves is left out.
     fn add_block(
         &mut self,
-        index: usize,
+        (index, sample): (usize, usize),
         limit: &SignalLimit,
         signal: &DMatrix<f64>,
         inverse: &DMatrix<f64>,
@@ -215,6 +231,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         };
         let block = Block {
             limit: index,
+            sample,
             first_row: self.scales.len(),
             first_signal,
             components,
@@ -240,6 +257,25 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     /// The law without limits.
     pub fn unconstrained(&self) -> &StateFeedback<N, P, Q> {
         &self.unconstrained
+    }
+
+    /// By how much a reference moves the limited signals, for [`Sample::moved`]: `ahead` tells x_r(k+m) − x_r(k) and
+    /// u_r(k+m) − u_r(k). It is called once for each limited sample m, in their order.
+    pub fn moved(&self, ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>)) -> MovedSignals {
+        let mut moved = MovedSignals { values: [0.0; SIGNALS], count: 0 };
+        let mut latest = (usize::MAX, (SVector::zeros(), SVector::zeros()));
+        for block in &self.blocks {
+            if block.sample != latest.0 {
+                latest = (block.sample, ahead(block.sample));
+            }
+            let (state, input) = &latest.1;
+            for component in 0..block.components {
+                moved.values[moved.count] = dot(block.state[component].as_slice(), state.as_slice())
+                    + dot(block.input[component].as_slice(), input.as_slice());
+                moved.count += 1;
+            }
+        }
+        moved
     }
 
     /// How many bounds hold, on all samples together.

@@ -113,37 +113,41 @@ impl Cascade {
         self.reference_m_s2 + self.feedback_m_s2
     }
 
-    /// A sample of the position controller.
+    /// A sample of the position controller, for a reference that is expected to go on as `ahead` tells for a time, µs.
     pub(crate) fn sample_position(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        reference: &PositionReference,
+        (reference, ahead): (&PositionReference, impl Fn(u64) -> PositionReference),
         time_us: u64,
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
-        let motion = ReferenceMotion {
+        let motion = |reference: &PositionReference, interval_s: f64| ReferenceMotion {
             position: reference.position_m.xy(),
             velocity: reference.velocity_m_s.xy(),
             acceleration: reference.acceleration_m_s2.xy(),
             thrust: against_drag(configuration, reference).xy(),
             jerk: reference.jerk_m_s3.xy(),
             snap: reference.snap_m_s4.xy(),
-            interval_s: interval_s(&mut self.sampled.position_us, time_us, period_us),
+            interval_s,
         };
+        let now = motion(reference, interval_s(&mut self.sampled.position_us, time_us, period_us));
+        let later = |sample: usize| motion(&ahead(time_us + sample as u64 * period_us), 0.0);
         let tilt_rad = configuration.limits.tilt_rad;
+        // The thrust of a climb that begins does not last, and one that is under way will be braked.
+        let (_, down) = vertical_range(configuration, upright(&seen.body));
+        let lightest = vertical.max(braking_m_s2(seen, reference).min(down));
         let (applied, activity) = self.position.step(
             configuration,
             design,
             &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
-            &motion,
-            // The thrust of a climb that begins does not last.
-            most_horizontal(vertical.max(0.0), tilt_rad),
+            (&now, later),
+            most_horizontal(lightest, tilt_rad),
             |wanted| within_tilt(wanted, vertical, tilt_rad),
         );
-        let feedback = applied - motion.thrust;
+        let feedback = applied - now.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
         self.activity.position = activity;
     }
@@ -291,6 +295,16 @@ fn against_drag(configuration: &Configuration, reference: &PositionReference) ->
 /// Cosine of the tilt: the down component of the body's down axis.
 fn upright(body: &RigidBody) -> f64 {
     (body.rotation() * Vector3::z()).z
+}
+
+/// Acceleration down, m/s², with which a climb will be braked at its goal: v²/2h, as far as it is under way. None of a descent, which is
+/// braked by more thrust.
+fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
+    /// A climb that is so near its end, m, is braked already.
+    const NEAR_M: f64 = 0.2;
+    let climb_m_s = (reference.velocity_m_s.z - seen.body.velocity_m_s.z).max(0.0);
+    let way_m = seen.body.position_m.z - reference.position_m.z;
+    climb_m_s * climb_m_s / (2.0 * way_m.max(NEAR_M))
 }
 
 /// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical

@@ -349,13 +349,9 @@ impl ControlState {
         }
         let configuration = &self.limits.in_force(learned);
         if due.position {
-            self.cascade.sample_position(
-                configuration,
-                cascade,
-                seen,
-                &self.guidance.reference(time_us),
-                time_us,
-            );
+            let guidance = &self.guidance;
+            let references = (&guidance.reference(time_us), |then_us| guidance.preview(then_us));
+            self.cascade.sample_position(configuration, cascade, seen, references, time_us);
         }
         if due.altitude {
             self.cascade.sample_altitude(

@@ -1,6 +1,6 @@
 //! Position: from x, y and their derivatives to a horizontal acceleration, which stands for a tilt.
 
-use lmpc::{ControllerState, Sample, StateFeedback};
+use lmpc::{ControllerState, MovedSignals, Sample, StateFeedback};
 use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,9 @@ use crate::{CascadeDesign, Configuration};
 /// Share of the acceleration limit with which the regulator's error is counted on to be braked. Its own response to the governed
 /// error needs the rest.
 const BRAKING_SHARE: f64 = 0.25;
+
+/// Samples ahead at which it is looked how fast the reference will be.
+const ASKED: [usize; 4] = [5, 10, 15, 20];
 
 /// State of the position controller.
 ///
@@ -42,7 +45,7 @@ impl PositionController {
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &HorizontalMotion,
-        reference: &ReferenceMotion<2>,
+        (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
         most_m_s2: f64,
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
@@ -79,6 +82,18 @@ impl PositionController {
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
+        // Where the reference rests there is nothing to look ahead at.
+        let (moved, asked_m_s) = if reference.is_at_rest() {
+            (None, 0.0)
+        } else {
+            let moved = design.position.moved(|sample| {
+                let then = ahead(sample);
+                let state = turn.state(&(state_of(&then) - state_of(reference)));
+                (state, turn.vector(&(then.thrust - reference.thrust)))
+            });
+            let speeds = ASKED.map(|sample| ahead(sample).velocity.norm());
+            (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
+        };
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&(measured - self.controller.measured() - explained)),
@@ -94,7 +109,8 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, most_m_s2, reference),
+            upper: &position_bounds(limits, most_m_s2, asked_m_s),
+            moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
         let mut turned = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
@@ -127,6 +143,18 @@ impl PositionController {
         self.controller = self.controller.map(measured, Vector2::clone_owned);
         self.controller.apply(&applied);
     }
+}
+
+/// The state that a reference asks for. Feedback is none of it.
+fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
+    by_axis([
+        reference.position,
+        reference.velocity,
+        reference.thrust,
+        reference.jerk,
+        reference.snap,
+        Vector2::zeros(),
+    ])
 }
 
 /// x and its derivatives, then y and its derivatives.

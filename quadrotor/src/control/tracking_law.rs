@@ -3,11 +3,11 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Augmented, Controller, ControllerState, DesignError, Dlqr, Limit, LmpcDesign, Quantity, Sample,
-    SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
+    Augmented, Controller, ControllerState, DesignError, Dlqr, Limit, LmpcDesign, MovedSignals, Quantity,
+    Sample, SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
     StateSpaceMpcWeights, Step, Weights,
 };
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, SVector};
 
 use crate::design::capacities::FEW_TERMS;
 use crate::{ControllerKind, ControllerSettings};
@@ -82,6 +82,18 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     /// Whether it goes by the deviation from its reference alone, and by neither increments nor output errors.
     pub(crate) fn sees_deviation_alone(&self) -> bool {
         matches!(self, Self::StateSpace(_))
+    }
+
+    /// By how much the motion of the reference moves what a law foresees; `None` of a law that foresees no absolute signals.
+    pub(crate) fn moved(
+        &self,
+        ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>),
+    ) -> Option<MovedSignals> {
+        match self {
+            Self::FewTerms(law) => Some(law.moved(ahead)),
+            Self::ManyTerms(law) => Some(law.moved(ahead)),
+            Self::StateSpace(_) | Self::Linear(_) => None,
+        }
     }
 
     /// One sample.

@@ -3,7 +3,6 @@
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
-use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{GRAVITY_M_S2, Limits};
 
 /// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
@@ -23,6 +22,8 @@ static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
 
 /// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
 const CATCHING_UP: f64 = 0.1;
+/// What rounding makes of a reference at the speed limit.
+const ROUNDING: f64 = 1.0 + 1e-6;
 /// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
 /// speed, m/s. The tilt is the one to keep.
 const FIRM_M_S2: f64 = 0.5;
@@ -51,17 +52,17 @@ pub(crate) fn position_limits() -> [SignalLimit; 4] {
     ]
 }
 
-/// Values of [`position_limits`], the commanded acceleration being at most `acceleration_m_s2`.
+/// Values of [`position_limits`], the commanded acceleration being at most `acceleration_m_s2`, when the reference asks for speeds up to
+/// `asked_m_s`. One that is faster than the limit is another's plan: it may be caught up with.
 pub(crate) fn position_bounds(
     limits: &Limits,
     acceleration_m_s2: f64,
-    reference: &ReferenceMotion<2>,
+    asked_m_s: f64,
 ) -> [f64; POSITION_BOUNDS] {
     let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
     let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
-    let asked = reference.velocity.norm();
-    let speed = if asked > limits.speed_horizontal_m_s {
-        asked + CATCHING_UP * limits.speed_horizontal_m_s
+    let speed = if asked_m_s > ROUNDING * limits.speed_horizontal_m_s {
+        asked_m_s + CATCHING_UP * limits.speed_horizontal_m_s
     } else {
         limits.speed_horizontal_m_s
     };

@@ -25,7 +25,7 @@ pub struct ReferenceMotion<const AXES: usize> {
 /// Nothing has been tracked yet: at rest.
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
-        let zero = SVector::zeros();
+        let zero: SVector<f64, AXES> = SVector::zeros();
         Self {
             position: zero,
             velocity: zero,
@@ -39,6 +39,12 @@ impl<const AXES: usize> Default for ReferenceMotion<AXES> {
 }
 
 impl<const AXES: usize> ReferenceMotion<AXES> {
+    /// Whether it stays where it is.
+    pub fn is_at_rest(&self) -> bool {
+        let zero: SVector<f64, AXES> = SVector::zeros();
+        [self.velocity, self.acceleration, self.thrust, self.jerk, self.snap].iter().all(|part| *part == zero)
+    }
+
     /// Increments \[Δposition, Δvelocity, Δacceleration, Δjerk, Δsnap\] of each axis since the previous sample. Those of position and
     /// velocity as far as the derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
     ///
