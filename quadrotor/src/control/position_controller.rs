@@ -103,8 +103,8 @@ impl PositionController {
                 // What disturbs the vehicle accelerates it, too.
                 seen.acceleration_m_s2 + seen.disturbance_m_s2 - reference.thrust,
                 seen.jerk_m_s3 - reference.jerk,
-                seen.snap_m_s4 - reference.snap,
-                seen.asked_snap_m_s4,
+                seen.snap_m_s4 + seen.disturbance_m_s4 - reference.snap,
+                seen.asked_snap_m_s4 + seen.disturbance_m_s4,
             ])),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),

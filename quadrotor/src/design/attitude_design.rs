@@ -137,6 +137,7 @@ fn of_axes<const P: usize>(
     let [output, rate, increment] = weights;
     ControllerSettings {
         scale: libm::pow(settings.scale, 1.0 / longer),
+        lambda: libm::pow(settings.lambda, 1.0 / longer),
         prediction_horizon: libm::ceil(f64::from(settings.prediction_horizon) * longer) as u32,
         damping_weight: of(&settings.damping_weight).into(),
         ..settings.with_weights(output, rate, increment)
