@@ -102,7 +102,8 @@ fn small_deviations_grow_as_the_report_says() {
             "altitude lag",
             |c| {
                 c.controllers.model = PredictionModel::Paper;
-                c.controllers.altitude.increment_weight.fill(1e-6);
+                c.controllers.altitude.increment_weight.fill(1e-4);
+                c.airframe.rotor_time_constant_s = 0.06;
             },
             5,
             |outputs| outputs.velocity_m_s.z,
