@@ -238,7 +238,7 @@ fn a_stuck_rotor_is_found_when_it_matters() {
     for (height_m, rate_rad_s) in [(0.0, 1.0), (0.0, 3.0), (0.2, 2.0), (0.5, 2.0), (0.5, 3.0)] {
         let swing = |time_s: f64| {
             let (sine, cosine) = (rate_rad_s * time_s).sin_cos();
-            let amplitude = Vector3::new(2.0, 0.0, height_m);
+            let amplitude = Vector3::new((3.0 / (rate_rad_s * rate_rad_s)).min(2.0), 0.0, height_m);
             PositionReference {
                 position_m: Vector3::new(0.0, 0.0, -HEIGHT_M) + amplitude * sine,
                 velocity_m_s: amplitude * rate_rad_s * cosine,
@@ -247,8 +247,8 @@ fn a_stuck_rotor_is_found_when_it_matters() {
             }
         };
         let course = course(broken(0, RotorFault::Stuck), 40.0, swing);
-        // Measured: 31° and 29 m in the swing of 18 m/s², which nothing can fly: its course depends on where it breaks. In the
-        // others 25° and 5 m.
+        // A vehicle that leans as far as it may when the rotor sticks is beyond the law for a lost rotor, which has no spin yet: it is
+        // asked for accelerations that leave the lean half of its limit.
         assert!(course.known_after_s.is_some() && course.tilt_rad < 32_f64.to_radians(), "{course:?}");
         assert!((course.end.position_m.z + 0.1).abs() < 0.01 && course.sink_m_s < 1.7, "{course:?}");
         assert!(course.drift_m < 32.0 && course.end.velocity_m_s.xy().norm() < 1.0, "{course:?}");

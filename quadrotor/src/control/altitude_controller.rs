@@ -76,7 +76,8 @@ impl AltitudeController {
         let sample = Sample {
             measured,
             increment,
-            deviation,
+            // What disturbs the vehicle accelerates it, too.
+            deviation: deviation + Vector3::z() * seen.disturbance_m_s2,
             error,
             // The rotors answer late: z̈ = G − T z⃛.
             input_reference: reference.thrust + reference.jerk * lag_s,

@@ -196,7 +196,8 @@ impl AttitudeController {
         let deviation = Deviation {
             angle_rad: leaning_at_most(&error_rad, largest_rad),
             rate_rad_s: rate_error_rad_s,
-            acceleration_rad_s2: reached - reference_acceleration,
+            // What disturbs the vehicle turns it, too.
+            acceleration_rad_s2: reached + seen.disturbance_rad_s2 - reference_acceleration,
         };
         let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
         let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;

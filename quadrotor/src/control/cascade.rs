@@ -12,7 +12,9 @@ use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::thrust_lag::ThrustLag;
-use crate::design::controller_limits::{COMMANDED_TILT_SHARE, least_thrust_n, thrust_range_n};
+use crate::design::controller_limits::{
+    COMMANDED_TILT_SHARE, holding_horizontal_m_s2, least_thrust_n, thrust_range_n,
+};
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -139,13 +141,14 @@ impl Cascade {
         // The thrust of a climb that begins does not last, and one that is under way will be braked.
         let (_, down) = vertical_range(configuration, upright(&seen.body));
         let lightest = vertical.max(braking_m_s2(seen, reference).min(down));
+        let holding = holding_horizontal_m_s2(configuration, seen.vertical().disturbance_m_s2);
         let (applied, activity) = self.position.step(
             configuration,
             design,
             &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
             (&now, later),
-            most_horizontal(lightest, tilt_rad),
-            |wanted| within_tilt(wanted, vertical, tilt_rad),
+            most_horizontal(lightest, tilt_rad).min(holding),
+            |wanted| within(wanted, most_horizontal(vertical, tilt_rad).min(holding)),
         );
         let feedback = applied - now.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
@@ -308,14 +311,18 @@ fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
 }
 
 /// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical
-/// acceleration is `vertical_m_s2`: |a| ≤ tan(0.94 tilt) (g − G).
+/// acceleration is `vertical_m_s2`: |a| ≤ tan(0.91 tilt) (g − G).
 fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
     libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
 }
 
 /// A horizontal acceleration, NED, m/s², shortened to [`most_horizontal`].
 fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
-    let limit = most_horizontal(vertical_m_s2, tilt_rad);
+    within(wanted, most_horizontal(vertical_m_s2, tilt_rad))
+}
+
+/// A vector shortened to a limit.
+fn within(wanted: Vector2<f64>, limit: f64) -> Vector2<f64> {
     let norm = wanted.norm();
     if norm > limit { wanted * (limit / norm) } else { wanted }
 }

@@ -65,6 +65,7 @@ impl Observation {
             snap_m_s4: turned(&self.rotor_torque_n_m.component_div(&configuration.believed_inertia_kg_m2())),
             asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
+            disturbance_m_s4: turned(&self.disturbance_rad_s2),
         }
     }
 

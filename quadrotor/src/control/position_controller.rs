@@ -112,7 +112,18 @@ impl PositionController {
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),
-            deviation: turn.state(&deviation),
+            // What disturbs the vehicle accelerates it, too.
+            deviation: turn.state(
+                &(deviation
+                    + by_axis([
+                        Vector2::zeros(),
+                        Vector2::zeros(),
+                        seen.disturbance_m_s2,
+                        Vector2::zeros(),
+                        seen.disturbance_m_s4,
+                        seen.disturbance_m_s4,
+                    ])),
+            ),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),

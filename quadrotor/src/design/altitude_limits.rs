@@ -39,3 +39,20 @@ pub(crate) fn altitude_bounds(
     let up = speed(limits.speed_up_m_s, -reference_rate_m_s);
     [range.1, -range.0, down, up]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ALTITUDE_BOUNDS, altitude_bounds, altitude_limits};
+    use crate::Limits;
+
+    /// Down is positive: most G and least, then the speeds down and up; a faster reference may be caught up with.
+    #[test]
+    fn bounds_are_told_in_the_order_of_the_limits() {
+        let sides: usize = altitude_limits().iter().map(|limit| limit.directions.nrows()).sum();
+        assert_eq!(sides, ALTITUDE_BOUNDS);
+        let limits = Limits { speed_down_m_s: 3.0, speed_up_m_s: 4.0, ..Limits::default() };
+        assert_eq!(altitude_bounds(&limits, (-6.0, 2.0), 0.0), [2.0, 6.0, 3.0, 4.0]);
+        let [_, _, down, up] = altitude_bounds(&limits, (-6.0, 2.0), -5.0);
+        assert!(down == 3.0 && (up - 5.4).abs() < 1e-12, "{down} {up}");
+    }
+}

@@ -131,3 +131,61 @@ fn sum_from_unit_error(transition: &DMatrix<f64>) -> Result<f64, DesignError> {
     let sum = (DMatrix::identity(size, size) - transition).lu().solve(&start);
     Ok(sum.ok_or(DesignError::NotFinite { name: "(I − M)⁻¹" })?[0])
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use crate::{CascadeDesign, Configuration};
+
+    /// The lift to the position's samples is exact: as an integration of the motion in fine steps under a law that samples by itself.
+    #[test]
+    fn the_position_sees_what_the_sampled_loop_does() {
+        const FINE: usize = 2_000;
+        let design = CascadeDesign::new(&Configuration::default()).expect("a design");
+        let attitude = design.attitude_loop().expect("a loop");
+        let model = attitude.under_position(0.05).expect("a model");
+        for excited in 0..7 {
+            let mut state = DVector::zeros(6);
+            let command = if excited == 6 { 1.0 } else { 0.0 };
+            if excited < 6 {
+                state[excited] = 1.0;
+            }
+            let foreseen = model.a() * &state + model.b() * command;
+            let [mut x, mut v, mut a, mut j, mut s, mut asked] = core::array::from_fn(|place| state[place]);
+            let step_s = attitude.sample_time_s / FINE as f64;
+            for _ in 0..5 {
+                let [by_angle, by_rate, by_acceleration] = attitude.by_state;
+                asked =
+                    by_angle * (a - command) + by_rate * j + by_acceleration * s + attitude.by_input * asked;
+                for _ in 0..FINE {
+                    // The midpoint rule.
+                    let rate = |s: f64| (asked - s) / attitude.rotor_lag_s;
+                    let half = step_s / 2.0;
+                    let [v_m, a_m, j_m] = [v + half * a, a + half * j, j + half * s];
+                    let s_m = s + half * rate(s);
+                    x += step_s * v_m;
+                    v += step_s * a_m;
+                    a += step_s * j_m;
+                    j += step_s * s_m;
+                    s += step_s * rate(s_m);
+                }
+            }
+            let flown = DVector::from_column_slice(&[x, v, a, j, s, asked]);
+            let size = 1.0 + flown.amax();
+            assert!((&foreseen - &flown).amax() < 1e-6 * size, "{excited}: {foreseen} {flown}");
+        }
+    }
+
+    /// A slow command is followed as late as the rotors answer and the loop closes: by more than the lag and less than a few times it.
+    #[test]
+    fn it_lags_by_more_than_its_rotors() {
+        for lag_s in [0.02, 0.03, 0.1] {
+            let mut configuration = Configuration::default();
+            configuration.airframe.rotor_time_constant_s = lag_s;
+            let design = CascadeDesign::new(&configuration).expect("a design");
+            let delay_s = design.attitude_loop().expect("a loop").delay_s();
+            assert!((lag_s..0.15 + 4.0 * lag_s).contains(&delay_s), "{lag_s}: {delay_s}");
+        }
+    }
+}

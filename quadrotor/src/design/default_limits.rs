@@ -126,7 +126,8 @@ mod tests {
         let deceleration_m_s2 = limits.speed_horizontal_m_s * 0.5 / 0.7;
         assert!(limits.speed_horizontal_m_s < 8.0, "{limits:?}");
         assert!(
-            deceleration_m_s2 + limits.acceleration_horizontal_m_s2 <= GRAVITY_M_S2 * 0.36_f64.tan() + 1e-9
+            deceleration_m_s2 + limits.acceleration_horizontal_m_s2
+                <= GRAVITY_M_S2 * (0.91 * 0.6_f64).tan() + 1e-9
         );
     }
 

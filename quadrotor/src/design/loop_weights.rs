@@ -42,3 +42,32 @@ pub(crate) fn loop_weights<const P: usize>(
     }
     Weights::new(model, DMatrix::from_diagonal(&q), DMatrix::from_diagonal(&r))
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use lmpc::{Augmented, Discretization};
+    use nalgebra::{DMatrix, DVector, Vector1};
+
+    use super::loop_weights;
+    use crate::Configuration;
+    use crate::design::linear_models::double_integrators;
+
+    /// ω = 2 rad/s, ΔT = 0.05 s: a step of the output of ω ΔT = 0.1 counts like an error of 1, one of the rate like ω² ΔT = 0.2, and
+    /// one of the acceleration like ω³ ΔT = 0.4.
+    #[test]
+    fn deviations_of_one_size_cost_alike() {
+        let mut settings = Configuration::default().controllers.altitude;
+        settings.sample_time_us = 50_000;
+        settings.output_weight = Vector1::new(2.0);
+        settings.damping_weight = Vector1::new(3.0);
+        settings.rate_weight = Vector1::new(0.5);
+        settings.increment_weight = Vector1::new(0.25);
+        let plant = double_integrators(&[1.0], 0.05, Discretization::ZeroOrderHold).expect("a model");
+        let weights = loop_weights(&Augmented::new(&plant), &settings, &Vector1::new(2.0)).expect("weights");
+        let q = DMatrix::from_diagonal(&DVector::from_vec(std::vec![3.0 / 0.01, 0.5 / 0.04, 2.0]));
+        assert!((weights.q() - q).amax() < 1e-9, "{}", weights.q());
+        assert!((weights.r()[(0, 0)] - 0.25 / 0.16).abs() < 1e-12, "{}", weights.r());
+    }
+}

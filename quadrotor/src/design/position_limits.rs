@@ -92,3 +92,43 @@ pub(crate) fn in_sight(error: &Vector2<f64>, horizon_m: f64) -> Vector2<f64> {
     let size = unit * (error / unit).norm();
     if size > horizon_m { error / unit * (horizon_m / (size / unit)) } else { *error }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::{
+        COARSE_SIDES, POSITION_BOUNDS, SIDES, horizon_m, in_sight, position_bounds, position_limits,
+    };
+    use crate::{GRAVITY_M_S2, Limits};
+
+    #[test]
+    fn each_side_has_its_bound() {
+        let sides: usize = position_limits().iter().map(|limit| limit.directions.nrows()).sum();
+        assert_eq!(sides, POSITION_BOUNDS);
+        let limits = Limits::default();
+        let bounds = position_bounds(&limits, 5.0, 3.0);
+        assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
+        assert_eq!(bounds[SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+        assert_eq!(bounds[SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+        assert_eq!(bounds[POSITION_BOUNDS - 1], 8.0);
+    }
+
+    /// A reference that is faster than the limit may be caught up with.
+    #[test]
+    fn a_fast_reference_moves_the_speed_limit() {
+        let speed = |asked_m_s: f64| position_bounds(&Limits::default(), 5.0, asked_m_s)[POSITION_BOUNDS - 1];
+        assert_eq!(speed(8.0), 8.0);
+        assert!((speed(10.0) - 10.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn far_goals_are_seen_at_the_horizon() {
+        let horizon = horizon_m(8.0, 4.0);
+        assert!((horizon - (16.0 + 9.6)).abs() < 1e-12);
+        let near = Vector2::new(3.0, -4.0);
+        assert_eq!(in_sight(&near, horizon), near);
+        let far = in_sight(&Vector2::new(-3e300, 4e300), 5.0);
+        assert!((far - Vector2::new(-3.0, 4.0)).norm() < 1e-12, "{far}");
+    }
+}

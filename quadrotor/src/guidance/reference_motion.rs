@@ -18,10 +18,11 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub jerk: SVector<f64, AXES>,
     /// Snap.
     pub snap: SVector<f64, AXES>,
-    /// Time since the previous sample, s.
+    /// Time since the previous sample, s; 0 before the first one.
     pub interval_s: f64,
 }
 
+/// Nothing has been tracked yet: at rest.
 impl<const AXES: usize> Default for ReferenceMotion<AXES> {
     fn default() -> Self {
         let zero: SVector<f64, AXES> = SVector::zeros();
@@ -49,9 +50,15 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
     ///
     /// Hermite's rule, exact for constant jerk:
     /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
+    ///
+    /// At the first sample a controller takes the vehicle for one that was at rest there. The reference was so, too, and its whole
+    /// velocity is an increment: a vehicle that moves with it has nothing to explain.
     pub fn increments_since(&self, previous: &Self) -> [[f64; 5]; AXES] {
         let t = self.interval_s;
         core::array::from_fn(|axis| {
+            if previous.interval_s == 0.0 {
+                return [0.0, self.velocity[axis], self.thrust[axis], self.jerk[axis], self.snap[axis]];
+            }
             let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
             let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);
             [

@@ -75,8 +75,15 @@ impl<const K: usize> MovingAxis<K> {
     }
 
     /// A sample of the axis's controller, with errors of the measured position and velocity, and the acceleration that the thrust
-    /// makes and what of its derivatives the law goes by, m/s², m/s³, m/s⁴.
-    pub(crate) fn sample(&self, state: &mut Moving, event: &LoopEvent, noise: [f64; 2], achieved: [f64; 4]) {
+    /// makes and what of its derivatives the law goes by, m/s², m/s³, m/s⁴, beside the estimated snap that nobody asked for, m/s⁴.
+    pub(crate) fn sample(
+        &self,
+        state: &mut Moving,
+        event: &LoopEvent,
+        noise: [f64; 2],
+        achieved: [f64; 4],
+        unasked: f64,
+    ) {
         let [position, velocity, disturbance] = state.estimate;
         let seen = if self.output_feedback {
             [position - velocity * event.early_s, velocity]
@@ -101,9 +108,11 @@ impl<const K: usize> MovingAxis<K> {
                 change
             }
         };
+        let disturbing = [0.0, 0.0, disturbance, 0.0, unasked, unasked];
         state.feedback = self.law.feedback(&ChannelSample {
             increment: increment.into(),
-            deviation,
+            // What disturbs the vehicle accelerates it, too.
+            deviation: core::array::from_fn(|place| seen[place] + disturbing[place]),
             held: state.feedback,
             disturbance,
         });

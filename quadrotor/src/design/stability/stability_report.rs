@@ -48,10 +48,10 @@ const INERTIA_TOLERANCE: f64 = 0.5;
 /// assert!(report.loops().iter().all(|each| each.is_stable()));
 /// assert!(report.warnings().is_empty());
 ///
-/// // Rotors that answer ten times later than those that the attitude controller was tuned for.
-/// configuration.airframe.rotor_time_constant_s = 0.3;
+/// // Heavy rotors turn the body when they change their speed, which the attitude controller does not foresee.
+/// configuration.airframe.rotor_spin.inertia_kg_m2 = 4e-4;
 /// let refused = StabilityReport::new(&configuration);
-/// assert!(matches!(refused, Err(ConfigurationError::Unstable { name: "roll", .. })));
+/// assert!(matches!(refused, Err(ConfigurationError::Unstable { name: "yaw", .. })));
 /// # Ok::<(), ConfigurationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

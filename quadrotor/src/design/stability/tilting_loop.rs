@@ -83,7 +83,8 @@ impl SmallSignal<TILTING> for TiltingLoop {
             let [angle, rate] = self.turning.seen(&turning, [noise.angle, noise.rate]);
             let [made, asked] = self.turning.accelerations(&turning);
             let achieved = [angle, rate, made, asked].map(|value| value * thrust);
-            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
+            let unasked = turning.estimate[2] * thrust;
+            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved, unasked);
         }
         if present.inner {
             self.sample_attitude(&mut turning, &mut moving, noise);

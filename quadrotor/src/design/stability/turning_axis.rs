@@ -143,6 +143,8 @@ impl TurningAxis {
         let ahead = if self.is_incremental { 0.0 } else { state.reference_acceleration };
 
         let reached = state.acceleration / self.believed;
+        // What disturbs the vehicle turns it, too.
+        let reached = reached + state.estimate[2];
         let deviation = [seen[0] - reference[0], seen[1] - reference[1], reached - ahead];
         state.feedback = self.law.feedback(&ChannelSample {
             increment: match &self.motion {

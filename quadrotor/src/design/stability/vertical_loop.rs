@@ -64,7 +64,7 @@ impl SmallSignal<VERTICAL> for VerticalLoop {
         let present = &self.events[event];
         if present.outer {
             let achieved = [acceleration / self.believed, 0.0, 0.0, 0.0];
-            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved);
+            self.moving.sample(&mut moving, present, [noise.position, noise.velocity], achieved, 0.0);
         }
         if present.inner {
             let wanted = moving.feedback;

@@ -84,20 +84,27 @@ fn small_deviations_grow_as_the_report_says() {
             |c| {
                 // The printed model of the position does not know the attitude that answers late.
                 c.controllers.model = PredictionModel::Paper;
-                c.airframe.rotor_time_constant_s = 0.3;
+                c.airframe.rotor_time_constant_s = 0.06;
             },
             4,
             |outputs| outputs.attitude_rad.x,
         ),
         (
             "position weight",
-            |c| c.controllers.position.output_weight.fill(1e4),
+            |c| {
+                c.controllers.model = PredictionModel::Paper;
+                c.controllers.position.output_weight.fill(1e4);
+            },
             3,
             |outputs| outputs.position_m.x,
         ),
         (
             "altitude lag",
-            |c| c.controllers.altitude.increment_weight.fill(1e-4),
+            |c| {
+                c.controllers.model = PredictionModel::Paper;
+                c.controllers.altitude.increment_weight.fill(1e-4);
+                c.airframe.rotor_time_constant_s = 0.06;
+            },
             5,
             |outputs| outputs.velocity_m_s.z,
         ),
