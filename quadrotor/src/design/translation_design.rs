@@ -70,7 +70,7 @@ pub(crate) fn position_design(
             let axis = attitude.under_position(sample_time_s)?;
             let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
             let model = StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))?;
-            let bandwidth = [position_bandwidth_rad_s(configuration, &attitude); 2].into();
+            let bandwidth = [position_bandwidth_rad_s(configuration, Some(&attitude)); 2].into();
             Ok(StabilizedLaw::new(
                 controllers.kind,
                 settings,
@@ -84,7 +84,7 @@ pub(crate) fn position_design(
         None => {
             // Inputs are the accelerations −g θ and g φ.
             let model = double_integrators(&[1.0; 2], sample_time_s, Discretization::ZeroOrderHold)?;
-            let bandwidth = [PRINTED_POSITION_RAD_S; 2].into();
+            let bandwidth = [position_bandwidth_rad_s(configuration, None); 2].into();
             let (design, law) = printed_design(controllers.kind, settings, &bandwidth, &model)?;
             Ok((law, DesignReport::of(&design)?))
         }
@@ -104,7 +104,12 @@ pub(crate) fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
 /// Error of the output, m, the cost of which stands for that of a violated limit.
 const SIGHT_M: f64 = 20.0;
 
-fn position_bandwidth_rad_s(configuration: &Configuration, attitude: &AttitudeLoop) -> f64 {
+/// At which the position loop closes with weights of 1, rad/s, over a closed attitude loop or with the models as printed.
+pub(crate) fn position_bandwidth_rad_s(
+    configuration: &Configuration,
+    attitude: Option<&AttitudeLoop>,
+) -> f64 {
+    let Some(attitude) = attitude else { return PRINTED_POSITION_RAD_S };
     DELAY_SHARE / (attitude.delay_s() + configuration.controllers.position.sample_time_s() / 2.0)
 }
 
