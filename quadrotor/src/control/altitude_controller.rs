@@ -10,7 +10,7 @@ use crate::control::observed_motion::ObservedMotion;
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
-use crate::design::position_limits::horizon_m;
+use crate::design::position_limits::{closing_share, horizon_m};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -50,15 +50,21 @@ impl AltitudeController {
         let [[position, velocity, acceleration, ..]] = reference.increments_since(&self.reference);
         let fastest = limits.speed_up_m_s.max(limits.speed_down_m_s);
         let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
-        let sight = horizon_m(fastest, weakest);
-        let error = Vector1::new((seen.position_m - reference.position.x).clamp(-sight, sight));
+        let error = seen.position_m - reference.position.x;
+        // Below the set-point (z down) it climbs.
+        let (ahead_m_s, speed_m_s) = if error > 0.0 {
+            (-reference.velocity.x, limits.speed_up_m_s)
+        } else {
+            (reference.velocity.x, limits.speed_down_m_s)
+        };
+        let sight = horizon_m(fastest * closing_share(speed_m_s, ahead_m_s), weakest);
+        let error = Vector1::new(error.clamp(-sight, sight));
         let error = match law.regulator() {
             Some(regulator) if configuration.controllers.governor => {
                 let governor = Governor {
                     rate: integral_rate(regulator, 0, configuration.controllers.altitude.sample_time_s()),
                     deceleration: BRAKING_SHARE * limits.acceleration_vertical_m_s2,
-                    // Below the set-point (z down) it climbs.
-                    speed: if error.x > 0.0 { limits.speed_up_m_s } else { limits.speed_down_m_s },
+                    speed: speed_m_s,
                 };
                 governor.seen_vector(&error)
             }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::design::attitude_loop::AttitudeLoop;
+use crate::design::translation_design;
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference, RigidBody};
@@ -74,6 +76,7 @@ impl CommandLimits {
     pub fn watch(
         &mut self,
         configuration: &Configuration,
+        attitude: Option<&AttitudeLoop>,
         guidance: &Guidance,
         body: &RigidBody,
         time_us: u64,
@@ -86,7 +89,7 @@ impl CommandLimits {
         let reference = guidance.reference(time_us);
         let returns = || {
             can_brake(&reference, body, &flyable)
-                && can_return(&reference, body, &flyable, position_bandwidth_rad_s(configuration))
+                && can_return(&reference, body, &flyable, position_bandwidth_rad_s(configuration, attitude))
         };
         self.fits_since_us = (fits && returns()).then(|| self.fits_since_us.unwrap_or(time_us));
         let settled = self.fits_since_us.is_some_and(|since_us| time_us - since_us >= SETTLED_US);
@@ -142,12 +145,12 @@ fn can_return(
         && bandwidth_rad_s * jerk_m_s3 <= most * limits.tilt_acceleration_rad_s2
 }
 
-/// Bandwidth of the position controller, rad/s: three integrators from the increments of its input under weights Q and R close at
-/// (g √(Q/R) / ΔT)^(1/3).
-fn position_bandwidth_rad_s(configuration: &Configuration) -> f64 {
+/// Bandwidth of the position controller, rad/s: with weights Q and R of its output and its increments, which are relative to the
+/// bandwidth ω of the design, three integrators close at ω (Q/R)^(1/6).
+fn position_bandwidth_rad_s(configuration: &Configuration, attitude: Option<&AttitudeLoop>) -> f64 {
     let settings = &configuration.controllers.position;
     let ratio = settings.output_weight.component_div(&settings.increment_weight).max();
-    libm::cbrt(GRAVITY_M_S2 * libm::sqrt(ratio) / settings.sample_time_s())
+    translation_design::position_bandwidth_rad_s(configuration, attitude) * libm::cbrt(libm::sqrt(ratio))
 }
 
 #[cfg(test)]
@@ -253,18 +256,15 @@ mod tests {
         }
     }
 
-    /// ω³ ΔT = g √(Q/R), by the faster axis.
+    /// |ω|⁶ = Q/R of that with weights of 1, by the faster axis.
     #[test]
     fn the_bandwidth_is_that_of_three_integrators() {
         let mut configuration = Configuration::default();
+        let with_ones = position_bandwidth_rad_s(&configuration, None);
         let position = &mut configuration.controllers.position;
-        position.output_weight = [2.0, 9.0].into();
+        position.output_weight = [2.0, 256.0].into();
         position.increment_weight = [0.5, 4.0].into();
-        let bandwidth = position_bandwidth_rad_s(&configuration);
-        let period_s = configuration.controllers.position.sample_time_s();
-        assert!(
-            (bandwidth * bandwidth * bandwidth * period_s / GRAVITY_M_S2 - 2.0).abs() < 1e-12,
-            "{bandwidth}"
-        );
+        let bandwidth = position_bandwidth_rad_s(&configuration, None);
+        assert!((bandwidth / with_ones - 2.0).abs() < 1e-12, "{bandwidth} {with_ones}");
     }
 }

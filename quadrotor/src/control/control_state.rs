@@ -345,7 +345,8 @@ impl ControlState {
         let cascade = &design.cascade;
         let limits = &design.configuration.flyable_limits();
         if due.position || due.altitude {
-            self.limits.watch(&design.configuration, &self.guidance, &seen.body, time_us);
+            let attitude = cascade.attitude_loop();
+            self.limits.watch(&design.configuration, attitude.as_ref(), &self.guidance, &seen.body, time_us);
         }
         let configuration = &self.limits.in_force(learned);
         if due.position {

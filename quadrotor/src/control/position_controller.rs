@@ -9,7 +9,9 @@ use crate::control::governor::{Governor, integral_rate};
 use crate::control::observed_motion::ObservedMotion;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
-use crate::design::position_limits::{AXIS_STATES, POSITION_STATES, horizon_m, in_sight, position_bounds};
+use crate::design::position_limits::{
+    AXIS_STATES, POSITION_STATES, closing_share, horizon_m, in_sight, position_bounds,
+};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -71,10 +73,12 @@ impl PositionController {
             // Feedback is none of the reference.
             Vector2::zeros(),
         ]);
-        let error = in_sight(
-            &(seen.position_m - reference.position),
-            horizon_m(limits.speed_horizontal_m_s, most_m_s2),
-        );
+        let error = seen.position_m - reference.position;
+        // An error is closed against its direction.
+        let ahead_m_s = -error.try_normalize(0.0).unwrap_or_default().dot(&reference.velocity);
+        let speed_m_s = limits.speed_horizontal_m_s;
+        let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
+        let error = in_sight(&error, horizon_m(closing_m_s, most_m_s2));
         let error = match design.position.law.regulator() {
             Some(regulator) if configuration.controllers.governor => {
                 governed(configuration, regulator, &error)

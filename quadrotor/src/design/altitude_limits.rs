@@ -4,6 +4,7 @@ use lmpc::SignalLimit;
 use nalgebra::DMatrix;
 
 use crate::Limits;
+use crate::design::position_limits::most_speed_m_s;
 
 /// Bounds: acceleration and speed, each down and up.
 pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
@@ -13,8 +14,6 @@ static SPEED: &[usize] = &[
     1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75,
     90, 110,
 ];
-/// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
-const CATCHING_UP: f64 = 0.1;
 /// Violations that cost alike: of the acceleration, m/s², and of the speed, m/s.
 const FIRM_M_S2: f64 = 0.5;
 const SPEED_M_S: f64 = 4.0;
@@ -34,9 +33,8 @@ pub(crate) fn altitude_bounds(
     range: (f64, f64),
     reference_rate_m_s: f64,
 ) -> [f64; ALTITUDE_BOUNDS] {
-    let speed = |limit: f64, asked: f64| if asked > limit { asked + CATCHING_UP * limit } else { limit };
-    let down = speed(limits.speed_down_m_s, reference_rate_m_s);
-    let up = speed(limits.speed_up_m_s, -reference_rate_m_s);
+    let down = most_speed_m_s(limits.speed_down_m_s, reference_rate_m_s);
+    let up = most_speed_m_s(limits.speed_up_m_s, -reference_rate_m_s);
     [range.1, -range.0, down, up]
 }
 

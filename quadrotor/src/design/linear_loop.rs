@@ -21,7 +21,6 @@ use crate::design::stabilized_law::{slack_cost, stabilizing_gain};
 use crate::design::translation_design::{
     SIGHT_M, altitude_bandwidth_rad_s, over_attitude, position_bandwidth_rad_s,
 };
-use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{Configuration, ConfigurationError, ControllerSettings, GRAVITY_M_S2, Mixer};
 
 /// Model, weights, limits and design choices of one controller in hover, with
@@ -66,10 +65,10 @@ impl LinearLoop {
             attitude.closed.ok_or(failed(DesignError::NotFinite { name: "the closed attitude loop" }))?;
         let settings = &configuration.controllers.position;
         let model = over_attitude(&closed, settings.sample_time_s()).map_err(failed)?;
-        let bandwidth = [position_bandwidth_rad_s(configuration, &closed); 2].into();
+        let bandwidth = [position_bandwidth_rad_s(configuration, Some(&closed)); 2].into();
         let limits = &configuration.limits;
         let most_m_s2 = GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad);
-        let upper = position_bounds(limits, most_m_s2, &ReferenceMotion::default()).to_vec();
+        let upper = position_bounds(limits, most_m_s2, 0.0).to_vec();
         let designed = Self::new(settings, &bandwidth, model, SIGHT_M).map_err(failed)?;
         let sight = horizon_m(limits.speed_horizontal_m_s, most_m_s2);
         Ok(Self { limits: position_limits().to_vec(), upper, sight, ..designed })

@@ -20,8 +20,12 @@ static MOVING: &[usize] =
 /// Samples of the rate and the acceleration of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
 
-/// By how much the speed of the reference may be exceeded to catch up with it, as a share of the speed limit.
-const CATCHING_UP: f64 = 0.1;
+/// By how much the speed of a reference at the speed limit may be exceeded to catch up with it, as a share of the limit.
+const CATCHING_UP: f64 = 0.01;
+/// The least of it, m/s.
+const LEAST_CATCHING_UP_M_S: f64 = 0.05;
+/// The same of a reference that is faster than the limit, which is another's plan.
+const CATCHING_UP_WITH_FASTER: f64 = 0.1;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
@@ -53,7 +57,7 @@ pub(crate) fn position_limits() -> [SignalLimit; 4] {
 }
 
 /// Values of [`position_limits`], the commanded acceleration being at most `acceleration_m_s2`, when the reference asks for speeds up to
-/// `asked_m_s`. One that is faster than the limit is another's plan: it may be caught up with.
+/// `asked_m_s`: see [`most_speed_m_s`].
 pub(crate) fn position_bounds(
     limits: &Limits,
     acceleration_m_s2: f64,
@@ -61,11 +65,7 @@ pub(crate) fn position_bounds(
 ) -> [f64; POSITION_BOUNDS] {
     let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
     let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
-    let speed = if asked_m_s > ROUNDING * limits.speed_horizontal_m_s {
-        asked_m_s + CATCHING_UP * limits.speed_horizontal_m_s
-    } else {
-        limits.speed_horizontal_m_s
-    };
+    let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked_m_s);
     core::array::from_fn(|bound| match bound {
         ..SIDES => acceleration_m_s2,
         _ if bound < SIDES + COARSE_SIDES => turning,
@@ -83,6 +83,26 @@ pub(crate) fn position_bounds(
 /// ```
 pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
     speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
+}
+
+/// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
+pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
+    limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
+}
+
+fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
+    let share = if asked_m_s > ROUNDING * limit_m_s { CATCHING_UP_WITH_FASTER } else { CATCHING_UP };
+    (share * limit_m_s).max(LEAST_CATCHING_UP_M_S)
+}
+
+/// Share of the speed limit with which an error may be closed while the reference moves that way itself, at `ahead_m_s`: what it leaves of
+/// the limit, and at least what there is to catch up.
+///
+/// A plan ends on its reference. One that may not go faster than a reference at the speed limit would put off catching up until after
+/// the samples on which it is limited, and fall behind before.
+pub(crate) fn closing_share(limit_m_s: f64, ahead_m_s: f64) -> f64 {
+    let least = (catching_up_m_s(limit_m_s, ahead_m_s) / limit_m_s).min(1.0);
+    (1.0 - ahead_m_s / limit_m_s).clamp(least, 1.0)
 }
 
 /// The error that is planned with: of a far one as much as the horizon.

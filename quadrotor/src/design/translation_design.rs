@@ -88,7 +88,7 @@ pub(crate) fn position_design(
     let designed = || match attitude {
         Some(attitude) => {
             let model = over_attitude(&attitude, sample_time_s)?;
-            let bandwidth = [position_bandwidth_rad_s(configuration, &attitude); 2].into();
+            let bandwidth = [position_bandwidth_rad_s(configuration, Some(&attitude)); 2].into();
             let (law, report) = StabilizedLaw::new(
                 controllers.kind,
                 settings,
@@ -104,7 +104,7 @@ pub(crate) fn position_design(
         None => {
             // Inputs are the accelerations −g θ and g φ.
             let model = double_integrators(&[1.0; 2], sample_time_s, Discretization::ZeroOrderHold)?;
-            let bandwidth = [PRINTED_POSITION_RAD_S; 2].into();
+            let bandwidth = [position_bandwidth_rad_s(configuration, None); 2].into();
             let (design, law) = printed_design(controllers.kind, settings, &bandwidth, &model)?;
             Ok((TranslationDesign { law, motion: None }, DesignReport::of(&design)?))
         }
@@ -131,7 +131,12 @@ pub(crate) fn over_attitude(attitude: &AttitudeLoop, sample_time_s: f64) -> Resu
     StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))
 }
 
-pub(crate) fn position_bandwidth_rad_s(configuration: &Configuration, attitude: &AttitudeLoop) -> f64 {
+/// At which the position loop closes with weights of 1, rad/s, over a closed attitude loop or with the models as printed.
+pub(crate) fn position_bandwidth_rad_s(
+    configuration: &Configuration,
+    attitude: Option<&AttitudeLoop>,
+) -> f64 {
+    let Some(attitude) = attitude else { return PRINTED_POSITION_RAD_S };
     DELAY_SHARE / (attitude.delay_s() + configuration.controllers.position.sample_time_s() / 2.0)
 }
 
