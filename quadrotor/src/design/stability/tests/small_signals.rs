@@ -103,7 +103,7 @@ fn small_deviations_grow_as_the_report_says() {
             |c| {
                 c.controllers.model = PredictionModel::Paper;
                 c.controllers.altitude.increment_weight.fill(1e-4);
-                c.airframe.rotor_time_constant_s = 0.06;
+                c.airframe.rotor_time_constant_s = 0.15;
             },
             5,
             |outputs| outputs.velocity_m_s.z,
