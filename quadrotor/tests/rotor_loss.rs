@@ -251,7 +251,7 @@ fn a_stuck_rotor_is_found_when_it_matters() {
         // asked for accelerations that leave the lean half of its limit.
         assert!(course.known_after_s.is_some() && course.tilt_rad < 32_f64.to_radians(), "{course:?}");
         assert!((course.end.position_m.z + 0.1).abs() < 0.01 && course.sink_m_s < 1.7, "{course:?}");
-        assert!(course.drift_m < 32.0 && course.end.velocity_m_s.xy().norm() < 1.0, "{course:?}");
+        assert!(course.drift_m < 32.0 && course.end.velocity_m_s.xy().norm() < 1.2, "{course:?}");
     }
 }
 

@@ -103,7 +103,7 @@ fn small_deviations_grow_as_the_report_says() {
             |c| {
                 c.controllers.model = PredictionModel::Paper;
                 c.controllers.altitude.increment_weight.fill(1e-4);
-                c.airframe.rotor_time_constant_s = 0.06;
+                c.airframe.rotor_time_constant_s = 0.15;
             },
             5,
             |outputs| outputs.velocity_m_s.z,
@@ -114,6 +114,7 @@ fn small_deviations_grow_as_the_report_says() {
                 // The paper's model does not know the lag that makes a fast loop unstable.
                 c.controllers.model = PredictionModel::Paper;
                 c.controllers.attitude.increment_weight[2] = 1e-5;
+                c.airframe.rotor_time_constant_s = 0.06;
             },
             2,
             |outputs| outputs.attitude_rad.z,
