@@ -1,6 +1,6 @@
 //! The position and altitude controllers, designed from a configuration.
 
-use lmpc::{Discretization, StateSpace};
+use lmpc::{DesignError, Discretization, StateSpace};
 use nalgebra::{DMatrix, SVector};
 
 use crate::control::tracking_law::TrackingLaw;
@@ -9,6 +9,7 @@ use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSITION_MANY};
 use crate::design::cascade_design::DesignReport;
 use crate::design::linear_models::{altitude_model, altitude_model_with_lag, double_integrators};
+use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{POSITION_STATES, position_limits};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
@@ -34,18 +35,7 @@ pub(crate) fn altitude_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match controllers.model {
         PredictionModel::InnerLoops => {
-            let lag_s = configuration.airframe.rotor_time_constant_s;
-            let model = altitude_model_with_lag(lag_s, sample_time_s)?;
-            let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
-            Ok(StabilizedLaw::new(
-                controllers.kind,
-                settings,
-                &bandwidth,
-                &altitude_limits(),
-                SIGHT_M,
-                &model,
-            )?
-            .law_and_report())
+            Ok(StabilizedLaw::new(controllers.kind, &altitude_problem(configuration)?)?.law_and_report())
         }
         PredictionModel::Paper => {
             let model = altitude_model(sample_time_s, Discretization::ZeroOrderHold)?;
@@ -67,19 +57,8 @@ pub(crate) fn position_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match attitude {
         Some(attitude) => {
-            let axis = attitude.under_position(sample_time_s)?;
-            let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
-            let model = StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))?;
-            let bandwidth = [position_bandwidth_rad_s(configuration, &attitude); 2].into();
-            Ok(StabilizedLaw::new(
-                controllers.kind,
-                settings,
-                &bandwidth,
-                &position_limits(),
-                SIGHT_M,
-                &model,
-            )?
-            .law_and_report())
+            let problem = position_problem(configuration, &attitude)?;
+            Ok(StabilizedLaw::new(controllers.kind, &problem)?.law_and_report())
         }
         None => {
             // Inputs are the accelerations −g θ and g φ.
@@ -90,6 +69,28 @@ pub(crate) fn position_design(
         }
     };
     designed().map_err(|source| ConfigurationError::Design { part: "position controller", source })
+}
+
+/// What the altitude controller minimizes, on the model with the rotors' lag.
+pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProblem<1>, DesignError> {
+    let settings = &configuration.controllers.altitude;
+    let lag_s = configuration.airframe.rotor_time_constant_s;
+    let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
+    let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
+    LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)
+}
+
+/// What the position controller minimizes, over a closed attitude loop.
+pub(crate) fn position_problem(
+    configuration: &Configuration,
+    attitude: &AttitudeLoop,
+) -> Result<LoopProblem<2>, DesignError> {
+    let settings = &configuration.controllers.position;
+    let axis = attitude.under_position(settings.sample_time_s())?;
+    let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
+    let model = StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))?;
+    let bandwidth = [position_bandwidth_rad_s(configuration, attitude); 2].into();
+    LoopProblem::new(settings, &bandwidth, position_limits(), SIGHT_M, &model)
 }
 
 /// Whether all weights are the same in both directions.
