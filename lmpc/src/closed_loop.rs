@@ -118,11 +118,8 @@ impl<'a> ClosedLoop<'a> {
         let mut measured = DVector::from_column_slice(trial.state.as_slice());
         let mut increment = DVector::from_column_slice(trial.increment.as_slice());
         let goal = DVector::from_column_slice(trial.goal.as_slice());
-        let mut state = ControllerState::<N, P, W>::new(
-            trial.state - trial.increment,
-            trial.input,
-            SVector::zeros(),
-        );
+        let mut state =
+            ControllerState::<N, P, W>::new(trial.state - trial.increment, trial.input, SVector::zeros());
         let mut cost = TrialCost { stage_cost: 0.0, violation_cost: 0.0, violation: 0.0, relaxed: 0 };
         let mut before = DVector::from_column_slice(trial.input.as_slice());
         for _ in 0..samples {

@@ -31,10 +31,7 @@ pub struct DesignSearch<C> {
 impl<C> DesignSearch<C> {
     /// Asks for the cost of every candidate on each trial, in the same order. Costs are positive; infinity, NaN and missing
     /// ones mean that a candidate cannot be designed or does not fly.
-    pub fn new(
-        candidates: impl IntoIterator<Item = C>,
-        mut costs_of: impl FnMut(&C) -> Vec<f64>,
-    ) -> Self {
+    pub fn new(candidates: impl IntoIterator<Item = C>, mut costs_of: impl FnMut(&C) -> Vec<f64>) -> Self {
         let candidates: Vec<C> = candidates.into_iter().collect();
         let costs = candidates.iter().map(|candidate| costs_of(candidate)).collect();
         Self::from_costs(candidates, costs)

@@ -89,10 +89,7 @@ fn of_loop<const N: usize, const P: usize, const E: usize>(
     let costs_of = |candidate: &Candidate| -> Result<Vec<f64>, DesignError> {
         let design = problem.design(candidate.terms, candidate.scale, candidate.share)?;
         let law = StabilizedMpc::<N, P, P, E>::new(&design, limits, slack_cost)?;
-        trials
-            .iter()
-            .map(|trial| Ok(closed.fly::<N, P, P, E>(&law, trial, samples)?.total()))
-            .collect()
+        trials.iter().map(|trial| Ok(closed.fly::<N, P, P, E>(&law, trial, samples)?.total())).collect()
     };
     let scales = (-SCALES..=SCALES).map(|step| shipped.scale + SCALE_STEP * f64::from(step));
     let candidates: Vec<Candidate> = scales
@@ -109,13 +106,31 @@ fn table(name: &str, search: &DesignSearch<Candidate>, shipped: &Candidate) -> S
     let mut t = String::new();
     let _ = writeln!(t, "{name}");
     for (i, c) in search.candidates().iter().enumerate() {
-        let near = search.candidates().iter().enumerate().filter(|(_, o)| c.is_beside(o)).map(|(j, _)| search.loss(i, j)).fold(0.0, f64::max);
-        let each: Vec<String> = (0..search.trials()).map(|k| format!("{:.2}", 100.0 * search.excess(i, k))).collect();
+        let near = search
+            .candidates()
+            .iter()
+            .enumerate()
+            .filter(|(_, o)| c.is_beside(o))
+            .map(|(j, _)| search.loss(i, j))
+            .fold(0.0, f64::max);
+        let each: Vec<String> =
+            (0..search.trials()).map(|k| format!("{:.2}", 100.0 * search.excess(i, k))).collect();
         let mark = if c == shipped { "*" } else { "" };
-        let _ = writeln!(t, "{mark}N {} a {:.3} share {:.2} worst {:.2}% neighbours {:.2}%  {}", c.terms, c.scale, c.share, 100.0 * search.worst_excess(i), 100.0 * near, each.join(" "));
+        let _ = writeln!(
+            t,
+            "{mark}N {} a {:.3} share {:.2} worst {:.2}% neighbours {:.2}%  {}",
+            c.terms,
+            c.scale,
+            c.share,
+            100.0 * search.worst_excess(i),
+            100.0 * near,
+            each.join(" ")
+        );
     }
     for (what, index) in [("best", search.best()), ("robust", search.most_robust(Candidate::is_beside))] {
-        if let Some(i) = index { let _ = writeln!(t, "{what} {:?} {:.2}%", search.candidates()[i], 100.0 * search.worst_excess(i)); }
+        if let Some(i) = index {
+            let _ = writeln!(t, "{what} {:?} {:.2}%", search.candidates()[i], 100.0 * search.worst_excess(i));
+        }
     }
     t
 }

@@ -49,7 +49,8 @@ impl HoverLoops {
         let mixer = Mixer::new(&configuration.airframe)?;
         let failed = |part| move |source| ConfigurationError::Design { part, source };
         let (lean, turn) = attitude_problems(configuration, &mixer).map_err(failed("attitude controller"))?;
-        let attitude = design.attitude_loop().ok_or(lmpc::DesignError::NotFinite { name: "the attitude loop" });
+        let attitude =
+            design.attitude_loop().ok_or(lmpc::DesignError::NotFinite { name: "the attitude loop" });
         let position = attitude
             .and_then(|attitude| position_problem(configuration, &attitude))
             .map_err(failed("position controller"))?;

@@ -40,7 +40,15 @@ impl<const P: usize> LoopProblem<P> {
         let weights = loop_weights(&model, settings, bandwidth_rad_s)?;
         let regulator = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), settings.lambda)?;
         let bandwidth_rad_s = *bandwidth_rad_s;
-        Ok(Self { settings: *settings, bandwidth_rad_s, model, weights, limits: limits.into(), regulator, sight })
+        Ok(Self {
+            settings: *settings,
+            bandwidth_rad_s,
+            model,
+            weights,
+            limits: limits.into(),
+            regulator,
+            sight,
+        })
     }
 
     /// The settings of the loop.
