@@ -33,7 +33,7 @@ impl<C> DesignSearch<C> {
     /// ones mean that a candidate cannot be designed or does not fly.
     pub fn new(candidates: impl IntoIterator<Item = C>, mut costs_of: impl FnMut(&C) -> Vec<f64>) -> Self {
         let candidates: Vec<C> = candidates.into_iter().collect();
-        let costs = candidates.iter().map(|candidate| costs_of(candidate)).collect();
+        let costs = candidates.iter().map(&mut costs_of).collect();
         Self::from_costs(candidates, costs)
     }
 

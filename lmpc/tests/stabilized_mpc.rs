@@ -78,7 +78,7 @@ proptest! {
     #[test]
     fn a_step_solves_the_explicit_program(
         case in case(),
-        goal in -5.0..5.0,
+        goal in -5.0..5.0_f64,
         velocity in -1.5..1.5,
         input in -1.5..1.5,
         upper in prop::array::uniform4(0.2..2.0),
@@ -91,7 +91,7 @@ proptest! {
         let start = Start {
             measured,
             increment,
-            error: DVector::from_element(1, -f64::from(goal)),
+            error: DVector::from_element(1, -goal),
             input: DVector::from_element(1, input),
         };
         let Some(optimum) = clarabel(&design, &limits, SLACK_COST, &upper, &start) else {

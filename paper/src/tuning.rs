@@ -1,9 +1,6 @@
 //! N, a and the stabilizing feedback of the shipped loops, chosen by what they cost in flight (`--tune`).
 
-use std::fmt::Write;
-
 use lmpc::{ClosedLoop, DesignError, DesignSearch, StabilizedMpc, Trial, unknowns};
-use nalgebra::SVector;
 use quadrotor::{Configuration, HoverLoop, HoverLoops};
 use rayon::prelude::*;
 
@@ -39,7 +36,9 @@ impl Candidate {
     }
 }
 
-/// Compares designs of the loops of a configuration by their cost on the linear loop under limits, and writes a table.
+/// Compares designs of the loops of a configuration by their cost on the linear loop under the limits that they have in hover, and
+/// writes a table: by how much a candidate costs more than the best one on the worst trial ("excess"), and how much it loses on the
+/// worst trial when N is off by one or a by 0.05 ("off by one").
 ///
 /// # Errors
 /// [`Error`] when a loop cannot be designed at all.
@@ -102,35 +101,43 @@ fn of_loop<const N: usize, const P: usize, const E: usize>(
     let search = DesignSearch::from_costs(candidates, costs);
     Ok(table(name, &search, &shipped))
 }
+
+/// The shipped candidate and those that a search would choose, one line each.
 fn table(name: &str, search: &DesignSearch<Candidate>, shipped: &Candidate) -> String {
-    let mut t = String::new();
-    let _ = writeln!(t, "{name}");
-    for (i, c) in search.candidates().iter().enumerate() {
-        let near = search
-            .candidates()
-            .iter()
-            .enumerate()
-            .filter(|(_, o)| c.is_beside(o))
-            .map(|(j, _)| search.loss(i, j))
+    let is_shipped = |candidate: &Candidate| candidate == shipped;
+    let rows = [
+        ("shipped", search.candidates().iter().position(is_shipped)),
+        ("least excess", search.best()),
+        ("most robust", search.most_robust(Candidate::is_beside)),
+    ];
+    let mut lines = vec![
+        name.to_owned(),
+        "                 N      a  share  excess  off by one  excess on each trial, %".to_owned(),
+    ];
+    for (what, index) in rows {
+        let Some(index) = index else { continue };
+        let candidate = &search.candidates()[index];
+        let others = search.candidates().iter().enumerate();
+        let off_by_one = others
+            .filter(|(_, other)| candidate.is_beside(other))
+            .map(|(other, _)| search.loss(index, other))
             .fold(0.0, f64::max);
-        let each: Vec<String> =
-            (0..search.trials()).map(|k| format!("{:.2}", 100.0 * search.excess(i, k))).collect();
-        let mark = if c == shipped { "*" } else { "" };
-        let _ = writeln!(
-            t,
-            "{mark}N {} a {:.3} share {:.2} worst {:.2}% neighbours {:.2}%  {}",
-            c.terms,
-            c.scale,
-            c.share,
-            100.0 * search.worst_excess(i),
-            100.0 * near,
-            each.join(" ")
-        );
+        let each: Vec<String> = (0..search.trials())
+            .map(|trial| format!("{:.2}", percent(search.excess(index, trial))))
+            .collect();
+        lines.push(format!(
+            "  {what:<13} {:>2}  {:.3}   {:.2} {:>6.2} % {:>9.2} %  {}",
+            candidate.terms,
+            candidate.scale,
+            candidate.share,
+            percent(search.worst_excess(index)),
+            percent(off_by_one),
+            each.join("  "),
+        ));
     }
-    for (what, index) in [("best", search.best()), ("robust", search.most_robust(Candidate::is_beside))] {
-        if let Some(i) = index {
-            let _ = writeln!(t, "{what} {:?} {:.2}%", search.candidates()[i], 100.0 * search.worst_excess(i));
-        }
-    }
-    t
+    lines.join("\n") + "\n\n"
+}
+
+fn percent(share: f64) -> f64 {
+    100.0 * share
 }
