@@ -89,7 +89,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { merge } => fmu::make(&workspace, &progress, merge, Beside::Nothing).map(|_| ()),
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
-        Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), tune),
+        Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
         Task::Test => test::run_all(&workspace, &progress),
     }
