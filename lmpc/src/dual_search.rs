@@ -57,9 +57,6 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                 self.active.add(constraint, &split, 0.0);
             }
         }
-        if self.active.constraints().is_empty() {
-            return;
-        }
         loop {
             let mut excess = SVector::zeros();
             for (j, &constraint) in self.active.constraints().iter().enumerate() {
@@ -70,7 +67,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                 None => break,
             }
         }
-        self.z = self.point();
+        self.meet_active();
     }
 
     pub(crate) fn run(&mut self, iteration_limit: u32) -> Outcome {
@@ -104,27 +101,24 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                     Some((column, until)) if until < until_met => self.active.remove(column),
                     _ => {
                         self.active.add(constraint, &split, multiplier);
+                        self.meet_active();
                         break;
                     }
                 }
             }
         }
-        // What the steps have added up in rounding goes out here.
-        if self.iterations > 0 {
-            self.z = self.point();
-        }
         Outcome::Optimal
     }
 
-    /// z = z₀ − Σ u_j n_j: where all gradients balance.
-    fn point(&self) -> SVector<f64, N> {
-        let n = self.constraints.unknowns();
-        let mut z = self.z_0;
-        for (&constraint, &multiplier) in self.active.constraints().iter().zip(self.active.multipliers()) {
-            let normal = self.constraints.normal(constraint);
-            subtract_scaled(&mut z.as_mut_slice()[..n], &normal.as_slice()[..n], multiplier);
+    /// Puts z where the active constraints hold with equality, nearest to z₀: where the steps have led to but for
+    /// rounding, which is that of the bounds and not of the steps, however far z₀ lies.
+    fn meet_active(&mut self) {
+        let origin = SVector::zeros();
+        let mut bounds = SVector::zeros();
+        for (j, &constraint) in self.active.constraints().iter().enumerate() {
+            bounds[j] = self.constraints.slack(constraint, &origin);
         }
-        z
+        self.z = self.active.nearest(&self.z_0, &bounds);
     }
 
     fn first_to_leave(&self, sinking: &SVector<f64, N>) -> Option<(usize, f64)> {

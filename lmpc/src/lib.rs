@@ -14,6 +14,9 @@
 //! | D, and the samples m of a limit | [`Limit`] of a [`Quantity`] | |
 //! | x(k), y − r, u_r(k), d(k), b | [`Sample`] | |
 //! | u(k), Δu(k), and how they were found | [`Step`], [`Status`] | |
+//! | K_s, S, K of a plan about a stabilizing feedback | [`StabilizedDesign`], [`StabilizedMpc`] | |
+//! | C, D and directions of a limited signal; its relaxation | [`SignalLimit`] | |
+//! | Σ xᵀQx + ΔuᵀRΔu of a flight; designs compared by it | [`ClosedLoop`], [`Trial`], [`DesignSearch`] | |
 //! | F, Φ, H of the state-space MPC | [`StateSpaceMpcDesign`] | (28)–(34) |
 //! | x̂(k+1 given k), K, P of the predictor | [`KalmanDesign`], [`KalmanPredictor`] | (24)–(27) |
 //!
@@ -24,8 +27,10 @@
 //!                                                                    │
 //! StateSpace ─► Augmented ─┬─► Dlqr ──────────────┬──────────────────┼─► StateFeedback ─┐
 //!     │                    ├─► Weights, Weighting ├─► LmpcDesign ────┼─► StateFeedback  │
-//!     │                    └─► LaguerreBasis ─────┘       │          │                  ├─ Controller
-//!     │                                           Limit ──┴──────────┼─► LaguerreMpc    │  ControllerState, Sample → Step
+//!     │                    └─► LaguerreBasis ─────┤       │          │                  ├─ Controller
+//!     │                                           │ Limit ┴──────────┼─► LaguerreMpc    │  ControllerState, Sample → Step
+//!     │                       StabilizedDesign ◄──┘                  │                  │
+//!     │                               └─ SignalLimit ────────────────┼─► StabilizedMpc ─┤
 //!     ├─► StateSpaceMpcWeights ─► StateSpaceMpcDesign, Limit ────────┼─► StateSpaceMpc ─┘
 //!     └─► NoiseCovariance ─► KalmanDesign ───────────────────────────┼─► KalmanPredictor
 //! ```
@@ -45,10 +50,12 @@ mod augmented;
 mod balancing;
 mod bounds;
 mod capacity;
+mod closed_loop;
 mod controller;
 mod controller_state;
 mod dense;
 mod design;
+mod design_search;
 mod dlqr;
 mod dual_search;
 mod eigenvalues;
@@ -85,9 +92,11 @@ mod weighting;
 
 pub use augmented::Augmented;
 pub use capacity::unknowns;
+pub use closed_loop::{ClosedLoop, Trial, TrialCost};
 pub use controller::Controller;
 pub use controller_state::ControllerState;
 pub use design::LmpcDesign;
+pub use design_search::DesignSearch;
 pub use dlqr::Dlqr;
 pub use eigenvalues::{condition_number, eigenvalues, spectral_radius};
 pub use error::DesignError;

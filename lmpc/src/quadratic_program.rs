@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::active_set::ActiveSet;
 use crate::bounds::{Bounds, GivenBounds};
 use crate::dense::{dot, dot_of_magnitudes, subtract_scaled};
+use crate::dual_search::{Constraints, DualSearch};
 use crate::{DesignError, validate};
 
 /// How far beyond its bound a constraint counts as met, relative to what its bound is made of and to the terms that its
@@ -185,9 +186,8 @@ impl<const N: usize> QuadraticProgram<N> {
             return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
         }
 
-        let mut search =
-            Search { program: self, h, z_0, z: z_0, active: ActiveSet::empty(self.unknowns), iterations: 0 };
-        search.resume(warm_start);
+        let rows = Rows { program: self, h };
+        let mut search = DualSearch::new(&rows, z_0, warm_start);
         let outcome = search.run(iteration_limit);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
@@ -239,97 +239,32 @@ impl<const N: usize> QuadraticProgram<N> {
     }
 }
 
-/// One run of the dual method.
-struct Search<'a, const N: usize, H: Bounds> {
+/// The constraints of a program with its right-hand side.
+struct Rows<'a, const N: usize, H: Bounds> {
     program: &'a QuadraticProgram<N>,
     h: &'a H,
-    z_0: SVector<f64, N>,
-    z: SVector<f64, N>,
-    active: ActiveSet<N>,
-    iterations: u32,
 }
 
-impl<const N: usize, H: Bounds> Search<'_, N, H> {
-    /// Starts from an earlier active set, without the constraints that would pull instead of push.
-    fn resume<const W: usize>(&mut self, warm_start: &WarmStart<W>) {
-        for constraint in warm_start.constraints() {
-            // A repeated constraint depends on itself and is not added again.
-            if constraint < self.program.constraints() && self.h.bound(constraint).is_finite() {
-                let split = self.active.split(&self.program.normals[constraint]);
-                self.active.add(constraint, &split, 0.0);
-            }
-        }
-        loop {
-            let mut excess = SVector::zeros();
-            for (j, &constraint) in self.active.constraints().iter().enumerate() {
-                let bound = self.h.bound(constraint) * self.program.scales[constraint];
-                excess[j] = self.program.along(constraint, &self.z_0) - bound;
-            }
-            match self.active.solve_multipliers(&excess) {
-                Some(column) => self.active.remove(column),
-                None => break,
-            }
-        }
-        self.meet_active();
+impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
+    fn unknowns(&self) -> usize {
+        self.program.unknowns
     }
 
-    fn run(&mut self, iteration_limit: u32) -> Outcome {
-        while let Some(constraint) = self.most_violated() {
-            let mut multiplier = 0.0;
-            loop {
-                if self.iterations >= iteration_limit {
-                    return Outcome::IterationLimit;
-                }
-                self.iterations += 1;
-                let split = self.active.split(&self.program.normals[constraint]);
-                let sinking = self.active.exchange(&split);
-                // How far until the first active multiplier is used up, and until the constraint is met.
-                let leaving = self.first_to_leave(&sinking);
-                let until_met = if split.rest_squared > 0.0 {
-                    (-self.slack(constraint)).max(0.0) / split.rest_squared
-                } else {
-                    f64::INFINITY
-                };
-                let until_leaving = leaving.map_or(f64::INFINITY, |(_, t)| t);
-                let t = until_met.min(until_leaving);
-                if t == f64::INFINITY {
-                    return Outcome::Infeasible;
-                }
-                let n = self.program.unknowns;
-                subtract_scaled(&mut self.z.as_mut_slice()[..n], &split.rest.as_slice()[..n], t);
-                self.active.sink(&sinking, t);
-                multiplier += t;
-                match leaving {
-                    Some((column, until)) if until < until_met => self.active.remove(column),
-                    _ => {
-                        self.active.add(constraint, &split, multiplier);
-                        self.meet_active();
-                        break;
-                    }
-                }
-            }
-        }
-        Outcome::Optimal
+    fn count(&self) -> usize {
+        self.program.constraints()
     }
 
-    /// Puts z where the active constraints hold with equality, nearest to z₀: where the steps have led to but for
-    /// rounding, which is that of the bounds and not of the steps, however far z₀ lies.
-    fn meet_active(&mut self) {
-        let mut bounds = SVector::zeros();
-        for (j, &constraint) in self.active.constraints().iter().enumerate() {
-            bounds[j] = self.h.bound(constraint) * self.program.scales[constraint];
-        }
-        self.z = self.active.nearest(&self.z_0, &bounds);
+    fn normal(&self, constraint: usize) -> SVector<f64, N> {
+        self.program.normals[constraint]
     }
 
-    /// h − v·z of one constraint, scaled; negative when violated.
-    fn slack(&self, constraint: usize) -> f64 {
-        self.h.bound(constraint) * self.program.scales[constraint] - self.program.along(constraint, &self.z)
+    fn slack(&self, constraint: usize, z: &SVector<f64, N>) -> f64 {
+        self.h.bound(constraint) * self.program.scales[constraint] - self.program.along(constraint, z)
     }
 
-    fn most_violated(&self) -> Option<usize> {
+    fn most_violated(&self, z: &SVector<f64, N>, active: &ActiveSet<N>) -> Option<usize> {
         let n = self.program.unknowns;
-        let z = &self.z.as_slice()[..n];
+        let z = &z.as_slice()[..n];
         let (mut worst, mut least) = (None, 0.0);
         for (constraint, (normal, scale)) in self.program.normals.iter().zip(&self.program.scales).enumerate()
         {
@@ -338,24 +273,11 @@ impl<const N: usize, H: Bounds> Search<'_, N, H> {
             let slack = bound - dot(normal, z);
             if slack < least
                 && slack < -FEASIBILITY * (dot_of_magnitudes(normal, z) + self.h.size(constraint) * scale)
-                && !self.active.contains(constraint)
+                && !active.contains(constraint)
             {
                 (worst, least) = (Some(constraint), slack);
             }
         }
         worst
-    }
-
-    fn first_to_leave(&self, sinking: &SVector<f64, N>) -> Option<(usize, f64)> {
-        let mut first: Option<(usize, f64)> = None;
-        for (column, &multiplier) in self.active.multipliers().iter().enumerate() {
-            if sinking[column] > 0.0 {
-                let until = multiplier / sinking[column];
-                if first.is_none_or(|(_, earliest)| until < earliest) {
-                    first = Some((column, until));
-                }
-            }
-        }
-        first
     }
 }

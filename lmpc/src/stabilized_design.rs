@@ -34,12 +34,14 @@ use crate::{Augmented, DesignError, Dlqr, LaguerreBasis, Weights, solve_stein, s
 /// # Certificate
 ///
 /// Plans are closed under shifts: what is left of a plan after its first move is the plan A_lᵀη of the next state. On the
-/// undisturbed linear loop without relaxed limits therefore
+/// undisturbed linear loop with constant bounds therefore
 ///
 /// * V(x⁺, A_lᵀη) = V(x, η) − xᵀQx − ΔuᵀRΔu: the optimal cost decreases by the stage cost or more;
 /// * limits that hold on all samples m ≥ 0 hold for the shifted plan, so that a feasible program stays feasible. Limits that
-///   are placed on the first M samples do so as far as the plan has settled within them by then. With gaps between the samples, and while limits
-///   are relaxed, this is not guaranteed.
+///   are placed on the first M samples do so as far as the plan has settled within them by then. With gaps between the samples
+///   this is not guaranteed;
+/// * limits that were relaxed by a slack σ need no more of it for the shifted plan, so that V + cσ² decreases by the stage cost
+///   or more as well, whereas σ alone may grow for a while.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilizedDesign {
     model: Augmented,

@@ -10,7 +10,7 @@ pub enum Status {
     Optimal,
     /// No input keeps all limits: this one minimises cost and violation together.
     Relaxed,
-    /// The solver ran out of iterations: the previous input is held.
+    /// The solver ran out of iterations: the previous input is held, or with a stabilized design the plan met last is followed.
     IterationLimit,
     /// The sample or the result was not finite: the previous input is held.
     Held,

@@ -48,7 +48,7 @@ pub enum Error {
     /// A controller cannot be designed.
     #[error("invalid design: {0}")]
     Design(#[from] lmpc::DesignError),
-    /// The cascade cannot be configured.
+    /// A configuration cannot be flown.
     #[error(transparent)]
     Configuration(#[from] quadrotor::ConfigurationError),
 }

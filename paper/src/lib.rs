@@ -23,6 +23,7 @@ mod report;
 mod results;
 mod robustness;
 mod tables;
+mod tuning;
 
 pub use constrained_step::{CostResult, ExcessCost, TradeOff};
 pub use design::{DesignResult, design};
@@ -34,3 +35,4 @@ pub use progress::Progress;
 pub use report::{Page, report};
 pub use results::{Results, parts, results, schema};
 pub use robustness::{FLIGHTS, RobustnessResult, shaped_flights};
+pub use tuning::tune;

@@ -7,7 +7,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use paper::bars::Optimum;
-use paper::{Error, FLIGHTS, ModelFile, Progress, parts, png, report, results, schema};
+use paper::{Error, FLIGHTS, ModelFile, Progress, parts, png, report, results, schema, tune};
+use quadrotor::Configuration;
 use rayon::prelude::*;
 
 /// Recomputes the paper's tables and figures, or designs a controller for any model.
@@ -20,6 +21,9 @@ struct Arguments {
     /// Prints the JSON Schema of results.json, and exits.
     #[arg(long, conflicts_with = "gain")]
     schema: bool,
+    /// Compares N, a and the stabilizing feedback of the loops by their cost in flight, and exits.
+    #[arg(long, conflicts_with_all = ["gain", "schema"])]
+    tune: bool,
     /// Optimal flights that xtask/python/optimum.py found, to compare with.
     #[arg(long, value_name = "OPTIMUM.json", conflicts_with_all = ["gain", "schema"])]
     optimum: Option<PathBuf>,
@@ -35,6 +39,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.gain {
         Some(path) => print_gain(path),
+        None if arguments.tune => tune(&Configuration::default()).and_then(|page| print(page.trim_end())),
         None if arguments.schema => print(&json(&schema())),
         None => write_results(&arguments),
     };

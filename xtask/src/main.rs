@@ -59,6 +59,9 @@ enum Task {
         /// Prints gains, closed-loop eigenvalues and condition numbers for the discrete model in this file as JSON instead.
         #[arg(long, value_name = "MODEL.toml")]
         gain: Option<PathBuf>,
+        /// Compares N, a and the stabilizing feedback of the shipped loops by their cost in flight instead.
+        #[arg(long, conflicts_with = "gain")]
+        tune: bool,
     },
     /// Builds the book into target/book; a warning is an error.
     Book,
@@ -86,7 +89,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { merge } => fmu::make(&workspace, &progress, merge, Beside::Nothing).map(|_| ()),
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
-        Task::Paper { gain } => paper::run(&workspace, &progress, gain.as_deref()),
+        Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
         Task::Test => test::run_all(&workspace, &progress),
     }

@@ -12,13 +12,22 @@ use xtask::failure::Failure;
 use xtask::process;
 use xtask::workspace::Workspace;
 
-/// Computes the paper's results in a release build, because it times the controllers; or designs a controller for the model in a file.
-pub fn run(workspace: &Workspace, progress: &Progress, gain: Option<&Path>) -> Result<(), Failure> {
+/// Computes the paper's results in a release build, because it times the controllers; or designs a controller for the model in a file;
+/// or compares designs of the shipped loops.
+pub fn run(
+    workspace: &Workspace,
+    progress: &Progress,
+    gain: Option<&Path>,
+    tune: bool,
+) -> Result<(), Failure> {
     progress.note("Building the program; the first time takes several minutes");
     let mut command = program("run");
     command.arg("--");
     if let Some(model) = gain {
         return ended(command.arg("--gain").arg(model));
+    }
+    if tune {
+        return ended(command.arg("--tune"));
     }
     // Nothing else runs while the controllers are timed.
     let optima = thread::scope(|scope| {

@@ -2,6 +2,7 @@
 #![allow(dead_code)] // Each test binary uses its own selection.
 
 pub mod double_double;
+pub mod explicit_plan;
 pub mod quadratic_problem;
 
 use lmpc::{Augmented, Discretization, LaguerreBasis, StateSpace};

@@ -312,7 +312,7 @@ fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
 
 /// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical
 /// acceleration is `vertical_m_s2`: |a| ≤ tan(0.91 tilt) (g − G).
-fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
+pub(crate) fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
     libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
 }
 
@@ -328,7 +328,7 @@ fn within(wanted: Vector2<f64>, limit: f64) -> Vector2<f64> {
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.
-fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
+pub(crate) fn vertical_range(configuration: &Configuration, upright: f64) -> (f64, f64) {
     let share = upright.max(UPRIGHT) / configuration.believed_mass_kg();
     let (least, most) = thrust_range_n(configuration);
     (GRAVITY_M_S2 - most * share, GRAVITY_M_S2 - least * share)

@@ -13,6 +13,7 @@ use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
 use crate::design::cascade_design::{DesignReport, weighted_design};
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::lagged_attitude_model;
+use crate::design::loop_problem::LoopProblem;
 use crate::design::loop_weights::loop_weights;
 use crate::design::stabilized_law::StabilizedLaw;
 use crate::{Airframe, Configuration, ControllerKind, ControllerSettings, Mixer, PredictionModel};
@@ -59,13 +60,8 @@ impl AttitudeDesign {
         let controllers = &configuration.controllers;
         let settings = &controllers.attitude;
         let bandwidth = AttitudeBandwidth::new(configuration, mixer);
-        let longer = bandwidth.longer.clamp(1.0, LONGEST_TURN);
-        let lean_settings = of_axes(settings, [0, 1], 1.0);
-        let turn_settings = of_axes(settings, [2], longer);
-
+        let longer = longer_turn(&bandwidth);
         let sample_time_s = settings.sample_time_s();
-        let lean_bandwidth = [bandwidth.lean_rad_s; 2].into();
-        let turn_bandwidth = [bandwidth.turn_rad_s].into();
         let kind = controllers.kind;
         let closing_1_s = bandwidth.lean_rad_s / 2.0;
         let last = ATTITUDE.iter().copied().max().unwrap_or(0) as f64;
@@ -74,13 +70,9 @@ impl AttitudeDesign {
             PredictionModel::InnerLoops => {
                 let lag_s = configuration.airframe.rotor_time_constant_s;
                 let axis = lagged_attitude_model(1, lag_s, sample_time_s)?;
-                let both = lagged_attitude_model(2, lag_s, sample_time_s)?;
-                let limits = lean_limits(&configuration.airframe, mixer, ATTITUDE);
-                let lean =
-                    StabilizedLaw::new(kind, &lean_settings, &lean_bandwidth, &limits, SIGHT_RAD, &both)?;
-                let limits = turn_limits(&configuration.airframe, mixer, &later(ATTITUDE, longer));
-                let turn =
-                    StabilizedLaw::new(kind, &turn_settings, &turn_bandwidth, &limits, SIGHT_RAD, &axis)?;
+                let (lean, turn) = attitude_problems(configuration, mixer)?;
+                let lean = StabilizedLaw::new(kind, &lean)?;
+                let turn = StabilizedLaw::new(kind, &turn)?;
                 let design = Self {
                     lean: lean.law,
                     turn: turn.law,
@@ -94,14 +86,14 @@ impl AttitudeDesign {
             PredictionModel::Paper => {
                 let (lean, lean_report) = prompt_law(
                     kind,
-                    &lean_settings,
-                    &lean_bandwidth,
+                    &of_axes(settings, [0, 1], 1.0),
+                    &[bandwidth.lean_rad_s; 2].into(),
                     &lagged_attitude_model(2, 0.0, sample_time_s)?,
                 )?;
                 let (turn, turn_report) = prompt_law(
                     kind,
-                    &turn_settings,
-                    &turn_bandwidth,
+                    &of_axes(settings, [2], longer),
+                    &[bandwidth.turn_rad_s].into(),
                     &lagged_attitude_model(1, 0.0, sample_time_s)?,
                 )?;
                 let design = Self { lean, turn, closing_1_s, sight_s, motion: None, closed: None };
@@ -124,6 +116,37 @@ impl AttitudeDesign {
         };
         depends(one) == depends(other)
     }
+}
+
+/// What the laws of roll and pitch, and of yaw, minimize, on models with the rotors' lag.
+pub(crate) fn attitude_problems(
+    configuration: &Configuration,
+    mixer: &Mixer,
+) -> Result<(LoopProblem<2>, LoopProblem<1>), DesignError> {
+    let settings = &configuration.controllers.attitude;
+    let bandwidth = AttitudeBandwidth::new(configuration, mixer);
+    let longer = longer_turn(&bandwidth);
+    let airframe = &configuration.airframe;
+    let (lag_s, sample_time_s) = (airframe.rotor_time_constant_s, settings.sample_time_s());
+    let lean = LoopProblem::new(
+        &of_axes(settings, [0, 1], 1.0),
+        &[bandwidth.lean_rad_s; 2].into(),
+        lean_limits(airframe, mixer, ATTITUDE),
+        SIGHT_RAD,
+        &lagged_attitude_model(2, lag_s, sample_time_s)?,
+    )?;
+    let turn = LoopProblem::new(
+        &of_axes(settings, [2], longer),
+        &[bandwidth.turn_rad_s].into(),
+        turn_limits(airframe, mixer, &later(ATTITUDE, longer)),
+        SIGHT_RAD,
+        &lagged_attitude_model(1, lag_s, sample_time_s)?,
+    )?;
+    Ok((lean, turn))
+}
+
+fn longer_turn(bandwidth: &AttitudeBandwidth) -> f64 {
+    bandwidth.longer.clamp(1.0, LONGEST_TURN)
 }
 
 /// Settings of some axes, with times that are longer: a, α and λ say what is left after a sample.

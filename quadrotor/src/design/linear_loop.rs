@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Augmented, DesignError, Dlqr, LaguerreBasis, Limit, SignalLimit, StabilizedDesign, StateSpace, Weights,
+    Augmented, DesignError, LaguerreBasis, Limit, SignalLimit, StabilizedDesign, StateSpace, Weights,
 };
 use nalgebra::{DMatrix, SVector, Vector2, Vector3};
 
@@ -15,9 +15,8 @@ use crate::design::attitude_limits::{RotorRoom, lean_limits, turn_limits};
 use crate::design::controller_limits::COMMANDED_TILT_SHARE;
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::{altitude_model_with_lag, lagged_attitude_model};
-use crate::design::loop_weights::loop_weights;
+use crate::design::loop_problem::{LoopProblem, STABILIZING_SHARE};
 use crate::design::position_limits::{horizon_m, position_bounds, position_limits};
-use crate::design::stabilized_law::{slack_cost, stabilizing_gain};
 use crate::design::translation_design::{
     SIGHT_M, altitude_bandwidth_rad_s, over_attitude, position_bandwidth_rad_s,
 };
@@ -135,15 +134,13 @@ impl LinearLoop {
         model: StateSpace,
         sight: f64,
     ) -> Result<Self, DesignError> {
-        let augmented = Augmented::new(&model);
-        let weights = loop_weights(&augmented, settings, bandwidth_rad_s)?;
-        let regulator = Dlqr::new(augmented.a(), augmented.b(), weights.q(), weights.r(), settings.lambda)?;
+        let problem = LoopProblem::new(settings, bandwidth_rad_s, Vec::new(), sight, &model)?;
         Ok(Self {
             sample_time_s: settings.sample_time_s(),
-            stabilizing_gain: stabilizing_gain(&augmented, settings, bandwidth_rad_s)?,
-            slack_cost: slack_cost(&regulator, model.states(), sight),
+            stabilizing_gain: problem.stabilizing_gain(STABILIZING_SHARE)?,
+            slack_cost: problem.slack_cost(),
+            weights: problem.weights().clone(),
             model,
-            weights,
             limits: Vec::new(),
             upper: Vec::new(),
             sight,

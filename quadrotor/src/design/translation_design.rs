@@ -10,6 +10,7 @@ use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSITION_MANY};
 use crate::design::cascade_design::DesignReport;
 use crate::design::linear_models::{altitude_model, altitude_model_with_lag, double_integrators};
+use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{POSITION_STATES, position_limits};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
@@ -52,19 +53,9 @@ pub(crate) fn altitude_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match controllers.model {
         PredictionModel::InnerLoops => {
-            let lag_s = configuration.airframe.rotor_time_constant_s;
-            let model = altitude_model_with_lag(lag_s, sample_time_s)?;
-            let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
-            let (law, report) = StabilizedLaw::new(
-                controllers.kind,
-                settings,
-                &bandwidth,
-                &altitude_limits(),
-                SIGHT_M,
-                &model,
-            )?
-            .law_and_report();
-            let motion = by_motion(controllers.kind, &model, sample_time_s)?;
+            let problem = altitude_problem(configuration)?;
+            let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
+            let motion = by_motion(controllers.kind, problem.model().plant(), sample_time_s)?;
             Ok((TranslationDesign { law, motion }, report))
         }
         PredictionModel::Paper => {
@@ -87,18 +78,9 @@ pub(crate) fn position_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match attitude {
         Some(attitude) => {
-            let model = over_attitude(&attitude, sample_time_s)?;
-            let bandwidth = [position_bandwidth_rad_s(configuration, Some(&attitude)); 2].into();
-            let (law, report) = StabilizedLaw::new(
-                controllers.kind,
-                settings,
-                &bandwidth,
-                &position_limits(),
-                SIGHT_M,
-                &model,
-            )?
-            .law_and_report();
-            let motion = by_motion(controllers.kind, &model, sample_time_s)?;
+            let problem = position_problem(configuration, &attitude)?;
+            let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
+            let motion = by_motion(controllers.kind, problem.model().plant(), sample_time_s)?;
             Ok((TranslationDesign { law, motion }, report))
         }
         None => {
@@ -110,6 +92,26 @@ pub(crate) fn position_design(
         }
     };
     designed().map_err(|source| ConfigurationError::Design { part: "position controller", source })
+}
+
+/// What the altitude controller minimizes, on the model with the rotors' lag.
+pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProblem<1>, DesignError> {
+    let settings = &configuration.controllers.altitude;
+    let lag_s = configuration.airframe.rotor_time_constant_s;
+    let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
+    let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
+    LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)
+}
+
+/// What the position controller minimizes, over a closed attitude loop.
+pub(crate) fn position_problem(
+    configuration: &Configuration,
+    attitude: &AttitudeLoop,
+) -> Result<LoopProblem<2>, DesignError> {
+    let settings = &configuration.controllers.position;
+    let model = over_attitude(attitude, settings.sample_time_s())?;
+    let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
+    LoopProblem::new(settings, &bandwidth, position_limits(), SIGHT_M, &model)
 }
 
 /// Whether all weights are the same in both directions.
