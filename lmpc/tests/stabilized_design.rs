@@ -166,7 +166,7 @@ fn each_precondition_has_its_error() {
     // A plan must decay faster than λᵐ.
     assert!(matches!(
         design(gain, &[LaguerreBasis::new(4, 0.95).unwrap()], 0.9),
-        Err(DesignError::LaguerreScale { .. })
+        Err(DesignError::LaguerreDecay { .. })
     ));
     assert!(matches!(design(gain, std::slice::from_ref(&basis), 1.5), Err(DesignError::Lambda { .. })));
     let nan = DMatrix::from_element(1, 4, f64::NAN);
