@@ -113,8 +113,8 @@ fn small_deviations_grow_as_the_report_says() {
             |c| {
                 // The paper's model does not know the lag that makes a fast loop unstable.
                 c.controllers.model = PredictionModel::Paper;
-                c.controllers.attitude.increment_weight[2] = 1e-5;
-                c.airframe.rotor_time_constant_s = 0.12;
+                c.controllers.attitude.increment_weight[2] = 1e-6;
+                c.airframe.rotor_time_constant_s = 0.06;
             },
             2,
             |outputs| outputs.attitude_rad.z,
