@@ -5,8 +5,8 @@ use crate::{Configuration, GRAVITY_M_S2};
 /// Share of the rotors' thrust that the altitude controller may use: the rest is for the torques.
 pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
 
-/// Share of the tilt limit that is commanded. The attitude overshoots its command by 9 % in the worst of 120 random raw steps: a
-/// vehicle that drops away at its least thrust has less torque.
+/// Share of the tilt limit that is commanded. The attitude overshoots its command by up to 9 % in random raw steps that begin with a
+/// descent: at its least thrust a vehicle has less torque.
 pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.91;
 
 /// Thrust, N, that an attitude target keeps whatever its torques need: what holds the altitude at a tilt of the given cosine, as
