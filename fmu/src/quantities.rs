@@ -58,6 +58,24 @@ pub(crate) const TORQUE_COEFFICIENT: Quantity = quantity(
 );
 pub(crate) const DRAG_COEFFICIENT: Quantity =
     quantity("DragCoefficient", "Drag force per velocity", Some(&NEWTON_SECOND_PER_METRE), None, 0.1);
+pub(crate) const ROTOR_AIR_COEFFICIENT: Quantity = quantity(
+    "RotorAirCoefficient",
+    "Force per rotor speed and velocity",
+    Some(&NEWTON_SECOND_SQUARED_PER_METRE),
+    None,
+    1e-4,
+);
+pub(crate) const LIFT_COEFFICIENT: Quantity = quantity(
+    "LiftCoefficient",
+    "Force per squared velocity",
+    Some(&NEWTON_SECOND_SQUARED_PER_SQUARE_METRE),
+    None,
+    1e-3,
+);
+pub(crate) const VOLTAGE: Quantity = quantity("Voltage", "Voltage", Some(&VOLT), None, 10.0);
+pub(crate) const CURRENT: Quantity = quantity("Current", "Current", Some(&AMPERE), None, 10.0);
+pub(crate) const RESISTANCE: Quantity = quantity("Resistance", "Resistance", Some(&OHM), None, 0.01);
+pub(crate) const CHARGE: Quantity = quantity("Charge", "Charge", Some(&AMPERE_SECOND), Some("A.h"), 1e4);
 
 /// All quantities, in the order of the description.
 pub(crate) const ALL: &[&Quantity] = &[
@@ -79,6 +97,12 @@ pub(crate) const ALL: &[&Quantity] = &[
     &THRUST_COEFFICIENT,
     &TORQUE_COEFFICIENT,
     &DRAG_COEFFICIENT,
+    &ROTOR_AIR_COEFFICIENT,
+    &LIFT_COEFFICIENT,
+    &VOLTAGE,
+    &CURRENT,
+    &RESISTANCE,
+    &CHARGE,
 ];
 
 /// The quantity of a parameter with this name and unit.
@@ -103,6 +127,12 @@ pub(crate) const fn of_parameter(name: &str, unit: Si) -> &'static Quantity {
         Si::NewtonSecondSquared => &THRUST_COEFFICIENT,
         Si::NewtonMetreSecondSquared => &TORQUE_COEFFICIENT,
         Si::NewtonSecondPerMetre => &DRAG_COEFFICIENT,
+        Si::NewtonSecondSquaredPerMetre => &ROTOR_AIR_COEFFICIENT,
+        Si::NewtonSecondSquaredPerSquareMetre => &LIFT_COEFFICIENT,
+        Si::Volt => &VOLTAGE,
+        Si::Ampere => &CURRENT,
+        Si::Ohm => &RESISTANCE,
+        Si::AmpereSecond => &CHARGE,
     }
 }
 

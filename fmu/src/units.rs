@@ -37,3 +37,10 @@ pub(crate) const KILOGRAM_SQUARE_METRE: Unit = unit("kg.m2", &[("kg", "1"), ("m"
 pub(crate) const NEWTON_SECOND_SQUARED: Unit = unit("N.s2", &[("kg", "1"), ("m", "1")], &[]);
 pub(crate) const NEWTON_METRE_SECOND_SQUARED: Unit = unit("N.m.s2", &[("kg", "1"), ("m", "2")], &[]);
 pub(crate) const NEWTON_SECOND_PER_METRE: Unit = unit("N.s/m", &[("kg", "1"), ("s", "-1")], &[]);
+pub(crate) const NEWTON_SECOND_SQUARED_PER_METRE: Unit = unit("N.s2/m", &[("kg", "1")], &[]);
+pub(crate) const NEWTON_SECOND_SQUARED_PER_SQUARE_METRE: Unit =
+    unit("N.s2/m2", &[("kg", "1"), ("m", "-1")], &[]);
+pub(crate) const VOLT: Unit = unit("V", &[("kg", "1"), ("m", "2"), ("s", "-3"), ("A", "-1")], &[]);
+pub(crate) const AMPERE: Unit = unit("A", &[("A", "1")], &[]);
+pub(crate) const OHM: Unit = unit("Ohm", &[("kg", "1"), ("m", "2"), ("s", "-3"), ("A", "-2")], &[]);
+pub(crate) const AMPERE_SECOND: Unit = unit("A.s", &[("s", "1"), ("A", "1")], &[("A.h", 1.0 / 3600.0)]);

@@ -90,18 +90,23 @@ fn every_parameter_is_measured_in_the_engines_unit() {
 /// Each unit's exponents are those of its symbol, and a display unit is as large as its definition says.
 #[test]
 fn units_are_those_of_the_si() {
-    // kg, m, s, rad
+    // kg, m, s, rad, A
     let known = [
-        ("s", [0, 0, 1, 0]),
-        ("kg", [1, 0, 0, 0]),
-        ("m", [0, 1, 0, 0]),
-        ("rad", [0, 0, 0, 1]),
+        ("s", [0, 0, 1, 0, 0]),
+        ("kg", [1, 0, 0, 0, 0]),
+        ("m", [0, 1, 0, 0, 0]),
+        ("rad", [0, 0, 0, 1, 0]),
+        ("A", [0, 0, 0, 0, 1]),
         // 1 N = 1 kg m/s²
-        ("N", [1, 1, -2, 0]),
+        ("N", [1, 1, -2, 0, 0]),
+        // 1 V = 1 N m/(A s)
+        ("V", [1, 2, -3, 0, -1]),
+        // 1 Ω = 1 V/A
+        ("Ohm", [1, 2, -3, 0, -2]),
     ];
     let exponents_of = |symbol: &str| {
         let (product, divisor) = symbol.split_once('/').unwrap_or((symbol, ""));
-        let mut sum = [0; 4];
+        let mut sum = [0; 5];
         for (factors, sign) in [(product, 1), (divisor, -1)] {
             for factor in factors.split('.').filter(|factor| !factor.is_empty()) {
                 let base = factor.trim_end_matches(char::is_numeric);
@@ -123,12 +128,13 @@ fn units_are_those_of_the_si() {
         ("deg/s3", 57.295_779_513_082_32),
         // 60 s over 2π
         ("rpm", 9.549_296_585_513_72),
+        ("A.h", 1.0 / 3600.0),
     ];
     let mut units = HashSet::new();
     for quantity in ClosedLoop::QUANTITIES {
         let Some(unit) = quantity.unit else { continue };
         units.insert(unit.name);
-        let base = ["kg", "m", "s", "rad"].map(|name| {
+        let base = ["kg", "m", "s", "rad", "A"].map(|name| {
             unit.base
                 .iter()
                 .find(|(base, _)| *base == name)
@@ -144,7 +150,7 @@ fn units_are_those_of_the_si() {
         }
         assert!(quantity.nominal > 0.0 && !quantity.description.is_empty(), "{}", quantity.name);
     }
-    assert_eq!(units.len(), 16, "{units:?}");
+    assert_eq!(units.len(), 22, "{units:?}");
 }
 
 /// All quantities are listed, once each, and so is every variable.
@@ -165,7 +171,7 @@ fn names_are_unique_and_quantities_complete() {
     assert_eq!(quantities.len(), ClosedLoop::QUANTITIES.len());
 }
 
-/// Angles within their turn; thrust and rotor speeds not negative; nothing else is bounded but counts and statuses.
+/// Angles within their turn; thrust, rotor speeds and the battery's figures not negative; nothing else is bounded but counts and statuses.
 #[test]
 fn outputs_have_the_ranges_of_their_definitions() {
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -174,7 +180,11 @@ fn outputs_have_the_ranges_of_their_definitions() {
         let expected = match (variable.name, variable.value_type()) {
             ("attitude.phi" | "attitude.psi" | "yaw_error", _) => range(-PI, PI),
             ("attitude.theta", _) => range(-FRAC_PI_2, FRAC_PI_2),
-            (name, Type::Real) if name == "thrust" || name.starts_with("rotor.speed[") => {
+            ("battery.remaining", _) => range(0.0, 1.0),
+            (name, Type::Real)
+                if ["thrust", "battery.voltage", "battery.current"].contains(&name)
+                    || name.starts_with("rotor.speed[") =>
+            {
                 (Some(Value::Real(0.0)), None)
             }
             (_, Type::Real | Type::Boolean) => (None, None),

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Activity, PositionReference};
+use crate::{Activity, BatteryOutput, PositionReference};
 
 /// The observable state at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +25,12 @@ pub struct Outputs {
     pub body_rate_rad_s: Vector3<f64>,
     /// F, the thrust of the four rotors, N.
     pub thrust_n: f64,
-    /// τ_φ, τ_θ, τ_ψ of the four rotors, N·m.
+    /// τ_φ, τ_θ, τ_ψ of the four rotors about the centre of mass, N·m, without those of their spin.
     pub torque_n_m: Vector3<f64>,
     /// Speeds of the rotors in the order of the airframe's layout, rad/s.
     pub rotor_speed_rad_s: [f64; 4],
+    /// Voltage, current and charge of the battery.
+    pub battery: BatteryOutput,
     /// φ and θ that the position controller asks of the attitude controller, rad.
     pub tilt_reference_rad: [f64; 2],
     /// The reference that the cascade tracks, after shaping.

@@ -167,13 +167,14 @@ impl Simulation {
         let plant = self.plant_at(time_us);
         let rotation = plant.body.rotation();
         let (phi, theta, psi) = rotation.euler_angles();
-        let wrench = self.plant.wrench(&plant);
+        let inputs = self.plant_inputs();
+        let wrench = self.plant.wrench(&plant, &inputs);
         let setpoint = control.reference(time_us);
         Outputs {
             time_us,
             position_m: plant.body.position_m,
             velocity_m_s: plant.body.velocity_m_s,
-            acceleration_m_s2: self.plant.acceleration_m_s2(&plant, &self.plant_inputs()),
+            acceleration_m_s2: self.plant.acceleration_m_s2(&plant, &inputs),
             body_velocity_m_s: rotation.inverse_transform_vector(&plant.body.velocity_m_s),
             attitude_rad: Vector3::new(phi, theta, psi),
             quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
@@ -181,6 +182,7 @@ impl Simulation {
             thrust_n: wrench.thrust_n,
             torque_n_m: wrench.torque_n_m,
             rotor_speed_rad_s: plant.rotor_speed_rad_s,
+            battery: self.plant.battery(&plant),
             tilt_reference_rad: control.tilt_reference_rad(),
             setpoint,
             tracking_error_m: plant.body.position_m - setpoint.position_m,

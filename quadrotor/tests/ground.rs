@@ -108,6 +108,7 @@ fn a_landing_does_not_gain_energy() {
         velocity_m_s: [0.8, -0.3, 0.0],
         attitude_rad: [0.05, -0.03, 0.4],
         body_rate_rad_s: [0.0, 0.0, 1.0],
+        ..InitialState::default()
     };
     let mut state = PlantState::at_rest(&initial);
     let mut before = energy(&state);

@@ -120,6 +120,19 @@ struct Bump {
     torque_n_m: f64,
 }
 
+/// A value of what a vehicle has none of by default: in cruise, about a tenth of a newton.
+fn small(name: &str) -> f64 {
+    match name {
+        "airframe.rotor.inertia" => 2e-5,
+        "airframe.rotor.drag_coefficient" | "airframe.rotor.inflow_coefficient" => 2e-5,
+        "airframe.rotor.lift_coefficient" => 1e-3,
+        _ if name.starts_with("airframe.body_drag.") => 0.02,
+        _ if name.starts_with("airframe.inertia.") => 2e-3,
+        _ if name.starts_with("airframe.centre_of_gravity.") => 0.003,
+        _ => 0.5,
+    }
+}
+
 /// Values to change a parameter to: on both sides of the present one where there are two.
 fn values(parameter: &Parameter, configuration: &Configuration) -> Vec<Configuration> {
     let mut results = Vec::new();
@@ -140,7 +153,7 @@ fn values(parameter: &Parameter, configuration: &Configuration) -> Vec<Configura
                 _ => [0.8, 1.25],
             };
             if present == 0.0 {
-                with(&|changed| set(changed, 0.5));
+                with(&|changed| set(changed, small(parameter.name)));
             }
             for factor in factors {
                 with(&|changed| set(changed, (present * factor).clamp(minimum, maximum)));

@@ -41,9 +41,9 @@ pub(super) const INPUTS: [Variable<ClosedLoop>; 21] = [
     real!("disturbance.torque.x", TORQUE, 1e3, disturbance.torque_n_m.x, "Torque about the forward axis"),
     real!("disturbance.torque.y", TORQUE, 1e3, disturbance.torque_n_m.y, "Torque about the right axis"),
     real!("disturbance.torque.z", TORQUE, 1e3, disturbance.torque_n_m.z, "Torque about the down axis of the body"),
-    real!("wind.velocity.x", VELOCITY, 200.0, disturbance.wind_m_s.x, "Wind velocity north; acts through airframe.drag"),
-    real!("wind.velocity.y", VELOCITY, 200.0, disturbance.wind_m_s.y, "Wind velocity east; acts through airframe.drag"),
-    real!("wind.velocity.z", VELOCITY, 200.0, disturbance.wind_m_s.z, "Wind velocity down; acts through airframe.drag"),
+    real!("wind.velocity.x", VELOCITY, 200.0, disturbance.wind_m_s.x, "Wind velocity north; acts through airframe.drag, airframe.body_drag and the rotors' coefficients"),
+    real!("wind.velocity.y", VELOCITY, 200.0, disturbance.wind_m_s.y, "Wind velocity east; acts through airframe.drag, airframe.body_drag and the rotors' coefficients"),
+    real!("wind.velocity.z", VELOCITY, 200.0, disturbance.wind_m_s.z, "Wind velocity down; acts through airframe.drag, airframe.body_drag and the rotors' coefficients"),
     Variable::<ClosedLoop>::input("armed", "Whether the vehicle is armed, so that its rotors turn", Field::Boolean {
         get: |inputs| inputs.armed,
         set: |inputs, value| inputs.armed = value,

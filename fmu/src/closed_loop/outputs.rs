@@ -9,7 +9,8 @@ use quadrotor::{ControllerActivity, ControllerStatus as Status, Outputs};
 
 use super::ClosedLoop;
 use crate::quantities::{
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, FORCE, NUMBER, POSITION, ROTOR_SPEED, TORQUE, VELOCITY,
+    ACCELERATION, ANGLE, ANGULAR_VELOCITY, CURRENT, FORCE, NUMBER, POSITION, ROTOR_SPEED, TORQUE, VELOCITY,
+    VOLTAGE,
 };
 
 const fn output(
@@ -90,13 +91,16 @@ const ATTITUDE: &[&str] = &["initial.attitude."];
 const BODY_VELOCITY: &[&str] = &["initial.velocity.", "initial.attitude."];
 // The rotors begin at hover speed when armed.
 const ROTOR_SPEEDS: &[&str] = &["armed", "airframe.mass", "airframe.rotor.thrust_coefficient"];
-const WRENCH: &[&str] = &["armed", "airframe.mass", "airframe.arm_length", "airframe.rotor."];
+// Of rotors in moving air, and close to the ground.
+const WRENCH: &[&str] = &["armed", "airframe.", "wind.velocity.", "environment.", "initial."];
+const BATTERY: &[&str] =
+    &["armed", "airframe.mass", "airframe.rotor.", "airframe.battery.", "initial.discharge"];
 const ACCELERATIONS: &[&str] =
     &["armed", "airframe.", "disturbance.force.", "wind.velocity.", "environment.", "initial."];
 const TILT_REFERENCE: &[&str] = NOTHING;
 
 #[rustfmt::skip]
-pub(super) const OUTPUTS: [Variable<ClosedLoop>; 55] = [
+pub(super) const OUTPUTS: [Variable<ClosedLoop>; 58] = [
     output("position.x", &POSITION, &["initial.position.x"], |outputs| outputs.position_m.x, "Position north"),
     output("position.y", &POSITION, &["initial.position.y"], |outputs| outputs.position_m.y, "Position east"),
     output("position.z", &POSITION, &["initial.position.z"], |outputs| outputs.position_m.z, "Position down"),
@@ -127,6 +131,9 @@ pub(super) const OUTPUTS: [Variable<ClosedLoop>; 55] = [
     at_least(output("rotor.speed[2]", &ROTOR_SPEED, ROTOR_SPEEDS, |outputs| outputs.rotor_speed_rad_s[1], "Speed of the right rotor"), 0.0),
     at_least(output("rotor.speed[3]", &ROTOR_SPEED, ROTOR_SPEEDS, |outputs| outputs.rotor_speed_rad_s[2], "Speed of the back rotor"), 0.0),
     at_least(output("rotor.speed[4]", &ROTOR_SPEED, ROTOR_SPEEDS, |outputs| outputs.rotor_speed_rad_s[3], "Speed of the left rotor"), 0.0),
+    at_least(output("battery.voltage", &VOLTAGE, BATTERY, |outputs| outputs.battery.voltage_v, "Voltage of the battery"), 0.0),
+    at_least(output("battery.current", &CURRENT, BATTERY, |outputs| outputs.battery.current_a, "Current from the battery to the motors"), 0.0),
+    within(output("battery.remaining", &NUMBER, BATTERY, |outputs| outputs.battery.remaining, "Remaining share of the battery's charge; 1 without airframe.battery.sag"), 0.0, 1.0),
     output("tilt_reference.phi", &ANGLE, TILT_REFERENCE, |outputs| outputs.tilt_reference_rad[0], "Roll angle commanded by the position controller"),
     output("tilt_reference.theta", &ANGLE, TILT_REFERENCE, |outputs| outputs.tilt_reference_rad[1], "Pitch angle commanded by the position controller"),
     output("setpoint.position.x", &POSITION, &["initial.position.x"], |outputs| outputs.setpoint.position_m.x, "Position set-point north, after shaping"),

@@ -51,6 +51,7 @@ impl Circumstances {
             velocity_m_s: [even(velocity), even(velocity), even(velocity)],
             attitude_rad: [even(tilt), even(tilt), even(PI)],
             body_rate_rad_s: [even(rate), even(rate), even(rate)],
+            ..InitialState::default()
         };
         let mass_share = 1.0 + even(MASS_SHARE);
         let (direction, wind_m_s) = (even(PI), (WIND_M_S + even(WIND_M_S)) / 2.0);

@@ -63,6 +63,19 @@ pub enum ConfigurationError {
         /// Where the limit comes from.
         reason: &'static str,
     },
+    /// No rigid body has this inertia tensor.
+    #[error(
+        "airframe.inertia is no rigid body's: its principal moments {smallest:.3e}, {middle:.3e} and {largest:.3e} kg*m^2 must be \
+         positive, and each at most the sum of the other two; reduce airframe.inertia.xy, .xz and .yz"
+    )]
+    Inertia {
+        /// The smallest principal moment, kg·m².
+        smallest: f64,
+        /// The middle one, kg·m².
+        middle: f64,
+        /// The largest one, kg·m².
+        largest: f64,
+    },
     /// A controller or the Kalman predictor cannot be designed.
     #[error("cannot design the {part}: {source}")]
     Design {

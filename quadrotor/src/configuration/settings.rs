@@ -56,6 +56,9 @@ pub struct InitialState {
     pub attitude_rad: [f64; 3],
     /// Body rates p, q, r in FRD, rad/s.
     pub body_rate_rad_s: [f64; 3],
+    /// Drawn share of the battery's charge: 0 is full.
+    #[serde(default)]
+    pub discharge: f64,
 }
 
 /// How references are treated before the cascade sees them.

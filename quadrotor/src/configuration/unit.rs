@@ -37,6 +37,18 @@ pub enum Unit {
     NewtonMetreSecondSquared,
     /// N·s/m
     NewtonSecondPerMetre,
+    /// N·s²/m
+    NewtonSecondSquaredPerMetre,
+    /// N·s²/m²
+    NewtonSecondSquaredPerSquareMetre,
+    /// V
+    Volt,
+    /// A
+    Ampere,
+    /// Ω
+    Ohm,
+    /// A·s
+    AmpereSecond,
 }
 
 impl Unit {
@@ -60,6 +72,12 @@ impl Unit {
             Self::NewtonSecondSquared => "N s^2",
             Self::NewtonMetreSecondSquared => "Nm s^2",
             Self::NewtonSecondPerMetre => "N s/m",
+            Self::NewtonSecondSquaredPerMetre => "N s^2/m",
+            Self::NewtonSecondSquaredPerSquareMetre => "N s^2/m^2",
+            Self::Volt => "V",
+            Self::Ampere => "A",
+            Self::Ohm => "Ohm",
+            Self::AmpereSecond => "A s",
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
-    Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS, Parameter,
-    Quantity,
+    Airframe, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer, Mutability, PARAMETERS,
+    Parameter, Quantity,
 };
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -62,6 +62,10 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
         });
     }
     validate_inertia(&airframe.inertia_kg_m2)?;
+    validate_products_of_inertia(airframe)?;
+    validate_rotor_inertia(airframe)?;
+    validate_centre_of_gravity(airframe, largest_n_m)?;
+    validate_battery(airframe)?;
     validate_spin(configuration, largest_n_m)?;
     validate_start(configuration)?;
     validate_sample_times(&configuration.controllers)
@@ -93,6 +97,80 @@ fn validate_inertia([x, y, z]: &[f64; 3]) -> Result<(), ConfigurationError> {
         }
     }
     Ok(())
+}
+
+/// Products of inertia must leave a tensor that a rigid body can have. Moments alone are not refused: the stability report
+/// warns of those that contradict one another.
+fn validate_products_of_inertia(airframe: &Airframe) -> Result<(), ConfigurationError> {
+    if airframe.has_principal_axes() || airframe.has_physical_inertia() {
+        return Ok(());
+    }
+    let [smallest, middle, largest] = airframe.principal_moments_kg_m2();
+    Err(ConfigurationError::Inertia { smallest, middle, largest })
+}
+
+/// The rotors turn with the body, too: its moment about the down axis contains theirs.
+fn validate_rotor_inertia(airframe: &Airframe) -> Result<(), ConfigurationError> {
+    let [_, _, z] = airframe.inertia_kg_m2;
+    let value = airframe.rotor_spin.inertia_kg_m2;
+    if value <= z / 4.0 {
+        return Ok(());
+    }
+    Err(ConfigurationError::Inconsistent {
+        name: "airframe.rotor.inertia",
+        value: Quantity { value, unit: "kg*m^2" },
+        relation: "at most",
+        limit: rounded_down(z / 4.0, "kg*m^2"),
+        reason: "airframe.inertia.z includes all four rotors",
+    })
+}
+
+/// Share of the roll and pitch torques in hover that an offset centre of gravity may take; the rest is left for control.
+const MOST_TRIM: f64 = 0.5;
+
+/// The rotors must balance the weight about their centre, with torque to spare.
+fn validate_centre_of_gravity(
+    airframe: &Airframe,
+    [roll_n_m, pitch_n_m, _]: [f64; 3],
+) -> Result<(), ConfigurationError> {
+    let [x_m, y_m, _] = airframe.centre_of_gravity_m;
+    // A weight ahead of the rotors' centre pitches, one beside it rolls.
+    let most_m = [pitch_n_m, roll_n_m].map(|torque_n_m| MOST_TRIM * torque_n_m / airframe.weight_n());
+    let shares = [libm::fabs(x_m) / most_m[0], libm::fabs(y_m) / most_m[1]];
+    if shares[0] + shares[1] <= 1.0 {
+        return Ok(());
+    }
+    let axis = usize::from(shares[1] > shares[0]);
+    let left = (1.0 - shares[1 - axis]).max(0.0);
+    let limit = if left > 0.0 { rounded_down(left * most_m[axis], "m").value } else { 0.0 };
+    Err(ConfigurationError::Inconsistent {
+        name: ["airframe.centre_of_gravity.x", "airframe.centre_of_gravity.y"][axis],
+        value: Quantity { value: [x_m, y_m][axis], unit: "m" },
+        relation: "within ±",
+        limit: Quantity { value: limit, unit: "m" },
+        reason: "balancing more takes over half of the roll and pitch torque in hover",
+    })
+}
+
+/// The full battery must turn the rotors fast enough to carry the weight with thrust to spare.
+fn validate_battery(airframe: &Airframe) -> Result<(), ConfigurationError> {
+    if !airframe.battery.sag {
+        return Ok(());
+    }
+    let (_, strongest_n) = airframe.thrust_range_n();
+    // Thrust goes with the square of the speed, and speed with the voltage.
+    let least = libm::sqrt(airframe.weight_n() / (USABLE_THRUST_SHARE * strongest_n));
+    let most_ohm = airframe.largest_resistance_ohm(least);
+    if airframe.battery.resistance_ohm <= most_ohm {
+        return Ok(());
+    }
+    Err(ConfigurationError::Inconsistent {
+        name: "airframe.battery.resistance",
+        value: Quantity { value: airframe.battery.resistance_ohm, unit: "Ohm" },
+        relation: "at most",
+        limit: rounded_down(most_ohm, "Ohm"),
+        reason: "with more the voltage in hover is too low to carry the vehicle; raise airframe.battery.voltage",
+    })
 }
 
 /// Angular rate, rad/s, that the largest torques in hover may spin the vehicle up to within a sample of the attitude

@@ -33,12 +33,12 @@ impl RotorMonitor {
         measured_rad_s: &[f64; 4],
         dt_s: f64,
     ) -> Option<usize> {
-        let share = -libm::expm1(-dt_s / airframe.rotor_time_constant_s);
         let rotors = self.expected_rad_s.iter_mut().zip(&mut self.different_for_s);
         let mut lost = None;
         for (index, ((expected, different_for), (command, measured))) in
             rotors.zip(command_rad_s.iter().zip(measured_rad_s)).enumerate()
         {
+            let share = -libm::expm1(-dt_s / airframe.lag_s(*command, *expected));
             *expected += (command - *expected) * share;
             let difference = libm::fabs(measured - *expected);
             let differs = difference > (DIFFERENT_SHARE * *expected).max(DIFFERENT_RAD_S);
@@ -84,6 +84,23 @@ mod tests {
     fn a_stopped_rotor_is_found_within_a_tenth_of_a_second() {
         let found = found_after_s(0.0).expect("found");
         assert!((0.05..0.08).contains(&found), "{found}");
+    }
+
+    /// Speeds that fall with their own, long lag are as expected; a sound lag in place of it is not.
+    #[test]
+    fn a_slow_fall_is_no_loss() {
+        let slow = crate::RotorSpin { fall_time_ratio: 5.0, ..crate::RotorSpin::default() };
+        for (rotor_spin, found) in [(slow, false), (crate::RotorSpin::default(), true)] {
+            let airframe = Airframe { rotor_spin, ..Airframe::default() };
+            let mut measured = [400.0_f64; 4];
+            let mut monitor = RotorMonitor::new(measured);
+            let mut lost = None;
+            for _ in 0..500 {
+                measured = measured.map(|speed| speed + (100.0 - speed) * (1.0 - libm::exp(-0.001 / 0.15)));
+                lost = lost.or(monitor.update(&airframe, &[100.0; 4], &measured, 0.001));
+            }
+            assert_eq!(lost.is_some(), found);
+        }
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The vehicle's physical constants.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::RotorLayout;
+use crate::{BatteryPack, RotorAerodynamics, RotorLayout, RotorSpin};
 
 /// Standard acceleration of free fall, m/s² (ISO 80000-3). The paper writes g and gives no number.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
@@ -12,13 +13,21 @@ pub const GRAVITY_M_S2: f64 = 9.806_65;
 pub struct Airframe {
     /// m, kg.
     pub mass_kg: f64,
-    /// l, the unit of length of the layout, m: in "+", "X" and "H" the distance of each rotor from the centre of mass.
+    /// l, the unit of length of the layout, m: in "+", "X" and "H" the distance of each rotor from the rotors' centre.
     pub arm_length_m: f64,
     /// Where the rotors are and which way they turn: "+" unless it is given.
     #[serde(default)]
     pub layout: RotorLayout,
     /// Diagonal of the inertia tensor J_x, J_y, J_z, kg·m².
     pub inertia_kg_m2: [f64; 3],
+    /// Its other entries J_xy, J_xz, J_yz, kg·m²: J_xy = −∫ x y dm, the sign that URDF and SDF have.
+    #[serde(default)]
+    pub products_of_inertia_kg_m2: [f64; 3],
+    /// Place of the centre of mass, FRD from the rotors' centre, m. Position and velocity of the vehicle are those of the
+    /// centre of mass, and so is what instruments measure; the inertia tensor is about it; disturbance forces act there.
+    /// Thrusts act at the rotors and drag at the rotors' centre. The controllers take the offset for a disturbance.
+    #[serde(default)]
+    pub centre_of_gravity_m: [f64; 3],
     /// k₁ of (1), thrust per squared rotor speed, N·s².
     pub thrust_coefficient_n_s2: f64,
     /// k₂ of (1), drag torque per squared rotor speed, N·m·s².
@@ -29,8 +38,20 @@ pub struct Airframe {
     pub rotor_speed_max_rad_s: f64,
     /// Time constant of the first-order lag from commanded to actual rotor speed, s.
     pub rotor_time_constant_s: f64,
+    /// What the rotors' motors and masses do beside the lag.
+    #[serde(default)]
+    pub rotor_spin: RotorSpin,
+    /// What the air does to the rotors beside their static thrust.
+    #[serde(default)]
+    pub rotor_aerodynamics: RotorAerodynamics,
     /// Linear drag along the world axes north, east, down, N·s/m.
     pub drag_n_s_m: [f64; 3],
+    /// Linear drag along the body axes forward, right, down, N·s/m, in addition.
+    #[serde(default)]
+    pub body_drag_n_s_m: [f64; 3],
+    /// What the motors draw their power from.
+    #[serde(default)]
+    pub battery: BatteryPack,
 }
 
 /// The paper's Table 1, and our choice of what it leaves out:
@@ -45,6 +66,7 @@ pub struct Airframe {
 /// | ω max | 450 rad/s | thrust to weight of 3.2, usual for a vehicle that must carry a load |
 /// | rotor lag | 0.03 s | brushless motor with a propeller of this size |
 /// | drag | 0 | the paper has none |
+/// | all else | none | the paper has none: principal axes, centre of mass amid the rotors, massless rotors, ideal battery |
 impl Default for Airframe {
     fn default() -> Self {
         Self {
@@ -52,12 +74,18 @@ impl Default for Airframe {
             arm_length_m: 0.275,
             layout: RotorLayout::plus(),
             inertia_kg_m2: [0.1063, 0.1063, 0.2122],
+            products_of_inertia_kg_m2: [0.0; 3],
+            centre_of_gravity_m: [0.0; 3],
             thrust_coefficient_n_s2: 2.7e-5,
             torque_coefficient_n_m_s2: 6.0e-7,
             rotor_speed_min_rad_s: 50.0,
             rotor_speed_max_rad_s: 450.0,
             rotor_time_constant_s: 0.03,
+            rotor_spin: RotorSpin::default(),
+            rotor_aerodynamics: RotorAerodynamics::default(),
             drag_n_s_m: [0.0; 3],
+            body_drag_n_s_m: [0.0; 3],
+            battery: BatteryPack::default(),
         }
     }
 }
@@ -82,6 +110,19 @@ impl Airframe {
     pub fn thrust_range_n(&self) -> (f64, f64) {
         let thrust = |speed: f64| 4.0 * self.thrust_coefficient_n_s2 * speed * speed;
         (thrust(self.rotor_speed_min_rad_s), thrust(self.rotor_speed_max_rad_s))
+    }
+}
+
+impl Airframe {
+    /// Whether the centre of mass lies amid the rotors.
+    pub(crate) fn is_centred(&self) -> bool {
+        self.centre_of_gravity_m == [0.0; 3]
+    }
+
+    /// Places of the rotors, FRD from the centre of mass, m.
+    pub(crate) fn rotor_places_m(&self) -> [Vector3<f64>; 4] {
+        let (l, centre_of_gravity) = (self.arm_length_m, Vector3::from(self.centre_of_gravity_m));
+        self.layout.rotors.map(|rotor| Vector3::new(l * rotor.x, l * rotor.y, 0.0) - centre_of_gravity)
     }
 }
 

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use crate::plant::ground::{contact, is_held};
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
-use crate::{Airframe, Environment, Wrench, wrench_of_rotors};
+use crate::plant::rotor_forces::{RotorForces, Surroundings};
+use crate::{Airframe, BatteryOutput, Environment, External, Wrench};
 
 /// The vehicle without its controllers: equations and constants, no state.
 ///
@@ -40,9 +41,16 @@ impl Plant {
         &self.airframe
     }
 
-    /// Thrust and torques that the rotors make now.
-    pub fn wrench(&self, state: &PlantState) -> Wrench {
-        wrench_of_rotors(&self.airframe, &state.rotor_speed_rad_s)
+    /// Thrust and torques about the centre of mass that drive the body now: those of the rotors, or the ones in their place.
+    /// The torques of spinning rotors ([`RotorSpin`](crate::RotorSpin)) are not among them.
+    pub fn wrench(&self, state: &PlantState, inputs: &PlantInputs) -> Wrench {
+        self.loads(state, inputs).0
+    }
+
+    /// What the battery gives now.
+    pub fn battery(&self, state: &PlantState) -> BatteryOutput {
+        let power_w = self.airframe.electric_power_w(&state.rotor_speed_rad_s);
+        self.airframe.battery.output(power_w, state.discharge)
     }
 
     /// Acceleration in NED, m/s²; none along the ground while static friction holds the vehicle.
@@ -51,42 +59,75 @@ impl Plant {
         if self.is_held(state, inputs) { Vector3::new(0.0, 0.0, acceleration.z) } else { acceleration }
     }
 
-    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it.
+    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it. Its
+    /// slope jumps where a foot touches the ground, where a rotor with different lags meets its command, and where the
+    /// thrust or the voltage reaches a bound.
     /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
     /// [`Plant::step`] adds the rule that holds it still.
     pub fn derivative(&self, state: &PlantState, inputs: &PlantInputs) -> PlantState {
         let airframe = &self.airframe;
-        let mut external = inputs.disturbance.external(airframe, &state.body.velocity_m_s);
+        let (wrench, mut external) = self.loads(state, inputs);
         if self.ground_plane {
             let ground = contact(airframe, &state.body);
             external.force_n += ground.force_n;
             external.torque_n_m += ground.torque_n_m;
         }
         PlantState {
-            body: state.body.derivative(airframe, &self.driving_wrench(state, inputs), &external),
+            body: state.body.derivative(airframe, &wrench, &external),
             rotor_speed_rad_s: self.rotor_acceleration_rad_s2(state, inputs),
+            discharge: self.discharge_rate(state, inputs),
         }
     }
 
-    /// ω̇ = (ω_command − ω) / τ, as far as the rotors are sound.
+    /// ω̇ = (ω_goal − ω) / τ, as far as the rotors are sound.
     fn rotor_acceleration_rad_s2(&self, state: &PlantState, inputs: &PlantInputs) -> [f64; 4] {
-        let Actuation::RotorSpeeds(command_rad_s) = inputs.actuation else { return [0.0; 4] };
+        let Actuation::RotorSpeeds(mut command_rad_s) = inputs.actuation else { return [0.0; 4] };
+        if self.airframe.battery.sag {
+            let share = self.airframe.battery.speed_share(self.battery(state).voltage_v);
+            command_rad_s = command_rad_s.map(|command| command * share);
+        }
         core::array::from_fn(|rotor| {
             let present = state.rotor_speed_rad_s[rotor];
             let goal = match inputs.rotor_faults[rotor] {
                 Some(fault) => fault.goal_rad_s(command_rad_s[rotor], present),
                 None => command_rad_s[rotor],
             };
-            (goal - present) / self.airframe.rotor_time_constant_s
+            (goal - present) / self.airframe.lag_s(goal, present)
         })
     }
 
-    /// Thrust and torques that drive the body.
-    fn driving_wrench(&self, state: &PlantState, inputs: &PlantInputs) -> Wrench {
+    /// Share of the battery's charge that is drawn per second.
+    fn discharge_rate(&self, state: &PlantState, inputs: &PlantInputs) -> f64 {
         match inputs.actuation {
-            Actuation::RotorSpeeds(_) => self.wrench(state),
-            Actuation::Wrench(wrench) => wrench,
+            Actuation::RotorSpeeds(_) if self.airframe.battery.sag => {
+                self.battery(state).current_a / self.airframe.battery.capacity_a_s
+            }
+            _ => 0.0,
         }
+    }
+
+    /// All that acts on the body but gravity and the ground: thrust and torques that drive it, and the rest.
+    fn loads(&self, state: &PlantState, inputs: &PlantInputs) -> (Wrench, External) {
+        let (airframe, disturbance) = (&self.airframe, &inputs.disturbance);
+        let mut external = airframe.drag(&state.body, &disturbance.wind_m_s);
+        external.force_n += disturbance.force_n;
+        external.torque_n_m += disturbance.torque_n_m;
+        if let Actuation::Wrench(wrench) = inputs.actuation {
+            return (wrench, external);
+        }
+        let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_plane: self.ground_plane };
+        let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around);
+        if lateral_n != Vector3::zeros() {
+            external.force_n += state.body.rotation() * lateral_n;
+        }
+        if airframe.rotor_spin.inertia_kg_m2 > 0.0 {
+            external.torque_n_m += airframe.spin_torque_n_m(
+                &state.body.body_rate_rad_s,
+                &state.rotor_speed_rad_s,
+                &self.rotor_acceleration_rad_s2(state, inputs),
+            );
+        }
+        (wrench, external)
     }
 
     /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
@@ -116,8 +157,7 @@ impl Plant {
         // What it would be pulled by at rest.
         let mut still = *state;
         hold(&mut still);
-        let wrench = self.driving_wrench(&still, inputs);
-        let mut pull = inputs.disturbance.external(&self.airframe, &still.body.velocity_m_s);
+        let (wrench, mut pull) = self.loads(&still, inputs);
         pull.force_n += still.body.rotation() * Vector3::new(0.0, 0.0, -wrench.thrust_n);
         pull.torque_n_m += wrench.torque_n_m;
         is_held(&self.airframe, &state.body, &pull)

@@ -19,8 +19,8 @@ const FRICTION_SLIP_M_S: f64 = 0.1;
 /// mass; from 3 cm on the contact would throw it up.
 const DEEPEST_START_M: f64 = 0.01;
 
-/// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one in place of each rotor, level with the
-/// centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
+/// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one below, or above, each rotor, level with
+/// the centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
 ///
 /// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`is_held`] decides when static
 /// friction holds the vehicle instead.
@@ -44,7 +44,7 @@ pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
 /// Whether static friction holds the vehicle where it is: all feet carry load, it slips more slowly than sliding friction
 /// needs to develop, and the feet together can take the `pull`, which is all force and torque but the ground's and gravity.
 pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
-    let reach_m = airframe.arm_length_m * airframe.layout.reach();
+    let reach_m = reach_m(airframe);
     let slip_m_s = body.velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z) * reach_m;
     if is_above(airframe, body) || slip_m_s >= FRICTION_SLIP_M_S {
         return false;
@@ -52,7 +52,8 @@ pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) ->
     let rotation = body.rotation();
     let normals = feet(airframe)
         .map(|foot| footing(airframe, body, &rotation, &foot).map_or(0.0, |(normal, _)| normal));
-    // A foot at the nearest rotor bears |f|/4 + |τ|/4r of at most μ N/4.
+    // A foot at the nearest rotor bears |f|/4 + |τ|/4r of at most μ N/4. With an offset centre of gravity the feet bear
+    // unequal loads, and this is an approximation.
     let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
     let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
     let load_n: f64 = normals.iter().sum();
@@ -70,13 +71,18 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) ->
 
 /// Whether no foot can touch the ground in any attitude.
 fn is_above(airframe: &Airframe, body: &RigidBody) -> bool {
-    body.position_m.z < -airframe.arm_length_m * airframe.layout.reach()
+    body.position_m.z < -reach_m(airframe)
 }
 
-/// Feet below the rotors, FRD, m.
+/// No foot is farther from the centre of mass, m.
+fn reach_m(airframe: &Airframe) -> f64 {
+    let [x, y, _] = airframe.centre_of_gravity_m;
+    airframe.arm_length_m * airframe.layout.reach() + libm::hypot(x, y)
+}
+
+/// Feet in line with the rotors, FRD from the centre of mass, m.
 fn feet(airframe: &Airframe) -> [Vector3<f64>; 4] {
-    let l = airframe.arm_length_m;
-    airframe.layout.rotors.map(|rotor| Vector3::new(l * rotor.x, l * rotor.y, 0.0))
+    airframe.rotor_places_m().map(|place| Vector3::new(place.x, place.y, 0.0))
 }
 
 /// Load of a foot, N, and its velocity, NED, m/s, if it touches the ground.

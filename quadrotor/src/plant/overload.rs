@@ -35,7 +35,7 @@ impl Disturbance {
         ];
         let thrust_n = airframe.thrust_range_n().1;
         // A wind pushes as hard as the thrust at thrust / drag; without drag it does not push.
-        let wind_m_s = airframe.drag_n_s_m.map(|drag| thrust_n / drag);
+        let wind_m_s = airframe.hover_drag_n_s_m().map(|drag| thrust_n / drag);
         let groups = [
             (self.force_n, [thrust_n; 3], "N"),
             (self.torque_n_m, airframe.largest_torques_n_m(), "N·m"),

@@ -9,8 +9,8 @@ use crate::{Disturbance, RotorFault, Wrench};
 pub enum Actuation {
     /// Commanded speeds of the rotors, rad/s, which follow with their lag.
     RotorSpeeds([f64; 4]),
-    /// Thrust and torques at once, as if made by rotors without lag; the rotors' own speeds stay as they are, and their
-    /// faults do not matter.
+    /// Thrust and torques at once, in place of the rotors: their own speeds stay as they are, and neither their faults nor
+    /// their spin, the air around them or the battery matter.
     Wrench(Wrench),
 }
 

@@ -11,13 +11,16 @@ const LARGEST: f64 = 1e12;
 /// Largest body rate, rad/s: ten radians in an integration step, whose result means nothing any more.
 const FASTEST: f64 = 1e4;
 
-/// Rigid body and rotor speeds, or their time derivatives.
+/// Rigid body, rotor speeds and battery, or their time derivatives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlantState {
     /// The rigid body.
     pub body: RigidBody,
     /// Speeds of the rotors in the order of the airframe's layout, rad/s.
     pub rotor_speed_rad_s: [f64; 4],
+    /// Drawn share of the battery's charge: 0 is full. Constant without [`BatteryPack::sag`](crate::BatteryPack::sag).
+    #[serde(default)]
+    pub discharge: f64,
 }
 
 impl PlantState {
@@ -32,6 +35,7 @@ impl PlantState {
                 body_rate_rad_s: initial.body_rate_rad_s.into(),
             },
             rotor_speed_rad_s: [0.0; 4],
+            discharge: initial.discharge,
         }
     }
 
@@ -48,6 +52,7 @@ impl PlantState {
             rotor_speed_rad_s: core::array::from_fn(|rotor| {
                 self.rotor_speed_rad_s[rotor] + derivative.rotor_speed_rad_s[rotor] * h_s
             }),
+            discharge: self.discharge + derivative.discharge * h_s,
         }
     }
 
@@ -61,8 +66,8 @@ impl PlantState {
     /// soon not be finite either: 10⁴ rad/s of a body rate, 10¹² in SI units of all others.
     pub fn has_diverged(&self) -> bool {
         let RigidBody { position_m, velocity_m_s, attitude, body_rate_rad_s } = &self.body;
-        let mut numbers =
-            position_m.iter().chain(velocity_m_s).chain(&attitude.coords).chain(&self.rotor_speed_rad_s);
+        let body = position_m.iter().chain(velocity_m_s).chain(&attitude.coords);
+        let mut numbers = body.chain(&self.rotor_speed_rad_s).chain([&self.discharge]);
         // NaN is in no range.
         let within = |most: f64| move |number: &f64| (-most..=most).contains(number);
         !(numbers.all(within(LARGEST)) && body_rate_rad_s.iter().all(within(FASTEST)))

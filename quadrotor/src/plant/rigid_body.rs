@@ -37,7 +37,6 @@ impl RigidBody {
     pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench, external: &External) -> Self {
         // R of (2). Inside an integration step the quaternion is not exactly unit: normalise.
         let rotation = self.rotation();
-        let inertia = Vector3::from(airframe.inertia_kg_m2);
         let rate = self.body_rate_rad_s;
 
         // World frame NED: v̇ = g e₃ − (F/m) R e₃ + f/m. With v = R [u v w]ᵀ this is the first line of (3).
@@ -48,14 +47,12 @@ impl RigidBody {
         // q̇ = ½ q ⊗ [0, p, q, r]: the second line of (2) without its singularity at θ = ±90°
         let attitude_rate = self.attitude * Quaternion::from_imag(rate) * 0.5;
 
-        // Body frame FRD: J ω̇ = τ − ω × Jω, the second line of (3)
-        let torque = rotors.torque_n_m + external.torque_n_m - rate.cross(&inertia.component_mul(&rate));
-
+        let torque = rotors.torque_n_m + external.torque_n_m;
         Self {
             position_m: self.velocity_m_s,
             velocity_m_s: acceleration,
             attitude: attitude_rate,
-            body_rate_rad_s: torque.component_div(&inertia),
+            body_rate_rad_s: airframe.angular_acceleration_rad_s2(&rate, &torque),
         }
     }
 

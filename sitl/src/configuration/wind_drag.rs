@@ -11,9 +11,9 @@ const NAMES: [&str; 3] = ["FRAME_DRAG_X", "FRAME_DRAG_Y", "FRAME_DRAG_Z"];
 
 /// Gives an airframe without drag one that a wind can push. The user's parameters come on top.
 pub(super) fn provide(configuration: &mut Configuration) {
-    let drag_n_s_m = &mut configuration.airframe.drag_n_s_m;
-    if *drag_n_s_m == [0.0; 3] {
-        *drag_n_s_m = [DRAG_N_S_M; 3];
+    let airframe = &mut configuration.airframe;
+    if airframe.hover_drag_n_s_m() == [0.0; 3] {
+        airframe.drag_n_s_m = [DRAG_N_S_M; 3];
     }
 }
 
@@ -21,13 +21,18 @@ pub(super) fn provide(configuration: &mut Configuration) {
 /// MAVLink names of the parameters that the user has set.
 pub(super) fn note(configuration: &Configuration, chosen: &[&str]) -> Option<Notice> {
     let info = |text| Notice { severity: Severity::Info, text };
-    let provided: Vec<&str> = NAMES.into_iter().filter(|name| !chosen.contains(name)).collect();
+    let airframe = &configuration.airframe;
+    let axes = NAMES.into_iter().zip(airframe.drag_n_s_m);
+    let provided: Vec<&str> = axes
+        .filter(|(name, drag_n_s_m)| *drag_n_s_m == DRAG_N_S_M && !chosen.contains(name))
+        .map(|(name, _)| name)
+        .collect();
     if !provided.is_empty() {
         let names = provided.join(", ");
         return Some(info(format!(
             "wind needs drag: {names} set to {DRAG_N_S_M} N s/m; change it with --set"
         )));
     }
-    let none = configuration.airframe.drag_n_s_m == [0.0; 3];
+    let none = airframe.hover_drag_n_s_m() == [0.0; 3];
     none.then(|| info(format!("wind has no effect: {} are 0", NAMES.join(", "))))
 }

@@ -11,7 +11,7 @@ const GUST_DEVIATIONS: f64 = 3.0;
 /// A warning, if the wind or its gusts push harder than the vehicle can hold against.
 pub(super) fn warning(configuration: &Configuration, wind: &WindSettings) -> Option<Notice> {
     let limit_n = side_force_limit_n(configuration);
-    let [north, east, _] = configuration.airframe.drag_n_s_m;
+    let [north, east, _] = configuration.airframe.hover_drag_n_s_m();
     // Linear drag: force per speed in the direction of the wind, and in the worst one for gusts in a calm.
     let (sine, cosine) = (libm::sin(wind.from_rad), libm::cos(wind.from_rad));
     let drag_n_s_m =

@@ -1,19 +1,23 @@
 //! A lithium-polymer battery that the rotors drain.
 
-use quadrotor::Airframe;
+use quadrotor::{Airframe, BatteryOutput, BatteryPack, cell_voltage_v};
 
 use crate::fault::BatteryFault;
 
 /// Cells in series.
 pub const CELLS: usize = 3;
-/// Share of the electric power that becomes mechanical power of the rotors.
-const DRIVE_EFFICIENCY: f64 = 0.75;
 /// Autopilot and radio, W.
 const AVIONICS_W: f64 = 3.0;
 /// Of the whole pack, Ω.
 const RESISTANCE_OHM: f64 = 0.03;
 /// Below this the pack is not believed to go, V: it bounds the current.
 const LOWEST_VOLTAGE_V: f64 = 8.0;
+
+/// Capacity of the battery, A·h: that of the pack whose voltage the rotors follow, or else the vehicle's setting.
+pub fn capacity_ah(airframe: &Airframe, setting_ah: f64) -> f64 {
+    let pack = &airframe.battery;
+    if pack.sag { pack.capacity_a_s / 3600.0 } else { setting_ah }
+}
 
 /// State of the battery.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +38,7 @@ pub struct Battery {
 
 impl Default for Battery {
     fn default() -> Self {
-        let voltage_v = open_circuit_v(1.0);
+        let voltage_v = cell_voltage_v(1.0) * CELLS as f64;
         Self {
             drawn_as: 0.0,
             energy_j: 0.0,
@@ -48,23 +52,42 @@ impl Default for Battery {
 }
 
 impl Battery {
-    /// `dt_s` of turning rotors.
-    pub fn step(&mut self, airframe: &Airframe, rotor_speed_rad_s: &[f64; 4], capacity_ah: f64, dt_s: f64) {
-        // P = Σ k₂ ω² · ω: drag torque times speed.
-        let k2 = airframe.torque_coefficient_n_m_s2;
-        let mechanical_w: f64 = rotor_speed_rad_s.iter().map(|speed| k2 * speed * speed * speed).sum();
-        let power_w = mechanical_w / DRIVE_EFFICIENCY + AVIONICS_W;
-        let open_v = open_circuit_v(self.charge(capacity_ah));
-        self.current_a = power_w / self.terminal_v.max(LOWEST_VOLTAGE_V);
-        self.terminal_v = open_v - self.current_a * RESISTANCE_OHM;
+    /// `dt_s` of turning rotors. `pack` is what the plant's battery gives, if the rotors follow its voltage
+    /// ([`BatteryPack::sag`](quadrotor::BatteryPack::sag)); without it the battery is modelled here. Its
+    /// capacity is that of whichever it is.
+    pub fn step(
+        &mut self,
+        airframe: &Airframe,
+        rotor_speed_rad_s: &[f64; 4],
+        pack: Option<&BatteryOutput>,
+        capacity_ah: f64,
+        dt_s: f64,
+    ) {
+        let (power_w, cells, resistance_ohm) = match pack {
+            Some(pack) => {
+                (self.current_a, self.terminal_v) = (pack.current_a, pack.voltage_v);
+                let BatteryPack { voltage_v, resistance_ohm, .. } = airframe.battery;
+                (pack.voltage_v * pack.current_a, voltage_v / cell_voltage_v(1.0), resistance_ohm)
+            }
+            None => {
+                let power_w = airframe.electric_power_w(rotor_speed_rad_s) + AVIONICS_W;
+                let open_v = cell_voltage_v(self.charge(capacity_ah)) * CELLS as f64;
+                self.current_a = power_w / self.terminal_v.max(LOWEST_VOLTAGE_V);
+                self.terminal_v = open_v - self.current_a * RESISTANCE_OHM;
+                (power_w, CELLS as f64, RESISTANCE_OHM)
+            }
+        };
         self.voltage_v = match self.fault {
             None => self.terminal_v,
             Some(BatteryFault::Stuck) => self.voltage_v,
             Some(BatteryFault::Off | BatteryFault::Wrong) => {
-                open_circuit_v(self.remaining(capacity_ah)) - self.current_a * RESISTANCE_OHM
+                cell_voltage_v(self.remaining(capacity_ah)) * cells - self.current_a * resistance_ohm
             }
         };
-        self.drawn_as += self.current_a * dt_s;
+        self.drawn_as = match pack {
+            Some(pack) => (1.0 - pack.remaining) * capacity_ah * 3600.0,
+            None => self.drawn_as + self.current_a * dt_s,
+        };
         self.energy_j += power_w * dt_s;
     }
 
@@ -117,16 +140,9 @@ impl Battery {
     }
 }
 
-/// Voltage without load: 4.2 V per full cell, 3.7 V at the knee of a tenth, 3.3 V empty.
-fn open_circuit_v(remaining: f64) -> f64 {
-    let cell =
-        if remaining > 0.1 { 3.7 + 0.5 * (remaining - 0.1) / 0.9 } else { 3.3 + 0.4 * remaining / 0.1 };
-    cell * CELLS as f64
-}
-
 #[cfg(test)]
 mod tests {
-    use quadrotor::Airframe;
+    use quadrotor::{Airframe, BatteryOutput, BatteryPack};
 
     use super::Battery;
     use crate::fault::BatteryFault;
@@ -138,7 +154,7 @@ mod tests {
             let mut battery = Battery::default();
             let mut seconds = 0.0;
             while battery.remaining(2.2) > 0.0 {
-                battery.step(&airframe, &[speed; 4], 2.2, 1.0);
+                battery.step(&airframe, &[speed; 4], None, 2.2, 1.0);
                 seconds += 1.0;
             }
             seconds / 60.0
@@ -156,7 +172,7 @@ mod tests {
         let step = |battery: &mut Battery, fault: Option<BatteryFault>, seconds: usize| {
             for _ in 0..seconds {
                 battery.fail(fault, 2.2);
-                battery.step(&airframe, &[250.0; 4], 2.2, 1.0);
+                battery.step(&airframe, &[250.0; 4], None, 2.2, 1.0);
             }
             (battery.remaining(2.2), battery.voltage_v())
         };
@@ -179,7 +195,22 @@ mod tests {
     fn thrust_makes_the_voltage_sag() {
         let mut battery = Battery::default();
         let rest = battery.voltage_v();
-        battery.step(&Airframe::default(), &[400.0; 4], 2.2, 0.001);
+        battery.step(&Airframe::default(), &[400.0; 4], None, 2.2, 0.001);
         assert!(battery.voltage_v() < rest - 0.1 && battery.current_a() > 5.0);
+    }
+    /// What the rotors follow is what the gauge shows, faults apart.
+    #[test]
+    fn the_battery_of_the_plant_is_read() {
+        let mut airframe = Airframe::default();
+        airframe.battery = BatteryPack { sag: true, voltage_v: 16.8, ..airframe.battery };
+        let pack = BatteryOutput { voltage_v: 15.0, current_a: 8.0, remaining: 0.6 };
+        let mut battery = Battery::default();
+        battery.step(&airframe, &[250.0; 4], Some(&pack), 5.0, 1.0);
+        assert_eq!((battery.voltage_v(), battery.current_a(), battery.energy_j()), (15.0, 8.0, 120.0));
+        assert!((battery.remaining(5.0) - 0.6).abs() < 1e-12 && (battery.drawn_ah() - 2.0).abs() < 1e-12);
+        battery.fail(Some(BatteryFault::Off), 5.0);
+        battery.step(&airframe, &[250.0; 4], Some(&pack), 5.0, 1.0);
+        // Four empty cells, less 8 A through 30 mΩ.
+        assert!((battery.voltage_v() - (4.0 * 3.3 - 0.24)).abs() < 1e-12, "{}", battery.voltage_v());
     }
 }

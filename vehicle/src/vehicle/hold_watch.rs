@@ -99,7 +99,7 @@ fn limit_reached(situation: &Situation) -> Option<&'static str> {
 
 fn reason(situation: &Situation) -> String {
     let wind_m_s = situation.wind_m_s.norm();
-    let dragged = situation.configuration.airframe.drag_n_s_m.iter().any(|drag| *drag > 0.0);
+    let dragged = situation.configuration.airframe.hover_drag_n_s_m().iter().any(|drag| *drag > 0.0);
     if dragged && wind_m_s >= CALM_M_S {
         format!("Cannot hold position in {wind_m_s:.0} m/s wind")
     } else {

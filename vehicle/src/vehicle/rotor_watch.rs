@@ -62,7 +62,10 @@ impl RotorWatch {
             return;
         }
         let airframe = &situation.configuration.airframe;
-        let lost = self.monitor.update(airframe, &situation.rotor_command_rad_s, &measured, dt_s);
+        // A weak battery slows all rotors.
+        let share = airframe.battery.speed_share(situation.truth.battery.voltage_v);
+        let reachable = situation.rotor_command_rad_s.map(|command| command * share);
+        let lost = self.monitor.update(airframe, &reachable, &measured, dt_s);
         if let (Some(rotor), None) = (lost, self.loss) {
             self.lose(rotor, situation, proposal);
         }

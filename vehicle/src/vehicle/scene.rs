@@ -1,7 +1,7 @@
 //! A vehicle made by hand, for tests of single machines.
 
 use nalgebra::Vector3;
-use quadrotor::{Activity, Configuration, EasedLimits, Outputs, PositionReference};
+use quadrotor::{Activity, BatteryOutput, Configuration, EasedLimits, Outputs, PositionReference};
 
 use super::conduct::Conduct;
 use super::home::Home;
@@ -65,6 +65,7 @@ impl Scene {
                 body_rate_rad_s: Vector3::zeros(),
                 thrust_n: configuration.airframe.weight_n(),
                 torque_n_m: Vector3::zeros(),
+                battery: BatteryOutput::default(),
                 rotor_speed_rad_s: [hover_rad_s; 4],
                 tilt_reference_rad: [0.0; 2],
                 setpoint,

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use quadrotor::{ConfigurationError, SimulationError};
 
 use super::autostart::Autostart;
-use super::battery::Battery;
+use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
 use super::descent::descend;
@@ -203,10 +203,12 @@ impl Vehicle {
     /// Draws the power of the tick from the battery.
     fn discharge(&mut self) {
         let airframe = &self.closed_loop.simulation().configuration().airframe;
-        let capacity_ah = self.setup.conduct().battery_capacity_ah;
+        let capacity_ah = capacity_ah(airframe, self.setup.conduct().battery_capacity_ah);
+        let outputs = self.perception.outputs();
+        let pack = airframe.battery.sag.then_some(&outputs.battery);
         let Machines { battery, injection, .. } = &mut self.machines;
         battery.fail(injection.faults().battery(), capacity_ah);
-        battery.step(airframe, &self.perception.outputs().rotor_speed_rad_s, capacity_ah, TICK_S);
+        battery.step(airframe, &outputs.rotor_speed_rad_s, pack, capacity_ah, TICK_S);
     }
 
     /// Whether it stands on the ground, disarmed.
@@ -227,6 +229,7 @@ fn situation<'a>(
     let (simulation, outputs) = (closed_loop.simulation(), perception.outputs());
     let (conduct, landing) = (setup.conduct(), &machines.landing);
     let navigation = perception.navigation();
+    let capacity_ah = capacity_ah(&simulation.configuration().airframe, conduct.battery_capacity_ah);
     let flies_mission = decided.mode() == Mode::Mission && decided.is_armed() && landing.has_flown();
     Situation {
         time_us: outputs.time_us,
@@ -246,7 +249,7 @@ fn situation<'a>(
         fix_velocity_down_m_s: navigation.and_then(Navigation::latest_fix).map(|fix| fix.velocity_m_s.z),
         rotor_command_rad_s: simulation.rotor_command_rad_s(),
         wind_m_s: closed_loop.wind_m_s(),
-        battery_remaining: machines.battery.remaining(conduct.battery_capacity_ah),
+        battery_remaining: machines.battery.remaining(capacity_ah),
         armed: decided.is_armed(),
         mode: decided.mode(),
         steering: decided.steering(),

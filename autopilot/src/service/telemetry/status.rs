@@ -103,7 +103,7 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
         battery_function: MavBatteryFunction::MAV_BATTERY_FUNCTION_ALL,
         mavtype: MavBatteryType::MAV_BATTERY_TYPE_LIPO,
         battery_remaining: percent(vehicle),
-        time_remaining: battery.time_remaining_s(vehicle.conduct().battery_capacity_ah) as i32,
+        time_remaining: battery.time_remaining_s(vehicle.battery_capacity_ah()) as i32,
         charge_state: charge_state(vehicle),
         fault_bitmask: MavBatteryFault::empty(),
         ..BATTERY_STATUS_DATA::default()

@@ -40,12 +40,18 @@ impl<const N: usize> Motion<N> {
     }
 }
 
-/// Angle, rate, angular acceleration of the rotors' torque, and the commanded one.
-pub(crate) fn rotation(configuration: &Configuration, duration_s: f64) -> Result<Motion<4>, DesignError> {
+/// Angle, rate, angular acceleration of the rotors' torque, and the commanded one. The torque acts together with its rate of
+/// change times a lead, s: on yaw, the reaction to the spin-up of the rotors.
+pub(crate) fn rotation(
+    configuration: &Configuration,
+    lead_s: f64,
+    duration_s: f64,
+) -> Result<Motion<4>, DesignError> {
     let lag = 1.0 / configuration.airframe.rotor_time_constant_s;
     let mut a = SMatrix::zeros();
-    // φ̇ = ω,  ω̇ = α,  α̇ = (α_c − α)/τ
-    (a[(0, 1)], a[(1, 2)], a[(2, 2)], a[(2, 3)]) = (1.0, 1.0, -lag, lag);
+    // φ̇ = ω,  ω̇ = α + T α̇,  α̇ = (α_c − α)/τ
+    (a[(0, 1)], a[(1, 2)], a[(1, 3)]) = (1.0, 1.0 - lead_s * lag, lead_s * lag);
+    (a[(2, 2)], a[(2, 3)]) = (-lag, lag);
     Motion::new(&a, duration_s)
 }
 
@@ -56,7 +62,8 @@ pub(crate) fn horizontal(
     duration_s: f64,
 ) -> Result<Motion<6>, DesignError> {
     let airframe = &configuration.airframe;
-    let (lag, drag) = (1.0 / airframe.rotor_time_constant_s, airframe.drag_n_s_m[axis] / airframe.mass_kg);
+    let (lag, drag) =
+        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[axis] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ẋ = v,  v̇ = g φ − d v/m: under the thrust of hover
     (a[(0, 1)], a[(1, 2)], a[(1, 1)]) = (1.0, GRAVITY_M_S2, -drag);
@@ -67,7 +74,8 @@ pub(crate) fn horizontal(
 /// Position down, velocity, acceleration by the rotors' thrust, and the commanded one.
 pub(crate) fn vertical(configuration: &Configuration, duration_s: f64) -> Result<Motion<4>, DesignError> {
     let airframe = &configuration.airframe;
-    let (lag, drag) = (1.0 / airframe.rotor_time_constant_s, airframe.drag_n_s_m[2] / airframe.mass_kg);
+    let (lag, drag) =
+        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[2] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ż = w,  ẇ = f − d w/m,  ḟ = (f_c − f)/τ
     (a[(0, 1)], a[(1, 2)], a[(1, 1)], a[(2, 2)], a[(2, 3)]) = (1.0, 1.0, -drag, -lag, lag);

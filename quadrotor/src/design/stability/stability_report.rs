@@ -80,9 +80,10 @@ impl StabilityReport {
         let noise = reading(&configuration.sensors);
         let laws = LinearLaw::of(&design.attitude);
         let axes = [0, 1, 2].map(|axis| TurningAxis::new(configuration, design, &laws, axis));
-        let turning = |name, axis| {
+        let spin_up_s = configuration.airframe.spin_up_lead_s();
+        let turning = |name, axis, lead_s| {
             let seen = Seen { angle: Some(Turning::ANGLE), position: None, command: Turning::COMMAND };
-            LoopStability::of(name, &TurningLoop::new(configuration, axis)?, &noise, seen)
+            LoopStability::of(name, &TurningLoop::new(configuration, axis, lead_s)?, &noise, seen)
         };
         let [roll, pitch, yaw] = axes;
         let tilting = |axes: [TurningAxis; 2]| horizontal(configuration, design, axes, &noise);
@@ -96,8 +97,9 @@ impl StabilityReport {
         let seen =
             Seen { angle: None, position: Some(vertical_loop::POSITION), command: vertical_loop::COMMAND };
         let altitude = LoopStability::of("altitude", &vertical, &noise, seen)?;
-        let loops =
-            [turning("roll", roll)?, turning("pitch", pitch)?, turning("yaw", yaw)?, north, east, altitude];
+        let [roll, pitch, yaw] =
+            [turning("roll", roll, 0.0)?, turning("pitch", pitch, 0.0)?, turning("yaw", yaw, spin_up_s)?];
+        let loops = [roll, pitch, yaw, north, east, altitude];
         let mut report = Self { loops, unaided, warnings: Vec::new() };
         report.warnings = report.all_warnings(configuration, design);
         Ok(report)
@@ -227,7 +229,7 @@ fn horizontal(
         let over_pitch = over(name, axis, moving, pitch)?;
         if roll == pitch { Ok(over_pitch) } else { Ok(over_pitch.worse(over(name, axis, moving, roll)?)) }
     };
-    let [drag_x, drag_y, _] = configuration.airframe.drag_n_s_m;
+    let [drag_x, drag_y, _] = configuration.airframe.hover_drag_n_s_m();
     let north_loop = worst("north", 0, north)?;
     let east_loop = if north == east && drag_x == drag_y {
         LoopStability { name: "east", ..north_loop }

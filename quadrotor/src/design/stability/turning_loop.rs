@@ -17,13 +17,17 @@ pub(crate) struct TurningLoop {
 }
 
 impl TurningLoop {
-    /// Of an axis.
+    /// Of an axis whose torque leads by `lead_s`, s: see [`rotation`].
     ///
     /// # Errors
     /// [`DesignError::NotFinite`].
-    pub(crate) fn new(configuration: &Configuration, axis: TurningAxis) -> Result<Self, DesignError> {
+    pub(crate) fn new(
+        configuration: &Configuration,
+        axis: TurningAxis,
+        lead_s: f64,
+    ) -> Result<Self, DesignError> {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        Ok(Self { axis, motion: rotation(configuration, sample_time_s)?, sample_time_s })
+        Ok(Self { axis, motion: rotation(configuration, lead_s, sample_time_s)?, sample_time_s })
     }
 }
 

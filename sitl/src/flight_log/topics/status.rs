@@ -25,7 +25,7 @@ pub fn actuator_outputs(source: &LogSource<'_>, row: &mut Row) {
 pub fn battery_status(source: &LogSource<'_>, row: &mut Row) {
     let vehicle = source.vehicle;
     let battery = vehicle.battery();
-    let capacity_ah = vehicle.conduct().battery_capacity_ah;
+    let capacity_ah = vehicle.battery_capacity_ah();
     // Its model has no noise to be filtered; readers that ask for both show neither without.
     row.reals([battery.voltage_v(), battery.voltage_v(), battery.current_a(), battery.drawn_ah() * 1e3]);
     row.reals([vehicle.battery_remaining(), battery.time_remaining_s(capacity_ah)]);

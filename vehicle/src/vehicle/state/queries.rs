@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::{Configuration, Outputs, Simulation};
 
-use super::super::battery::Battery;
+use super::super::battery::{Battery, capacity_ah};
 use super::super::conduct::Conduct;
 use super::super::failsafe::Failsafe;
 use super::super::fence_watch::FenceRecord;
@@ -99,7 +99,12 @@ impl Vehicle {
 
     /// Remaining share of the battery.
     pub fn battery_remaining(&self) -> f64 {
-        self.battery().remaining(self.conduct().battery_capacity_ah)
+        self.battery().remaining(self.battery_capacity_ah())
+    }
+
+    /// Capacity of the battery, A·h.
+    pub fn battery_capacity_ah(&self) -> f64 {
+        capacity_ah(&self.simulation().configuration().airframe, self.conduct().battery_capacity_ah)
     }
 
     /// Its own parameters.

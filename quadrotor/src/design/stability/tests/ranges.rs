@@ -121,7 +121,7 @@ fn whatever_a_random_combination_of_three_is_said_to_fly_flies() {
     let mut generator = ChaCha8Rng::seed_from_u64(13);
     let parameters: Vec<_> = PARAMETERS.iter().filter(describes_the_vehicle).collect();
     let mut tally = Tally::default();
-    for number in 0..90_u32 {
+    for number in 0..120_u32 {
         let mut configuration = Configuration::default();
         // The slow one to design is one of six.
         configuration.controllers.kind = match number % 6 {

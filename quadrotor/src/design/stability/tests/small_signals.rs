@@ -77,7 +77,7 @@ fn small_deviations_decay_as_the_report_says() {
 /// Unstable loops grow at the predicted rate, whichever of them it is and whatever the reason.
 #[test]
 fn small_deviations_grow_as_the_report_says() {
-    let changes: [(&str, Change, usize, Seen); 4] = [
+    let changes: [(&str, Change, usize, Seen); 5] = [
         ("rotor lag", |c| c.airframe.rotor_time_constant_s = 0.3, 4, |outputs| outputs.attitude_rad.x),
         (
             "position weight",
@@ -94,6 +94,12 @@ fn small_deviations_grow_as_the_report_says() {
         (
             "yaw weight",
             |c| c.controllers.attitude.increment_weight[2] = 1e-4,
+            2,
+            |outputs| outputs.attitude_rad.z,
+        ),
+        (
+            "rotor inertia",
+            |c| c.airframe.rotor_spin.inertia_kg_m2 = 4e-4,
             2,
             |outputs| outputs.attitude_rad.z,
         ),

@@ -1,0 +1,110 @@
+//! The inertia tensor: moments and products of inertia, and Euler's equation with them.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::Airframe;
+
+/// How far rounding may carry the largest principal moment beyond the sum of the other two, as a share of that sum: of a
+/// flat plate it is exactly the sum.
+const TRIANGLE_TOLERANCE: f64 = 1e-9;
+
+impl Airframe {
+    /// The inertia tensor about the centre of mass, FRD, kg·m².
+    pub fn inertia_tensor_kg_m2(&self) -> Matrix3<f64> {
+        let [x, y, z] = self.inertia_kg_m2;
+        let [xy, xz, yz] = self.products_of_inertia_kg_m2;
+        Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z)
+    }
+
+    /// Principal moments of inertia, kg·m², the smallest one first.
+    pub fn principal_moments_kg_m2(&self) -> [f64; 3] {
+        let mut moments: [f64; 3] = self.inertia_tensor_kg_m2().symmetric_eigenvalues().into();
+        moments.sort_unstable_by(f64::total_cmp);
+        moments
+    }
+
+    /// Whether a rigid body can have this inertia tensor: its principal moments are positive, and none exceeds the sum of the
+    /// other two (Wensing, Kim, Slotine 2018, "Linear matrix inequalities for physically consistent inertial parameter
+    /// identification").
+    pub(crate) fn has_physical_inertia(&self) -> bool {
+        let [smallest, middle, largest] = self.principal_moments_kg_m2();
+        smallest > 0.0 && largest <= (1.0 + TRIANGLE_TOLERANCE) * (smallest + middle)
+    }
+
+    /// Whether the body axes are the principal axes.
+    pub(crate) fn has_principal_axes(&self) -> bool {
+        self.products_of_inertia_kg_m2 == [0.0; 3]
+    }
+
+    /// Angular acceleration of the body, FRD, rad/s², at a body rate, rad/s, under a torque, N·m: Euler's equation
+    /// J ω̇ = τ − ω × Jω, the second line of (3).
+    pub(crate) fn angular_acceleration_rad_s2(
+        &self,
+        rate_rad_s: &Vector3<f64>,
+        torque_n_m: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        if self.has_principal_axes() {
+            let moments = Vector3::from(self.inertia_kg_m2);
+            let torque = torque_n_m - rate_rad_s.cross(&moments.component_mul(rate_rad_s));
+            return torque.component_div(&moments);
+        }
+        let inertia = self.inertia_tensor_kg_m2();
+        let torque = torque_n_m - rate_rad_s.cross(&(inertia * rate_rad_s));
+        // Cramer's rule. A singular tensor, which validation refuses, gives values that are not finite.
+        let [x, y, z] = [0, 1, 2].map(|index| inertia.column(index).into_owned());
+        let cofactors = [y.cross(&z), z.cross(&x), x.cross(&y)].map(|cofactor| cofactor.dot(&torque));
+        Vector3::from(cofactors) / x.dot(&y.cross(&z))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+    use proptest::prelude::*;
+
+    use crate::Airframe;
+
+    fn with_inertia(moments: [f64; 3], products: [f64; 3]) -> Airframe {
+        Airframe { inertia_kg_m2: moments, products_of_inertia_kg_m2: products, ..Airframe::default() }
+    }
+
+    /// The same body in axes that are turned.
+    pub(super) fn turned(moments: [f64; 3], axes: &Rotation3<f64>) -> Airframe {
+        let tensor = axes * nalgebra::Matrix3::from_diagonal(&moments.into()) * axes.inverse();
+        with_inertia([tensor.m11, tensor.m22, tensor.m33], [tensor.m12, tensor.m13, tensor.m23])
+    }
+
+    proptest! {
+        /// Seen in other axes a body turns the same way.
+        #[test]
+        fn eulers_equation_does_not_depend_on_the_axes(
+            angles in prop::array::uniform3(-3.0..3.0), rate in prop::array::uniform3(-5.0..5.0),
+            torque in prop::array::uniform3(-1.0..1.0),
+        ) {
+            let moments = [0.08, 0.11, 0.17];
+            let axes = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
+            let (rate, torque) = (Vector3::from(rate), Vector3::from(torque));
+            let principal = with_inertia(moments, [0.0; 3]).angular_acceleration_rad_s2(&rate, &torque);
+            let seen = turned(moments, &axes).angular_acceleration_rad_s2(&(axes * rate), &(axes * torque));
+            prop_assert!((axes * principal - seen).norm() < 1e-10 * (1.0 + principal.norm()));
+            let found = turned(moments, &axes).principal_moments_kg_m2();
+            prop_assert!(found.iter().zip(moments).all(|(one, other)| (one - other).abs() < 1e-12), "{:?}", found);
+        }
+    }
+
+    #[test]
+    fn only_tensors_of_rigid_bodies_are_physical() {
+        assert!(Airframe::default().has_physical_inertia());
+        // A flat plate in any axes: J_z = J_x + J_y.
+        let plate = turned([0.1, 0.2, 0.1 + 0.2], &Rotation3::from_euler_angles(0.3, -0.7, 1.1));
+        assert!(plate.has_physical_inertia() && !plate.has_principal_axes());
+        assert!(with_inertia([0.1, 0.1, 0.15], [0.04, 0.0, 0.0]).has_physical_inertia());
+        assert!(
+            !with_inertia([0.1, 0.1, 0.15], [0.08, 0.0, 0.0]).has_physical_inertia(),
+            "0.18 > 0.02 + 0.15"
+        );
+        assert!(!with_inertia([0.1, 0.1, 0.15], [0.1, 0.0, 0.0]).has_physical_inertia());
+        assert!(!with_inertia([0.1, 0.1, 0.15], [0.0, 0.2, 0.0]).has_physical_inertia());
+        assert!(!with_inertia([0.1, 0.1, 0.21], [0.0; 3]).has_physical_inertia());
+    }
+}

@@ -1,0 +1,93 @@
+//! Rotors that spin: how they follow their commands, and the angular momentum that they carry.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::Airframe;
+
+/// What a rotor's motor and mass do beside the first-order lag. The default leaves both out, as the paper does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RotorSpin {
+    /// J_r, moment of inertia of one propeller with its motor's bell about the spin axis, kg·m².
+    pub inertia_kg_m2: f64,
+    /// Time constant of a falling speed as a multiple of that of a rising one: motors drive a propeller up, and mostly its
+    /// drag brakes it. The multicopter motor model of Gazebo and RotorS (Furrer, Burri, Achtelik, Siegwart 2016) has 2:
+    /// 0.0125 s up, 0.025 s down.
+    pub fall_time_ratio: f64,
+}
+
+impl Default for RotorSpin {
+    fn default() -> Self {
+        Self { inertia_kg_m2: 0.0, fall_time_ratio: 1.0 }
+    }
+}
+
+impl Airframe {
+    /// Time constant of the lag of a rotor that turns at `present_rad_s` towards `goal_rad_s`, s. It jumps where the two
+    /// meet, but the acceleration (goal − present)/τ is zero there and stays continuous.
+    pub(crate) fn lag_s(&self, goal_rad_s: f64, present_rad_s: f64) -> f64 {
+        let rising_s = self.rotor_time_constant_s;
+        if goal_rad_s < present_rad_s { rising_s * self.rotor_spin.fall_time_ratio } else { rising_s }
+    }
+
+    /// Near hover, the reaction to spin-up is the drag torque's rate of change times this, s: J_r Ω̇ = J_r/(2k₂Ω) · d(k₂Ω²)/dt.
+    pub(crate) fn spin_up_lead_s(&self) -> f64 {
+        let drag_per_speed = 2.0 * self.torque_coefficient_n_m_s2 * self.hover_rotor_speed_rad_s();
+        self.rotor_spin.inertia_kg_m2 / drag_per_speed
+    }
+
+    /// Torque of the spinning rotors on the body, FRD, N·m, for rotor speeds and accelerations in the order of the layout.
+    ///
+    /// The angular momentum of body and rotors is Jω + h with h = Σ s J_r Ω e₃, s = 1 for a rotor that turns clockwise seen
+    /// from above. Its balance J ω̇ + ḣ + ω × (Jω + h) = τ leaves −ω × h, the gyroscopic torque, and −ḣ, the reaction to the
+    /// spin-up (Bouabdallah 2007, "Design and control of quadrotors with application to autonomous flying"; Mahony,
+    /// Kumar, Corke 2012, "Multirotor aerial vehicles").
+    pub(crate) fn spin_torque_n_m(
+        &self,
+        rate_rad_s: &Vector3<f64>,
+        rotor_speed_rad_s: &[f64; 4],
+        rotor_acceleration_rad_s2: &[f64; 4],
+    ) -> Vector3<f64> {
+        // The drag torque on the body has the opposite direction of the rotor's turn.
+        let along_axis = |values: &[f64; 4]| -> f64 {
+            let rotors = self.layout.rotors.iter().zip(values);
+            self.rotor_spin.inertia_kg_m2
+                * rotors.map(|(rotor, value)| -rotor.direction.torque_sign() * value).sum::<f64>()
+        };
+        let momentum = Vector3::new(0.0, 0.0, along_axis(rotor_speed_rad_s));
+        let reaction = Vector3::new(0.0, 0.0, along_axis(rotor_acceleration_rad_s2));
+        -rate_rad_s.cross(&momentum) - reaction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::RotorSpin;
+    use crate::Airframe;
+
+    /// Front and back turn clockwise, right and left counterclockwise.
+    #[test]
+    fn a_rotor_that_spins_up_turns_the_body_the_other_way() {
+        let spin = RotorSpin { inertia_kg_m2: 1e-4, ..RotorSpin::default() };
+        let airframe = Airframe { rotor_spin: spin, ..Airframe::default() };
+        let torque = |speeds: [f64; 4], accelerations: [f64; 4], rate: [f64; 3]| {
+            airframe.spin_torque_n_m(&rate.into(), &speeds, &accelerations)
+        };
+        // To the right is positive about the down axis.
+        assert!((torque([0.0; 4], [50.0, 0.0, 0.0, 0.0], [0.0; 3]).z + 5e-3).abs() < 1e-15);
+        assert!((torque([0.0; 4], [0.0, 50.0, 0.0, 0.0], [0.0; 3]).z - 5e-3).abs() < 1e-15);
+        assert_eq!(torque([300.0; 4], [50.0; 4], [1.0, 2.0, 3.0]).norm(), 0.0, "they cancel");
+        // −ω × h with h = 0.06 e₃ of the clockwise pair: e₁ × e₃ = −e₂, e₂ × e₃ = e₁.
+        let tilted = torque([300.0, 0.0, 300.0, 0.0], [0.0; 4], [2.0, 3.0, 5.0]);
+        assert!((tilted - Vector3::new(-0.18, 0.12, 0.0)).norm() < 1e-15, "{tilted}");
+    }
+
+    #[test]
+    fn a_falling_speed_has_a_lag_of_its_own() {
+        let spin = RotorSpin { fall_time_ratio: 2.5, ..RotorSpin::default() };
+        let airframe = Airframe { rotor_spin: spin, rotor_time_constant_s: 0.04, ..Airframe::default() };
+        assert_eq!((airframe.lag_s(300.0, 200.0), airframe.lag_s(200.0, 300.0)), (0.04, 0.1));
+    }
+}
