@@ -10,7 +10,7 @@ use crate::common::library::{ERROR, OK};
 fn bits(outputs: &Outputs) -> Vec<u64> {
     let o = outputs;
     let vector = |vector: &[f64]| vector.to_vec();
-    let groups: [(&str, Vec<f64>); 16] = [
+    let groups: [(&str, Vec<f64>); 17] = [
         ("position.", vector(o.position_m.as_slice())),
         ("velocity.", vector(o.velocity_m_s.as_slice())),
         ("acceleration.", vector(o.acceleration_m_s2.as_slice())),
@@ -20,6 +20,7 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
         ("thrust", vec![o.thrust_n]),
         ("torque.", vector(o.torque_n_m.as_slice())),
         ("rotor.", vector(&o.rotor_speed_rad_s)),
+        ("battery.", vec![o.battery.voltage_v, o.battery.current_a, o.battery.remaining]),
         ("tilt_reference.", vector(&o.tilt_reference_rad)),
         ("setpoint.position.", vector(o.setpoint.position_m.as_slice())),
         ("setpoint.velocity.", vector(o.setpoint.velocity_m_s.as_slice())),
