@@ -54,11 +54,11 @@ fn solved(mut a: Rows, mut b: Rows) -> Rows {
         b.swap(k, pivot);
         for i in (0..n).filter(|&i| i != k) {
             let factor = a[i][k] / a[k][k];
-            for j in 0..n {
-                a[i][j] = a[i][j] - factor * a[k][j];
-            }
-            for j in 0..b[0].len() {
-                b[i][j] = b[i][j] - factor * b[k][j];
+            for rows in [&mut a, &mut b] {
+                let pivot_row = rows[k].clone();
+                for (value, pivot) in rows[i].iter_mut().zip(pivot_row) {
+                    *value = *value - factor * pivot;
+                }
             }
         }
     }
@@ -84,13 +84,13 @@ fn terminal_gain(
     let scale = DoubleDouble::new(scale);
     let beta = DoubleDouble::new(1.0) - scale * scale;
     let power = |exponent: usize| (0..exponent).fold(DoubleDouble::new(1.0), |product, _| product * -scale);
-    let mut a_l = zeros(terms, terms);
-    for i in 0..terms {
-        a_l[i][i] = scale;
-        for j in 0..i {
-            a_l[i][j] = power(i - j - 1) * beta;
-        }
-    }
+    let a_l: Rows = (0..terms)
+        .map(|i| {
+            let below = (0..i).map(|j| power(i - j - 1) * beta);
+            let above = (i + 1..terms).map(|_| DoubleDouble::new(0.0));
+            below.chain([scale]).chain(above).collect()
+        })
+        .collect();
     let mut l: Rows = (0..terms).map(|i| vec![beta.sqrt() * power(i)]).collect();
     let first = transposed(&l);
     let n = model.states();

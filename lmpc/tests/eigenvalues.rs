@@ -93,12 +93,11 @@ proptest! {
     #[test]
     fn eigenvalues_do_not_depend_on_the_states(
         (n, root) in (2usize..14).prop_flat_map(|n| (Just(n), square(n))),
-        values in prop::collection::vec((-2.0..2.0, 0.1..2.0), 7),
+        values in prop::collection::vec((-2.0..2.0_f64, 0.1..2.0_f64), 7),
         units in prop::collection::vec(-12.0..12.0, 14),
     ) {
         let (mut blocks, mut expected) = (DMatrix::zeros(n, n), Vec::new());
-        for pair in 0..n / 2 {
-            let (re, im): (f64, f64) = values[pair];
+        for (pair, &(re, im)) in values.iter().enumerate().take(n / 2) {
             blocks.view_mut((2 * pair, 2 * pair), (2, 2)).copy_from(&dmatrix![re, -im; im, re]);
             expected.extend([Complex::new(re, im), Complex::new(re, -im)]);
         }

@@ -165,7 +165,8 @@ fn damage_is_refused_by_line_and_time() {
     let record = short_record(3);
     let text = record.text();
     let header = text.find('\n').expect("a header");
-    for at in (header / 2..text.len()).step_by(53) {
+    // Without its last line feed a record counts as cut.
+    for at in (header / 2..text.len() - 1).step_by(53) {
         let mut bytes = text.clone().into_bytes();
         bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' };
         let damaged = String::from_utf8(bytes).expect("text");

@@ -55,7 +55,7 @@ impl Battery {
 
     /// `dt_s` of turning rotors. `given` is what the plant's battery gives, if the rotors follow its voltage
     /// ([`BatteryPack::sag`](quadrotor::BatteryPack::sag)); without it the battery is modelled here. Its
-    /// capacity is [`capacity_ah`].
+    /// capacity is that of whichever it is.
     pub fn step(
         &mut self,
         airframe: &Airframe,
