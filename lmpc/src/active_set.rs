@@ -13,6 +13,8 @@ const DEPENDENT: f64 = 1e-7;
 pub(crate) struct ActiveSet<const N: usize> {
     /// Constraint index of each column.
     constraints: [usize; N],
+    /// b of each constraint n·z ≤ b.
+    bounds: SVector<f64, N>,
     multipliers: [f64; N],
     count: usize,
     unknowns: usize,
@@ -34,6 +36,7 @@ impl<const N: usize> ActiveSet<N> {
     pub(crate) fn empty(unknowns: usize) -> Self {
         Self {
             constraints: [0; N],
+            bounds: SVector::zeros(),
             multipliers: [0.0; N],
             count: 0,
             unknowns,
@@ -48,10 +51,6 @@ impl<const N: usize> ActiveSet<N> {
 
     pub(crate) fn multipliers(&self) -> &[f64] {
         &self.multipliers[..self.count]
-    }
-
-    pub(crate) fn contains(&self, constraint: usize) -> bool {
-        self.constraints().contains(&constraint)
     }
 
     /// Qᵀv and v − Q Qᵀv by Gram and Schmidt's method, twice, which is enough (Kahan).
@@ -89,8 +88,8 @@ impl<const N: usize> ActiveSet<N> {
         self.back_substituted(&split.within)
     }
 
-    /// Adds a normal with its multiplier. `false` when it depends on the active ones.
-    pub(crate) fn add(&mut self, constraint: usize, split: &Split<N>, multiplier: f64) -> bool {
+    /// Adds a normal with its bound and multiplier. `false` when it depends on the active ones.
+    pub(crate) fn add(&mut self, constraint: usize, split: &Split<N>, bound: f64, multiplier: f64) -> bool {
         if split.rest_squared == 0.0 {
             return false;
         }
@@ -99,6 +98,7 @@ impl<const N: usize> ActiveSet<N> {
         self.r.set_column(self.count, &split.within);
         self.r[(self.count, self.count)] = length;
         self.constraints[self.count] = constraint;
+        self.bounds[self.count] = bound;
         self.multipliers[self.count] = multiplier;
         self.count += 1;
         true
@@ -110,6 +110,7 @@ impl<const N: usize> ActiveSet<N> {
             let moved = self.r.column(j).into_owned();
             self.r.set_column(j - 1, &moved);
             self.constraints[j - 1] = self.constraints[j];
+            self.bounds[j - 1] = self.bounds[j];
             self.multipliers[j - 1] = self.multipliers[j];
         }
         self.count -= 1;
@@ -140,11 +141,15 @@ impl<const N: usize> ActiveSet<N> {
         }
     }
 
-    /// Sets the multipliers for which all active constraints hold with equality: RᵀR u = excess, where
-    /// excess = V z₀ − h. Returns the column of the most negative one, if any.
-    pub(crate) fn solve_multipliers(&mut self, excess: &SVector<f64, N>) -> Option<usize> {
-        // Rᵀ y = excess, R u = y
-        let u = self.back_substituted(&self.forward_substituted(excess));
+    /// Sets the multipliers for which all active constraints hold with equality on the way from z: RᵀR u = Vᵀz − b. Returns the
+    /// column of the most negative one, if any.
+    ///
+    /// ```text
+    /// R u = Qᵀz − R⁻ᵀ b
+    /// ```
+    pub(crate) fn solve_multipliers(&mut self, z: &SVector<f64, N>) -> Option<usize> {
+        let (along, _) = self.orthogonal_part(z);
+        let u = self.back_substituted(&(along - self.forward_substituted(&self.bounds)));
         let mut worst = None;
         for j in 0..self.count {
             self.multipliers[j] = u[j];
@@ -155,11 +160,11 @@ impl<const N: usize> ActiveSet<N> {
         worst
     }
 
-    /// The point nearest to z where Vᵀz = `bounds`: (I − Q Qᵀ) z + Q R⁻ᵀ bounds.
-    pub(crate) fn nearest(&self, z: &SVector<f64, N>, bounds: &SVector<f64, N>) -> SVector<f64, N> {
+    /// The point nearest to z where Vᵀz = b: (I − Q Qᵀ) z + Q R⁻ᵀ b.
+    pub(crate) fn nearest(&self, z: &SVector<f64, N>) -> SVector<f64, N> {
         let n = self.unknowns;
         let mut nearest = if self.count == n { SVector::zeros() } else { self.orthogonal_part(z).1 };
-        let along = self.forward_substituted(bounds);
+        let along = self.forward_substituted(&self.bounds);
         for j in 0..self.count {
             let q_j = self.q.column(j);
             subtract_scaled(&mut nearest.as_mut_slice()[..n], &q_j.as_slice()[..n], -along[j]);

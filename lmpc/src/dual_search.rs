@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::active_set::ActiveSet;
-use crate::dense::subtract_scaled;
+use crate::dense::{dot, subtract_scaled};
 use crate::{Outcome, WarmStart};
 
 /// Constraints n·z ≤ b with unit normals n, of z with at most N elements.
@@ -17,11 +17,11 @@ pub(crate) trait Constraints<const N: usize> {
     /// The unit normal of a constraint.
     fn normal(&self, constraint: usize) -> SVector<f64, N>;
 
-    /// b − n·z of a constraint; negative when violated.
-    fn slack(&self, constraint: usize, z: &SVector<f64, N>) -> f64;
+    /// b of a constraint.
+    fn bound(&self, constraint: usize) -> f64;
 
     /// The constraint that z violates most, by more than rounding, among those that are not active.
-    fn most_violated(&self, z: &SVector<f64, N>, active: &ActiveSet<N>) -> Option<usize>;
+    fn most_violated(&self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize>;
 }
 
 /// One run of the dual method of Goldfarb and Idnani (1983): the point nearest to z₀ that keeps all constraints.
@@ -49,30 +49,27 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
 
     fn resume<const W: usize>(&mut self, warm_start: &WarmStart<W>) {
         for constraint in warm_start.constraints() {
-            // A repeated constraint depends on itself and is not added again.
-            if constraint < self.constraints.count()
-                && self.constraints.slack(constraint, &self.z_0).is_finite()
-            {
+            if constraint >= self.constraints.count() {
+                continue;
+            }
+            let bound = self.constraints.bound(constraint);
+            if bound.is_finite() {
+                // A repeated constraint depends on itself and is not added again.
                 let split = self.active.split(&self.constraints.normal(constraint));
-                self.active.add(constraint, &split, 0.0);
+                self.active.add(constraint, &split, bound, 0.0);
             }
         }
-        loop {
-            let mut excess = SVector::zeros();
-            for (j, &constraint) in self.active.constraints().iter().enumerate() {
-                excess[j] = -self.constraints.slack(constraint, &self.z_0);
-            }
-            match self.active.solve_multipliers(&excess) {
-                Some(column) => self.active.remove(column),
-                None => break,
-            }
+        while let Some(column) = self.active.solve_multipliers(&self.z_0) {
+            self.active.remove(column);
         }
         self.meet_active();
     }
 
     pub(crate) fn run(&mut self, iteration_limit: u32) -> Outcome {
-        while let Some(constraint) = self.constraints.most_violated(&self.z, &self.active) {
+        while let Some(constraint) = self.constraints.most_violated(&self.z, self.active.constraints()) {
             let normal = self.constraints.normal(constraint);
+            let bound = self.constraints.bound(constraint);
+            let n = self.constraints.unknowns();
             let mut multiplier = 0.0;
             loop {
                 if self.iterations >= iteration_limit {
@@ -84,7 +81,8 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                 // How far until the first active multiplier is used up, and until the constraint is met.
                 let leaving = self.first_to_leave(&sinking);
                 let until_met = if split.rest_squared > 0.0 {
-                    (-self.constraints.slack(constraint, &self.z)).max(0.0) / split.rest_squared
+                    let along = dot(&normal.as_slice()[..n], &self.z.as_slice()[..n]);
+                    (along - bound).max(0.0) / split.rest_squared
                 } else {
                     f64::INFINITY
                 };
@@ -93,14 +91,13 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                 if t == f64::INFINITY {
                     return Outcome::Infeasible;
                 }
-                let n = self.constraints.unknowns();
                 subtract_scaled(&mut self.z.as_mut_slice()[..n], &split.rest.as_slice()[..n], t);
                 self.active.sink(&sinking, t);
                 multiplier += t;
                 match leaving {
                     Some((column, until)) if until < until_met => self.active.remove(column),
                     _ => {
-                        self.active.add(constraint, &split, multiplier);
+                        self.active.add(constraint, &split, bound, multiplier);
                         self.meet_active();
                         break;
                     }
@@ -113,12 +110,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
     /// Puts z where the active constraints hold with equality, nearest to z₀: where the steps have led to but for
     /// rounding, which is that of the bounds and not of the steps, however far z₀ lies.
     fn meet_active(&mut self) {
-        let origin = SVector::zeros();
-        let mut bounds = SVector::zeros();
-        for (j, &constraint) in self.active.constraints().iter().enumerate() {
-            bounds[j] = self.constraints.slack(constraint, &origin);
-        }
-        self.z = self.active.nearest(&self.z_0, &bounds);
+        self.z = self.active.nearest(&self.z_0);
     }
 
     fn first_to_leave(&self, sinking: &SVector<f64, N>) -> Option<(usize, f64)> {

@@ -210,10 +210,6 @@ impl<const N: usize> QuadraticProgram<N> {
     }
 
     /// v·z of a constraint's unit normal.
-    fn along(&self, constraint: usize, z: &SVector<f64, N>) -> f64 {
-        dot(&self.normals[constraint].as_slice()[..self.unknowns], &z.as_slice()[..self.unknowns])
-    }
-
     fn solution(
         &self,
         z: &SVector<f64, N>,
@@ -258,11 +254,11 @@ impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
         self.program.normals[constraint]
     }
 
-    fn slack(&self, constraint: usize, z: &SVector<f64, N>) -> f64 {
-        self.h.bound(constraint) * self.program.scales[constraint] - self.program.along(constraint, z)
+    fn bound(&self, constraint: usize) -> f64 {
+        self.h.bound(constraint) * self.program.scales[constraint]
     }
 
-    fn most_violated(&self, z: &SVector<f64, N>, active: &ActiveSet<N>) -> Option<usize> {
+    fn most_violated(&self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
         let n = self.program.unknowns;
         let z = &z.as_slice()[..n];
         let (mut worst, mut least) = (None, 0.0);
@@ -273,7 +269,7 @@ impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
             let slack = bound - dot(normal, z);
             if slack < least
                 && slack < -FEASIBILITY * (dot_of_magnitudes(normal, z) + self.h.size(constraint) * scale)
-                && !active.contains(constraint)
+                && !active.contains(&constraint)
             {
                 (worst, least) = (Some(constraint), slack);
             }

@@ -23,7 +23,7 @@ pub struct Sample<'a, const N: usize, const P: usize, const Q: usize> {
     /// missing do not bound.
     pub upper: &'a [f64],
     /// By how much the reference's own motion moves each limited signal until its sample: C (x_r(k+m) − x_r(k)) +
-    /// D (u_r(k+m) − u_r(k)), sample by sample, in each sample limit by limit. What is missing is zero.
+    /// D (u_r(k+m) − u_r(k)), limit by limit, component by component, sample by sample. What is missing is zero.
     pub moved: &'a [f64],
     /// r(k), r(k+1), … as deviations from the reference trajectory, as far as they are known; the last one lasts.
     pub preview: &'a [SVector<f64, Q>],

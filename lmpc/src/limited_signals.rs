@@ -1,0 +1,325 @@
+//! The signals that a stabilized Laguerre MPC keeps within limits, on all samples on which it does.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use nalgebra::{DMatrix, SVector};
+
+use crate::sparse_columns::SparseColumns;
+use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
+
+/// Most components of a limited signal.
+pub(crate) const COMPONENTS: usize = 3;
+/// Most values of signals on all samples together: what a step keeps on the stack.
+pub(crate) const SIGNALS: usize = 512;
+
+/// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Limit by limit,
+/// component by component, sample by sample:
+///
+/// ```text
+/// signal = of_increment Δx_m(k) + of_error (y − r) + of_input (u_r(k) + v(k−1)) + of_state x_m(k) + of_plan z
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LimitedSignals {
+    limits: Vec<PlacedLimit>,
+    count: usize,
+    of_increment: SparseColumns,
+    of_error: SparseColumns,
+    of_input: SparseColumns,
+    of_state: SparseColumns,
+    of_plan: SparseColumns,
+    /// m, which limit, and which of its samples that is, in the order of m.
+    by_sample: Vec<(usize, usize, usize)>,
+    /// One over the length of each row in z and the slack, in the order of [`LimitedSignals::place`].
+    scales: Vec<f64>,
+}
+
+/// A limit on the samples on which a plan moves it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlacedLimit {
+    pub(crate) directions: Vec<[f64; COMPONENTS]>,
+    /// Length of the longest direction.
+    pub(crate) longest: f64,
+    pub(crate) relaxation: f64,
+    pub(crate) samples: usize,
+    pub(crate) components: usize,
+    /// Index of its first bound among [`Sample::upper`].
+    pub(crate) first_bound: usize,
+    pub(crate) first_signal: usize,
+    first_row: usize,
+    /// Where the columns of each component are in [`LimitedSignals::of_plan`].
+    of_plan: [Range<usize>; COMPONENTS],
+    /// C and D.
+    state: SparseColumns,
+    input: SparseColumns,
+}
+
+impl PlacedLimit {
+    /// The constraint of a direction at a sample.
+    pub(crate) fn row(&self, sample: usize, direction: usize) -> usize {
+        self.first_row + sample * self.directions.len() + direction
+    }
+
+    /// The components at a sample among all signals.
+    pub(crate) fn at(&self, sample: usize, signals: &[f64]) -> [f64; COMPONENTS] {
+        core::array::from_fn(|component| {
+            if component < self.components {
+                signals[self.first_signal + component * self.samples + sample]
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// A constraint: a direction of a limit at a sample.
+pub(crate) struct Place<'a> {
+    pub(crate) limit: &'a PlacedLimit,
+    pub(crate) sample: usize,
+    pub(crate) direction: usize,
+}
+
+/// χ(m) = Fᵐ \[x; η\] summed up: where the moves, and the states that they move, come from.
+struct Motion {
+    moves: Vec<DMatrix<f64>>,
+    states: Vec<DMatrix<f64>>,
+}
+
+impl Motion {
+    fn new(design: &StabilizedDesign, states: usize, inputs: usize, end: usize) -> Self {
+        let plan = design.plan();
+        let size = plan.transition.nrows();
+        let mut power = DMatrix::identity(size, size);
+        let mut moves = DMatrix::zeros(inputs, size);
+        let mut motion = DMatrix::zeros(states, size);
+        let mut sums = Self { moves: Vec::with_capacity(end), states: Vec::with_capacity(end) };
+        for _ in 0..end {
+            moves += &plan.move_of * &power;
+            sums.moves.push(moves.clone());
+            sums.states.push(motion.clone());
+            power = &plan.transition * power;
+            motion += power.rows(0, states);
+        }
+        sums
+    }
+}
+
+impl LimitedSignals {
+    /// Places limits on their samples. z = Lᵀη, of which `inverse` is L⁻¹; `slack_unit` is the slack that its element of z stands for.
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`]: see [`StabilizedMpc::new`](crate::StabilizedMpc::new).
+    pub(crate) fn new<const N: usize, const P: usize, const Q: usize>(
+        design: &StabilizedDesign,
+        limits: &[SignalLimit],
+        inverse: &DMatrix<f64>,
+        slack_unit: f64,
+    ) -> Result<Self, DesignError> {
+        let mut placed = Self {
+            limits: Vec::new(),
+            count: 0,
+            of_increment: SparseColumns::default(),
+            of_error: SparseColumns::default(),
+            of_input: SparseColumns::default(),
+            of_state: SparseColumns::default(),
+            of_plan: SparseColumns::default(),
+            by_sample: Vec::new(),
+            scales: Vec::new(),
+        };
+        let end = limits.iter().flat_map(|limit| &limit.samples).max().map_or(0, |last| last + 1);
+        let motion = Motion::new(design, N, P, end);
+        let mut bounds = 0;
+        for limit in limits {
+            let components = limit.directions.ncols();
+            validate::shape("C of a limit", &limit.state, (components, N))?;
+            validate::shape("D of a limit", &limit.input, (components, P))?;
+            validate::shape(
+                "directions of a limit",
+                &limit.directions,
+                (limit.directions.nrows(), components.min(COMPONENTS)),
+            )?;
+            placed.add::<N, P, Q>(limit, &motion, inverse, slack_unit, bounds);
+            bounds += limit.directions.nrows();
+        }
+        if placed.count > SIGNALS {
+            return Err(DesignError::Dimension {
+                name: "limited signals on all samples",
+                expected: (SIGNALS, 1),
+                actual: (placed.count, 1),
+            });
+        }
+        placed.by_sample.sort_unstable();
+        Ok(placed)
+    }
+
+    /// Adds a limit on those of its samples on which a decision moves it.
+    fn add<const N: usize, const P: usize, const Q: usize>(
+        &mut self,
+        limit: &SignalLimit,
+        motion: &Motion,
+        inverse: &DMatrix<f64>,
+        slack_unit: f64,
+        first_bound: usize,
+    ) {
+        let terms = inverse.nrows();
+        let mut signals = Vec::new();
+        let mut decided = Vec::new();
+        let mut samples = limit.samples.clone();
+        samples.sort_unstable();
+        samples.dedup();
+        for m in samples {
+            let signal = &limit.state * &motion.states[m] + &limit.input * &motion.moves[m];
+            let of_plan = signal.columns(N + Q, terms) * inverse.transpose();
+            if of_plan.amax() > 0.0 {
+                self.by_sample.push((m, self.limits.len(), signals.len()));
+                signals.push((m, signal));
+                decided.push(of_plan);
+            }
+        }
+        let components = limit.directions.ncols();
+        let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
+        state.add_block(0, components, N, |row, at| limit.state[(row, at)]);
+        input.add_block(0, components, P, |row, at| limit.input[(row, at)]);
+        let mut placed = PlacedLimit {
+            directions: directions(&limit.directions),
+            longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
+            relaxation: limit.relaxation,
+            samples: signals.len(),
+            components,
+            first_bound,
+            first_signal: self.count,
+            first_row: self.scales.len(),
+            of_plan: Default::default(),
+            state,
+            input,
+        };
+        for component in 0..components {
+            let first = self.count + component * signals.len();
+            let rows = signals.len();
+            self.of_increment.add_block(first, rows, N, |row, at| signals[row].1[(component, at)]);
+            self.of_error.add_block(first, rows, Q, |row, at| signals[row].1[(component, N + at)]);
+            self.of_input.add_block(first, rows, P, |_, at| limit.input[(component, at)]);
+            self.of_state.add_block(first, rows, N, |_, at| limit.state[(component, at)]);
+            placed.of_plan[component] =
+                self.of_plan.add_block(first, rows, terms, |row, at| decided[row][(component, at)]);
+        }
+        for of_plan in &decided {
+            for direction in limit.directions.row_iter() {
+                let along = direction * of_plan;
+                let give = limit.relaxation * slack_unit;
+                let length = libm::sqrt(along.norm_squared() + give * give);
+                self.scales.push(if length > 0.0 { 1.0 / length } else { 0.0 });
+            }
+        }
+        self.count += components * signals.len();
+        self.limits.push(placed);
+    }
+
+    pub(crate) fn limits(&self) -> &[PlacedLimit] {
+        &self.limits
+    }
+
+    /// How many constraints there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.scales.len()
+    }
+
+    /// One over the length of a constraint's normal in z and the slack.
+    pub(crate) fn scale(&self, row: usize) -> f64 {
+        self.scales[row]
+    }
+
+    /// Where a constraint is.
+    pub(crate) fn place(&self, row: usize) -> Place<'_> {
+        let after = self.limits.partition_point(|limit| limit.first_row <= row);
+        // A limit that no plan moves has no row.
+        let limit = &self.limits[after - 1];
+        let within = row - limit.first_row;
+        let sides = limit.directions.len();
+        Place { limit, sample: within / sides, direction: within % sides }
+    }
+
+    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1).
+    pub(crate) fn known<const N: usize, const P: usize, const Q: usize>(
+        &self,
+        sample: &Sample<'_, N, P, Q>,
+        input: &SVector<f64, P>,
+    ) -> [f64; SIGNALS] {
+        let mut known = [0.0; SIGNALS];
+        for (value, moved) in known.iter_mut().zip(sample.moved).take(self.count) {
+            *value = *moved;
+        }
+        self.of_increment.add_product(sample.increment.as_slice(), &mut known);
+        self.of_error.add_product(sample.error.as_slice(), &mut known);
+        self.of_input.add_product(input.as_slice(), &mut known);
+        self.of_state.add_product(sample.measured.as_slice(), &mut known);
+        known
+    }
+
+    /// The signals at z.
+    pub(crate) fn at(&self, known: &[f64; SIGNALS], z: &[f64]) -> [f64; SIGNALS] {
+        let mut signals = [0.0; SIGNALS];
+        signals[..self.count].copy_from_slice(&known[..self.count]);
+        self.of_plan.add_product(z, &mut signals);
+        signals
+    }
+
+    /// What z adds to the left side of a constraint: a vector of the elements of z.
+    pub(crate) fn normal<const E: usize>(&self, place: &Place<'_>) -> SVector<f64, E> {
+        let mut normal = SVector::zeros();
+        let limit = place.limit;
+        let direction = &limit.directions[place.direction];
+        for (component, share) in direction.iter().enumerate().take(limit.components) {
+            let row = limit.first_signal + component * limit.samples + place.sample;
+            let columns = limit.of_plan[component].clone();
+            self.of_plan.for_each_in_row(columns, row, |at, factor| normal[at] += share * factor);
+        }
+        normal
+    }
+
+    /// By how much a reference moves the signals: `ahead` tells x_r(k+m) − x_r(k) and u_r(k+m) − u_r(k).
+    pub(crate) fn moved<const N: usize, const P: usize>(
+        &self,
+        ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>),
+    ) -> MovedSignals {
+        let mut moved = MovedSignals { values: [0.0; SIGNALS], count: self.count };
+        let mut latest = (usize::MAX, (SVector::zeros(), SVector::zeros()));
+        for &(m, limit, sample) in &self.by_sample {
+            if m != latest.0 {
+                latest = (m, ahead(m));
+            }
+            let (state, input) = &latest.1;
+            let limit = &self.limits[limit];
+            let mut signal = [0.0; COMPONENTS];
+            limit.state.add_product(state.as_slice(), &mut signal);
+            limit.input.add_product(input.as_slice(), &mut signal);
+            for (component, value) in signal.iter().enumerate().take(limit.components) {
+                moved.values[limit.first_signal + component * limit.samples + sample] = *value;
+            }
+        }
+        moved
+    }
+}
+
+/// How far the motion of a reference moves the limited signals of a controller: see
+/// [`StabilizedMpc::moved`](crate::StabilizedMpc::moved).
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovedSignals {
+    values: [f64; SIGNALS],
+    count: usize,
+}
+
+impl MovedSignals {
+    /// In the order of [`Sample::moved`].
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
+/// The rows of a matrix.
+fn directions(matrix: &DMatrix<f64>) -> Vec<[f64; COMPONENTS]> {
+    let row = |row: usize| {
+        core::array::from_fn(|column| if column < matrix.ncols() { matrix[(row, column)] } else { 0.0 })
+    };
+    (0..matrix.nrows()).map(row).collect()
+}
