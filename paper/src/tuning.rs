@@ -7,13 +7,11 @@ use rayon::prelude::*;
 use crate::Error;
 
 /// Terms that are tried.
-const TERMS: std::ops::RangeInclusive<usize> = 3..=8;
+const TERMS: std::ops::RangeInclusive<usize> = 4..=MOST_TERMS;
 /// Most of them.
-const MOST_TERMS: usize = 8;
+const MOST_TERMS: usize = 9;
 /// Bandwidths of the stabilizing feedback that are tried, as shares of the loop's.
-const SHARES: [f64; 3] = [0.2, SHIPPED_SHARE, 0.45];
-/// The share that flies.
-const SHIPPED_SHARE: f64 = 0.3;
+const SHARES: [f64; 3] = [0.2, 0.3, 0.45];
 /// By how much a may be off.
 const SCALE_STEP: f64 = 0.05;
 /// Scales that are tried on either side of the shipped one.
@@ -84,7 +82,11 @@ fn of_loop<const N: usize, const P: usize, const E: usize>(
     let limits = problem.limits();
     let slack_cost = problem.slack_cost();
     let closed = ClosedLoop::new(problem.model(), problem.weights(), limits, &hover.upper, slack_cost)?;
-    let shipped = Candidate { terms: settings.terms as usize, scale: settings.scale, share: SHIPPED_SHARE };
+    let shipped = Candidate {
+        terms: settings.terms as usize,
+        scale: settings.scale,
+        share: problem.stabilizing_share(),
+    };
     let costs_of = |candidate: &Candidate| -> Result<Vec<f64>, DesignError> {
         let design = problem.design(candidate.terms, candidate.scale, candidate.share)?;
         let law = StabilizedMpc::<N, P, P, E>::new(&design, limits, slack_cost)?;

@@ -221,7 +221,8 @@ impl AttitudeController {
             believed: configuration.controllers.mass_factor,
         };
         let lean = design.attitude.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
-        let turn = design.attitude.turn.step(&mut self.turn, &told.sample(2, &room.turn_bounds(&lean.input)));
+        let turn_bounds = room.turn_bounds(&lean.input, told.input_reference.z);
+        let turn = design.attitude.turn.step(&mut self.turn, &told.sample(2, &turn_bounds));
         self.deviation = deviation;
         self.integral_rad_s2 = joined(&lean.integral, &turn.integral);
         let asked = AskedTorque {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1 would be an incremental
 /// law by measured increments, which passes on the noise of the velocity undiminished, and forgets one half of a kick that a limit cuts
 /// off. At this one a disturbance is found within three samples.
-const NEW: f64 = 0.3;
+const NEW: f64 = 0.5;
 
 /// A model of N states and P inputs, channel by channel: the output, its rate, and others.
 #[derive(Clone, Copy, Debug, PartialEq)]

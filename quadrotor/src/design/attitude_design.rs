@@ -149,7 +149,8 @@ fn longer_turn(bandwidth: &AttitudeBandwidth) -> f64 {
     bandwidth.longer.clamp(1.0, LONGEST_TURN)
 }
 
-/// Settings of some axes, with times that are longer: a, α and λ say what is left after a sample.
+/// Settings of some axes, with times that are longer: α and λ say what is left after a sample. a follows by half, for its first moves have
+/// to be as fast: that is where the costs about yaw depend least on it.
 pub(crate) fn of_axes<const P: usize>(
     settings: &ControllerSettings<3>,
     axes: [usize; P],
@@ -159,7 +160,7 @@ pub(crate) fn of_axes<const P: usize>(
     let weights = [&settings.output_weight, &settings.rate_weight, &settings.increment_weight].map(of);
     let [output, rate, increment] = weights;
     ControllerSettings {
-        scale: libm::pow(settings.scale, 1.0 / longer),
+        scale: libm::pow(settings.scale, 1.0 / libm::sqrt(longer)),
         alpha: libm::pow(settings.alpha, 1.0 / longer),
         lambda: libm::pow(settings.lambda, 1.0 / longer),
         prediction_horizon: libm::ceil(f64::from(settings.prediction_horizon) * longer) as u32,

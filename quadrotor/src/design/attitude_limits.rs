@@ -63,11 +63,19 @@ impl RotorRoom<'_> {
     }
 
     /// Values of [`turn_limits`], beside the angular accelerations about roll and pitch that are commanded, rad/s².
-    pub(crate) fn turn_bounds(&self, lean_rad_s2: &Vector2<f64>) -> [f64; TURN_BOUNDS] {
+    ///
+    /// The angular acceleration that the reference requires of yaw, rad/s², is counted on to pass: it follows from leans that go to and
+    /// fro. A plan that took it to last would see no room on one side, and not begin what it could not brake.
+    pub(crate) fn turn_bounds(
+        &self,
+        lean_rad_s2: &Vector2<f64>,
+        reference_rad_s2: f64,
+    ) -> [f64; TURN_BOUNDS] {
         let tilting = lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + self.other_n_m.xy();
         let present = self.mixer.turning_range_n_m(self.thrust_n, &tilting);
         let alone = self.mixer.turning_range_n_m(self.thrust_n, &Vector2::zeros());
         let acceleration = |torque_n_m: f64| (torque_n_m - self.other_n_m.z) / self.inertia_kg_m2.z;
-        [acceleration(present.1), -acceleration(present.0), acceleration(alone.1), -acceleration(alone.0)]
+        let later = (acceleration(alone.0) + reference_rad_s2, acceleration(alone.1) + reference_rad_s2);
+        [acceleration(present.1), -acceleration(present.0), later.1, -later.0]
     }
 }

@@ -9,10 +9,10 @@ pub(crate) const MOST_TERMS: usize = 20;
 /// Most moves per input of the state-space MPC: the paper's 25, and some to compare with.
 pub(crate) const MOST_MOVES: usize = 30;
 
-/// Laguerre terms per input up to which the smaller programs are used: N = 5 flies by default, seven come within
-/// 0.3 % of the optimum. Their square matrices have a fifteenth of the elements that those of the larger programs have,
-/// or less, and a step under active limits clears two of them.
-pub(crate) const FEW_TERMS: usize = 7;
+/// Laguerre terms per input up to which the smaller programs are used: at most so many fly by default, and come within 1 % of
+/// the optimum. Their square matrices have a tenth of the elements that those of the larger programs have, and a step under
+/// active limits clears two of them.
+pub(crate) const FEW_TERMS: usize = 8;
 
 /// Coefficients per input of the larger programs.
 const MANY: usize = if MOST_TERMS > MOST_MOVES { MOST_TERMS } else { MOST_MOVES };

@@ -72,7 +72,7 @@ impl HoverLoops {
             },
             position: HoverLoop { problem: position, upper: upper.to_vec() },
             lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec() },
-            turn: HoverLoop { problem: turn, upper: room.turn_bounds(&Vector2::zeros()).to_vec() },
+            turn: HoverLoop { problem: turn, upper: room.turn_bounds(&Vector2::zeros(), 0.0).to_vec() },
         })
     }
 }

@@ -15,7 +15,7 @@ use crate::design::attitude_limits::{RotorRoom, lean_limits, turn_limits};
 use crate::design::controller_limits::COMMANDED_TILT_SHARE;
 use crate::design::limited_samples::ATTITUDE;
 use crate::design::linear_models::{altitude_model_with_lag, lagged_attitude_model};
-use crate::design::loop_problem::{LoopProblem, STABILIZING_SHARE};
+use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{horizon_m, position_bounds, position_limits};
 use crate::design::translation_design::{
     SIGHT_M, altitude_bandwidth_rad_s, over_attitude, position_bandwidth_rad_s,
@@ -123,7 +123,7 @@ impl LinearLoop {
         let designed =
             Self::new(&settings, &[bandwidth.turn_rad_s].into(), model, SIGHT_RAD).map_err(failed)?;
         let limits = turn_limits(&configuration.airframe, &mixer, &later(ATTITUDE, longer)).to_vec();
-        let upper = in_hover(configuration, &mixer).turn_bounds(&Vector2::zeros()).to_vec();
+        let upper = in_hover(configuration, &mixer).turn_bounds(&Vector2::zeros(), 0.0).to_vec();
         Ok(Self { limits, upper, ..designed })
     }
 
@@ -137,7 +137,7 @@ impl LinearLoop {
         let problem = LoopProblem::new(settings, bandwidth_rad_s, Vec::new(), sight, &model)?;
         Ok(Self {
             sample_time_s: settings.sample_time_s(),
-            stabilizing_gain: problem.stabilizing_gain(STABILIZING_SHARE)?,
+            stabilizing_gain: problem.stabilizing_gain(problem.stabilizing_share())?,
             slack_cost: problem.slack_cost(),
             weights: problem.weights().clone(),
             model,

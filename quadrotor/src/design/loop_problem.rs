@@ -10,8 +10,8 @@ use crate::design::loop_weights::loop_weights;
 
 /// What a violation by a limit's whole relaxation costs, as a multiple of what the error in sight does.
 const VIOLATION: f64 = 1e3;
-/// Bandwidth of the feedback about which plans are made, as a share of the controller's.
-pub(crate) const STABILIZING_SHARE: f64 = 0.3;
+/// Bandwidth of the feedback about which plans are made, as a share of the controller's, unless a loop has its own.
+const STABILIZING_SHARE: f64 = 0.3;
 
 /// The regulation problem of one loop with P outputs: its model, weights and limits. What is left to choose is how the
 /// controller plans: N, a, and the feedback about which it does.
@@ -24,6 +24,7 @@ pub struct LoopProblem<const P: usize> {
     limits: Vec<SignalLimit>,
     regulator: Dlqr,
     sight: f64,
+    stabilizing_share: f64,
 }
 
 impl<const P: usize> LoopProblem<P> {
@@ -48,7 +49,18 @@ impl<const P: usize> LoopProblem<P> {
             limits: limits.into(),
             regulator,
             sight,
+            stabilizing_share: STABILIZING_SHARE,
         })
+    }
+
+    /// The same problem, planned about a feedback with another share of its bandwidth.
+    pub(crate) fn planned_about(self, stabilizing_share: f64) -> Self {
+        Self { stabilizing_share, ..self }
+    }
+
+    /// Bandwidth of the feedback about which the flown plans are made, as a share of the controller's.
+    pub fn stabilizing_share(&self) -> f64 {
+        self.stabilizing_share
     }
 
     /// The settings of the loop.
@@ -78,8 +90,7 @@ impl<const P: usize> LoopProblem<P> {
         VIOLATION * of_output * self.sight * self.sight
     }
 
-    /// A design with N = `terms` and a = `scale`, which plans about a feedback with this share of the loop's bandwidth; 0.3 is
-    /// flown.
+    /// A design with N = `terms` and a = `scale`, which plans about a feedback with this share of the loop's bandwidth.
     ///
     /// # Errors
     /// Those of [`LaguerreBasis::new`], [`Dlqr::new`] and [`StabilizedDesign::new`].

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use crate::ControllerKind;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::cascade_design::DesignReport;
-use crate::design::loop_problem::{LoopProblem, STABILIZING_SHARE};
+use crate::design::loop_problem::LoopProblem;
 
 /// A law about a stabilizing feedback, under limits, with what is known of its design.
 pub(crate) struct StabilizedLaw<const N: usize, const P: usize, const S: usize, const L: usize> {
@@ -20,7 +20,7 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> StabilizedL
     /// Of a kind of controller, with the settings of the loop.
     pub(crate) fn new(kind: ControllerKind, problem: &LoopProblem<P>) -> Result<Self, DesignError> {
         let settings = problem.settings();
-        let design = problem.design(settings.terms as usize, settings.scale, STABILIZING_SHARE)?;
+        let design = problem.design(settings.terms as usize, settings.scale, problem.stabilizing_share())?;
         let law = TrackingLaw::stabilized(kind, settings, &design, problem.limits(), problem.slack_cost())?;
         let model = problem.model();
         let regulator = design.dlqr().gain();

@@ -100,7 +100,8 @@ pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProb
     let lag_s = configuration.airframe.rotor_time_constant_s;
     let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
     let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
-    LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)
+    Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)?
+        .planned_about(ALTITUDE_STABILIZING_SHARE))
 }
 
 /// What the position controller minimizes, over a closed attitude loop.
@@ -111,7 +112,8 @@ pub(crate) fn position_problem(
     let settings = &configuration.controllers.position;
     let model = over_attitude(attitude, settings.sample_time_s())?;
     let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
-    LoopProblem::new(settings, &bandwidth, position_limits(), SIGHT_M, &model)
+    Ok(LoopProblem::new(settings, &bandwidth, position_limits(), SIGHT_M, &model)?
+        .planned_about(POSITION_STABILIZING_SHARE))
 }
 
 /// Whether all weights are the same in both directions.
@@ -123,6 +125,9 @@ pub(crate) fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
         && same(&settings.increment_weight)
 }
 
+/// Bandwidths of the feedback about which is planned, as shares of the controller's: those at which costs depend least on N and a.
+const ALTITUDE_STABILIZING_SHARE: f64 = 0.2;
+const POSITION_STABILIZING_SHARE: f64 = 0.45;
 /// Error of the output, m, the cost of which stands for that of a violated limit.
 pub(crate) const SIGHT_M: f64 = 20.0;
 
