@@ -85,6 +85,17 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         self.disturbance
     }
 
+    /// Goes on under another belief in what moves the vehicle: the last state counts as having so much more of some derivatives, and
+    /// what an acceleration explains more, d explains less. The motion itself is what it was.
+    pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
+        let believed = self.deviation + more;
+        let disturbance =
+            SVector::from_fn(|channel, _| self.disturbance[channel] - more[N / P * channel + 2]);
+        if believed.iter().chain(&disturbance).all(|value| value.is_finite()) {
+            (self.deviation, self.disturbance) = (believed, disturbance);
+        }
+    }
+
     /// A sample: the deviation from the reference, and by how much it has changed since the last one without what the reference has
     /// jumped by, under the feedback v(k−1). Returns the increment Δx(k) of the motion that leads to the deviation:
     ///

@@ -150,6 +150,8 @@ impl PositionController {
     pub(crate) fn feed_forward(&mut self, drag_1_s: &Vector2<f64>) {
         let more = drag_1_s.component_mul(&self.reference.velocity);
         self.controller.turn_feedback(|feedback| feedback - more);
+        let zero = Vector2::zeros();
+        self.observed.believe(&by_axis([zero, zero, -more, zero, zero, zero]));
     }
 
     /// Expresses the accelerations that were measured and applied last in other terms.
@@ -162,8 +164,10 @@ impl PositionController {
                 if derivative < 2 { value } else { term(&value) }
             }))
         };
+        let before = self.controller.measured();
         self.controller = self.controller.map(measured, Vector2::clone_owned);
         self.controller.apply(&applied);
+        self.observed.believe(&(self.controller.measured() - before));
     }
 }
 
