@@ -77,7 +77,11 @@ impl AltitudeController {
         let change = measured - self.controller.measured() - Vector3::new(position, velocity, acceleration);
         let increment = match &design.altitude.motion {
             Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
-            None => change,
+            None => {
+                let sample_time_s = configuration.controllers.altitude.sample_time_s();
+                self.observed.watch(&deviation, &change, sample_time_s);
+                change
+            }
         };
         let sample = Sample {
             measured,

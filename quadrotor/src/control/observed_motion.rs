@@ -85,6 +85,25 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         self.disturbance
     }
 
+    /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
+    /// disturbance without a model, as far as the accelerations at both ends of the sample do not explain how the rate has changed.
+    pub(crate) fn watch(
+        &mut self,
+        deviation: &SVector<f64, N>,
+        change: &SVector<f64, N>,
+        sample_time_s: f64,
+    ) {
+        for channel in 0..P {
+            let [rate, acceleration] = [1, 2].map(|derivative| N / P * channel + derivative);
+            let explained = (deviation[acceleration] + self.deviation[acceleration]) / 2.0;
+            let missed = change[rate] / sample_time_s - explained - self.disturbance[channel];
+            if missed.is_finite() {
+                self.disturbance[channel] += NEW * missed;
+            }
+        }
+        self.deviation = *deviation;
+    }
+
     /// Goes on under another belief in what moves the vehicle: the last state counts as having so much more of some derivatives, and
     /// what an acceleration explains more, d explains less. The motion itself is what it was.
     pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
