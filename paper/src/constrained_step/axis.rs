@@ -2,7 +2,9 @@
 
 use lmpc::{Augmented, DesignError, Dlqr, LaguerreBasis, SignalLimit};
 use nalgebra::{DVector, DVectorView};
-use quadrotor::{Configuration, ConfigurationError, LinearLoop};
+use quadrotor::{Configuration, HoverLoops, LinearLoop};
+
+use crate::Error;
 
 /// Names of the loops.
 pub const AXES: [&str; 4] = ["position", "altitude", "roll", "yaw"];
@@ -35,13 +37,13 @@ impl Axis {
     /// The loops of the cascade with its defaults: north and east together, down, roll and pitch together, and yaw.
     ///
     /// # Errors
-    /// [`ConfigurationError`].
-    pub fn all() -> Result<[Self; 4], ConfigurationError> {
-        let configuration = Configuration::default();
+    /// [`Error`] when a loop cannot be designed.
+    pub fn all() -> Result<[Self; 4], Error> {
+        let loops = HoverLoops::new(&Configuration::default())?;
         Ok([
             Self {
                 name: "position",
-                linear: LinearLoop::position(&configuration)?,
+                linear: LinearLoop::new(&loops.position)?,
                 steps: steps(&[
                     ("position step of 1 m", &[1.0, 0.0]),
                     ("position step of 5 m", &[5.0, 0.0]),
@@ -51,7 +53,7 @@ impl Axis {
             },
             Self {
                 name: "altitude",
-                linear: LinearLoop::altitude(&configuration)?,
+                linear: LinearLoop::new(&loops.altitude)?,
                 steps: steps(&[
                     ("altitude step of 1 m up", &[-1.0]),
                     ("altitude step of 5 m up", &[-5.0]),
@@ -63,12 +65,12 @@ impl Axis {
             },
             Self {
                 name: "roll",
-                linear: LinearLoop::roll_and_pitch(&configuration)?,
+                linear: LinearLoop::new(&loops.lean)?,
                 steps: steps(&[("roll step of 0.3 rad", &[0.3, 0.0]), ("roll step of 1 rad", &[1.0, 0.0])]),
             },
             Self {
                 name: "yaw",
-                linear: LinearLoop::yaw(&configuration)?,
+                linear: LinearLoop::new(&loops.turn)?,
                 steps: steps(&[("yaw step of 0.3 rad", &[0.3]), ("yaw step of 1 rad", &[1.0])]),
             },
         ])

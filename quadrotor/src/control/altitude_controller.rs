@@ -77,7 +77,11 @@ impl AltitudeController {
         let change = measured - self.controller.measured() - Vector3::new(position, velocity, acceleration);
         let increment = match &design.altitude.motion {
             Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
-            None => change,
+            None => {
+                let sample_time_s = configuration.controllers.altitude.sample_time_s();
+                self.observed.watch(&deviation, &change, sample_time_s);
+                change
+            }
         };
         let sample = Sample {
             measured,
@@ -108,15 +112,18 @@ impl AltitudeController {
     pub(crate) fn feed_forward(&mut self, drag_1_s: f64) {
         let more = self.reference.velocity * drag_1_s;
         self.controller.turn_feedback(|feedback| feedback - more);
+        self.observed.believe(&Vector3::new(0.0, 0.0, -more.x));
     }
 
     /// Expresses the accelerations that were measured and applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector1<f64>) -> Vector1<f64>) {
         let applied = term(&self.controller.applied());
+        let before = self.controller.measured();
         self.controller = self.controller.map(
             |state| Vector3::new(state.x, state.y, term(&Vector1::new(state.z)).x),
             Vector1::clone_owned,
         );
         self.controller.apply(&applied);
+        self.observed.believe(&(self.controller.measured() - before));
     }
 }

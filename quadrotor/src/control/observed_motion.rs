@@ -85,6 +85,36 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         self.disturbance
     }
 
+    /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
+    /// disturbance without a model, as far as the accelerations at both ends of the sample do not explain how the rate has changed.
+    pub(crate) fn watch(
+        &mut self,
+        deviation: &SVector<f64, N>,
+        change: &SVector<f64, N>,
+        sample_time_s: f64,
+    ) {
+        for channel in 0..P {
+            let [rate, acceleration] = [1, 2].map(|derivative| N / P * channel + derivative);
+            let explained = (deviation[acceleration] + self.deviation[acceleration]) / 2.0;
+            let missed = change[rate] / sample_time_s - explained - self.disturbance[channel];
+            if missed.is_finite() {
+                self.disturbance[channel] += NEW * missed;
+            }
+        }
+        self.deviation = *deviation;
+    }
+
+    /// Goes on under another belief in what moves the vehicle: the last state counts as having so much more of some derivatives, and
+    /// what an acceleration explains more, d explains less. The motion itself is what it was.
+    pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
+        let believed = self.deviation + more;
+        let disturbance =
+            SVector::from_fn(|channel, _| self.disturbance[channel] - more[N / P * channel + 2]);
+        if believed.iter().chain(&disturbance).all(|value| value.is_finite()) {
+            (self.deviation, self.disturbance) = (believed, disturbance);
+        }
+    }
+
     /// A sample: the deviation from the reference, and by how much it has changed since the last one without what the reference has
     /// jumped by, under the feedback v(k−1). Returns the increment Δx(k) of the motion that leads to the deviation:
     ///

@@ -100,6 +100,7 @@ impl PositionController {
             let speeds = ASKED.map(|sample| ahead(sample).velocity.norm());
             (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
         };
+        let zero = Vector2::zeros();
         let deviation = by_axis([
             error,
             seen.velocity_m_s - reference.velocity,
@@ -109,25 +110,22 @@ impl PositionController {
             seen.asked_snap_m_s4,
         ]);
         let change = measured - self.controller.measured() - explained;
+        let turned =
+            deviation + by_axis([zero, zero, zero, zero, seen.disturbance_m_s4, seen.disturbance_m_s4]);
         let increment = match &design.position.motion {
-            Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
-            None => change,
+            // The rotors hold the body against torques that disturb it: what turns it is both together.
+            Some(model) => self.observed.increment(model, &turned, &change, &self.controller.feedback()),
+            None => {
+                let sample_time_s = configuration.controllers.position.sample_time_s();
+                self.observed.watch(&deviation, &change, sample_time_s);
+                change
+            }
         };
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),
             // What disturbs the vehicle accelerates it, too.
-            deviation: turn.state(
-                &(deviation
-                    + by_axis([
-                        Vector2::zeros(),
-                        Vector2::zeros(),
-                        seen.disturbance_m_s2,
-                        Vector2::zeros(),
-                        seen.disturbance_m_s4,
-                        seen.disturbance_m_s4,
-                    ])),
-            ),
+            deviation: turn.state(&(turned + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
@@ -150,6 +148,8 @@ impl PositionController {
     pub(crate) fn feed_forward(&mut self, drag_1_s: &Vector2<f64>) {
         let more = drag_1_s.component_mul(&self.reference.velocity);
         self.controller.turn_feedback(|feedback| feedback - more);
+        let zero = Vector2::zeros();
+        self.observed.believe(&by_axis([zero, zero, -more, zero, zero, zero]));
     }
 
     /// Expresses the accelerations that were measured and applied last in other terms.
@@ -162,8 +162,10 @@ impl PositionController {
                 if derivative < 2 { value } else { term(&value) }
             }))
         };
+        let before = self.controller.measured();
         self.controller = self.controller.map(measured, Vector2::clone_owned);
         self.controller.apply(&applied);
+        self.observed.believe(&(self.controller.measured() - before));
     }
 }
 

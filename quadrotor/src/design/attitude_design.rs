@@ -27,7 +27,7 @@ pub(crate) type LeanLaw = TrackingLaw<{ 2 * AXIS_STATES }, 2, LEAN_FEW, LEAN_MAN
 pub(crate) type TurnLaw = TrackingLaw<AXIS_STATES, 1, TURN_FEW, TURN_MANY>;
 
 /// Most times by which a turn is taken to be longer than a lean: beyond it the horizon ends earlier.
-pub(crate) const LONGEST_TURN: f64 = 8.0;
+const LONGEST_TURN: f64 = 8.0;
 
 /// Error of the attitude, rad, the cost of which stands for that of a violated limit: upside down.
 pub(crate) const SIGHT_RAD: f64 = core::f64::consts::PI;
@@ -151,7 +151,7 @@ fn longer_turn(bandwidth: &AttitudeBandwidth) -> f64 {
 
 /// Settings of some axes, with times that are longer: α and λ say what is left after a sample. a follows by half, for its first moves have
 /// to be as fast: that is where the costs about yaw depend least on it.
-pub(crate) fn of_axes<const P: usize>(
+fn of_axes<const P: usize>(
     settings: &ControllerSettings<3>,
     axes: [usize; P],
     longer: f64,
@@ -170,7 +170,7 @@ pub(crate) fn of_axes<const P: usize>(
 }
 
 /// Samples that lie so many times later, the first of all as it is.
-pub(crate) fn later(samples: &[usize], times: f64) -> Vec<usize> {
+fn later(samples: &[usize], times: f64) -> Vec<usize> {
     samples.iter().map(|sample| libm::round(*sample as f64 * times) as usize).collect()
 }
 

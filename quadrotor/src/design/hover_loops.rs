@@ -1,15 +1,17 @@
 //! The loops of the cascade as they are in hover, to compare designs offline.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Vector2, Vector3};
 
 use crate::control::cascade::{most_horizontal, vertical_range};
 use crate::design::altitude_limits::altitude_bounds;
-use crate::design::attitude_design::attitude_problems;
+use crate::design::attitude_design::{SIGHT_RAD, attitude_problems};
 use crate::design::attitude_limits::RotorRoom;
 use crate::design::cascade_design::CascadeDesign;
 use crate::design::controller_limits::least_thrust_n;
 use crate::design::loop_problem::LoopProblem;
-use crate::design::position_limits::position_bounds;
+use crate::design::position_limits::{horizon_m, position_bounds};
 use crate::design::translation_design::{altitude_problem, position_problem};
 use crate::{Configuration, ConfigurationError, Mixer};
 
@@ -19,7 +21,9 @@ pub struct HoverLoop<const P: usize> {
     /// Model, weights and limits.
     pub problem: LoopProblem<P>,
     /// Values of the limits, one per row of their directions.
-    pub upper: alloc::vec::Vec<f64>,
+    pub upper: Vec<f64>,
+    /// The largest error that the controller plans with, m or rad; more is seen as this much.
+    pub sight: f64,
 }
 
 /// The loops of a configuration whose models contain the loops inside them.
@@ -63,16 +67,26 @@ impl HoverLoops {
             inertia_kg_m2: configuration.believed_inertia_kg_m2(),
             believed: configuration.controllers.mass_factor,
         };
-        let acceleration_m_s2 = most_horizontal(0.0, limits.tilt_rad);
-        let upper = position_bounds(limits, acceleration_m_s2, 0.0);
+        let tilted_m_s2 = most_horizontal(0.0, limits.tilt_rad);
+        let range = vertical_range(configuration, 1.0);
+        let fastest_m_s = limits.speed_up_m_s.max(limits.speed_down_m_s);
         Ok(Self {
             altitude: HoverLoop {
                 problem: altitude,
-                upper: altitude_bounds(limits, vertical_range(configuration, 1.0), 0.0).to_vec(),
+                upper: altitude_bounds(limits, range, 0.0).to_vec(),
+                sight: horizon_m(fastest_m_s, range.1.min(-range.0)),
             },
-            position: HoverLoop { problem: position, upper: upper.to_vec() },
-            lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec() },
-            turn: HoverLoop { problem: turn, upper: room.turn_bounds(&Vector2::zeros(), 0.0).to_vec() },
+            position: HoverLoop {
+                problem: position,
+                upper: position_bounds(limits, tilted_m_s2, 0.0).to_vec(),
+                sight: horizon_m(limits.speed_horizontal_m_s, tilted_m_s2),
+            },
+            lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec(), sight: SIGHT_RAD },
+            turn: HoverLoop {
+                problem: turn,
+                upper: room.turn_bounds(&Vector2::zeros(), 0.0).to_vec(),
+                sight: SIGHT_RAD,
+            },
         })
     }
 }

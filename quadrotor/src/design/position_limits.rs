@@ -78,9 +78,10 @@ pub(crate) fn position_bounds(
 /// speed limit decides.
 ///
 /// ```text
-/// v²/a   twice the way to brake from the speed limit
-/// v · 2 s
+/// v²/a + 1.2 s · v
 /// ```
+///
+/// The first term is twice the way to brake from the speed limit v at an acceleration a.
 pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
     speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
 }

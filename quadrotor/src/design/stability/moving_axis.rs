@@ -90,7 +90,9 @@ impl<const K: usize> MovingAxis<K> {
         } else {
             [state.position + noise[0], state.velocity + noise[1]]
         };
-        let seen = [seen[0], seen[1], achieved[0], achieved[1], achieved[2], achieved[3]];
+        // By a model, it is moved by what turns the body, the torques that nobody asked for among them.
+        let turned = if self.motion.is_some() { unasked } else { 0.0 };
+        let seen = [seen[0], seen[1], achieved[0], achieved[1], achieved[2] + turned, achieved[3] + turned];
         let deviation: [f64; K] = core::array::from_fn(|place| seen[place]);
         let before: [f64; K] = core::array::from_fn(|place| state.measured[place]);
         let change = SVector::from(deviation) - SVector::from(before);
@@ -108,7 +110,8 @@ impl<const K: usize> MovingAxis<K> {
                 change
             }
         };
-        let disturbing = [0.0, 0.0, disturbance, 0.0, unasked, unasked];
+        let left = unasked - turned;
+        let disturbing = [0.0, 0.0, disturbance, 0.0, left, left];
         state.feedback = self.law.feedback(&ChannelSample {
             increment: increment.into(),
             // What disturbs the vehicle accelerates it, too.
