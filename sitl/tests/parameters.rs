@@ -189,7 +189,15 @@ fn every_name_and_the_names_of_values_are_taken_at_the_start() {
 fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
     let mut bench = Bench::hovering(Identity::Px4);
     let before = answers(&mut bench, read("ROTOR_TIME_CONST"));
-    answers(&mut bench, set("CTRL_MODEL", f32::from(quadrotor::PredictionModel::Paper as u8)));
+    // 2 is the paper's; integers travel as their bytes.
+    let paper = PARAM_SET_DATA {
+        param_value: f32::from_bits(2),
+        target_system: 1,
+        target_component: 1,
+        param_id: "CTRL_MODEL".into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
+    };
+    answers(&mut bench, MavMessage::PARAM_SET(paper));
     bench.heard.clear();
     let heard = answers(&mut bench, set("ROTOR_TIME_CONST", 0.3));
     assert_eq!(heard.iter().map(|told| told.param_value).collect::<Vec<_>>(), [before[0].param_value]);
@@ -240,6 +248,6 @@ fn settings_at_the_start_are_judged_as_a_whole() {
     assert!(refused.contains("a.params: line 2: FRAME_INERTIA_X: airframe.inertia.x"), "{refused}");
     assert!(refused.contains("must be at least"), "{refused}");
 
-    let warned = settings("--set sensor.attitude_noise=0.15").expect("flies");
+    let warned = settings("--set sensor.attitude_noise=0.3").expect("flies");
     assert!(warned.notes.iter().any(|note| note.text.contains("measurement noise")), "{:?}", warned.notes);
 }

@@ -145,7 +145,7 @@ fn a_wind_beyond_the_limit_is_warned_of_at_the_start() {
     for calm in [
         "--seed 1",
         "--wind 27",
-        "--wind 22 --gusts 2",
+        "--wind 21 --gusts 2",
         "--gusts 9",
         "--wind 30 --set FRAME_DRAG_X=0.05 --set FRAME_DRAG_Y=0.05",
         // From the east there is nothing to push.
