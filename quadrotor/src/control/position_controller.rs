@@ -19,8 +19,9 @@ use crate::{CascadeDesign, Configuration};
 /// error needs the rest.
 const BRAKING_SHARE: f64 = 0.25;
 
-/// Samples ahead at which it is looked how fast the reference will be.
-const ASKED: [usize; 4] = [5, 10, 15, 20];
+/// Samples ahead at which it is looked how fast the reference will be, as far as the speed is limited: a reference that will be too fast
+/// for the limit would be run ahead of.
+const ASKED: [usize; 8] = [5, 10, 15, 20, 30, 45, 75, 110];
 
 /// State of the position controller.
 ///
