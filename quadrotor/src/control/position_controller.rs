@@ -43,7 +43,7 @@ impl PositionController {
         Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
-    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `most_m_s2` is the largest one, and `limited` brings
+    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and `most_m_s2` later on, and `limited` brings
     /// one within what the vehicle can do.
     pub(crate) fn step(
         &mut self,
@@ -51,7 +51,7 @@ impl PositionController {
         design: &CascadeDesign,
         seen: &HorizontalMotion,
         (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
-        most_m_s2: f64,
+        (present_m_s2, most_m_s2): (f64, f64),
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
         let limits = &configuration.limits;
@@ -130,7 +130,7 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, most_m_s2, asked_m_s),
+            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };

@@ -56,7 +56,7 @@ mod tests {
         assert_eq!(configuration.flyable_limits().acceleration_horizontal_m_s2, configured);
         configuration.limits.thrust_max = 1.05;
         let flyable = configuration.flyable_limits().acceleration_horizontal_m_s2;
-        let thrust = GRAVITY_M_S2.hypot(flyable / 0.75) / (0.98 * GRAVITY_M_S2);
+        let thrust = GRAVITY_M_S2.hypot(flyable / 0.75) / (0.995 * GRAVITY_M_S2);
         assert!((thrust - 1.05).abs() < 1e-12, "{flyable}: {thrust}");
     }
 }
