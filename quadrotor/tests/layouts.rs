@@ -15,31 +15,33 @@ fn with(layout: RotorLayout) -> Configuration {
     configuration
 }
 
-/// In hover, over 5 m and through a turn each frame arrives as the "+" does.
+/// In hover, over 5 m and through a turn each frame arrives as the "+" does, and follows its reference at least as closely: four rotors
+/// at l/√2 make √2 times the torque of two at l, and the bandwidth of the attitude is chosen by what the torque can do.
 #[test]
 fn x_and_h_frames_fly_as_the_plus_frame_does() {
     for (goal_m, yaw_rad) in [([0.0, 0.0, -2.0], 0.0), ([5.0, 0.0, -2.0], 0.0), ([3.0, -4.0, -2.0], 1.5)] {
         let arrivals =
             [RotorLayout::plus(), RotorLayout::x(), RotorLayout::h(1.4), RotorLayout::h(0.7)].map(|layout| {
                 let configuration = with(layout);
-                let (mut extremes, mut path) = (Extremes::new(), Vec::new());
+                let (mut extremes, mut path, mut off_m) = (Extremes::new(), Vec::new(), 0.0_f64);
                 let end = fly(&configuration, &goal(goal_m, yaw_rad), 15.0, |outputs| {
                     extremes.see(outputs);
                     path.push(outputs.position_m);
+                    off_m = off_m.max((outputs.position_m - outputs.setpoint.position_m).norm());
                 })
                 .outputs();
                 extremes.assert_within(&configuration);
                 assert!(distance(&end, goal_m) < 0.001, "{layout:?}: {end:?}");
                 assert!(end.yaw_error_rad.abs() < 0.001, "{layout:?}: {end:?}");
-                path
+                (path, off_m)
             });
-        // The same torques are shared by the rotors in another way, and a rotor's thrust lags the more the faster it turns:
-        // measured 4 mm at
-        // the most, on the flight with a turn.
-        for other in &arrivals[1..] {
-            let apart = arrivals[0].iter().zip(other).map(|(one, other)| (one - other).norm());
-            let apart_m = apart.fold(0.0, f64::max);
-            assert!(apart_m < 0.01, "{apart_m}");
+        let (plus, plus_m) = &arrivals[0];
+        // Measured: 46 mm of the "+", 29 mm of the "X", which are 19 mm apart then.
+        assert!(*plus_m < 0.05, "{plus_m}");
+        for (other, off_m) in &arrivals[1..] {
+            assert!(*off_m < plus_m + 1e-4, "{off_m} {plus_m}");
+            let apart_m = plus.iter().zip(other).map(|(one, other)| (one - other).norm()).fold(0.0, f64::max);
+            assert!(apart_m < 0.02, "{apart_m}");
         }
     }
 }

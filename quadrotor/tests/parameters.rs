@@ -130,8 +130,8 @@ fn values_that_contradict_one_another_are_refused() {
         assert_eq!(refused.to_string(), expected, "{name} = {value}");
     }
     let mut configuration = Configuration::default();
-    // Plans about poles of 0.86 cannot be made to settle as fast as 0.8.
-    set(&mut configuration, "controller.position.lambda", 0.8);
+    // Laguerre functions that decay as 0.57^k are no plan that settles as 0.5^k.
+    set(&mut configuration, "controller.position.lambda", 0.5);
     let error = Simulation::new(&configuration, &Inputs::default()).unwrap_err();
     assert!(matches!(error, ConfigurationError::Design { part: "position controller", .. }), "{error}");
 }

@@ -32,10 +32,13 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
     assert!(lag.starts_with("the north loop is unstable: errors double every 0."), "{lag}");
     assert!(lag.ends_with("caused by airframe.rotor.time_constant = 0.3 s, stable with 0.03 s"), "{lag}");
 
-    let weight = refused(|configuration| configuration.controllers.attitude.output_weight[1] = 1e9);
-    assert!(weight.starts_with("the north loop is unstable"), "{weight}");
+    let weight = refused(|configuration| {
+        configuration.controllers.model = PredictionModel::Paper;
+        configuration.controllers.attitude.output_weight[1] = 1e5;
+    });
+    assert!(weight.starts_with("the pitch loop is unstable"), "{weight}");
     assert!(
-        weight.ends_with("caused by controller.attitude.output_weight.theta = 1e9, stable with 1"),
+        weight.ends_with("caused by controller.attitude.output_weight.theta = 100000, stable with 1"),
         "{weight}"
     );
 
@@ -92,12 +95,12 @@ fn moments_of_inertia_reach_any_target_one_by_one() {
     }
 }
 
+/// The most noise of the attitude that can be set, 0.5 rad, is flown, with warnings: see below.
 #[test]
 fn noise_that_no_flight_survives_is_refused_by_its_source() {
-    let cases: [(&str, Change); 4] = [
+    let cases: [(&str, Change); 3] = [
         ("sensor.position_noise = 10 m", |configuration| configuration.sensors.position_noise_m = 10.0),
         ("sensor.velocity_noise = 10 m/s", |configuration| configuration.sensors.velocity_noise_m_s = 10.0),
-        ("sensor.attitude_noise = 0.5 rad", |configuration| configuration.sensors.attitude_noise_rad = 0.5),
         ("sensor.body_rate_noise = 10 rad/s", |configuration| {
             configuration.sensors.body_rate_noise_rad_s = 10.0;
         }),
@@ -119,7 +122,7 @@ fn noise_that_no_flight_survives_is_refused_by_its_source() {
 fn a_combination_is_judged_as_a_whole() {
     let slow_rotors = |configuration: &mut Configuration| {
         configuration.controllers.model = PredictionModel::Paper;
-        configuration.airframe.rotor_time_constant_s = 0.032;
+        configuration.airframe.rotor_time_constant_s = 0.04;
     };
     let heavy_weight = |configuration: &mut Configuration| {
         configuration.controllers.model = PredictionModel::Paper;
@@ -134,7 +137,11 @@ fn a_combination_is_judged_as_a_whole() {
         slow_rotors(configuration);
         heavy_weight(configuration);
     });
-    assert!(message.contains("loop is unstable") && message.contains("stable with"), "{message}");
+    assert!(message.starts_with("the north loop is unstable"), "{message}");
+    assert!(
+        message.ends_with("caused by airframe.rotor.time_constant = 0.04 s, stable with 0.03 s"),
+        "{message}"
+    );
 }
 
 /// A refused change leaves the flight as it is, bit for bit, and names the parameter that was changed.
@@ -178,17 +185,14 @@ fn what_flies_badly_is_accepted_with_a_warning() {
     let slow = warnings(|configuration| configuration.controllers.altitude.output_weight.fill(1e-8));
     assert!(matches!(slow[..], [StabilityWarning::Slow { name: "altitude", .. }]), "{slow:?}");
     // The printed model does not know that the rotors answer late.
-    let swings = warnings(|configuration| {
-        configuration.controllers.model = PredictionModel::Paper;
-        configuration.controllers.attitude.output_weight[1] = 1e9;
-    });
+    let swings = warnings(|configuration| configuration.controllers.model = PredictionModel::Paper);
     assert!(
-        swings.iter().any(|each| matches!(each, StabilityWarning::Swings { name: "pitch", .. })),
+        swings.iter().any(|each| matches!(each, StabilityWarning::Swings { name: "north", .. })),
         "{swings:?}"
     );
     let shaken = warnings(|configuration| configuration.sensors.velocity_noise_m_s = 0.6);
     assert!(shaken.iter().any(|each| matches!(each, StabilityWarning::Shaken { .. })), "{shaken:?}");
-    let saturated = warnings(|configuration| configuration.sensors.attitude_noise_rad = 0.15);
+    let saturated = warnings(|configuration| configuration.sensors.attitude_noise_rad = 0.5);
     assert!(
         saturated.iter().any(|each| matches!(each, StabilityWarning::Saturated { name: "roll", .. })),
         "{saturated:?}"

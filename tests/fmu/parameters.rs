@@ -42,7 +42,7 @@ fn calculated_parameters_follow_at_once() {
     assert_eq!(instance.reals(RADII), first);
 }
 
-/// The paper's Figure 4: with its N = 5, a = 0.8187 and α = 1.2 the eigenvalues are those of DLQR, and Ω is well
+/// The paper's Figure 4: on its models, with its N = 5, a = 0.8187 and α = 1.2 the eigenvalues are those of DLQR, and Ω is well
 /// conditioned.
 #[test]
 fn designs_are_those_of_the_regulator() {
@@ -51,8 +51,9 @@ fn designs_are_those_of_the_regulator() {
     for controller in CONTROLLERS {
         let set = |name: &str| format!("controller.{controller}.{name}");
         assert_eq!(instance.set_real(&[(&set("alpha"), 1.2), (&set("scale"), 0.8187)]), OK);
-        assert_eq!(instance.set_integer(&[(&set("prediction_horizon"), 100)]), OK);
+        assert_eq!(instance.set_integer(&[(&set("prediction_horizon"), 100), (&set("terms"), 5)]), OK);
     }
+    assert_eq!(instance.set_integer(&[("controller.model", 2)]), OK);
     instance.initialize();
     for controller in CONTROLLERS {
         let difference = instance.real(&format!("controller.{controller}.eigenvalue_difference_to_dlqr"));

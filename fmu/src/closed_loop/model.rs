@@ -110,16 +110,16 @@ mod tests {
         let mut configuration = Configuration::default();
         let mut model = ClosedLoop::new(&configuration, &Inputs::default()).expect("flies");
         assert_eq!(model.warnings(), Vec::<String>::new());
-        configuration.sensors.attitude_noise_rad = 0.15;
+        configuration.sensors.attitude_noise_rad = 0.3;
         model.retune(&configuration).expect("flies");
         assert!(model.warnings().iter().any(|warning| warning.starts_with("measurement noise")));
-        configuration.sensors.attitude_noise_rad = 0.5;
+        configuration.sensors.velocity_noise_m_s = 3.0;
         let refused = model.retune(&configuration).expect_err("lost").to_string();
-        assert!(refused.starts_with("sensor.attitude_noise = 0.5 rad is too much noise"), "{refused}");
-        // Ω singular in floating point was a condition number of +inf.
+        assert!(refused.starts_with("sensor.velocity_noise = 3 m/s is too much noise"), "{refused}");
+        // S singular in floating point was a condition number of +inf.
         configuration = Configuration::default();
-        configuration.controllers.attitude.lambda = 0.8;
+        configuration.controllers.position.lambda = 0.6;
         let refused = ClosedLoop::new(&configuration, &Inputs::default()).err().expect("refused").to_string();
-        assert!(refused.starts_with("cannot design the attitude controller"), "{refused}");
+        assert!(refused.starts_with("cannot design the position controller: the matrix S"), "{refused}");
     }
 }
