@@ -54,11 +54,10 @@ fn costs(start: &str, end: &str) -> impl Iterator<Item = &'static CostResult> {
 /// for which five cost up to 6.9 % on the steps of 1 rad. Fifty free moves stay within 1 %, except for yaw, for which they end too early.
 #[test]
 fn few_coefficients_are_enough_on_steps_under_limits() {
-    for (start, bound) in
-        [("LMPC, N = 3,", 1.15), ("LMPC, N = 5,", 1.07), ("LMPC, N = 7,", 1.035), ("LMPC, N = 9,", 1.045)]
-    {
+    let bounds = [("3", 1.15), ("5", 1.07), ("7", 1.035), ("8", 1.045), ("9", 1.045)];
+    for (start, bound) in bounds.map(|(n, bound)| (format!("LMPC, N = {n},"), bound)) {
         let ratios: Vec<(f64, &str)> =
-            costs(start, "").map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
+            costs(&start, "").map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
         assert_eq!(ratios.len(), 14);
         for (ratio, problem) in ratios {
             assert!(ratio < bound, "{start} {problem}: {ratio}");
@@ -85,7 +84,8 @@ fn nothing_that_keeps_the_limits_is_better_than_the_optimum() {
     assert!(all().closed_loop_cost.iter().all(|cost| cost.cost.is_some() != cost.refused.is_some()));
 }
 
-/// Two solvers on the same programs, sample after sample.
+/// Two solvers on the same programs, sample after sample. Clarabel's tolerance is 1e-8 of a program's cost; the costs of the steps
+/// differ by 3e-6.
 #[test]
 fn clarabel_flies_the_same_moves() {
     let mut compared = 0;
@@ -93,7 +93,7 @@ fn clarabel_flies_the_same_moves() {
         let name = clarabel.controller.trim_end_matches(", solved by Clarabel");
         let ours = costs(name, name).find(|cost| cost.problem == clarabel.problem).unwrap();
         let (ours, theirs) = (ours.cost.unwrap(), clarabel.cost.unwrap());
-        assert!((ours / theirs - 1.0).abs() < 1e-4, "{}: {ours}, {theirs}", clarabel.problem);
+        assert!((ours / theirs - 1.0).abs() < 2e-5, "{}: {ours}, {theirs}", clarabel.problem);
         compared += 1;
     }
     assert_eq!(compared, 2);
@@ -104,24 +104,59 @@ fn flights(figure: &str, mission: &str) -> impl Iterator<Item = &'static FlightR
     all().flights.iter().filter(move |flight| flight.figure == figure && flight.mission == mission)
 }
 
+/// The paper's claim in section 6.2: Laguerre MPC, on the paper's models or on ours, tracks as well as state-space MPC and the regulator.
+/// On the smooth flight no limit is active; the predictive controllers are 1.3 mm off at most, because they begin from the motion that
+/// they measured, and the regulator 0.5 mm.
 #[test]
 fn the_papers_flight_is_followed_to_millimetres() {
     let smooth: Vec<&FlightResult> = flights("5-7", "smooth").collect();
     assert_eq!(smooth.len(), 4);
     for flight in smooth {
-        assert!(flight.rms_m.unwrap().iter().all(|rms| *rms < 1e-3), "{}", flight.controller);
+        assert!(flight.rms_m.unwrap().iter().all(|rms| *rms < 1.5e-3), "{flight:?}");
         assert!(flight.final_m.unwrap() < 1e-4, "{}", flight.controller);
     }
-    for flight in flights("5-7", "step").chain(flights("5-7", "step without governor")) {
+    for flight in flights("5-7", "step") {
         assert!(flight.final_m.unwrap() < 1e-3, "{}", flight.controller);
         assert!(flight.tilt_rad.unwrap() < 0.6, "{}", flight.controller);
     }
-    // N = 1 of Table 3 with the paper's α is refused and said to be.
-    let refused = |flight: &&FlightResult| flight.n == Some(1) && flight.alpha == Some(1.2);
-    let reason = flights("8-13", "smooth").find(refused).unwrap().refused.clone().unwrap();
-    assert!(reason.contains("not stable"), "{reason}");
 }
 
+/// The paper's models are flown with its α: with its N = 5 the flight is that of N = 9, as its Figures 8 to 13 show, and N = 1 of
+/// Table 3 is refused with our R and said to be. With the terminal weight instead, it flies.
+#[test]
+fn the_papers_recipe_is_flown_on_the_papers_models() {
+    let of = |n: u32, alpha: f64| {
+        let wanted = |flight: &&FlightResult| flight.n == Some(n) && flight.alpha == Some(alpha);
+        flights("8-13", "smooth").find(wanted).unwrap()
+    };
+    let [five, nine] = [5, 9].map(|n| of(n, 1.2).rms_m.unwrap());
+    for (five, nine) in five.into_iter().zip(nine) {
+        assert!((five - nine).abs() < 2e-5 && five < 1e-3, "{five} {nine}");
+    }
+    let refused = of(1, 1.2).refused.clone().unwrap();
+    assert!(refused.contains("not stable"), "{refused}");
+    assert!(of(1, 1.0).refused.is_none());
+}
+
+/// Where the paper's recipe ends: it knows no limits. Without the governor the raw goal saturates the rotors, it overshoots by a third
+/// and tilts beyond the limit of 0.6 rad; with the loops and the limits in the prediction nothing of that is left.
+#[test]
+fn only_predictions_with_limits_fly_the_whole_error() {
+    let of = |controller: &str| {
+        let name = controller.to_owned();
+        flights("5-7", "step without governor").find(|flight| flight.controller.starts_with(&name)).unwrap()
+    };
+    for controller in ["LMPC, defaults", "SS-MPC"] {
+        let flight = of(controller);
+        assert!(flight.final_m.unwrap() < 1e-3, "{flight:?}");
+        assert!(flight.tilt_rad.unwrap() < 0.6 && flight.overshoot.unwrap() < 0.04, "{flight:?}");
+    }
+    let paper = of("LMPC, N = 5");
+    assert!(paper.overshoot.unwrap() > 0.25 && paper.tilt_rad.unwrap() > 0.65, "{paper:?}");
+    assert!(of("DLQR").overshoot.unwrap() > 0.2);
+}
+
+/// On the models that ship, every shaped flight arrives. The paper's recipe knows no limits, and some of its flights tumble.
 #[test]
 fn random_flights_arrive() {
     assert_eq!(all().robustness.len(), 8);
@@ -129,8 +164,8 @@ fn random_flights_arrive() {
         assert_eq!(result.flights, 4);
         assert!(result.arrived <= result.flights);
         assert!(result.median_m <= result.p95_m.unwrap());
-        let shaped_mpc = result.mission == "shaped" && result.controller != "DLQR";
-        assert!(!shaped_mpc || result.arrived == result.flights, "{result:?}");
+        let limited = ["LMPC, defaults", "SS-MPC, N_c = 25"].contains(&result.controller.as_str());
+        assert!(!(limited && result.mission == "shaped") || result.arrived == result.flights, "{result:?}");
     }
 }
 

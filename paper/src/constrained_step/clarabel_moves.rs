@@ -151,7 +151,9 @@ fn condensed(axis: &Axis, moves: usize, end: &DMatrix<f64>) -> Condensed {
     };
     let of_outputs = q.view((states, states), (inputs, inputs)).into_owned();
     let of_motion = q.view((0, 0), (states, states)).into_owned();
-    for sample in 0..linear.prediction_horizon {
+    // Limits may reach further than the cost does.
+    let limited = linear.limits.iter().flat_map(|limit| &limit.samples).map(|last| last + 1);
+    for sample in 0..limited.fold(linear.prediction_horizon, usize::max) {
         if sample < moves {
             let mut change = Predicted::zero(inputs, unknowns, known);
             change.moves.view_mut((0, inputs * sample), (inputs, inputs)).fill_with_identity();
@@ -167,10 +169,12 @@ fn condensed(axis: &Axis, moves: usize, end: &DMatrix<f64>) -> Condensed {
         }
         let next = state.times(model.a()).plus(&input.times(model.b()));
         let motion = next.minus(&state);
-        condensed.charge(&state.times(model.c()), &of_outputs);
+        if sample < linear.prediction_horizon {
+            condensed.charge(&state.times(model.c()), &of_outputs);
+        }
         if sample + 1 < linear.prediction_horizon {
             condensed.charge(&motion, &of_motion);
-        } else {
+        } else if sample + 1 == linear.prediction_horizon {
             let mut last = Predicted::zero(states + inputs, unknowns, known);
             let error = next.times(model.c());
             last.moves.rows_mut(0, states).copy_from(&motion.moves);

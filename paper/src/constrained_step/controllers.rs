@@ -80,7 +80,7 @@ macro_rules! sized {
 }
 
 /// Coefficients that the smaller and the larger programs have room for, as in flight.
-const FEW: usize = 7;
+const FEW: usize = 8;
 const MANY: usize = 10;
 
 /// The Laguerre MPC of the cascade with N = `terms` ≤ 10 and a = `scale`.

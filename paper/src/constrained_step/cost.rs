@@ -56,7 +56,7 @@ type Entry = (Contender, Option<Controller>);
 
 fn contenders(axis: &Axis) -> Result<Vec<Entry>, Error> {
     let mut entries = Vec::new();
-    for n in [1, 3, 5, 7, 9] {
+    for n in [1, 3, 5, 7, 8, 9] {
         let name = format!("LMPC, N = {n}, a = {}", rounded(axis.scale()));
         entries.push(entry(name, n, laguerre(axis, n, axis.scale(), None))?);
     }

@@ -1,6 +1,6 @@
 //! Who flies: the paper's controllers and the cascade's defaults.
 
-use quadrotor::{Configuration, ControllerKind, ControllerSettings};
+use quadrotor::{Configuration, ControllerKind, ControllerSettings, PredictionModel};
 
 use super::mission::Mission;
 
@@ -16,14 +16,14 @@ pub struct Pilot {
     pub name: String,
     /// Kind of controller.
     pub kind: ControllerKind,
-    /// N and a of all three controllers, and α; none for the cascade's defaults.
+    /// The paper's models with this N and a for all three controllers, and this α; none for the cascade's defaults.
     pub laguerre: Option<[f64; 3]>,
     /// N_c of state-space MPC.
     pub moves: u32,
 }
 
 impl Pilot {
-    /// LMPC as in the paper: the same N and a for all three controllers.
+    /// LMPC as in the paper, on its models: the same N and a for all three controllers.
     pub fn paper(terms: u32, scale: f64) -> Self {
         Self {
             name: format!("LMPC, N = {terms}, a = {scale:.4}, α = 1.2"),
@@ -42,7 +42,7 @@ impl Pilot {
         }
     }
 
-    /// The cascade's defaults: N = 5, its own a for each controller, terminal weight.
+    /// The cascade's defaults: the loops inside in its models, and N and a of its own for each controller.
     pub fn default_lmpc() -> Self {
         let kind = ControllerKind::Lmpc;
         Self { name: "LMPC, defaults".to_owned(), kind, laguerre: None, moves: 25 }
@@ -66,6 +66,12 @@ impl Pilot {
         let controllers = &mut configuration.controllers;
         controllers.kind = self.kind;
         controllers.governor = mission.governor();
+        if self.laguerre.is_some() {
+            // α belongs to these models: the shipped ones are planned over an infinite horizon.
+            controllers.model = PredictionModel::Paper;
+            output_weights_only(&mut controllers.altitude);
+            output_weights_only(&mut controllers.position);
+        }
         self.adjust(&mut controllers.altitude);
         self.adjust(&mut controllers.position);
         self.adjust(&mut controllers.attitude);
@@ -81,4 +87,10 @@ impl Pilot {
             settings.prediction_horizon = PAPER_HORIZON;
         }
     }
+}
+
+/// The paper's Q = CᵀC. The attitude keeps its other weights: its model does not know of the rotors' lag, and needs the damping.
+fn output_weights_only<const P: usize>(settings: &mut ControllerSettings<P>) {
+    settings.damping_weight.fill(0.0);
+    settings.rate_weight.fill(0.0);
 }

@@ -13,7 +13,7 @@ const LEAST_PERCENT: f64 = 1e-3;
 type Family = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
 const FAMILIES: [Family; 4] = [
-    ("LMPC, N = 1, 3, 5, 7, 9", COLOURS[0], "LMPC", &[""]),
+    ("LMPC, N = 1, 3, 5, 7, 8, 9", COLOURS[0], "LMPC", &[""]),
     ("finite LMPC, terminal weight, N = 5, 9", COLOURS[2], "finite LMPC", &["terminal weight"]),
     ("SS-MPC, 25 and 50 moves", COLOURS[1], "SS-MPC", &["25", "50"]),
     ("SS-MPC with terminal weight, 25 and 50 moves", COLOURS[3], "SS-MPC", &["terminal weight"]),

@@ -12,8 +12,9 @@ pub fn section(page: &mut Page, results: &Results) {
         "The nonlinear equations (2)–(3) with rotor lag and rotor limits, from rest at the origin to 5 m north, 5 m east, 10 m up \
          (z = −10 in NED), heading from 0 to 0.5 rad, 20 s. The paper gives no time law. We use a fifth-order polynomial \
          over 10 s with feed-forward (“smooth”), and the goal as a step. “N = 5, a = 0.8187, α = 1.2” are the \
-         paper's choices for all three controllers; “defaults” has the terminal weight and an a of its own for each controller. \
-         State-space MPC and DLQR have the same weights; state-space MPC keeps the regulator's cost as terminal weight.",
+         paper's choices for all three controllers, on the paper's models, whose inputs act at once and which know no limits. “Defaults” \
+         predicts with the inner loops, over an infinite horizon and under limits, with an N and an a of its own for each controller. \
+         State-space MPC and DLQR have the models and weights of the defaults; state-space MPC keeps the regulator's cost as terminal weight.",
     );
     for mission in Mission::ALL {
         page.subheading(title(mission));
@@ -22,9 +23,10 @@ pub fn section(page: &mut Page, results: &Results) {
         page.figures(figures_5_to_7(mission, &flown));
     }
     page.paragraph(
-        "In the smooth flight no limit is active, and all four controllers agree to a fraction of a millimetre: the paper's claim \
+        "In the smooth flight no limit is active, and all four controllers stay within millimetres: the paper's claim \
          that LMPC and state-space MPC track equally well holds there, and DLQR does the same with one matrix. Without the \
-         governor the step reaches the limits, and the controllers differ in how they handle them.",
+         governor the step reaches the limits: the paper's recipe, which has none, and DLQR tilt and overshoot far; LMPC and state-space MPC \
+         predict what is left to them.",
     );
     second_section(page, results);
 }
@@ -34,7 +36,7 @@ fn second_section(page: &mut Page, results: &Results) {
     page.paragraph(
         "(58) with N<sub>c</sub> = 30 gives a = 0.9672 for N = 1 and a = 0.7408 for N = 9. The paper shows similar flights for both. \
          With its α = 1.2 and our R, the design with N = 1 is rejected, because its closed loop is unstable; the paper gives no R, and with a \
-         larger one the loop can be stable. With the Riccati solution as terminal weight it flies, slowly. The tables list rejected designs.",
+         larger one the loop can be stable. With the Riccati solution as terminal weight it flies, slowly. All of these designs are on the paper's models. The tables list rejected designs.",
     );
     for mission in Mission::ALL {
         page.subheading(title(mission));

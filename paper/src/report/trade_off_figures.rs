@@ -18,22 +18,25 @@ fn names<T: ToString>(values: &[T]) -> Vec<String> {
     values.iter().map(T::to_string).collect()
 }
 
-/// Excess over N and a with the terminal weight.
+/// Excess over N and a.
 pub fn scales_and_terms(trade_off: &TradeOff) -> Figure {
-    let default = |axis: &str| trade_off.default_of(axis).map_or(f64::NAN, |design| design.a);
-    let map = |axis: &str| HeatMap {
-        title: format!("{axis}, default a = {:.2}", default(axis)),
-        x_label: "a".to_owned(),
-        y_label: "N".to_owned(),
-        columns: names(&SCALES),
-        rows: names(&TERMS),
-        values: TERMS.map(|n| row(trade_off, axis, "N and a", |design| design.n == n)).to_vec(),
-        marked: nearest(default(axis)).map(|column| [4, column]),
+    let map = |axis: &str| {
+        let (n, a) = trade_off.default_of(axis).map_or((0, f64::NAN), |design| (design.n, design.a));
+        let marked_row = TERMS.iter().position(|terms| *terms == n);
+        HeatMap {
+            title: format!("{axis}, default N = {n}, a = {a:.2}"),
+            x_label: "a".to_owned(),
+            y_label: "N".to_owned(),
+            columns: names(&SCALES),
+            rows: names(&TERMS),
+            values: TERMS.map(|n| row(trade_off, axis, "N and a", |design| design.n == n)).to_vec(),
+            marked: marked_row.zip(nearest(a)).map(|(row, column)| [row, column]),
+        }
     };
     Figure {
         name: "trade-off-terms".to_owned(),
-        caption: "Default placing of limits: over N and a. a = 0 moves N times beside the stabilizing feedback. Framed: the column \
-                  closest to the default. Limits between the chosen samples are not seen, so that more terms do not always cost less."
+        caption: "Default placing of limits: over N and a. a = 0 moves N times beside the stabilizing feedback. Framed: the \
+                  default N, in the column closest to the default a. Limits between the chosen samples are not seen, so that more terms do not always cost less."
             .to_owned(),
         svg: heat_maps("Excess cost over N and a", UNIT, RANGE, EMPTY, 2, &AXES.map(map)),
     }

@@ -142,13 +142,14 @@ impl Cascade {
         let (_, down) = vertical_range(configuration, upright(&seen.body));
         let lightest = vertical.max(braking_m_s2(seen, reference).min(down));
         let holding = holding_horizontal_m_s2(configuration, seen.vertical().disturbance_m_s2);
+        let present = most_horizontal(vertical, tilt_rad).min(holding);
         let (applied, activity) = self.position.step(
             configuration,
             design,
             &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
             (&now, later),
-            most_horizontal(lightest, tilt_rad).min(holding),
-            |wanted| within(wanted, most_horizontal(vertical, tilt_rad).min(holding)),
+            (present, most_horizontal(lightest, tilt_rad).min(holding)),
+            |wanted| within(wanted, present),
         );
         let feedback = applied - now.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);

@@ -19,8 +19,9 @@ use crate::{CascadeDesign, Configuration};
 /// error needs the rest.
 const BRAKING_SHARE: f64 = 0.25;
 
-/// Samples ahead at which it is looked how fast the reference will be.
-const ASKED: [usize; 4] = [5, 10, 15, 20];
+/// Samples ahead at which it is looked how fast the reference will be, as far as the speed is limited: a reference that will be too fast
+/// for the limit would be run ahead of.
+const ASKED: [usize; 8] = [5, 10, 15, 20, 30, 45, 75, 110];
 
 /// State of the position controller.
 ///
@@ -42,7 +43,7 @@ impl PositionController {
         Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
-    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `most_m_s2` is the largest one, and `limited` brings
+    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and `most_m_s2` later on, and `limited` brings
     /// one within what the vehicle can do.
     pub(crate) fn step(
         &mut self,
@@ -50,7 +51,7 @@ impl PositionController {
         design: &CascadeDesign,
         seen: &HorizontalMotion,
         (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
-        most_m_s2: f64,
+        (present_m_s2, most_m_s2): (f64, f64),
         limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
         let limits = &configuration.limits;
@@ -129,7 +130,7 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, most_m_s2, asked_m_s),
+            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };

@@ -17,7 +17,7 @@ pub(crate) fn least_thrust_n(configuration: &Configuration, upright: f64) -> f64
 }
 
 /// Thrust, as a share of what would hold the altitude, that a lean leaves for more than holding it.
-const HOLDING_SHARE: f64 = 0.98;
+const HOLDING_SHARE: f64 = 0.995;
 /// Horizontal acceleration, m/s², that is commanded however weak the rotors are: a lean of 6° costs half a percent of the thrust.
 const LEAST_HORIZONTAL_M_S2: f64 = 1.0;
 

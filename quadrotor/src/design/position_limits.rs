@@ -10,10 +10,12 @@ const SIDES: usize = 24;
 /// Sides of the polygons for the rate and the acceleration of the tilt, which need not be finer: 8 %.
 const COARSE_SIDES: usize = 8;
 /// Bounds, one per side.
-pub(crate) const POSITION_BOUNDS: usize = 2 * SIDES + 2 * COARSE_SIDES;
+pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
 
-/// Samples of the tilt command: those at which it can be chosen, and some of those at which it settles.
-static TILT: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
+/// Samples of the tilt command for which the present thrust counts.
+static PRESENT_TILT: &[usize] = &[0, 1, 2];
+/// The later ones: those at which it can be chosen, and some of those at which it settles.
+static TILT: &[usize] = &[3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
 /// Samples of the speed, which follows later.
 static MOVING: &[usize] =
     &[4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
@@ -42,34 +44,39 @@ pub(crate) const POSITION_STATES: usize = 2 * AXIS_STATES;
 
 /// The commanded acceleration, and the speed, jerk and snap that follow from it, in all directions alike. They stand for tilt, its
 /// rate and its angular acceleration.
-pub(crate) fn position_limits() -> [SignalLimit; 4] {
+pub(crate) fn position_limits() -> [SignalLimit; 5] {
     let of_states = |derivative: usize, sides: usize, samples: &[usize]| {
         let limited = [derivative, AXIS_STATES + derivative];
         SignalLimit::of_states(POSITION_STATES, 2, &limited, SignalLimit::polygon(sides), samples.to_vec())
     };
+    let of_inputs = |samples: &[usize]| {
+        SignalLimit::of_inputs(POSITION_STATES, 2, SignalLimit::polygon(SIDES), samples.to_vec())
+            .giving_way_by(FIRM_M_S2)
+    };
     [
-        SignalLimit::of_inputs(POSITION_STATES, 2, SignalLimit::polygon(SIDES), TILT.to_vec())
-            .giving_way_by(FIRM_M_S2),
+        of_inputs(PRESENT_TILT),
+        of_inputs(TILT),
         of_states(4, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
         of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
         of_states(1, SIDES, MOVING).giving_way_by(SPEED_M_S),
     ]
 }
 
-/// Values of [`position_limits`], the commanded acceleration being at most `acceleration_m_s2`, when the reference asks for speeds up to
+/// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, when the reference asks for speeds up to
 /// `asked_m_s`: see [`most_speed_m_s`].
 pub(crate) fn position_bounds(
     limits: &Limits,
-    acceleration_m_s2: f64,
+    (present_m_s2, lasting_m_s2): (f64, f64),
     asked_m_s: f64,
 ) -> [f64; POSITION_BOUNDS] {
     let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
     let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked_m_s);
     core::array::from_fn(|bound| match bound {
-        ..SIDES => acceleration_m_s2,
-        _ if bound < SIDES + COARSE_SIDES => turning,
-        _ if bound < SIDES + 2 * COARSE_SIDES => leaning,
+        ..SIDES => present_m_s2,
+        _ if bound < 2 * SIDES => lasting_m_s2,
+        _ if bound < 2 * SIDES + COARSE_SIDES => turning,
+        _ if bound < 2 * SIDES + 2 * COARSE_SIDES => leaning,
         _ => speed,
     })
 }
@@ -128,17 +135,19 @@ mod tests {
         let sides: usize = position_limits().iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
-        let bounds = position_bounds(&limits, 5.0, 3.0);
+        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0);
         assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
-        assert_eq!(bounds[SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
-        assert_eq!(bounds[SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+        assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
+        assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+        assert_eq!(bounds[2 * SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
         assert_eq!(bounds[POSITION_BOUNDS - 1], 8.0);
     }
 
     /// A reference that is faster than the limit may be caught up with.
     #[test]
     fn a_fast_reference_moves_the_speed_limit() {
-        let speed = |asked_m_s: f64| position_bounds(&Limits::default(), 5.0, asked_m_s)[POSITION_BOUNDS - 1];
+        let speed =
+            |asked_m_s: f64| position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s)[POSITION_BOUNDS - 1];
         // At the limit by one per cent of it.
         assert!((speed(8.0) - 8.08).abs() < 1e-12);
         assert!((speed(10.0) - 10.8).abs() < 1e-12);

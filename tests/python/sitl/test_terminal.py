@@ -95,7 +95,7 @@ def test_the_simulator_of_an_external_autopilot_has_one_too(program):
 
 
 def test_no_color_and_dumb_terminals(program):
-    windy = ("--wind", "25", *FLIGHT)
+    windy = ("--wind", "30", *FLIGHT)
     coloured = watch(program, *windy)
     assert "\x1b[33m" in coloured and CLEAR in coloured, coloured
     plain = watch(program, *windy, environment={"NO_COLOR": "1"})
@@ -105,7 +105,7 @@ def test_no_color_and_dumb_terminals(program):
 
 
 def test_pipes_get_no_status_line_and_no_colour(program):
-    result = subprocess.run([program, "--wind", "25", *FLIGHT], capture_output=True, text=True, timeout=60, env={"TERM": "xterm"})
+    result = subprocess.run([program, "--wind", "30", *FLIGHT], capture_output=True, text=True, timeout=60, env={"TERM": "xterm"})
     assert result.returncode == 0 and "\x1b" not in result.stdout + result.stderr and "\r" not in result.stdout + result.stderr
     assert "it will be blown away" in result.stderr
 

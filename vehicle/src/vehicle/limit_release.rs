@@ -15,8 +15,8 @@ const FARTHER_M: f64 = 0.05;
 /// Whether limits have been lowered and the motion can keep them from now on: its acceleration can be taken out within them, and a
 /// stop within them is as safe as one within the limits that it began with.
 ///
-/// Only a reference without a plan is judged by its present motion: a plan of larger limits, in which the closed loop is easing,
-/// may have no acceleration now and need them later.
+/// A way to a goal is the closed loop's plan, which knows itself when it keeps them. Another reference without a plan is judged by its
+/// present motion: a plan of larger limits, in which the closed loop is easing, may have no acceleration now and need them later.
 pub fn is_fitting(situation: &Situation, easing: bool) -> bool {
     if !situation.limits.is_eased() || !situation.time_us.is_multiple_of(PERIOD_US) {
         return false;
@@ -27,6 +27,7 @@ pub fn is_fitting(situation: &Situation, easing: bool) -> bool {
     let wanted = situation.limits();
     let fits = match situation.steering {
         Steering::Motion(motion) => motion.fits(wanted),
+        Steering::Goal(_) => !easing,
         _ => !easing && takes_acceleration_out(situation, wanted),
     };
     fits && stops_as_safely(situation, wanted)
