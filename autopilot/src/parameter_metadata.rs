@@ -4,6 +4,7 @@ use quadrotor::ValueRange;
 use serde_json::{Map, Value as Json, json};
 use vehicle::parameters::{NamedValue, ParameterTable, Value};
 
+use crate::codec::ascii::ascii;
 use crate::codec::checksum::checksum;
 
 /// COMP_METADATA_TYPE_PARAMETER.
@@ -64,7 +65,7 @@ fn describe(table: &ParameterTable, initial: &[Value]) -> Vec<u8> {
                 }
             }
             if !unit.is_empty() {
-                put("units", json!(unit));
+                put("units", json!(ascii(unit)));
             }
             if let Some(dotted) = entry.dotted() {
                 put("longDesc", json!(format!("Dotted name: {dotted}.")));

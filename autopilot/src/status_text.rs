@@ -3,6 +3,8 @@
 use mavlink::dialects::common::{MavMessage, MavSeverity, STATUSTEXT_DATA};
 use vehicle::Severity;
 
+use crate::codec::ascii::ascii;
+
 /// Characters of one message.
 const CHUNK: usize = 50;
 /// The same line is not sent again for this long, µs: refused set-points come many times a second.
@@ -84,10 +86,9 @@ pub fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMes
 /// A piece that holds a zero is the last one, so the ones before it are filled up with spaces.
 fn pieces(text: &str) -> Vec<[u8; CHUNK]> {
     // The field is bytes; a character that is not ASCII would be cut in the middle.
-    let bytes: Vec<u8> =
-        text.chars().map(|letter| if letter.is_ascii() { letter as u8 } else { b'?' }).collect();
+    let text = ascii(text);
     let mut pieces = Vec::new();
-    let mut rest = bytes.as_slice();
+    let mut rest = text.as_bytes();
     while rest.len() > CHUNK {
         let space = rest[..=CHUNK].iter().rposition(|letter| *letter == b' ').filter(|at| *at > 0);
         // A word that is longer than a piece has to be cut.

@@ -66,9 +66,9 @@ fn every_parameter_of_the_engine_is_a_variable_of_its_name_type_range_and_place(
     }
 }
 
-/// The FMU's symbol of an engine's unit: no spaces, products with a point, exponents behind the unit.
+/// The FMU's symbol of an engine's unit, in ASCII as FMI asks for: products with a point, exponents behind the unit.
 fn symbol(unit: Unit) -> String {
-    unit.symbol().replace("Nm", "N m").replace(' ', ".").replace('^', "")
+    unit.symbol().replace('·', ".").replace('²', "2").replace('³', "3").replace('Ω', "Ohm")
 }
 
 #[test]

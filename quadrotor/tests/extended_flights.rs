@@ -131,12 +131,12 @@ fn impossible_airframes_are_refused() {
         |change: Change| Simulation::new(&configuration(change), &Inputs::default()).unwrap_err().to_string();
     assert_eq!(
         refused(|airframe| airframe.products_of_inertia_kg_m2 = [0.0, 0.02, 0.0]),
-        "airframe.inertia is no rigid body's: its principal moments 1.026e-1, 1.063e-1 and 2.159e-1 kg*m^2 must be positive, \
+        "airframe.inertia is no rigid body's: its principal moments 1.026e-1, 1.063e-1 and 2.159e-1 kg·m² must be positive, \
          and each at most the sum of the other two; reduce airframe.inertia.xy, .xz and .yz"
     );
     assert_eq!(
         refused(|airframe| airframe.rotor_spin.inertia_kg_m2 = 0.06),
-        "airframe.rotor.inertia = 0.06 kg*m^2 must be at most 0.05305 kg*m^2: airframe.inertia.z includes all four rotors"
+        "airframe.rotor.inertia = 0.06 kg·m² must be at most 0.05305 kg·m²: airframe.inertia.z includes all four rotors"
     );
     // Half of 0.9438 N·m of pitch torque over 6.8647 N.
     assert_eq!(

@@ -124,7 +124,7 @@ fn a_descent_does_not_turn_back_on_its_way() {
                 lowest_m = lowest_m.max(z_m);
                 back_m = back_m.max(lowest_m - z_m);
             }
-            assert!(back_m < 0.02, "{jerk_m_s3} m/s^3 at {change_us} us: {back_m} m back up");
+            assert!(back_m < 0.02, "{jerk_m_s3} m/s³ at {change_us} us: {back_m} m back up");
             assert!((flight.outputs().position_m.z + 3.0).abs() < 0.01);
         }
     }

@@ -108,13 +108,13 @@ fn values_that_contradict_one_another_are_refused() {
         (
             "airframe.inertia.x",
             0.5,
-            "limits.tilt_acceleration = 8 rad/s^2 must be at most 3.775 rad/s^2: \
+            "limits.tilt_acceleration = 8 rad/s² must be at most 3.775 rad/s²: \
              the rotors give airframe.inertia half of that in hover",
         ),
         (
             "limits.acceleration.horizontal",
             9.0,
-            "limits.acceleration.horizontal = 9 m/s^2 must be below 5.958 m/s^2: \
+            "limits.acceleration.horizontal = 9 m/s² must be below 5.958 m/s²: \
              the commanded tilt gives no more; raise limits.tilt",
         ),
         (

@@ -44,17 +44,17 @@ fn values_that_lose_the_vehicle_are_refused_by_their_names() {
 
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2[0] = 1e-5),
-        "airframe.inertia.x = 1e-5 kg*m^2 must be at least 0.001059 kg*m^2: the other two moments of inertia differ by \
+        "airframe.inertia.x = 1e-5 kg·m² must be at least 0.001059 kg·m²: the other two moments of inertia differ by \
          a hundred times that; change one of them first, or set this limit for now"
     );
     assert_eq!(
         refused(|configuration| configuration.airframe.inertia_kg_m2 = [1e-5; 3]),
-        "airframe.inertia.x = 1e-5 kg*m^2 must be at least 3.147e-4 kg*m^2: with less the rotors spin it by over 30 \
+        "airframe.inertia.x = 1e-5 kg·m² must be at least 3.147e-4 kg·m²: with less the rotors spin it by over 30 \
          rad/s within one controller.attitude.sample_time"
     );
     let drag = refused(|configuration| configuration.airframe.torque_coefficient_n_m_s2 = 0.01);
     assert!(
-        drag.starts_with("airframe.rotor.torque_coefficient = 0.01 N*m*s^2 must be at most 0.00"),
+        drag.starts_with("airframe.rotor.torque_coefficient = 0.01 N·m·s² must be at most 0.00"),
         "{drag}"
     );
 }

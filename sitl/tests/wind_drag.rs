@@ -25,7 +25,7 @@ fn infos(notes: Vec<Notice>) -> Vec<String> {
 }
 
 const PROVIDED: &str =
-    "wind needs drag: FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z set to 0.15 N s/m; change it with --set";
+    "wind needs drag: FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z set to 0.15 N·s/m; change it with --set";
 const NO_DRAG: &str = "wind has no effect: FRAME_DRAG_X, FRAME_DRAG_Y, FRAME_DRAG_Z are 0";
 
 #[test]

@@ -3,6 +3,7 @@
 //! Requests are read from the raw payload: a typed parser fails on a value that its enumerations do not know,
 //! and a command that nobody knows could then not be answered.
 
+pub mod ascii;
 mod attitude_target;
 pub mod checksum;
 mod command;

@@ -149,9 +149,7 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
         }
     }
     if let Err(error) = result {
-        // The field of STATUSTEXT is ASCII.
-        let text = error.to_string().replace("°–", "–").replace('–', " to ").replace('°', " deg");
-        context.say(Severity::Warning, &text);
+        context.say(Severity::Warning, &error.to_string());
     }
     for warning in stability_warnings(context) {
         if !known.contains(&warning) {

@@ -72,7 +72,7 @@ pub enum ConfigurationError {
     },
     /// No rigid body has this inertia tensor.
     #[error(
-        "airframe.inertia is no rigid body's: its principal moments {smallest:.3e}, {middle:.3e} and {largest:.3e} kg*m^2 must be \
+        "airframe.inertia is no rigid body's: its principal moments {smallest:.3e}, {middle:.3e} and {largest:.3e} kg·m² must be \
          positive, and each at most the sum of the other two; reduce airframe.inertia.xy, .xz and .yz"
     )]
     Inertia {

@@ -52,7 +52,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// Symbol in ASCII, as messages and ground stations show it; empty for a dimensionless number.
+    /// Symbol, as messages and documentation show it; empty for a dimensionless number.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "",
@@ -61,23 +61,23 @@ impl Unit {
             Self::Second => "s",
             Self::Radian => "rad",
             Self::Newton => "N",
-            Self::NewtonMetre => "Nm",
+            Self::NewtonMetre => "N·m",
             Self::MetrePerSecond => "m/s",
-            Self::MetrePerSecondSquared => "m/s^2",
-            Self::MetrePerSecondCubed => "m/s^3",
+            Self::MetrePerSecondSquared => "m/s²",
+            Self::MetrePerSecondCubed => "m/s³",
             Self::RadianPerSecond => "rad/s",
-            Self::RadianPerSecondSquared => "rad/s^2",
-            Self::RadianPerSecondCubed => "rad/s^3",
-            Self::KilogramSquareMetre => "kg m^2",
-            Self::NewtonSecondSquared => "N s^2",
-            Self::NewtonMetreSecondSquared => "Nm s^2",
-            Self::NewtonSecondPerMetre => "N s/m",
-            Self::NewtonSecondSquaredPerMetre => "N s^2/m",
-            Self::NewtonSecondSquaredPerSquareMetre => "N s^2/m^2",
+            Self::RadianPerSecondSquared => "rad/s²",
+            Self::RadianPerSecondCubed => "rad/s³",
+            Self::KilogramSquareMetre => "kg·m²",
+            Self::NewtonSecondSquared => "N·s²",
+            Self::NewtonMetreSecondSquared => "N·m·s²",
+            Self::NewtonSecondPerMetre => "N·s/m",
+            Self::NewtonSecondSquaredPerMetre => "N·s²/m",
+            Self::NewtonSecondSquaredPerSquareMetre => "N·s²/m²",
             Self::Volt => "V",
             Self::Ampere => "A",
-            Self::Ohm => "Ohm",
-            Self::AmpereSecond => "A s",
+            Self::Ohm => "Ω",
+            Self::AmpereSecond => "A·s",
         }
     }
 }

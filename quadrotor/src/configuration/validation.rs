@@ -24,9 +24,9 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     if limits.acceleration_horizontal_m_s2 >= leaning_m_s2 {
         return Err(ConfigurationError::Inconsistent {
             name: "limits.acceleration.horizontal",
-            value: Quantity { value: limits.acceleration_horizontal_m_s2, unit: "m/s^2" },
+            value: Quantity { value: limits.acceleration_horizontal_m_s2, unit: "m/s²" },
             relation: "below",
-            limit: rounded_down(leaning_m_s2, "m/s^2"),
+            limit: rounded_down(leaning_m_s2, "m/s²"),
             reason: "the commanded tilt gives no more; raise limits.tilt",
         });
     }
@@ -39,9 +39,9 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     if limits.tilt_acceleration_rad_s2 > followed {
         return Err(ConfigurationError::Inconsistent {
             name: "limits.tilt_acceleration",
-            value: Quantity { value: limits.tilt_acceleration_rad_s2, unit: "rad/s^2" },
+            value: Quantity { value: limits.tilt_acceleration_rad_s2, unit: "rad/s²" },
             relation: "at most",
-            limit: rounded_down(followed, "rad/s^2"),
+            limit: rounded_down(followed, "rad/s²"),
             reason: "the rotors give airframe.inertia half of that in hover",
         });
     }
@@ -105,9 +105,9 @@ fn validate_inertia([x, y, z]: &[f64; 3]) -> Result<(), ConfigurationError> {
         if value < least {
             return Err(ConfigurationError::Inconsistent {
                 name,
-                value: Quantity { value, unit: "kg*m^2" },
+                value: Quantity { value, unit: "kg·m²" },
                 relation: "at least",
-                limit: rounded_up(least, "kg*m^2"),
+                limit: rounded_up(least, "kg·m²"),
                 reason: "the other two moments of inertia differ by a hundred times that; change one of them first, \
                          or set this limit for now",
             });
@@ -135,9 +135,9 @@ fn validate_rotor_inertia(airframe: &Airframe) -> Result<(), ConfigurationError>
     }
     Err(ConfigurationError::Inconsistent {
         name: "airframe.rotor.inertia",
-        value: Quantity { value, unit: "kg*m^2" },
+        value: Quantity { value, unit: "kg·m²" },
         relation: "at most",
-        limit: rounded_down(z / 4.0, "kg*m^2"),
+        limit: rounded_down(z / 4.0, "kg·m²"),
         reason: "airframe.inertia.z includes all four rotors",
     })
 }
@@ -213,17 +213,17 @@ fn validate_spin(configuration: &Configuration, torques_n_m: [f64; 3]) -> Result
             let value_drag = airframe.torque_coefficient_n_m_s2;
             return Err(ConfigurationError::Inconsistent {
                 name: "airframe.rotor.torque_coefficient",
-                value: Quantity { value: value_drag, unit: "N*m*s^2" },
+                value: Quantity { value: value_drag, unit: "N·m·s²" },
                 relation: "at most",
-                limit: rounded_down(value_drag * value / least, "N*m*s^2"),
+                limit: rounded_down(value_drag * value / least, "N·m·s²"),
                 reason: "more spins the vehicle by over 30 rad/s within one controller.attitude.sample_time",
             });
         }
         return Err(ConfigurationError::Inconsistent {
             name,
-            value: Quantity { value, unit: "kg*m^2" },
+            value: Quantity { value, unit: "kg·m²" },
             relation: "at least",
-            limit: rounded_up(least, "kg*m^2"),
+            limit: rounded_up(least, "kg·m²"),
             reason: "with less the rotors spin it by over 30 rad/s within one controller.attitude.sample_time",
         });
     }

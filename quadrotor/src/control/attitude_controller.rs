@@ -51,6 +51,11 @@ impl AskedTorque {
     }
 }
 
+/// Share of what the rotors can do about yaw that an estimated disturbance may take. A plan ends at rest against it; one that the rotors
+/// cannot hold has no such end, and the limit would be broken for it at once. From 1 mrad of attitude noise on the estimate's own noise
+/// comes to that: the heading wandered by 8 mrad, where it should by 0.2 mrad.
+const HELD_TURN_SHARE: f64 = 0.8;
+
 /// State of the attitude controller.
 ///
 /// The model (23) has Euler angles; here their error is the rotation from the reference in body axes, which for small angles
@@ -190,6 +195,11 @@ impl AttitudeController {
         let beside = spin.beside(most_n_m);
         let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
 
+        let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
+        let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;
+        let mut disturbance_rad_s2 = seen.disturbance_rad_s2;
+        let held_rad_s2 = HELD_TURN_SHARE * turn_rad_s2.max(0.0);
+        disturbance_rad_s2.z = disturbance_rad_s2.z.clamp(-held_rad_s2, held_rad_s2);
         let reference_acceleration = to_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
         let error_rad = going_on(&attitude_error(&reference.attitude, &seen.attitude), &rate_error_rad_s);
@@ -197,21 +207,19 @@ impl AttitudeController {
             angle_rad: leaning_at_most(&error_rad, largest_rad),
             rate_rad_s: rate_error_rad_s,
             // What disturbs the vehicle turns it, too.
-            acceleration_rad_s2: reached + seen.disturbance_rad_s2 - reference_acceleration,
+            acceleration_rad_s2: reached + disturbance_rad_s2 - reference_acceleration,
         };
-        let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
-        let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;
         let deviation = deviation.in_sight(design.attitude.sight_s, [lean_rad_s2, turn_rad_s2]);
         let told = Seen {
             deviation,
-            increment: self.increment(design.attitude.motion.as_ref(), &deviation, &seen.disturbance_rad_s2),
+            increment: self.increment(design.attitude.motion.as_ref(), &deviation, &disturbance_rad_s2),
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
             } else {
                 reference_acceleration + to_body * reference.jerk_rad_s3 * lag_s
             },
-            disturbance: seen.disturbance_rad_s2,
+            disturbance: disturbance_rad_s2,
         };
         let room = RotorRoom {
             mixer: &design.mixer,

@@ -90,3 +90,57 @@ impl Observation {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    use super::Observation;
+    use crate::control::estimator::Estimator;
+    use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
+
+    /// Acceleration by the thrust along the axis that a body points up, m/s²: what the derivatives are taken of.
+    fn acceleration(attitude: &UnitQuaternion<f64>, lift_m_s2: f64) -> Vector3<f64> {
+        attitude * Vector3::new(0.0, 0.0, -lift_m_s2)
+    }
+
+    /// By differences over the body's rotation: the jerk of a body that turns at an even rate, and the snap of one that begins to turn.
+    #[test]
+    fn derivatives_are_those_of_the_turning_thrust() {
+        const STEP_S: f64 = 1e-4;
+        let configuration = Configuration::default();
+        let rotor_speed_rad_s = [260.0, 251.0, 243.0, 266.0];
+        let wrench = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
+        let lift_m_s2 = wrench.thrust_n / configuration.airframe.mass_kg;
+        let attitude = UnitQuaternion::from_euler_angles(0.2, -0.3, 1.1);
+        let rate = Vector3::new(0.4, -0.7, 0.9);
+        let body = RigidBody {
+            position_m: Vector3::new(1.0, 2.0, -3.0),
+            velocity_m_s: Vector3::new(0.5, -0.25, 0.125),
+            attitude: attitude.into_inner(),
+            body_rate_rad_s: rate,
+        };
+        let estimator = Estimator::new(&configuration.sensors, &body, rotor_speed_rad_s, 0);
+        let seen = Observation::new(&configuration, &estimator, &body, 0);
+        let asked_rad_s2 = Vector3::new(-1.5, 0.5, 0.0);
+        let motion = seen.horizontal(&configuration, &asked_rad_s2);
+        assert_eq!((motion.position_m, motion.velocity_m_s), (body.position_m.xy(), body.velocity_m_s.xy()));
+
+        let now = acceleration(&attitude, lift_m_s2);
+        assert!((motion.acceleration_m_s2 - now.xy()).norm() < 1e-12);
+        assert!((seen.vertical().acceleration_m_s2 - GRAVITY_M_S2 - now.z).abs() < 1e-12);
+        let turned = |by: Vector3<f64>| {
+            acceleration(&(attitude * UnitQuaternion::from_scaled_axis(by)), lift_m_s2).xy()
+        };
+        let jerk = (turned(rate * STEP_S) - turned(-rate * STEP_S)) / (2.0 * STEP_S);
+        assert!((motion.jerk_m_s3 - jerk).norm() < 1e-6, "{} {jerk}", motion.jerk_m_s3);
+        // φ = ω̇ t²/2, from rest.
+        let snap = |angular: Vector3<f64>| {
+            let by = angular * (STEP_S * STEP_S / 2.0);
+            (turned(by) - now.xy()) * 2.0 / (STEP_S * STEP_S)
+        };
+        let made = wrench.torque_n_m.component_div(&Vector3::from(configuration.airframe.inertia_kg_m2));
+        assert!((motion.snap_m_s4 - snap(made)).norm() < 1e-4, "{} {}", motion.snap_m_s4, snap(made));
+        assert!((motion.asked_snap_m_s4 - snap(asked_rad_s2)).norm() < 1e-4);
+    }
+}

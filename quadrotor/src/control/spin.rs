@@ -81,3 +81,79 @@ impl Spin {
         Beside { made_n_m, commanded_n_m: made_n_m + Vector3::new(led.x, led.y, 0.0) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Rotation3, Vector3};
+
+    use super::{CANCELLED_SHARE, Spin};
+
+    const INERTIA_KG_M2: Vector3<f64> = Vector3::new(0.1, 0.13, 0.2);
+    const SPIN_RAD_S: f64 = 3.0;
+    const DELAY_S: f64 = 0.03;
+    /// More than any torque here.
+    const STRONG_N_M: f64 = 1e3;
+    const STEP_S: f64 = 1e-5;
+
+    /// A body that spins about its thrust axis and leans at a rate, the reference of which only spins.
+    fn spinning(lean_rad_s: Vector3<f64>, torque_n_m: Vector3<f64>) -> Spin {
+        let rate_error_rad_s = Vector3::new(lean_rad_s.x, lean_rad_s.y, 0.0);
+        Spin {
+            inertia_kg_m2: INERTIA_KG_M2,
+            body_rate_rad_s: rate_error_rad_s + Vector3::z() * SPIN_RAD_S,
+            rate_error_rad_s,
+            torque_n_m,
+            delay_s: DELAY_S,
+        }
+    }
+
+    /// Euler's equations, J ω̇ = τ − ω × Jω, for 0.2 s: the error at the end less the one that kept its direction in the world. `turn` tells
+    /// what the torque, N·m, is next, from the spin.
+    fn strays_rad_s(turn: impl Fn(&Spin) -> Vector3<f64>) -> f64 {
+        let start = Vector3::new(0.2, -0.1, 0.0);
+        let mut rate = start + Vector3::z() * SPIN_RAD_S;
+        let mut torque_n_m = spinning(start, Vector3::zeros()).beside(STRONG_N_M).made_n_m;
+        let mut time_s = 0.0;
+        while time_s < 0.2 {
+            torque_n_m = turn(&spinning(rate, torque_n_m));
+            let gyroscopic = rate.cross(&INERTIA_KG_M2.component_mul(&rate));
+            rate += (torque_n_m - gyroscopic).component_div(&INERTIA_KG_M2) * STEP_S;
+            // The heading is another law's.
+            rate.z = SPIN_RAD_S;
+            time_s += STEP_S;
+        }
+        let kept = Rotation3::from_scaled_axis(Vector3::z() * (-SPIN_RAD_S * time_s)) * start;
+        (rate - Vector3::z() * SPIN_RAD_S - kept).norm()
+    }
+
+    /// A lean that nothing changes goes on in its direction in the world while the body spins under it.
+    #[test]
+    fn without_commands_a_lean_keeps_its_direction_in_the_world() {
+        let made = strays_rad_s(|spin| spin.beside(STRONG_N_M).made_n_m);
+        assert!(made < 1e-4, "{made} rad/s");
+        assert!(strays_rad_s(|_| Vector3::zeros()) > 0.05);
+    }
+
+    /// Behind rotors that answer with a lag the commanded torque is there in time; the one of now would come too late.
+    #[test]
+    fn commands_lead_the_rotors() {
+        let answering = |spin: &Spin, commanded: Vector3<f64>| {
+            spin.torque_n_m + (commanded - spin.torque_n_m) * (STEP_S / DELAY_S)
+        };
+        let led = strays_rad_s(|spin| answering(spin, spin.beside(STRONG_N_M).commanded_n_m));
+        let late = strays_rad_s(|spin| answering(spin, spin.beside(STRONG_N_M).made_n_m));
+        assert!(led < late / 5.0, "{led} {late} rad/s");
+    }
+
+    /// A spin that is more than the rotors can turn takes half of what they can do about roll and pitch.
+    #[test]
+    fn weak_rotors_spend_half_of_their_torque() {
+        let spin = spinning(Vector3::new(2.0, 1.0, 0.0), Vector3::zeros());
+        let whole = spin.beside(STRONG_N_M).made_n_m;
+        let most_n_m = whole.xy().norm() / 2.0;
+        let cut = spin.beside(most_n_m).made_n_m;
+        assert!((cut.xy().norm() - CANCELLED_SHARE * most_n_m).abs() < 1e-12);
+        assert!(cut.xy().normalize().dot(&whole.xy().normalize()) > 1.0 - 1e-12);
+        assert_eq!(cut.z, whole.z);
+    }
+}

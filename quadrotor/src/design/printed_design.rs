@@ -69,3 +69,81 @@ fn widened(gain: &DMatrix<f64>, states: usize, channels: usize) -> DMatrix<f64> 
     }
     widened
 }
+
+#[cfg(test)]
+mod tests {
+    use lmpc::{Augmented, ControllerState, Discretization, Dlqr, Sample};
+    use nalgebra::{DMatrix, SVector, Vector1, Vector3};
+
+    use super::printed_design;
+    use crate::control::tracking_law::TrackingLaw;
+    use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY};
+    use crate::design::linear_models::altitude_model;
+    use crate::design::loop_weights::loop_weights;
+    use crate::{Configuration, ControllerKind};
+
+    type Law = TrackingLaw<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
+
+    const BANDWIDTH_RAD_S: f64 = 2.7;
+
+    /// The law of a kind on the altitude model as printed, ż = v, v̇ = G, whose third state is idle, and the regulator's gain of the same
+    /// weights on that model alone.
+    fn designed(kind: ControllerKind) -> (Law, DMatrix<f64>) {
+        let settings = Configuration::default().controllers.altitude;
+        let plant = altitude_model(settings.sample_time_s(), Discretization::ZeroOrderHold).expect("a model");
+        let bandwidth = Vector1::new(BANDWIDTH_RAD_S);
+        let (_, law) = printed_design(kind, &settings, &bandwidth, &plant).expect("a design");
+        let model = Augmented::new(&plant);
+        let weights = loop_weights(&model, &settings, &bandwidth).expect("weights");
+        let regulator = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), 1.0).expect("a regulator");
+        (law, regulator.gain().clone())
+    }
+
+    /// The first move from rest, per unit of one thing that the law is told.
+    fn answer(law: &Law, sample: Sample<'_, 3, 1, 1>) -> f64 {
+        law.step(&mut ControllerState::at_rest(), &sample).input.x
+    }
+
+    #[test]
+    fn gains_are_the_regulators_on_the_states_that_there_are() {
+        for (kind, share) in [(ControllerKind::Dlqr, 1e-9), (ControllerKind::Lmpc, 0.02)] {
+            let (law, regulator) = designed(kind);
+            let unit = |state: usize| SVector::from_fn(|row, _| if row == state { 1.0 } else { 0.0 });
+            let found = [
+                answer(&law, Sample { increment: unit(0), ..Sample::default() }),
+                answer(&law, Sample { increment: unit(1), ..Sample::default() }),
+                answer(&law, Sample { error: Vector1::new(1.0), ..Sample::default() }),
+            ];
+            for (found, expected) in found.iter().zip(regulator.iter()) {
+                assert!((found / expected + 1.0).abs() < share, "{kind:?}: {found} {expected}");
+            }
+            assert_eq!(answer(&law, Sample { increment: unit(2), ..Sample::default() }), 0.0, "{kind:?}");
+        }
+    }
+
+    /// Two metres off, on the exact solution of ż = v, v̇ = G over a sample: there within 8 s, whatever the idle state is told to be.
+    #[test]
+    fn every_kind_closes_the_printed_loop() {
+        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+            let (law, _) = designed(kind);
+            let sample_time_s = Configuration::default().controllers.altitude.sample_time_s();
+            let mut state =
+                ControllerState::new(Vector3::new(2.0, 0.0, 0.0), Vector1::zeros(), Vector1::zeros());
+            let (mut z, mut v, mut input) = (2.0, 0.0, 0.0);
+            for _ in 0..(8.0 / sample_time_s) as usize {
+                let measured = Vector3::new(z, v, input);
+                let sample = Sample {
+                    measured,
+                    increment: measured - state.measured(),
+                    deviation: measured,
+                    error: Vector1::new(z),
+                    ..Sample::default()
+                };
+                input = law.step(&mut state, &sample).input.x;
+                z += v * sample_time_s + input * sample_time_s * sample_time_s / 2.0;
+                v += input * sample_time_s;
+            }
+            assert!(z.abs() < 0.01 && v.abs() < 0.01, "{kind:?}: {z} {v}");
+        }
+    }
+}

@@ -202,7 +202,7 @@ pub struct Arguments {
     /// Steady wind: m/s, and degrees it comes from
     ///
     /// From 0 to 30 m/s. Wind pushes through drag (airframe.drag.x, .y and .z). In wind or gusts an airframe without drag
-    /// gets 0.15 N s/m per 0.7 kg unless --set or --parameters give another. A warning appears if the vehicle cannot hold its position.
+    /// gets 0.15 N·s/m per 0.7 kg unless --set or --parameters give another. A warning appears if the vehicle cannot hold its position.
     /// [default: 0,0]
     #[arg(long, env = "LMPC_SITL_WIND", value_name = "SPEED[,FROM]", allow_hyphen_values = true, help_heading = SIMULATION)]
     pub wind: Option<WindFrom>,

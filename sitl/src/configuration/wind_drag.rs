@@ -33,7 +33,7 @@ pub(super) fn note(
         let names = open.join(", ");
         // Three digits, as a person would write it.
         let drag = (drag_n_s_m * 1e3).round() / 1e3;
-        return Some(info(format!("wind needs drag: {names} set to {drag} N s/m; change it with --set")));
+        return Some(info(format!("wind needs drag: {names} set to {drag} N·s/m; change it with --set")));
     }
     let none = configuration.airframe.hover_drag_n_s_m() == [0.0; 3];
     none.then(|| info(format!("wind has no effect: {} are 0", NAMES.join(", "))))

@@ -64,7 +64,7 @@ pub enum StabilityWarning {
     },
     /// No rigid body has such moments of inertia.
     #[error(
-        "no rigid body has airframe.inertia = {x}, {y}, {z} kg*m^2: each moment must be at most the sum of the other two"
+        "no rigid body has airframe.inertia = {x}, {y}, {z} kg·m²: each moment must be at most the sum of the other two"
     )]
     Inertia {
         /// J_x, kg·m².
