@@ -18,7 +18,13 @@
 //!   its own exact instants. It flies any plant or a real vehicle; `examples/fly_another_plant.rs` is an example.
 //! * [`Simulation`] runs both on one schedule of integer microseconds. The same inputs give the same flight, bit for bit.
 //!
-//! A [`ControllerKind`] chooses among Laguerre MPC, state-space MPC and DLQR on the same models and weights.
+//! **Controllers.** Each predicts with the loop inside it: position over the closed attitude loop ([`AttitudeLoop`]), altitude and attitude
+//! over the rotors' lag. Laguerre MPC plans about a slow stabilizing feedback, under limits of tilt, its rate and acceleration, speed and
+//! the thrust of each of the four rotors; all limits of a controller share one slack. References have jerk and snap, from which attitude,
+//! body rate and angular acceleration follow, and mass and drag are learned in flight. A [`ControllerKind`] chooses among Laguerre MPC,
+//! state-space MPC and DLQR on the same models and weights, a [`PredictionModel`] between these models and the paper's. Weights are
+//! relative to the bandwidths of the loops, and [`Configuration::for_airframe`] derives limits from an airframe, so that every
+//! [`AirframePreset`] flies without tuning.
 //!
 //! **Conventions.** World frame NED (north, east, down), body frame FRD (forward, right, down), SI units, angles in rad,
 //! time in µs; altitude is −z. Rotors are numbered in the order of the airframe's layout. Numbers in parentheses are the
