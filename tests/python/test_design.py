@@ -361,7 +361,7 @@ def test_the_loops_inside_are_those_of_the_airframe(slave, model_description, co
     [
         {},
         {"terms": 9, "scale": 0.75},
-        {"prediction_horizon": 1000},
+        {"prediction_horizon": 300},
         {"alpha": 1.05},
         {"alpha": 1.0, "prediction_horizon": 60},
         {"lambda": 0.998},

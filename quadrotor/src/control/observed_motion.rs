@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1 would be an incremental
 /// law by measured increments, which passes on the noise of the velocity undiminished, and forgets one half of a kick that a limit cuts
-/// off. At this one a disturbance is found within three samples.
+/// off. At this one a disturbance is found within two samples.
 const NEW: f64 = 0.5;
 
 /// A model of N states and P inputs, channel by channel: the output, its rate, and others.
@@ -120,7 +120,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     ///
     /// ```text
     /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
-    /// d    ← d + 0.3 ν/ΔT
+    /// d    ← d + 0.5 ν/ΔT
     /// Δx   = x − A⁻¹ (x − B v − E d)
     /// ```
     pub(crate) fn increment(

@@ -71,7 +71,7 @@ const TILT_ERROR_RAD: f64 = 0.203_5;
 const YAW_OF_TILT: f64 = 0.464_3;
 /// The heading error that may ask for all the yaw torque, rad: 0.69 rad/s² and 3.01 rad/s.
 const YAW_ERROR_RAD: f64 = 0.076_3;
-/// Position closes at most at this share of roll and pitch: about a quarter, so that the attitude loop can be taken as instantaneous.
+/// Position closes at most at this share of roll and pitch.
 const POSITION_OF_TILT: f64 = 0.275_2;
 /// The error, m, that may ask for all the tilt: 3.7 m/s² and 1.78 rad/s.
 const POSITION_ERROR_M: f64 = 1.162;

@@ -99,7 +99,7 @@ pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProb
     let settings = &configuration.controllers.altitude;
     let lag_s = configuration.airframe.rotor_time_constant_s;
     let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
-    let bandwidth = [altitude_bandwidth_rad_s(configuration)].into();
+    let bandwidth = [ALTITUDE_RAD_S].into();
     Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)?
         .planned_about(ALTITUDE_STABILIZING_SHARE))
 }
@@ -125,6 +125,8 @@ pub(crate) fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
         && same(&settings.increment_weight)
 }
 
+/// At which the altitude loop closes with weights of 1, rad/s: rotors of all airframes are fast beside it.
+const ALTITUDE_RAD_S: f64 = 2.7;
 /// Bandwidths of the feedback about which is planned, as shares of the controller's: those at which costs depend least on N and a.
 const ALTITUDE_STABILIZING_SHARE: f64 = 0.2;
 const POSITION_STABILIZING_SHARE: f64 = 0.45;
@@ -145,8 +147,4 @@ pub(crate) fn position_bandwidth_rad_s(
 ) -> f64 {
     let Some(attitude) = attitude else { return PRINTED_POSITION_RAD_S };
     DELAY_SHARE / (attitude.delay_s() + configuration.controllers.position.sample_time_s() / 2.0)
-}
-
-pub(crate) fn altitude_bandwidth_rad_s(_configuration: &Configuration) -> f64 {
-    2.7
 }
