@@ -76,7 +76,13 @@ impl AltitudeController {
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
         let change = measured - self.controller.measured() - Vector3::new(position, velocity, acceleration);
         let increment = match &design.altitude.motion {
-            Some(model) => self.observed.increment(model, &deviation, &change, &self.controller.feedback()),
+            Some(model) => self.observed.increment(
+                model,
+                &deviation,
+                &change,
+                &self.controller.feedback(),
+                &Vector3::zeros(),
+            ),
             None => {
                 let sample_time_s = configuration.controllers.altitude.sample_time_s();
                 self.observed.watch(&deviation, &change, sample_time_s);

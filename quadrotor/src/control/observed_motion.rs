@@ -116,12 +116,12 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     }
 
     /// A sample: the deviation from the reference, and by how much it has changed since the last one without what the reference has
-    /// jumped by, under the feedback v(k−1). Returns the increment Δx(k) of the motion that leads to the deviation:
+    /// jumped by, under the feedback v(k−1). w is by how much the reference's own derivatives have jumped. Returns the increment Δx(k) of the motion that leads to the deviation:
     ///
     /// ```text
     /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
     /// d    ← d + 0.5 ν/ΔT
-    /// Δx   = x − A⁻¹ (x − B v − E d)
+    /// Δx   = x − A⁻¹ (x + w − B v − E d)
     /// ```
     pub(crate) fn increment(
         &mut self,
@@ -129,6 +129,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         deviation: &SVector<f64, N>,
         change: &SVector<f64, N>,
         feedback: &SVector<f64, P>,
+        jump: &SVector<f64, N>,
     ) -> SVector<f64, N> {
         let driven = model.by_input * feedback;
         let expected = model.transition * self.deviation - self.deviation
@@ -142,6 +143,6 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
             }
         }
         self.deviation = *deviation;
-        deviation - model.inverse * (deviation - driven - model.by_disturbance * self.disturbance)
+        deviation - model.inverse * (deviation + jump - driven - model.by_disturbance * self.disturbance)
     }
 }

@@ -113,9 +113,13 @@ impl PositionController {
         let change = measured - self.controller.measured() - explained;
         let turned =
             deviation + by_axis([zero, zero, zero, zero, seen.disturbance_m_s4, seen.disturbance_m_s4]);
+        let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
+        let jump = by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]);
         let increment = match &design.position.motion {
             // The rotors hold the body against torques that disturb it: what turns it is both together.
-            Some(model) => self.observed.increment(model, &turned, &change, &self.controller.feedback()),
+            Some(model) => {
+                self.observed.increment(model, &turned, &change, &self.controller.feedback(), &jump)
+            }
             None => {
                 let sample_time_s = configuration.controllers.position.sample_time_s();
                 self.observed.watch(&deviation, &change, sample_time_s);
@@ -130,7 +134,7 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s),
+            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s, jerk_jump.norm()),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };

@@ -78,7 +78,7 @@ impl HoverLoops {
             },
             position: HoverLoop {
                 problem: position,
-                upper: position_bounds(limits, (tilted_m_s2, tilted_m_s2), 0.0).to_vec(),
+                upper: position_bounds(limits, (tilted_m_s2, tilted_m_s2), 0.0, 0.0).to_vec(),
                 sight: horizon_m(limits.speed_horizontal_m_s, tilted_m_s2),
             },
             lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec(), sight: SIGHT_RAD },

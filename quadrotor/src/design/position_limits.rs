@@ -30,6 +30,9 @@ const LEAST_CATCHING_UP_M_S: f64 = 0.05;
 const CATCHING_UP_WITH_FASTER: f64 = 0.1;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
+/// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s: at once, and whatever is
+/// commanded. A plan that would have to prevent it could only fail.
+const ANSWER_1_S: f64 = 50.0;
 /// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
 /// speed, m/s. The tilt is the one to keep.
 const FIRM_M_S2: f64 = 0.5;
@@ -68,8 +71,9 @@ pub(crate) fn position_bounds(
     limits: &Limits,
     (present_m_s2, lasting_m_s2): (f64, f64),
     asked_m_s: f64,
+    jump_m_s3: f64,
 ) -> [f64; POSITION_BOUNDS] {
-    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2 + ANSWER_1_S * jump_m_s3;
     let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked_m_s);
     core::array::from_fn(|bound| match bound {
@@ -135,7 +139,7 @@ mod tests {
         let sides: usize = position_limits().iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
-        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0);
+        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0, 0.0);
         assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
         assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
         assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
@@ -146,8 +150,9 @@ mod tests {
     /// A reference that is faster than the limit may be caught up with.
     #[test]
     fn a_fast_reference_moves_the_speed_limit() {
-        let speed =
-            |asked_m_s: f64| position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s)[POSITION_BOUNDS - 1];
+        let speed = |asked_m_s: f64| {
+            position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s, 0.0)[POSITION_BOUNDS - 1]
+        };
         // At the limit by one per cent of it.
         assert!((speed(8.0) - 8.08).abs() < 1e-12);
         assert!((speed(10.0) - 10.8).abs() < 1e-12);

@@ -70,4 +70,10 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
             ]
         })
     }
+
+    /// By how much jerk and snap have jumped since the previous sample, as far as the snap in between does not explain it.
+    pub(crate) fn jumps_since(&self, previous: &Self) -> [SVector<f64, AXES>; 2] {
+        let explained = (self.snap + previous.snap) * (self.interval_s / 2.0);
+        [self.jerk - previous.jerk - explained, self.snap - previous.snap]
+    }
 }

@@ -99,8 +99,13 @@ impl<const K: usize> MovingAxis<K> {
         let increment = match &self.motion {
             Some(model) => {
                 let mut observed = ObservedMotion::new(before.into(), [state.found].into());
-                let increment =
-                    observed.increment(model, &deviation.into(), &change, &[state.feedback].into());
+                let increment = observed.increment(
+                    model,
+                    &deviation.into(),
+                    &change,
+                    &[state.feedback].into(),
+                    &SVector::zeros(),
+                );
                 state.found = observed.disturbance()[0];
                 increment
             }
