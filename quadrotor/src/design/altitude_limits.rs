@@ -9,11 +9,8 @@ use crate::design::position_limits::most_speed_m_s;
 /// Bounds: acceleration and speed, each down and up.
 pub(crate) const ALTITUDE_BOUNDS: usize = 2 * 2;
 
-static THRUST: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
-static SPEED: &[usize] = &[
-    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75,
-    90, 110,
-];
+static THRUST: &[usize] = &[0, 1, 2, 3, 5, 8, 12, 18, 28];
+static SPEED: &[usize] = &[1, 2, 4, 6, 8, 10, 13, 16, 20, 26, 34, 50, 80];
 /// Violations that cost alike: of the acceleration, m/s², and of the speed, m/s.
 const FIRM_M_S2: f64 = 0.5;
 const SPEED_M_S: f64 = 4.0;

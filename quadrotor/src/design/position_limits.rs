@@ -15,12 +15,12 @@ pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
 /// Samples of the tilt command for which the present thrust counts.
 static PRESENT_TILT: &[usize] = &[0, 1, 2];
 /// The later ones: those at which it can be chosen, and some of those at which it settles.
-static TILT: &[usize] = &[3, 4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 50];
+static TILT: &[usize] = &[3, 4, 6, 8, 12, 18, 28];
 /// Samples of the speed, which follows later.
 static MOVING: &[usize] =
-    &[4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 33, 36, 40, 45, 50, 56, 64, 75, 90, 110];
+    &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
 /// Samples of the rate and the acceleration of the tilt: while commands change fast.
-static LEANING: &[usize] = &[1, 2, 3, 4, 5, 6, 8, 10, 13, 17, 22];
+static LEANING: &[usize] = &[1, 2, 3, 5, 8, 13, 20];
 
 /// By how much the speed of a reference at the speed limit may be exceeded to catch up with it, as a share of the limit.
 const CATCHING_UP: f64 = 0.01;
