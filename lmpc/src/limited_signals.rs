@@ -11,7 +11,7 @@ use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
 /// Most components of a limited signal.
 pub(crate) const COMPONENTS: usize = 3;
 /// Most values of signals on all samples together: what a step keeps on the stack.
-pub(crate) const SIGNALS: usize = 512;
+pub(crate) const SIGNALS: usize = 640;
 
 /// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Limit by limit,
 /// component by component, sample by sample:

@@ -53,7 +53,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics, E is too small, a signal has more than three
-    /// components or there are more than 512 components on all samples together; [`DesignError::NotFinite`],
+    /// components or there are more than 640 components on all samples together; [`DesignError::NotFinite`],
     /// [`DesignError::NotPositiveDefinite`] (the cost of the slack).
     pub fn new(
         design: &StabilizedDesign,

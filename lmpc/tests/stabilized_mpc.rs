@@ -282,11 +282,11 @@ fn each_precondition_has_its_error() {
         samples: (1..=samples).collect(),
         relaxation: 1.0,
     };
-    assert!(Law::new(&design, &[wide(3, 170)], 1.0).is_ok());
+    assert!(Law::new(&design, &[wide(3, 213)], 1.0).is_ok());
     assert!(matches!(Law::new(&design, &[wide(4, 1)], 1.0), Err(DesignError::Dimension { .. })));
     assert!(matches!(
-        Law::new(&design, &[wide(3, 171)], 1.0),
-        Err(DesignError::Dimension { name: "limited signals on all samples", expected: (512, 1), .. })
+        Law::new(&design, &[wide(3, 214)], 1.0),
+        Err(DesignError::Dimension { name: "limited signals on all samples", expected: (640, 1), .. })
     ));
     let mut wrong = wide(1, 3);
     wrong.input = DMatrix::zeros(1, 2);

@@ -17,8 +17,7 @@ static PRESENT_TILT: &[usize] = &[0, 1, 2];
 /// The later ones: those at which it can be chosen, and some of those at which it settles.
 static TILT: &[usize] = &[3, 4, 6, 8, 12, 18, 28];
 /// Samples of the speed, which follows later.
-static MOVING: &[usize] =
-    &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
+static MOVING: &[usize] = &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
 /// Samples of the rate and the acceleration of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 5, 8, 13, 20];
 
