@@ -63,10 +63,10 @@ fn few_coefficients_are_enough_on_steps_under_limits() {
             assert!(ratio < bound, "{start} {problem}: {ratio}");
         }
     }
-    // Where no limit is active, five are as good as the regulator, which is the optimum.
+    // Where no limit is active, five are within half a percent of the regulator, which is the optimum, with the a of seven and eight.
     for problem in ["position step of 1 m", "altitude step of 1 m up", "altitude step of 1 m down"] {
         let five = costs("LMPC, N = 5,", "").find(|cost| cost.problem == problem).unwrap();
-        assert!(five.ratio_to_optimum.unwrap() < 1.002, "{five:?}");
+        assert!(five.ratio_to_optimum.unwrap() < 1.005, "{five:?}");
     }
     // And where it loses: one coefficient, and beside fifty moves.
     assert!(costs("LMPC, N = 1,", "").any(|cost| cost.ratio_to_optimum.unwrap() > 1.3));
