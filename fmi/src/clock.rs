@@ -6,6 +6,9 @@ use crate::error::CallError;
 
 /// Relative tolerance for comparing times: importers accumulate t += h, or multiply i·h.
 const TOLERANCE: f64 = 1e-9;
+/// Absolute tolerance for comparing times, s: importers count whole nanoseconds, or take their step from a single-precision
+/// number. It is half of the resolution of the model's time.
+const ROUNDING_S: f64 = 0.5e-6;
 /// Longest run, µs: up to here each microsecond is a floating-point number (285 years).
 const LONGEST_US: f64 = 9_007_199_254_740_992.0;
 
@@ -60,6 +63,9 @@ impl Clock {
     }
 
     /// Where a step from `point_s` over `step_s`, at most `longest_s`, ends.
+    ///
+    /// The step starts at the importer's point, not at the end of the last step, so differences within the tolerance do not
+    /// add up.
     pub fn step(&self, point_s: f64, step_s: f64, longest_s: f64) -> Result<StepEnd, CallError> {
         if !(step_s.is_finite() && step_s > 0.0) {
             return Err(CallError::StepSize { step_s });
@@ -70,7 +76,7 @@ impl Clock {
         let expected_s = self.communication_point_s;
         let scale_s =
             [self.start_s, expected_s, point_s].into_iter().fold(step_s, |most, t| most.max(t.abs()));
-        let tolerance_s = TOLERANCE * scale_s;
+        let tolerance_s = ROUNDING_S + TOLERANCE * scale_s;
         if !(point_s.is_finite() && (point_s - expected_s).abs() <= tolerance_s) {
             return Err(CallError::CommunicationPoint { given_s: point_s, expected_s });
         }
@@ -138,6 +144,43 @@ mod tests {
         assert_eq!(clock.time_us(), 10_000_000_000);
     }
 
+    /// Communication points in whole nanoseconds, and steps that are not: the differences do not add up in an hour.
+    #[test]
+    fn roundings_of_the_importer_do_not_add_up() {
+        let nanoseconds = |period_ns: u32| move |i: u32| f64::from(i) * f64::from(period_ns) * 1e-9;
+        let hundredths = |i: u32| f64::from(i) * 0.01;
+        let late = |i: u32| f64::from(i) * 0.01 + if i % 2 == 0 { 0.0 } else { 0.5e-6 };
+        let points: [(&dyn Fn(u32) -> f64, f64, u32); 5] = [
+            (&nanoseconds(16_666_667), 1.0 / 60.0, 216_000),
+            (&nanoseconds(16_666_666), 1.0 / 60.0, 216_000),
+            (&hundredths, f64::from(0.01_f32), 360_000),
+            (&hundredths, 0.01 + 1e-9, 360_000),
+            (&late, 0.01, 360_000),
+        ];
+        for (point_s, step_s, steps) in points {
+            for start_s in [0.0, -10.0, 1e6] {
+                let mut clock = clock(start_s, None);
+                for i in 0..steps {
+                    stepped(&mut clock, start_s + point_s(i), step_s);
+                }
+                let end_s = start_s + point_s(steps - 1) + step_s;
+                assert_eq!(clock.communication_point_s(), end_s);
+                assert!((clock.time_us() as f64 * 1e-6 - (end_s - start_s)).abs() < 0.6e-6);
+            }
+        }
+    }
+
+    /// Half a microsecond is accepted, a whole one is not.
+    #[test]
+    fn tolerance_is_half_a_microsecond() {
+        let mut clock = clock(0.0, None);
+        stepped(&mut clock, 0.0, 0.5);
+        for off_s in [0.5e-6, -0.5e-6] {
+            assert!(clock.step(0.5 + off_s, 0.1, LONGEST_S).is_ok(), "{off_s}");
+            assert!(clock.step(0.5 + 2.0 * off_s, 0.1, LONGEST_S).is_err(), "{off_s}");
+        }
+    }
+
     #[test]
     fn steps_below_a_microsecond_add_up() {
         let mut clock = clock(0.0, None);
@@ -163,6 +206,8 @@ mod tests {
     fn stop_time_has_the_same_tolerance() {
         let clock = clock(0.0, Some(1.0));
         assert!(clock.step(0.0, 1.0 + 1e-12, LONGEST_S).is_ok());
+        // Sixty steps of 1/60 s in whole nanoseconds.
+        assert!(clock.step(0.0, 60.0 * 16_666_667e-9, LONGEST_S).is_ok());
         assert!(matches!(clock.step(0.0, 1.001, LONGEST_S), Err(CallError::PastStop { .. })));
         assert!(Clock::new(0.0, Some(f64::INFINITY)).expect("no stop").step(0.0, 1e3, LONGEST_S).is_ok());
     }

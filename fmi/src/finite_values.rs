@@ -58,6 +58,8 @@ mod tests {
             model_identifier: "growth",
             description: "",
             version: "1",
+            author: "",
+            copyright: "",
             license: "",
             generation_tool: "",
             date: "",

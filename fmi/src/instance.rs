@@ -56,16 +56,8 @@ impl<M: Model> Instance<M> {
         self.clock.communication_point_s()
     }
 
-    pub fn setup_experiment(
-        &mut self,
-        tolerance: Option<f64>,
-        start_s: f64,
-        stop_s: Option<f64>,
-    ) -> Result<(), CallError> {
+    pub fn setup_experiment(&mut self, start_s: f64, stop_s: Option<f64>) -> Result<(), CallError> {
         self.clock = Clock::new(start_s, stop_s)?;
-        if tolerance.is_some() {
-            self.logger.warning("tolerance ignored: the integration step is fixed");
-        }
         Ok(())
     }
 

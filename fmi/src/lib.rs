@@ -15,6 +15,7 @@ pub mod description;
 mod error;
 mod finite;
 mod finite_values;
+mod floating_point;
 pub mod fmi2;
 mod guard;
 mod identity;
@@ -29,6 +30,7 @@ mod model;
 mod pointer;
 mod serialized;
 mod snapshot;
+mod stack;
 mod values;
 pub mod variables;
 

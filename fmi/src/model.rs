@@ -119,6 +119,10 @@ pub struct Identity {
     pub description: &'static str,
     /// Version of the model; part of the GUID.
     pub version: &'static str,
+    /// `author`
+    pub author: &'static str,
+    /// `copyright`
+    pub copyright: &'static str,
     /// Licence of the model.
     pub license: &'static str,
     /// `generationTool`

@@ -8,6 +8,8 @@ use nalgebra::{DMatrix, DVector};
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// … and what goes around through it comes back this small, which does not depend on units.
 const WEAK_CYCLE: f64 = 1e-14;
+/// Below the binary logarithm of every positive number, and finite.
+const LEAST_LOGARITHM: f64 = -1e4;
 
 /// A pair (A, B) by the states that a way of non-zero elements leads to from an input, and those that none leads to.
 ///
@@ -83,8 +85,11 @@ impl Ways {
         let first = column.map(logarithm);
         // What an element adds to the other states, beside what the input does to them without it.
         let onwards = |i: usize| {
-            let beside = |j: usize| self.strongest[(j, i)] + first[i] - first[j];
-            (0..n).filter(|&j| j != i).map(beside).filter(|share| share.is_finite()).reduce(f64::max)
+            // Where the input does nothing there is no share. The bound keeps the compiler, which may compute it all the same,
+            // from subtracting infinity from infinity.
+            let beside = |j: usize| self.strongest[(j, i)] + first[i] - first[j].max(LEAST_LOGARITHM);
+            let others = (0..n).filter(|&j| j != i && first[j].is_finite());
+            others.map(beside).filter(|share| share.is_finite()).reduce(f64::max)
         };
         let is_rounding = |i: usize| {
             libm::fabs(column[i]) <= ROUNDING * column.amax()

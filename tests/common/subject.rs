@@ -128,6 +128,7 @@ const CLOSED_LOOP: Sample = Sample {
     unshaped: &[("reference.shaping", false)],
     points: &[
         (&[], &[("environment.ground_plane", false)]),
+        (&[], &[("reference.shaping", false)]),
         (
             &[
                 // With this attitude the right foot is 2 mm deep.
@@ -146,7 +147,7 @@ const CLOSED_LOOP: Sample = Sample {
             &[("environment.ground_plane", true)],
         ),
     ],
-    dependent: 31,
+    dependent: 41,
     state_numbers: 101,
     numbers: 51,
 };

@@ -71,7 +71,7 @@ fn promised_variables_exist() {
         ),
         (
             "output",
-            "position.x|y|z velocity.x|y|z acceleration.x|y|z body_velocity.u|v|w attitude.phi|theta|psi \
+            "position.x|y|z altitude velocity.x|y|z acceleration.x|y|z body_velocity.u|v|w attitude.phi|theta|psi \
              attitude.q0|q1|q2|q3 body_rate.p|q|r thrust torque.phi|theta|psi rotor.speed[1]|speed[2]|speed[3]|speed[4] \
              tilt_reference.phi|theta tracking_error.x|y|z",
         ),
@@ -144,10 +144,14 @@ fn structure_lists_exactly_the_unknowns_in_order(subject: &'static Subject) {
         unknowns.iter().map(|(index, _)| *index).collect()
     };
     assert_eq!(listed(&subject.description.outputs), indices(subject, &["output"]));
-    assert_eq!(
-        listed(&subject.description.initial_unknowns),
-        indices(subject, &["output", "calculatedParameter"])
-    );
+    // FMI 2.0.4, section 2.2.8; there are no continuous states.
+    let is_unknown = |variable: &Variable| match variable.causality.as_str() {
+        "output" => ["approx", "calculated"].contains(&variable.initial.as_deref().unwrap_or_default()),
+        causality => causality == "calculatedParameter",
+    };
+    let unknowns: Vec<usize> =
+        (1..).zip(variables(subject)).filter(|(_, v)| is_unknown(v)).map(|(index, _)| index).collect();
+    assert_eq!(listed(&subject.description.initial_unknowns), unknowns);
     let known = indices(subject, &["input", "parameter"]);
     for (index, dependencies) in
         subject.description.outputs.iter().chain(&subject.description.initial_unknowns)
@@ -248,6 +252,14 @@ fn head_is_what_importers_need(subject: &'static Subject) {
     assert_eq!(root.attribute("fmiVersion"), Some("2.0"));
     assert_eq!(root.attribute("modelName"), Some(subject.sample.model_name));
     assert_eq!(root.attribute("variableNamingConvention"), Some("structured"));
+    let license =
+        std::fs::read_to_string(path().with_file_name("LICENSE-MIT")).expect("it is in the repository");
+    let copyright = root.attribute("copyright").expect("a copyright");
+    if subject.sample.model_name == "LmpcQuadrotor" {
+        assert!(license.lines().any(|line| line == copyright), "{copyright} is not that of the licence");
+    }
+    let author = root.attribute("author").expect("an author");
+    assert!(copyright.ends_with(author), "{author}");
     let simulation = root.first_element_child().expect("a child");
     assert!(simulation.has_tag_name("CoSimulation"));
     assert_eq!(simulation.attribute("modelIdentifier"), Some(subject.sample.model_identifier));

@@ -10,8 +10,9 @@ use crate::common::library::{ERROR, OK};
 fn bits(outputs: &Outputs) -> Vec<u64> {
     let o = outputs;
     let vector = |vector: &[f64]| vector.to_vec();
-    let groups: [(&str, Vec<f64>); 17] = [
+    let groups: [(&str, Vec<f64>); 18] = [
         ("position.", vector(o.position_m.as_slice())),
+        ("altitude", vec![-o.position_m.z + 0.0]),
         ("velocity.", vector(o.velocity_m_s.as_slice())),
         ("acceleration.", vector(o.acceleration_m_s2.as_slice())),
         ("body_velocity.", vector(o.body_velocity_m_s.as_slice())),
@@ -264,4 +265,54 @@ fn a_lowered_limit_leads_no_flight_past_its_goal() {
         assert!(beyond_m < 0.02, "{beyond_m} m past {goal_z_m} m");
         assert!((instance.real("position.z") - goal_z_m).abs() < 0.01);
     }
+}
+
+/// Height is positive up, and zero is positive, too.
+#[test]
+fn altitude_is_the_position_upwards() {
+    for down in [0.0, -12.5, 3.0] {
+        let mut instance = Instance::initialized(
+            closed_loop(),
+            &[("initial.position.z", down)],
+            &[("environment.ground_plane", false)],
+        );
+        let [altitude, z] = instance.reals(["altitude", "position.z"]);
+        assert_eq!((altitude, z), (-down, down));
+        assert!(altitude != 0.0 || altitude.is_sign_positive());
+        instance.fly(0.0, 0.1, 10);
+        let [altitude, z] = instance.reals(["altitude", "position.z"]);
+        assert_eq!(altitude, -z);
+    }
+}
+
+/// A reference that is passed on as it comes is the set-point from the beginning, not only from the first sample on. The heading
+/// begins where the vehicle points: it turns to its reference within its limit.
+#[test]
+fn an_unshaped_setpoint_is_the_reference_from_the_beginning() {
+    let kinds = ["position", "velocity", "acceleration"];
+    let names: Vec<(String, String)> =
+        (kinds.iter().flat_map(|kind| "xyz".chars().map(move |axis| (kind, axis))))
+            .map(|(kind, axis)| (format!("reference.{kind}.{axis}"), format!("setpoint.{kind}.{axis}")))
+            .collect();
+    let values: Vec<(&str, f64)> = (1..)
+        .zip(&names)
+        .map(|(number, (reference, _))| (reference.as_str(), 0.1 * f64::from(number)))
+        .collect();
+    let started = |shaping| {
+        let mut instance = Instance::new(closed_loop());
+        assert_eq!(instance.set_real(&values), OK);
+        assert_eq!(instance.set_real(&[("reference.yaw", 1.0), ("initial.position.x", 2.0)]), OK);
+        assert_eq!(instance.set_boolean(&[("reference.shaping", shaping)]), OK);
+        instance.initialize();
+        instance
+    };
+    let mut unshaped = started(false);
+    for ((reference, setpoint), (_, value)) in names.iter().zip(&values) {
+        assert_eq!(unshaped.real(setpoint), *value, "{setpoint} is {reference}");
+    }
+    let [error, heading] = unshaped.reals(["tracking_error.x", "setpoint.yaw"]);
+    assert_eq!((error, heading), (2.0 - 0.1, 0.0));
+    // What is shaped begins where the vehicle is.
+    let [position, velocity] = started(true).reals(["setpoint.position.x", "setpoint.velocity.x"]);
+    assert_eq!((position, velocity), (2.0, 0.0));
 }

@@ -77,7 +77,22 @@ fn special_characters_arrive(subject: &'static Subject) {
     assert!(instance.log.last().text.contains("100 %s ##1##"));
 }
 
+/// FMI 2.0.4, section 2.1.6: an FMU for co-simulation may ignore the tolerance. Importers pass one at each run, so nothing is logged.
+fn a_tolerance_is_ignored_in_silence(subject: &'static Subject) {
+    let mut instance = Instance::new(subject);
+    for tolerance in [1e-4, 0.0, f64::NAN] {
+        // SAFETY: the instance is alive.
+        let status =
+            unsafe { (instance.library.setup_experiment)(instance.component, 1, tolerance, 0.0, 1, 5.0) };
+        assert_eq!(status, OK);
+    }
+    assert_eq!(instance.log.take(), []);
+    instance.initialize();
+    instance.fly(0.0, 0.05, 2);
+}
+
 for_each_model! {
+    a_tolerance_is_ignored_in_silence,
     categories_are_selected,
     without_logging_only_errors_are_heard,
     unknown_category_is_named_and_changes_nothing,

@@ -25,12 +25,14 @@ macro_rules! for_each_model {
 
 mod description;
 mod flight;
+mod floating_point;
 mod forged;
 mod input_derivatives;
 mod lifecycle;
 mod logging;
 mod misuse;
 mod parameters;
+mod stack;
 mod state;
 mod stepping;
 mod symbols;

@@ -95,6 +95,22 @@ fn accumulated_time_is_accepted(subject: &'static Subject) {
     assert_eq!(instance.outputs(), exact.outputs());
 }
 
+/// Importers whose points are whole nanoseconds while their step is 1/60 s, or whose step is a single-precision number: for an
+/// hour, each point is off by a rounding, and the FMU follows it.
+fn points_off_by_a_rounding_are_followed_for_an_hour(subject: &'static Subject) {
+    let nanoseconds = |i: u32| f64::from(i) * 16_666_667e-9;
+    let hundredths = |i: u32| f64::from(i) * 0.01;
+    let runs: [(&dyn Fn(u32) -> f64, f64, u32); 2] =
+        [(&nanoseconds, 1.0 / 60.0, 216_000), (&hundredths, f64::from(0.01_f32), 360_000)];
+    for (point, step, steps) in runs {
+        let mut instance = Instance::initialized(subject, &[], &[(subject.sample.switch, false)]);
+        for i in 0..steps {
+            assert_eq!(instance.do_step(point(i), step), OK, "step {i}: {:?}", instance.log.take());
+        }
+        assert_eq!(instance.time(), point(steps - 1) + step);
+    }
+}
+
 fn wrong_steps_are_refused_and_change_nothing(subject: &'static Subject) {
     let mut instance = Instance::initialized(subject, &[], &[]);
     instance.fly(0.0, 0.1, 5);
@@ -182,6 +198,7 @@ for_each_model! {
     any_start_time_gives_the_same_run,
     any_split_gives_the_same_run,
     accumulated_time_is_accepted,
+    points_off_by_a_rounding_are_followed_for_an_hour,
     wrong_steps_are_refused_and_change_nothing,
     steps_beyond_the_longest_are_refused_and_change_nothing,
     stop_time_is_respected_within_the_tolerance,

@@ -219,6 +219,15 @@ def test_input_derivatives_bridge_long_communication_steps(unzipped, model_descr
         assert extrapolated < ratio * held
 
 
+def test_fmpy_hands_over_derivatives_of_nine_inputs_only(unzipped, model_description):
+    """What the book says of FMPy 0.3.32; when this fails, FMPy is mended and the book is to be corrected."""
+    flight = flights.smooth(yaw=0.0)
+    names = [f"reference.{kind}.{axis}" for kind in ("position", "velocity", "acceleration") for axis in "xyz"]
+    signals = flight.signals(model_description)[["time", *names, "reference.yaw"]].copy()
+    with pytest.raises(ValueError, match="same size"):
+        simulate_fmu(unzipped, stop_time=1.0, input=signals, set_input_derivatives=True, model_description=model_description)
+
+
 def test_a_path_with_spaces_and_other_letters(fmu, tmp_path):
     folder = tmp_path / "Über Flüge – летать 飛行"
     folder.mkdir()

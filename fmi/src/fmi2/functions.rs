@@ -91,12 +91,11 @@ functions! {
             instance.logger.select(logging_on != FALSE, &names?)
         };
 
-    /// Sets the time base.
+    /// Sets the time base. A co-simulation FMU may ignore the tolerance (FMI 2.0.4, section 2.1.6): the integration step is fixed.
     setup_experiment(
-        tolerance_defined: Boolean, tolerance: Real, start_time: Real, stop_time_defined: Boolean, stop_time: Real,
+        _tolerance_defined: Boolean, _tolerance: Real, start_time: Real, stop_time_defined: Boolean, stop_time: Real,
     ), SETUP_EXPERIMENT => |instance| {
-        let tolerance = (tolerance_defined != FALSE).then_some(tolerance);
-        instance.setup_experiment(tolerance, start_time, (stop_time_defined != FALSE).then_some(stop_time))
+        instance.setup_experiment(start_time, (stop_time_defined != FALSE).then_some(stop_time))
     };
 
     /// Begins initialization.

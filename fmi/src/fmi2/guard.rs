@@ -3,9 +3,11 @@
 use super::lifecycle::Function;
 use super::types::{Component, Status};
 use crate::error::{CallError, Severity};
+use crate::floating_point::DefaultEnvironment;
 use crate::guard::guarded;
 use crate::instance::Instance;
 use crate::model::Model;
+use crate::stack::with_room;
 
 /// Calls `body` with the instance.
 ///
@@ -17,9 +19,10 @@ pub(super) unsafe fn call<M: Model>(
     function: &Function,
     body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
 ) -> Status {
+    let _environment = DefaultEnvironment::enter();
     // SAFETY: the caller's promise.
     match unsafe { component.cast::<Instance<M>>().as_mut() } {
-        Some(instance) => checked(instance, function, body),
+        Some(instance) => with_room(|| checked(instance, function, body)),
         None => Status::Error,
     }
 }

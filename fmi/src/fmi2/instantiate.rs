@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::logger::sink;
 use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component};
+use crate::floating_point::DefaultEnvironment;
 use crate::guard::message_of;
 use crate::identity::guid;
 use crate::instance::Instance;
@@ -47,6 +48,7 @@ pub(super) struct Request<'a> {
 /// # Safety
 /// The logger of `request` and its environment must stay valid as long as the instance.
 pub(super) unsafe fn instantiate<M: Model>(request: &Request<'_>) -> Component {
+    let _environment = DefaultEnvironment::enter();
     let name = request.name.unwrap_or_default().to_owned();
     let environment = request.functions.component_environment;
     // SAFETY: the caller's promise.
@@ -82,6 +84,7 @@ fn check<M: Model>(request: &Request<'_>) -> Result<(), InstantiationError> {
 /// # Safety
 /// `component` must be NULL or come from [`instantiate`] for the same `M`, and not be used again.
 pub(super) unsafe fn free<M: Model>(component: Component) {
+    let _environment = DefaultEnvironment::enter();
     let instance = component.cast::<Instance<M>>();
     if !instance.is_null() {
         // SAFETY: it came from Box::into_raw in `instantiate`; the rest is the caller's promise.

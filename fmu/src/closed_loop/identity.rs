@@ -8,6 +8,8 @@ pub(super) const IDENTITY: Identity = Identity {
     description: "Quadrotor under a cascade of Laguerre model predictive controllers \
         (Chipofya, Lee and Chong 2015), flying from the origin to 5 m north, 5 m east, 10 m up",
     version: env!("CARGO_PKG_VERSION"),
+    author: env!("CARGO_PKG_AUTHORS"),
+    copyright: concat!("Copyright (c) 2026 ", env!("CARGO_PKG_AUTHORS")),
     license: env!("CARGO_PKG_LICENSE"),
     generation_tool: concat!("lmpc-quadrotor ", env!("CARGO_PKG_VERSION")),
     // Of the release.

@@ -86,6 +86,11 @@ const fn at_least(mut output: Variable<ClosedLoop>, minimum: f64) -> Variable<Cl
     output
 }
 
+/// Positive zero, not negative, at the origin.
+fn altitude_m(outputs: &Outputs) -> f64 {
+    0.0 - outputs.position_m.z
+}
+
 const NOTHING: &[&str] = &[];
 const ATTITUDE: &[&str] = &["initial.attitude."];
 const BODY_VELOCITY: &[&str] = &["initial.velocity.", "initial.attitude."];
@@ -107,10 +112,11 @@ const ACCELERATIONS: &[&str] =
 const TILT_REFERENCE: &[&str] = NOTHING;
 
 #[rustfmt::skip]
-pub(super) const OUTPUTS: [Variable<ClosedLoop>; 58] = [
+pub(super) const OUTPUTS: [Variable<ClosedLoop>; 59] = [
     output("position.x", &POSITION, &["initial.position.x"], |outputs| outputs.position_m.x, "Position north"),
     output("position.y", &POSITION, &["initial.position.y"], |outputs| outputs.position_m.y, "Position east"),
     output("position.z", &POSITION, &["initial.position.z"], |outputs| outputs.position_m.z, "Position down"),
+    output("altitude", &POSITION, &["initial.position.z"], altitude_m, "Altitude above the origin, positive up: minus position.z"),
     output("velocity.x", &VELOCITY, &["initial.velocity.x"], |outputs| outputs.velocity_m_s.x, "Velocity north"),
     output("velocity.y", &VELOCITY, &["initial.velocity.y"], |outputs| outputs.velocity_m_s.y, "Velocity east"),
     output("velocity.z", &VELOCITY, &["initial.velocity.z"], |outputs| outputs.velocity_m_s.z, "Velocity down"),
@@ -143,19 +149,19 @@ pub(super) const OUTPUTS: [Variable<ClosedLoop>; 58] = [
     within(output("battery.remaining", &NUMBER, BATTERY, |outputs| outputs.battery.remaining, "Remaining share of the battery's charge; 1 without airframe.battery.sag"), 0.0, 1.0),
     output("tilt_reference.phi", &ANGLE, TILT_REFERENCE, |outputs| outputs.tilt_reference_rad[0], "Roll angle commanded by the position controller"),
     output("tilt_reference.theta", &ANGLE, TILT_REFERENCE, |outputs| outputs.tilt_reference_rad[1], "Pitch angle commanded by the position controller"),
-    output("setpoint.position.x", &POSITION, &["initial.position.x"], |outputs| outputs.setpoint.position_m.x, "Position set-point north, after shaping"),
-    output("setpoint.position.y", &POSITION, &["initial.position.y"], |outputs| outputs.setpoint.position_m.y, "Position set-point east, after shaping"),
-    output("setpoint.position.z", &POSITION, &["initial.position.z"], |outputs| outputs.setpoint.position_m.z, "Position set-point down, after shaping"),
-    output("setpoint.velocity.x", &VELOCITY, NOTHING, |outputs| outputs.setpoint.velocity_m_s.x, "Velocity set-point north, after shaping"),
-    output("setpoint.velocity.y", &VELOCITY, NOTHING, |outputs| outputs.setpoint.velocity_m_s.y, "Velocity set-point east, after shaping"),
-    output("setpoint.velocity.z", &VELOCITY, NOTHING, |outputs| outputs.setpoint.velocity_m_s.z, "Velocity set-point down, after shaping"),
-    output("setpoint.acceleration.x", &ACCELERATION, NOTHING, |outputs| outputs.setpoint.acceleration_m_s2.x, "Acceleration set-point north, after shaping"),
-    output("setpoint.acceleration.y", &ACCELERATION, NOTHING, |outputs| outputs.setpoint.acceleration_m_s2.y, "Acceleration set-point east, after shaping"),
-    output("setpoint.acceleration.z", &ACCELERATION, NOTHING, |outputs| outputs.setpoint.acceleration_m_s2.z, "Acceleration set-point down, after shaping"),
+    output("setpoint.position.x", &POSITION, &["armed", "reference.position.x", "reference.shaping", "initial.position.x"], |outputs| outputs.setpoint.position_m.x, "Position set-point north, after shaping"),
+    output("setpoint.position.y", &POSITION, &["armed", "reference.position.y", "reference.shaping", "initial.position.y"], |outputs| outputs.setpoint.position_m.y, "Position set-point east, after shaping"),
+    output("setpoint.position.z", &POSITION, &["armed", "reference.position.z", "reference.shaping", "initial.position.z"], |outputs| outputs.setpoint.position_m.z, "Position set-point down, after shaping"),
+    output("setpoint.velocity.x", &VELOCITY, &["armed", "reference.velocity.x", "reference.shaping"], |outputs| outputs.setpoint.velocity_m_s.x, "Velocity set-point north, after shaping"),
+    output("setpoint.velocity.y", &VELOCITY, &["armed", "reference.velocity.y", "reference.shaping"], |outputs| outputs.setpoint.velocity_m_s.y, "Velocity set-point east, after shaping"),
+    output("setpoint.velocity.z", &VELOCITY, &["armed", "reference.velocity.z", "reference.shaping"], |outputs| outputs.setpoint.velocity_m_s.z, "Velocity set-point down, after shaping"),
+    output("setpoint.acceleration.x", &ACCELERATION, &["armed", "reference.acceleration.x", "reference.shaping"], |outputs| outputs.setpoint.acceleration_m_s2.x, "Acceleration set-point north, after shaping"),
+    output("setpoint.acceleration.y", &ACCELERATION, &["armed", "reference.acceleration.y", "reference.shaping"], |outputs| outputs.setpoint.acceleration_m_s2.y, "Acceleration set-point east, after shaping"),
+    output("setpoint.acceleration.z", &ACCELERATION, &["armed", "reference.acceleration.z", "reference.shaping"], |outputs| outputs.setpoint.acceleration_m_s2.z, "Acceleration set-point down, after shaping"),
     output("setpoint.yaw", &ANGLE, ATTITUDE, |outputs| outputs.setpoint.yaw_rad, "Heading set-point, after shaping"),
-    output("tracking_error.x", &POSITION, &["initial.position.x"], |outputs| outputs.tracking_error_m.x, "Position minus set-point north"),
-    output("tracking_error.y", &POSITION, &["initial.position.y"], |outputs| outputs.tracking_error_m.y, "Position minus set-point east"),
-    output("tracking_error.z", &POSITION, &["initial.position.z"], |outputs| outputs.tracking_error_m.z, "Position minus set-point down"),
+    output("tracking_error.x", &POSITION, &["armed", "reference.position.x", "reference.shaping", "initial.position.x"], |outputs| outputs.tracking_error_m.x, "Position minus set-point north"),
+    output("tracking_error.y", &POSITION, &["armed", "reference.position.y", "reference.shaping", "initial.position.y"], |outputs| outputs.tracking_error_m.y, "Position minus set-point east"),
+    output("tracking_error.z", &POSITION, &["armed", "reference.position.z", "reference.shaping", "initial.position.z"], |outputs| outputs.tracking_error_m.z, "Position minus set-point down"),
     within(output("yaw_error", &ANGLE, ATTITUDE, |outputs| outputs.yaw_error_rad, "Heading minus set-point, wrapped to [-pi, pi]"), -PI, PI),
     status("controller.altitude.status", |outputs| number(&outputs.activity.altitude), "Status of the altitude controller's last step"),
     count("controller.altitude.active_constraints", |outputs| outputs.activity.altitude.active, "Number of limits that were active in the altitude controller's last step, or clipped its input"),

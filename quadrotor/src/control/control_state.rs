@@ -60,7 +60,14 @@ impl ControlState {
     ) -> Result<Self, ConfigurationError> {
         let shaping = inputs.shaping.unwrap_or(configuration.reference.shaping);
         let start = instruments.read_at_takeover(time_us);
-        let (guidance, cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        let (mut guidance, cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        if let Target::Reference(reference) = &inputs.target
+            && inputs.armed
+            && !shaping
+        {
+            // The set-point is the reference from the first instant on, before the first sample.
+            guidance.sample(reference, inputs.plan.as_ref(), &configuration.flyable_limits(), time_us);
+        }
         let first = instruments.read(time_us);
         if !(start.is_possible() && first.is_possible()) {
             return Err(ConfigurationError::Measurement);

@@ -82,8 +82,8 @@ impl DirectReference {
         if !gives_derivatives(reference) {
             let Derivatives { first, second } = self.accelerations.at(self.input.since_us());
             // What the tilt command may do.
-            way.jerk_m_s3 = first.cap_magnitude(GRAVITY_M_S2 * limits.tilt_rate_rad_s);
-            way.snap_m_s4 = second.cap_magnitude(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+            way.jerk_m_s3 = at_most(&first, GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+            way.snap_m_s4 = at_most(&second, GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
         }
         // The point holds at the instant at which it was set.
         let age_s = self.input.age_s(time_us);
@@ -101,7 +101,8 @@ impl DirectReference {
         held.yaw_rad += turned;
         // A heading that moves has a rate, also when none was given.
         let given = reference.yaw_rate_rad_s;
-        let rate = if given == 0.0 && elapsed_s > 0.0 { turned / elapsed_s } else { given };
+        // A microsecond is the shortest time: nowhere is a division by zero.
+        let rate = if given == 0.0 && elapsed_s > 0.0 { turned / elapsed_s.max(1e-6) } else { given };
         held.yaw_rate_rad_s = rate.clamp(-limits.yaw_rate_rad_s, limits.yaw_rate_rad_s);
         let acceleration = match reference.yaw_acceleration_rad_s2 {
             0.0 => self.yaw_rates.at(time_us).first.x,
@@ -112,6 +113,12 @@ impl DirectReference {
         held.yaw_acceleration_rad_s2 = if is_free { acceleration } else { 0.0 };
         self.yaw_time_us = time_us;
     }
+}
+
+/// A vector that is shortened to a largest length above zero. It never divides by the length of a zero vector, not even where
+/// the compiler computes both cases.
+fn at_most(vector: &Vector3<f64>, largest: f64) -> Vector3<f64> {
+    vector * (largest / vector.norm().max(largest))
 }
 
 /// Whether jerk and snap are given with the reference.

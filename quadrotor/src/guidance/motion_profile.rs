@@ -40,8 +40,10 @@ impl Motion {
         if j == 0.0 {
             return [(a != 0.0).then(|| -v / a), None, None];
         }
-        let root = libm::sqrt(a * a - 2.0 * j * v);
-        [-a / j, (-a + root) / j, (-a - root) / j].map(|turn_s| turn_s.is_finite().then_some(turn_s))
+        let discriminant = a * a - 2.0 * j * v;
+        let root = (discriminant >= 0.0).then(|| libm::sqrt(discriminant));
+        [Some(-a / j), root.map(|root| (-a + root) / j), root.map(|root| (-a - root) / j)]
+            .map(|turn_s| turn_s.filter(|turn_s| turn_s.is_finite()))
     }
 }
 

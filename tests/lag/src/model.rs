@@ -77,6 +77,8 @@ impl Model for Lag {
         model_identifier: "lag",
         description: "A first-order lag",
         version: "1.0",
+        author: "The authors of the tests",
+        copyright: "Copyright (c) 2026 The authors of the tests",
         license: "MIT OR Apache-2.0",
         generation_tool: "the tests",
         date: "2026-11-21T00:00:00Z",
