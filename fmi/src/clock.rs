@@ -149,8 +149,9 @@ mod tests {
     fn roundings_of_the_importer_do_not_add_up() {
         let nanoseconds = |period_ns: u32| move |i: u32| f64::from(i) * f64::from(period_ns) * 1e-9;
         let hundredths = |i: u32| f64::from(i) * 0.01;
-        let late = |i: u32| f64::from(i) * 0.01 + if i % 2 == 0 { 0.0 } else { 0.5e-6 };
-        let points: [(&dyn Fn(u32) -> f64, f64, u32); 5] = [
+        let late = |i: u32| f64::from(i) * 0.01 + if i.is_multiple_of(2) { 0.0 } else { 0.5e-6 };
+        type Points<'a> = &'a dyn Fn(u32) -> f64;
+        let points: [(Points<'_>, f64, u32); 5] = [
             (&nanoseconds(16_666_667), 1.0 / 60.0, 216_000),
             (&nanoseconds(16_666_666), 1.0 / 60.0, 216_000),
             (&hundredths, f64::from(0.01_f32), 360_000),
