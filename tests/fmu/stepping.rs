@@ -100,7 +100,8 @@ fn accumulated_time_is_accepted(subject: &'static Subject) {
 fn points_off_by_a_rounding_are_followed_for_an_hour(subject: &'static Subject) {
     let nanoseconds = |i: u32| f64::from(i) * 16_666_667e-9;
     let hundredths = |i: u32| f64::from(i) * 0.01;
-    let runs: [(&dyn Fn(u32) -> f64, f64, u32); 2] =
+    type Points<'a> = &'a dyn Fn(u32) -> f64;
+    let runs: [(Points<'_>, f64, u32); 2] =
         [(&nanoseconds, 1.0 / 60.0, 216_000), (&hundredths, f64::from(0.01_f32), 360_000)];
     for (point, step, steps) in runs {
         let mut instance = Instance::initialized(subject, &[], &[(subject.sample.switch, false)]);
