@@ -3,16 +3,15 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::component::Component;
 use crate::error::{CallError, Severity};
-use crate::instance::Instance;
-use crate::model::Model;
 
 /// Calls `body` with the instance if `function` is allowed in its phase.
-pub(crate) fn guarded<M: Model>(
-    instance: &mut Instance<M>,
+pub(crate) fn guarded(
+    instance: &mut dyn Component,
     function: &str,
     is_allowed: bool,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
 ) -> Result<(), Severity> {
     let outcome = if is_allowed {
         // Unwind safety: after a panic the instance is given up, nobody sees it half changed.
@@ -26,7 +25,7 @@ pub(crate) fn guarded<M: Model>(
         if severity == Severity::Fatal {
             instance.abandon();
         }
-        instance.logger.error(function, &error);
+        instance.logger().error(function, &error);
         severity
     })
 }

@@ -3,13 +3,14 @@
 //! # Map
 //!
 //! Calls arrive in [`fmi2`], where `guard` checks the instance and whether the call is allowed; the other modules are
-//! independent of C and of the version of the interface. `instance` and `values` implement an instance of a [`Model`] with
-//! its table of [`variables`]; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
+//! independent of C and of the version of the interface. `component` is an instance of any model of the `library`; `instance` and
+//! `values` implement that of one [`Model`] with its table of [`variables`]; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
 //! `guard` catches panics, `logger` filters messages, `pointer` checks what C passes.
 //!
 //! There is no mutable global state: instances are independent and can run on any number of threads.
 
 mod clock;
+mod component;
 #[cfg(feature = "description")]
 pub mod description;
 mod error;
@@ -24,6 +25,7 @@ mod instance;
 #[cfg(test)]
 #[path = "../../tests/lag/src/model.rs"]
 mod lag;
+mod library;
 mod lifecycle;
 mod logger;
 mod model;
@@ -35,6 +37,7 @@ mod values;
 pub mod variables;
 
 pub use identity::guid;
+pub use library::LibraryModel;
 pub use model::{Data, Experiment, Identity, Model, SavedStateFormat, Words};
 
 // The model of the tests names this crate as others do.

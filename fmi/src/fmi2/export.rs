@@ -1,15 +1,15 @@
 //! The C names of the functions.
 
-/// Exports a [`Model`](crate::Model) as an FMI 2.0 co-simulation library: the 34 functions of the interface under their
-/// C names. For the root of a crate of type `cdylib`, once.
+/// Exports one or more [`Model`](crate::Model)s as an FMI 2.0 co-simulation library: the 34 functions of the interface under
+/// their C names. For the root of a crate of type `cdylib`, once. `fmi2Instantiate` finds the model by its GUID.
 #[macro_export]
 macro_rules! export_fmi2 {
-    ($model:ty) => {
+    ($($model:ty),+ $(,)?) => {
         const _: () = {
             // Under a name that no type of the model is likely to begin with.
             use $crate::fmi2::types as fmi2_types;
 
-            $crate::export_fmi2! { $model;
+            $crate::export_fmi2! { functions
                 fmi2SetDebugLogging = set_debug_logging(logging_on: fmi2_types::Boolean, count: usize, categories: *const fmi2_types::String);
                 fmi2SetupExperiment = setup_experiment(tolerance_defined: fmi2_types::Boolean, tolerance: fmi2_types::Real, start_time: fmi2_types::Real, stop_time_defined: fmi2_types::Boolean, stop_time: fmi2_types::Real);
                 fmi2EnterInitializationMode = enter_initialization_mode();
@@ -64,7 +64,8 @@ macro_rules! export_fmi2 {
             ) -> fmi2_types::Component {
                 // SAFETY: the importer keeps the contract of the specification.
                 unsafe {
-                    $crate::fmi2::functions::instantiate::<$model>(
+                    $crate::fmi2::functions::instantiate(
+                        &const { [$($crate::LibraryModel::of::<$model>()),+] },
                         instance_name,
                         fmu_type,
                         guid,
@@ -79,16 +80,16 @@ macro_rules! export_fmi2 {
             #[unsafe(no_mangle)]
             unsafe extern "C" fn fmi2FreeInstance(c: fmi2_types::Component) {
                 // SAFETY: the importer keeps the contract of the specification.
-                unsafe { $crate::fmi2::functions::free_instance::<$model>(c) }
+                unsafe { $crate::fmi2::functions::free_instance(c) }
             }
         };
     };
     // Functions of an instance.
-    ($model:ty; $($symbol:ident = $function:ident($($argument:ident: $type:ty),*);)*) => {$(
+    (functions $($symbol:ident = $function:ident($($argument:ident: $type:ty),*);)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $symbol(c: fmi2_types::Component, $($argument: $type),*) -> fmi2_types::Status {
             // SAFETY: the importer keeps the contract of the specification.
-            unsafe { $crate::fmi2::functions::$function::<$model>(c, $($argument),*) }
+            unsafe { $crate::fmi2::functions::$function(c, $($argument),*) }
         }
     )*};
 }

@@ -1,6 +1,6 @@
-//! The 34 functions of an FMI 2.0 co-simulation library, for any model.
+//! The 34 functions of an FMI 2.0 co-simulation library, for the models of a library.
 //!
-//! [`export_fmi2`](crate::export_fmi2) gives them their C names in the library of one model.
+//! [`export_fmi2`](crate::export_fmi2) gives them their C names.
 
 use std::ffi::{CStr, c_char, c_int};
 
@@ -12,12 +12,10 @@ use super::types::{
     Boolean, Byte, CallbackFunctions, Component, FALSE, FmuState, Integer, LAST_SUCCESSFUL_TIME, Real,
     Status, StatusKind, String, TERMINATED, TRUE, ValueReference,
 };
+use crate::component::SavedState;
 use crate::error::{CallError, SavedStateError};
-use crate::instance::Instance;
-use crate::model::Model;
+use crate::library::LibraryModel;
 use crate::pointer::{array, array_mut, keep, reference, reference_mut, release, string};
-use crate::serialized::{deserialize, serialize};
-use crate::snapshot::Snapshot;
 use crate::variables::{Type, Value};
 
 /// Functions of an instance: name and arguments, entry in the table of legal calls, what is done.
@@ -29,10 +27,10 @@ macro_rules! functions {
         /// # Safety
         /// As in the FMI 2.0 specification: `c` is an instance or NULL and is not in use by another call;
         /// pointers are NULL or valid for as many elements as they are said to have.
-        pub unsafe fn $name<M: Model>(c: Component, $($argument: $type),*) -> Status {
+        pub unsafe fn $name(c: Component, $($argument: $type),*) -> Status {
             // SAFETY: this function's contract is that of `call` and of the pointer conversions in `$body`.
             #[allow(unused_unsafe)]
-            unsafe { call::<M>(c, &Function::$function, $body) }
+            unsafe { call(c, &Function::$function, $body) }
         }
     )*};
 }
@@ -47,12 +45,14 @@ pub fn get_version() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// Makes an instance; NULL if it cannot.
+/// Makes an instance of one of the `models`; NULL if it cannot.
 ///
 /// # Safety
 /// As in the FMI 2.0 specification: strings are NULL or end with NUL, `functions` is NULL or valid, its
 /// logger stays valid as long as the instance.
-pub unsafe fn instantiate<M: Model>(
+#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
+pub unsafe fn instantiate(
+    models: &[LibraryModel],
     instance_name: String,
     fmu_type: c_int,
     guid: String,
@@ -69,16 +69,16 @@ pub unsafe fn instantiate<M: Model>(
     let Some(callback) = functions.logger else { return std::ptr::null_mut() };
     let (name, guid, logging_on) = (text(instance_name), text(guid), logging_on != FALSE);
     // SAFETY: this function's contract.
-    unsafe { make::<M>(&Request { name, fmu_type, guid, functions, callback, logging_on }) }
+    unsafe { make(models, &Request { name, fmu_type, guid, functions, callback, logging_on }) }
 }
 
 /// Frees an instance.
 ///
 /// # Safety
 /// `c` is an instance or NULL, and is not used again.
-pub unsafe fn free_instance<M: Model>(c: Component) {
+pub unsafe fn free_instance(c: Component) {
     // SAFETY: this function's contract.
-    unsafe { free::<M>(c) }
+    unsafe { free(c) }
 }
 
 functions! {
@@ -88,7 +88,7 @@ functions! {
             let names = array("categories", categories, count)?;
             let names: Result<Vec<&CStr>, CallError> =
                 names.iter().map(|name| string("categories", *name)).collect();
-            instance.logger.select(logging_on != FALSE, &names?)
+            instance.logger().select(logging_on != FALSE, &names?)
         };
 
     /// Sets the time base. A co-simulation FMU may ignore the tolerance (FMI 2.0.4, section 2.1.6): the integration step is fixed.
@@ -99,33 +99,33 @@ functions! {
     };
 
     /// Begins initialization.
-    enter_initialization_mode(), ENTER_INITIALIZATION_MODE => Instance::enter_initialization_mode;
+    enter_initialization_mode(), ENTER_INITIALIZATION_MODE => |instance| instance.enter_initialization_mode();
 
     /// Ends initialization: builds the run, which checks that the values are consistent.
-    exit_initialization_mode(), EXIT_INITIALIZATION_MODE => Instance::exit_initialization_mode;
+    exit_initialization_mode(), EXIT_INITIALIZATION_MODE => |instance| instance.exit_initialization_mode();
 
     /// Ends the run.
-    terminate(), TERMINATE => Instance::terminate;
+    terminate(), TERMINATE => |instance| instance.terminate();
 
     /// Goes back to the state after instantiation.
-    reset(), RESET => Instance::reset;
+    reset(), RESET => |instance| instance.reset();
 
     /// Reads Real variables.
     get_real(vr: *const ValueReference, count: usize, value: *mut Real), GET_REAL => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
-        instance.get(Type::Real, vr, |place, got| if let Value::Real(got) = got { value[place] = got })
+        instance.get(Type::Real, vr, &mut |place, got| if let Value::Real(got) = got { value[place] = got })
     };
 
     /// Reads Integer variables.
     get_integer(vr: *const ValueReference, count: usize, value: *mut Integer), GET_INTEGER => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
-        instance.get(Type::Integer, vr, |place, got| if let Value::Integer(got) = got { value[place] = got })
+        instance.get(Type::Integer, vr, &mut |place, got| if let Value::Integer(got) = got { value[place] = got })
     };
 
     /// Reads Boolean variables.
     get_boolean(vr: *const ValueReference, count: usize, value: *mut Boolean), GET_BOOLEAN => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array_mut("value", value, count)?);
-        instance.get(Type::Boolean, vr, |place, got| {
+        instance.get(Type::Boolean, vr, &mut |place, got| {
             if let Value::Boolean(got) = got { value[place] = boolean(got) }
         })
     };
@@ -139,19 +139,19 @@ functions! {
     /// Sets Real variables.
     set_real(vr: *const ValueReference, count: usize, value: *const Real), SET_REAL => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
-        instance.set(Type::Real, vr, |place| Value::Real(value[place]))
+        instance.set(Type::Real, vr, &|place| Value::Real(value[place]))
     };
 
     /// Sets Integer variables.
     set_integer(vr: *const ValueReference, count: usize, value: *const Integer), SET_INTEGER => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
-        instance.set(Type::Integer, vr, |place| Value::Integer(value[place]))
+        instance.set(Type::Integer, vr, &|place| Value::Integer(value[place]))
     };
 
     /// Sets Boolean variables.
     set_boolean(vr: *const ValueReference, count: usize, value: *const Boolean), SET_BOOLEAN => |instance| {
         let (vr, value) = (array("vr", vr, count)?, array("value", value, count)?);
-        instance.set(Type::Boolean, vr, |place| Value::Boolean(value[place] != FALSE))
+        instance.set(Type::Boolean, vr, &|place| Value::Boolean(value[place] != FALSE))
     };
 
     /// Sets String variables, of which there are none.
@@ -162,38 +162,37 @@ functions! {
 
     /// Saves the state. A state that `state` holds already is overwritten.
     get_state(state: *mut FmuState), GET_STATE => |instance| {
-        keep(reference_mut("FMUstate", state)?, instance.snapshot());
+        keep(reference_mut("FMUstate", state)?, instance.saved_state());
         Ok(())
     };
 
     /// Sets a saved state of this instance or another.
     set_state(state: FmuState), SET_STATE =>
-        |instance| instance.restore(reference("FMUstate", state.cast::<Snapshot<M>>())?);
+        |instance| instance.restore(saved(state)?);
 
     /// Frees a saved state and leaves NULL in its place.
     free_state(state: *mut FmuState), FREE_STATE => |_| {
-        release::<Snapshot<M>>(state);
+        release::<Box<dyn SavedState>>(state);
         Ok(())
     };
 
     /// Number of bytes of a saved state.
     serialized_state_size(state: FmuState, size: *mut usize), SERIALIZED_STATE_SIZE => |_| {
-        let (state, size) = (reference("FMUstate", state.cast::<Snapshot<M>>())?, reference_mut("size", size)?);
-        *size = serialize(state)?.len();
+        let (state, size) = (saved(state)?, reference_mut("size", size)?);
+        *size = state.bytes()?.len();
         Ok(())
     };
 
     /// Writes a saved state to a buffer of exactly its size.
     serialize_state(state: FmuState, bytes: *mut Byte, size: usize), SERIALIZE_STATE => |_| {
-        let state = reference("FMUstate", state.cast::<Snapshot<M>>())?;
         let bytes = array_mut("serializedState", bytes, size)?;
-        copy(&serialize(state)?, bytes)
+        copy(&saved(state)?.bytes()?, bytes)
     };
 
     /// Reads a saved state from bytes, and checks it.
-    deserialize_state(bytes: *const Byte, size: usize, state: *mut FmuState), DESERIALIZE_STATE => |_| {
+    deserialize_state(bytes: *const Byte, size: usize, state: *mut FmuState), DESERIALIZE_STATE => |instance| {
         let (bytes, state) = (array("serializedState", bytes, size)?, reference_mut("FMUstate", state)?);
-        keep(state, deserialize::<M>(bytes)?);
+        keep(state, instance.deserialize(bytes)?);
         Ok(())
     };
 
@@ -257,6 +256,15 @@ functions! {
     /// No status is a String: no step is ever pending.
     get_string_status(kind: StatusKind, _value: *mut String), GET_STRING_STATUS =>
         |_| Err(no_status(kind));
+}
+
+/// A saved state that the importer passes.
+///
+/// # Safety
+/// `state` must be NULL or come from [`get_state`] or [`deserialize_state`], and not be freed.
+unsafe fn saved<'a>(state: FmuState) -> Result<&'a dyn SavedState, CallError> {
+    // SAFETY: the caller's promise.
+    Ok(&**unsafe { reference("FMUstate", state.cast::<Box<dyn SavedState>>()) }?)
 }
 
 fn boolean(value: bool) -> Boolean {

@@ -1,37 +1,35 @@
 //! The guard of the FMI 2.0 functions: from a component to an instance, and from an outcome to a status.
 
 use super::lifecycle::Function;
-use super::types::{Component, Status};
+use super::types::{Component as Pointer, Status};
+use crate::component::Component;
 use crate::error::{CallError, Severity};
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::guarded;
-use crate::instance::Instance;
-use crate::model::Model;
 use crate::stack::with_room;
 
 /// Calls `body` with the instance.
 ///
 /// # Safety
-/// `component` must be NULL or come from [`instantiate`](super::instantiate::instantiate) for the same `M`, not be
-/// freed, and not be in use by another call.
-pub(super) unsafe fn call<M: Model>(
-    component: Component,
+/// `component` must be NULL or come from [`instantiate`](super::instantiate::instantiate), not be freed, and not be in use by another call.
+pub(super) unsafe fn call(
+    component: Pointer,
     function: &Function,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
 ) -> Status {
     let _environment = DefaultEnvironment::enter();
     // SAFETY: the caller's promise.
-    match unsafe { component.cast::<Instance<M>>().as_mut() } {
-        Some(instance) => with_room(|| checked(instance, function, body)),
+    match unsafe { component.cast::<Box<dyn Component>>().as_mut() } {
+        Some(instance) => with_room(|| checked(&mut **instance, function, body)),
         None => Status::Error,
     }
 }
 
 /// Calls `body` if the table of legal calls allows it.
-fn checked<M: Model>(
-    instance: &mut Instance<M>,
+fn checked(
+    instance: &mut dyn Component,
     function: &Function,
-    body: impl FnOnce(&mut Instance<M>) -> Result<(), CallError>,
+    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
 ) -> Status {
     let is_allowed = function.is_allowed_in(instance.phase());
     match guarded(instance, function.name, is_allowed, body) {
@@ -90,7 +88,7 @@ mod tests {
         let mut instance = instance(&mut log);
         let status = checked(&mut instance, &Function::RESET, |_| panic!("a defect #{}", 1));
         assert_eq!(status, Status::Fatal);
-        assert_eq!(checked(&mut instance, &Function::RESET, Instance::reset), Status::Fatal);
+        assert_eq!(checked(&mut instance, &Function::RESET, |instance| instance.reset()), Status::Fatal);
         assert_eq!(log.len(), 2);
         assert_eq!((log[0].0, log[0].1.as_str()), (Status::Fatal, "logStatusFatal"));
         assert_eq!(log[0].2, "fmi2Reset: internal error; the instance can only be freed: a defect ##1");

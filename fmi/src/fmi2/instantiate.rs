@@ -6,13 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
 use super::logger::sink;
-use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component};
+use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component as Pointer};
+use crate::component::Component;
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::message_of;
-use crate::identity::guid;
-use crate::instance::Instance;
+use crate::library::LibraryModel;
 use crate::logger::Logger;
-use crate::model::Model;
 
 /// Why no instance was made.
 #[derive(Debug, PartialEq, Error)]
@@ -24,7 +23,7 @@ pub(super) enum InstantiationError {
     #[error("fmuGUID is NULL")]
     NoGuid,
     #[error(
-        "fmuGUID = {given:?} does not match the library's {expected}: modelDescription.xml comes from another build"
+        "fmuGUID = {given:?} does not match the library, which has {expected}: modelDescription.xml comes from another build"
     )]
     OtherGuid { given: String, expected: String },
     #[error("internal error: {0}")]
@@ -43,20 +42,20 @@ pub(super) struct Request<'a> {
     pub logging_on: bool,
 }
 
-/// A new instance; NULL, and a message, if the request is refused.
+/// A new instance of one of the `models`; NULL, and a message, if the request is refused.
 ///
 /// # Safety
 /// The logger of `request` and its environment must stay valid as long as the instance.
-pub(super) unsafe fn instantiate<M: Model>(request: &Request<'_>) -> Component {
+pub(super) unsafe fn instantiate(models: &[LibraryModel], request: &Request<'_>) -> Pointer {
     let _environment = DefaultEnvironment::enter();
     let name = request.name.unwrap_or_default().to_owned();
     let environment = request.functions.component_environment;
     // SAFETY: the caller's promise.
     let logger = Logger::new(unsafe { sink(request.callback, environment, name) }, request.logging_on);
-    let checked = catch_unwind(AssertUnwindSafe(|| check::<M>(request)))
+    let chosen = catch_unwind(AssertUnwindSafe(|| choose(models, request)))
         .unwrap_or_else(|payload| Err(InstantiationError::Panic(message_of(&*payload))));
-    match checked {
-        Ok(()) => Box::into_raw(Box::new(Instance::<M>::new(logger))).cast(),
+    match chosen {
+        Ok(model) => Box::into_raw(Box::new(model.instance(logger))).cast(),
         Err(error) => {
             logger.refused(&format!("fmi2Instantiate: {error}"));
             std::ptr::null_mut()
@@ -64,7 +63,10 @@ pub(super) unsafe fn instantiate<M: Model>(request: &Request<'_>) -> Component {
     }
 }
 
-fn check<M: Model>(request: &Request<'_>) -> Result<(), InstantiationError> {
+fn choose<'a>(
+    models: &'a [LibraryModel],
+    request: &Request<'_>,
+) -> Result<&'a LibraryModel, InstantiationError> {
     if request.name.is_none_or(CStr::is_empty) {
         return Err(InstantiationError::NoName);
     }
@@ -72,20 +74,23 @@ fn check<M: Model>(request: &Request<'_>) -> Result<(), InstantiationError> {
         return Err(InstantiationError::NotCoSimulation { fmu_type: request.fmu_type });
     }
     let given = request.guid.ok_or(InstantiationError::NoGuid)?.to_string_lossy();
-    let expected = guid::<M>();
-    if given != expected {
-        return Err(InstantiationError::OtherGuid { given: given.into_owned(), expected });
-    }
-    Ok(())
+    models.iter().find(|model| model.guid() == given).ok_or_else(|| InstantiationError::OtherGuid {
+        given: given.into_owned(),
+        expected: models
+            .iter()
+            .map(|model| format!("{} ({})", model.guid(), model.name()))
+            .collect::<Vec<_>>()
+            .join(", "),
+    })
 }
 
 /// Frees an instance; NULL is none.
 ///
 /// # Safety
-/// `component` must be NULL or come from [`instantiate`] for the same `M`, and not be used again.
-pub(super) unsafe fn free<M: Model>(component: Component) {
+/// `component` must be NULL or come from [`instantiate`], and not be used again.
+pub(super) unsafe fn free(component: Pointer) {
     let _environment = DefaultEnvironment::enter();
-    let instance = component.cast::<Instance<M>>();
+    let instance = component.cast::<Box<dyn Component>>();
     if !instance.is_null() {
         // SAFETY: it came from Box::into_raw in `instantiate`; the rest is the caller's promise.
         let instance = unsafe { Box::from_raw(instance) };

@@ -1,12 +1,11 @@
 //! Statuses that an importer can ask for.
 
 use super::types::{DO_STEP_STATUS, LAST_SUCCESSFUL_TIME, PENDING_STATUS, Status, StatusKind, TERMINATED};
+use crate::component::Component;
 use crate::error::CallError;
-use crate::instance::Instance;
-use crate::model::Model;
 
 /// `fmi2DoStepStatus`: how the last step ended.
-pub(super) fn step_status<M: Model>(instance: &Instance<M>, kind: StatusKind) -> Result<Status, CallError> {
+pub(super) fn step_status(instance: &dyn Component, kind: StatusKind) -> Result<Status, CallError> {
     match (kind, instance.last_step_failed()) {
         (DO_STEP_STATUS, false) => Ok(Status::Ok),
         (DO_STEP_STATUS, true) => Ok(Status::Error),
