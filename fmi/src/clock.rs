@@ -56,6 +56,16 @@ impl Clock {
         self.microseconds(self.communication_point_s) as u64
     }
 
+    /// Sets the time of model exchange, s.
+    pub fn set(&mut self, time_s: f64) -> Result<(), CallError> {
+        let set = Self { communication_point_s: time_s, ..*self };
+        if !(time_s.is_finite() && set.is_valid()) {
+            return Err(CallError::Time { name: "time", value: time_s });
+        }
+        *self = set;
+        Ok(())
+    }
+
     /// Whether these are times that a clock can have.
     pub fn is_valid(&self) -> bool {
         Self::new(self.start_s, self.stop_s).is_ok()

@@ -3,6 +3,7 @@
 use std::any::Any;
 
 use crate::error::{CallError, SavedStateError};
+use crate::exchange::Event;
 use crate::instance::Instance;
 use crate::lifecycle::Phase;
 use crate::logger::Logger;
@@ -61,6 +62,43 @@ pub(crate) trait Component {
     ) -> Outcome;
     /// Advances from one communication point to the next.
     fn do_step(&mut self, point_s: f64, step_s: f64) -> Outcome;
+    /// Derivatives of `unknowns` along `direction` in `knowns`.
+    fn directional_derivative(
+        &mut self,
+        unknowns: &[ValueReference],
+        knowns: &[ValueReference],
+        direction: &[f64],
+        into: &mut [f64],
+    ) -> Outcome;
+    /// Time derivatives of outputs.
+    fn output_derivatives(
+        &mut self,
+        references: &[ValueReference],
+        orders: &[i32],
+        into: &mut [f64],
+    ) -> Outcome;
+
+    /// Model exchange: sets the time.
+    fn set_time(&mut self, time_s: f64) -> Outcome;
+    /// Model exchange: begins an event.
+    fn enter_event_mode(&mut self) -> Outcome;
+    /// Model exchange: goes on behind an event.
+    fn enter_continuous_time_mode(&mut self) -> Outcome;
+    /// Model exchange: goes through an event.
+    fn new_discrete_states(&mut self) -> Result<Event, CallError>;
+    /// Model exchange: whether the importer shall enter event mode.
+    fn completed_integrator_step(&mut self) -> Result<bool, CallError>;
+    /// Model exchange: sets the states.
+    fn set_continuous_states(&mut self, given: &[f64]) -> Outcome;
+    /// Model exchange: the states.
+    fn continuous_states(&mut self, into: &mut [f64]) -> Outcome;
+    /// Model exchange: typical magnitudes of the states.
+    fn nominals_of_continuous_states(&self, into: &mut [f64]) -> Outcome;
+    /// Model exchange: the derivatives of the states.
+    fn derivatives(&mut self, into: &mut [f64]) -> Outcome;
+    /// Model exchange: the event indicators.
+    fn event_indicators(&mut self, into: &mut [f64]) -> Outcome;
+
     /// Whether the last step was rejected or failed.
     fn last_step_failed(&self) -> bool;
     /// The current time, s.
@@ -156,6 +194,65 @@ impl<M: Model> Component for Instance<M> {
 
     fn do_step(&mut self, point_s: f64, step_s: f64) -> Outcome {
         self.do_step(point_s, step_s)
+    }
+
+    fn directional_derivative(
+        &mut self,
+        unknowns: &[ValueReference],
+        knowns: &[ValueReference],
+        direction: &[f64],
+        into: &mut [f64],
+    ) -> Outcome {
+        self.directional_derivative(unknowns, knowns, direction, into)
+    }
+
+    fn output_derivatives(
+        &mut self,
+        references: &[ValueReference],
+        orders: &[i32],
+        into: &mut [f64],
+    ) -> Outcome {
+        self.output_derivatives(references, orders, into)
+    }
+
+    fn set_time(&mut self, time_s: f64) -> Outcome {
+        self.set_time(time_s)
+    }
+
+    fn enter_event_mode(&mut self) -> Outcome {
+        self.enter_event_mode()
+    }
+
+    fn enter_continuous_time_mode(&mut self) -> Outcome {
+        self.enter_continuous_time_mode()
+    }
+
+    fn new_discrete_states(&mut self) -> Result<Event, CallError> {
+        self.new_discrete_states()
+    }
+
+    fn completed_integrator_step(&mut self) -> Result<bool, CallError> {
+        self.completed_integrator_step()
+    }
+
+    fn set_continuous_states(&mut self, given: &[f64]) -> Outcome {
+        self.set_continuous_states(given)
+    }
+
+    fn continuous_states(&mut self, into: &mut [f64]) -> Outcome {
+        self.continuous_states(into)
+    }
+
+    fn nominals_of_continuous_states(&self, into: &mut [f64]) -> Outcome {
+        self.nominals_of_continuous_states(into)
+    }
+
+    fn derivatives(&mut self, into: &mut [f64]) -> Outcome {
+        self.derivatives(into)
+    }
+
+    fn event_indicators(&mut self, into: &mut [f64]) -> Outcome {
+        self.event_indicators(into)
     }
 
     fn last_step_failed(&self) -> bool {

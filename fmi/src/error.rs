@@ -61,6 +61,20 @@ pub(crate) enum CallError {
     CommunicationPoint { given_s: f64, expected_s: f64 },
     #[error("the step ends at {end_s:?}, after stopTime = {stop_s:?}")]
     PastStop { end_s: f64, stop_s: f64 },
+    #[error("{argument} = {given}; must be {expected}, as in the model description")]
+    Count { argument: &'static str, given: usize, expected: usize },
+    #[error("state {name} = {value:?}; must be a finite number")]
+    StateNotFinite { name: &'static str, value: f64 },
+    #[error("{name} = {value:?} is not a finite number in this state; try a shorter step")]
+    NoDerivative { name: &'static str, value: f64 },
+    #[error("event indicator {place} = {value:?} is not a finite number in this state; try a shorter step")]
+    NoIndicator { place: usize, value: f64 },
+    #[error("{name} has no derivatives: only Real outputs and derivatives of states do")]
+    NotAnUnknown { name: &'static str },
+    #[error("no derivative with respect to {name}: it must be a Real input or a continuous state")]
+    NotAKnown { name: &'static str },
+    #[error("{name} can only be set in event mode; in continuous-time mode only Real inputs can be set")]
+    OnlyAtEvents { name: &'static str },
     #[error("unknown log category {name:?}; the model description lists them all")]
     UnknownCategory { name: String },
     #[error("{name} is {value}, not a finite number")]
@@ -97,7 +111,7 @@ impl CallError {
     pub fn severity(&self) -> Severity {
         match self {
             Self::Panic { .. } | Self::IllegalPhase { phase: Phase::Fatal } => Severity::Fatal,
-            Self::NoAnswer(_) => Severity::Discard,
+            Self::NoAnswer(_) | Self::NoDerivative { .. } | Self::NoIndicator { .. } => Severity::Discard,
             _ => Severity::Error,
         }
     }
@@ -112,6 +126,8 @@ pub(crate) enum SavedStateError {
     Format { found: u32, expected: u32 },
     #[error("the saved state belongs to another model or another version of this model")]
     OtherModel,
+    #[error("the saved state is that of the other kind, model exchange or co-simulation")]
+    OtherKind,
     #[error("the saved state has {actual} bytes; expected {expected}")]
     Length { actual: usize, expected: usize },
     #[error("the saved state is corrupt: checksum mismatch")]

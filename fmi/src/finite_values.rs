@@ -16,6 +16,7 @@ pub(crate) fn check_calculated<M: Model>(model: &M) -> Result<(), CallError> {
 pub(crate) fn check_outputs<M: Model>(outputs: &M::Outputs) -> Result<(), CallError> {
     variables::<M>().try_for_each(|(_, variable)| match &variable.role {
         Role::Output { signal, .. } => finite(variable, signal.get(outputs)).map(drop),
+        Role::Derivative { get, .. } => finite(variable, Value::Real(get(outputs))).map(drop),
         _ => Ok(()),
     })
 }
@@ -139,7 +140,8 @@ mod tests {
 
     /// With a divisor of 1.
     fn stepping() -> Instance<Growth> {
-        let mut instance = Instance::new(Logger::new(Box::new(|_, _| ()), false));
+        let mut instance =
+            Instance::new(crate::lifecycle::Kind::CoSimulation, Logger::new(Box::new(|_, _| ()), false));
         set_divisor(&mut instance, 1.0).expect("an instance takes values");
         instance.enter_initialization_mode().expect("it is new");
         instance.exit_initialization_mode().expect("all values are finite");

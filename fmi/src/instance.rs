@@ -1,10 +1,10 @@
 //! One instance of the model: everything behind the interface, without a pointer.
 
 use crate::clock::Clock;
-use crate::error::CallError;
+use crate::error::{CallError, SavedStateError};
 use crate::finite_values::{check_calculated, check_outputs};
 use crate::input_derivative::{Extrapolated, InputDerivative};
-use crate::lifecycle::Phase;
+use crate::lifecycle::{Kind, Phase};
 use crate::logger::Logger;
 use crate::model::Model;
 use crate::snapshot::{SettingsOf, Snapshot};
@@ -15,6 +15,7 @@ use crate::snapshot::{SettingsOf, Snapshot};
 /// whenever a value is set. From then on it lives until the instance is reset.
 pub(crate) struct Instance<M: Model> {
     pub logger: Logger,
+    kind: Kind,
     phase: Phase,
     clock: Clock,
     pub(super) settings: SettingsOf<M>,
@@ -28,9 +29,10 @@ pub(crate) struct Instance<M: Model> {
 
 impl<M: Model> Instance<M> {
     /// An instance with all values at their start values.
-    pub fn new(logger: Logger) -> Self {
+    pub fn new(kind: Kind, logger: Logger) -> Self {
         Self {
             logger,
+            kind,
             phase: Phase::Instantiated,
             clock: Clock::default(),
             settings: SettingsOf::<M>::default(),
@@ -44,6 +46,16 @@ impl<M: Model> Instance<M> {
     /// Its phase.
     pub fn phase(&self) -> Phase {
         self.phase
+    }
+
+    /// How its run is driven.
+    pub(super) fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Enters a phase of model exchange.
+    pub(super) fn set_phase(&mut self, phase: Phase) {
+        self.phase = phase;
     }
 
     /// Marks it as unusable after a panic.
@@ -61,6 +73,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
+    /// Sets the time, s, in model exchange.
+    pub fn set_time(&mut self, time_s: f64) -> Result<(), CallError> {
+        self.clock.set(time_s)
+    }
+
     pub fn enter_initialization_mode(&mut self) -> Result<(), CallError> {
         self.phase = Phase::Initialization;
         Ok(())
@@ -72,7 +89,10 @@ impl<M: Model> Instance<M> {
         check_outputs::<M>(self.outputs()?)?;
         let model = self.model()?;
         let (message, warnings) = (model.initialized(), model.warnings());
-        self.phase = Phase::StepComplete;
+        self.phase = match self.kind {
+            Kind::CoSimulation => Phase::StepComplete,
+            Kind::ModelExchange => Phase::EventMode,
+        };
         self.logger.event(&message);
         warnings.iter().for_each(|warning| self.logger.warning(warning));
         Ok(())
@@ -136,6 +156,7 @@ impl<M: Model> Instance<M> {
     /// A copy of everything that changes.
     pub fn snapshot(&self) -> Snapshot<M> {
         Snapshot {
+            kind: self.kind,
             phase: self.phase,
             clock: self.clock,
             settings: self.settings.clone(),
@@ -146,6 +167,9 @@ impl<M: Model> Instance<M> {
 
     /// Restores a snapshot of this instance or another.
     pub fn restore(&mut self, snapshot: &Snapshot<M>) -> Result<(), CallError> {
+        if snapshot.kind != self.kind {
+            return Err(SavedStateError::OtherKind.into());
+        }
         let parameters = &snapshot.settings.parameters;
         match (&snapshot.run, &mut self.model) {
             (None, model) => *model = None,
@@ -169,7 +193,7 @@ impl<M: Model> Instance<M> {
 
     /// Applies new settings: all of them or, on an error, none.
     pub(super) fn commit(&mut self, settings: SettingsOf<M>) -> Result<(), CallError> {
-        if self.phase == Phase::StepComplete {
+        if self.phase.is_running() {
             if settings.parameters != self.settings.parameters {
                 let known = self.model()?.warnings();
                 let model = built(&mut self.model, &self.settings)?;
@@ -179,6 +203,9 @@ impl<M: Model> Instance<M> {
                 self.logger.event(M::IDENTITY.words.retuned);
                 let new = warnings.iter().filter(|warning| !known.contains(warning));
                 new.for_each(|warning| self.logger.warning(warning));
+            }
+            if self.kind == Kind::ModelExchange {
+                self.outputs = None;
             }
         } else {
             self.model = None;
@@ -196,7 +223,20 @@ impl<M: Model> Instance<M> {
     /// The outputs at the present.
     pub(super) fn outputs(&mut self) -> Result<&M::Outputs, CallError> {
         let model = built(&mut self.model, &self.settings)?;
-        Ok(self.outputs.get_or_insert_with(|| model.outputs()))
+        Ok(self.outputs.get_or_insert_with(|| match (self.kind, M::CONTINUOUS) {
+            (Kind::ModelExchange, Some(equations)) => equations.outputs(model, &self.settings.inputs),
+            _ => model.outputs(),
+        }))
+    }
+
+    /// The run and its inputs.
+    pub(super) fn run(&mut self) -> Result<(&mut M, &M::Inputs), CallError> {
+        Ok((built(&mut self.model, &self.settings)?, &self.settings.inputs))
+    }
+
+    /// Outputs are calculated again when they are asked for.
+    pub(super) fn forget_outputs(&mut self) {
+        self.outputs = None;
     }
 }
 

@@ -4,16 +4,20 @@
 //!
 //! Calls arrive in [`fmi2`], where `guard` checks the instance and whether the call is allowed; the other modules are
 //! independent of C and of the version of the interface. `component` is an instance of any model of the `library`; `instance` and
-//! `values` implement that of one [`Model`] with its table of [`variables`]; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
+//! `values` implement that of one [`Model`] with its table of [`variables`]; `continuous` is a model's equations, which `exchange` gives to
+//! importers' solvers and `derivatives` differentiates; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
 //! `guard` catches panics, `logger` filters messages, `pointer` checks what C passes.
 //!
 //! There is no mutable global state: instances are independent and can run on any number of threads.
 
 mod clock;
 mod component;
+mod continuous;
+mod derivatives;
 #[cfg(feature = "description")]
 pub mod description;
 mod error;
+mod exchange;
 mod finite;
 mod finite_values;
 mod floating_point;
@@ -36,6 +40,7 @@ mod stack;
 mod values;
 pub mod variables;
 
+pub use continuous::{Continuous, Seed};
 pub use identity::guid;
 pub use library::LibraryModel;
 pub use model::{Data, Experiment, Identity, Model, SavedStateFormat, Words};

@@ -3,14 +3,16 @@
 use crate::component::Component;
 use crate::identity::guid;
 use crate::instance::Instance;
+use crate::lifecycle::Kind;
 use crate::logger::Logger;
 use crate::model::Model;
 
 /// A model of a library.
 pub struct LibraryModel {
     name: &'static str,
+    exchanges: bool,
     guid: fn() -> String,
-    instance: fn(Logger) -> Box<dyn Component>,
+    instance: fn(Kind, Logger) -> Box<dyn Component>,
 }
 
 impl LibraryModel {
@@ -18,8 +20,9 @@ impl LibraryModel {
     pub const fn of<M: Model>() -> Self {
         Self {
             name: M::IDENTITY.name,
+            exchanges: M::CONTINUOUS.is_some(),
             guid: guid::<M>,
-            instance: |logger| Box::new(Instance::<M>::new(logger)),
+            instance: |kind, logger| Box::new(Instance::<M>::new(kind, logger)),
         }
     }
 
@@ -33,8 +36,13 @@ impl LibraryModel {
         (self.guid)()
     }
 
+    /// Whether it supports model exchange.
+    pub(crate) fn exchanges(&self) -> bool {
+        self.exchanges
+    }
+
     /// A new instance.
-    pub(crate) fn instance(&self, logger: Logger) -> Box<dyn Component> {
-        (self.instance)(logger)
+    pub(crate) fn instance(&self, kind: Kind, logger: Logger) -> Box<dyn Component> {
+        (self.instance)(kind, logger)
     }
 }

@@ -22,6 +22,26 @@ pub(crate) enum Phase {
     Error = 16,
     /// A panic was caught; the instance can only be freed.
     Fatal = 32,
+    /// Model exchange: at an event.
+    EventMode = 64,
+    /// Model exchange: the importer's solver integrates.
+    ContinuousTimeMode = 128,
+}
+
+impl Phase {
+    /// Whether the run has begun and goes on.
+    pub fn is_running(self) -> bool {
+        matches!(self, Self::StepComplete | Self::EventMode | Self::ContinuousTimeMode)
+    }
+}
+
+/// How the run is driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Kind {
+    /// The model integrates itself from one communication point to the next.
+    CoSimulation,
+    /// The importer's solver integrates the model's states.
+    ModelExchange,
 }
 
 impl fmt::Display for Phase {
@@ -33,6 +53,8 @@ impl fmt::Display for Phase {
             Self::Terminated => "terminated",
             Self::Error => "error",
             Self::Fatal => "fatal",
+            Self::EventMode => "event mode",
+            Self::ContinuousTimeMode => "continuous-time mode",
         })
     }
 }

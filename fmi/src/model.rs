@@ -6,6 +6,7 @@ use std::fmt::{Debug, Display};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::continuous::Continuous;
 use crate::variables::{Quantity, Variable};
 
 /// Plain data that can be copied, compared, saved and read again.
@@ -26,6 +27,13 @@ pub trait Model: Sized + 'static {
 
     /// Quantities that the description lists first, in this order; others follow in the order in which variables use them.
     const QUANTITIES: &'static [&'static Quantity] = &[];
+
+    /// The equations, if the model has continuous states: with them it supports model exchange and directional derivatives.
+    const CONTINUOUS: Option<&'static dyn Continuous<Self>> = None;
+
+    /// Time derivatives of the outputs at the present, under inputs that stay as they are; `None` if they are not available.
+    /// Reading a variable from the result must give its derivative, as for [`Continuous::tangent`].
+    const OUTPUT_RATES: Option<fn(&Self) -> Self::Outputs> = None;
 
     /// Parameters: set before the run; tunable ones also during the run. The default has the start values.
     type Parameters: Data + Default;

@@ -77,7 +77,7 @@ mod tests {
     use crate::error::{CallError, SavedStateError};
     use crate::input_derivative::InputDerivative;
     use crate::lag::Lag;
-    use crate::lifecycle::Phase;
+    use crate::lifecycle::{Kind, Phase};
     use crate::model::Model;
     use crate::snapshot::{Settings, Snapshot};
 
@@ -89,6 +89,7 @@ mod tests {
         let end = clock.step(0.0, 1.234_567, 10.0).expect("a legal step");
         clock.advance_to(&end);
         Snapshot {
+            kind: Kind::CoSimulation,
             phase: Phase::StepComplete,
             clock,
             settings,

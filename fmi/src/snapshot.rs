@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::error::{CallError, SavedStateError};
 use crate::finite::is_finite;
 use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
-use crate::lifecycle::Phase;
+use crate::lifecycle::{Kind, Phase};
 use crate::model::Model;
 use crate::variables::{Role, variables};
 
@@ -27,6 +27,8 @@ pub(crate) type SettingsOf<M> = Settings<<M as Model>::Parameters, <M as Model>:
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Snapshot<M: Model> {
+    /// How the run is driven.
+    pub kind: Kind,
     /// Phase of the instance.
     pub phase: Phase,
     /// Its time base.
@@ -57,6 +59,15 @@ impl<M: Model> Snapshot<M> {
             }
         }
         let name = M::IDENTITY.words.run;
+        let of_exchange = matches!(self.phase, Phase::EventMode | Phase::ContinuousTimeMode);
+        let of_co_simulation = matches!(self.phase, Phase::StepComplete);
+        match self.kind {
+            Kind::CoSimulation if of_exchange => return inconsistent("a phase of model exchange"),
+            Kind::ModelExchange if of_co_simulation || M::CONTINUOUS.is_none() => {
+                return inconsistent("model exchange");
+            }
+            _ => {}
+        }
         match (self.phase, &self.run) {
             (Phase::Fatal, _) => inconsistent("the instance had an internal error"),
             (Phase::Instantiated | Phase::Initialization, None) => Ok(()),
@@ -64,7 +75,10 @@ impl<M: Model> Snapshot<M> {
             (phase, Some(state)) => {
                 let model = M::from_state(&self.settings.parameters, state).map_err(CallError::of_model)?;
                 // A failed step leaves the run where it failed.
-                if phase != Phase::Error && model.time_us() != self.clock.time_us() {
+                if self.kind == Kind::CoSimulation
+                    && phase != Phase::Error
+                    && model.time_us() != self.clock.time_us()
+                {
                     return Err(SavedStateError::OtherTime { run: name }.into());
                 }
                 Ok(())
@@ -80,7 +94,7 @@ impl<M: Model> Snapshot<M> {
                 Role::Parameter { field, .. } => {
                     variable.check_range(field.get(&self.settings.parameters))?;
                 }
-                Role::Output { .. } | Role::CalculatedParameter { .. } => {}
+                Role::Output { .. } | Role::Derivative { .. } | Role::CalculatedParameter { .. } => {}
             }
         }
         Ok(())

@@ -6,7 +6,7 @@ use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
 use crate::instance::Instance;
 use crate::lifecycle::Phase;
 use crate::model::Model;
-use crate::variables::{Role, Type, Value, ValueReference, Variable, variable};
+use crate::variables::{Field, Role, Type, Value, ValueReference, Variable, variable};
 
 impl<M: Model> Instance<M> {
     /// Values of variables of one type, each given to `put` with its place. Nothing is put unless all
@@ -40,13 +40,18 @@ impl<M: Model> Instance<M> {
             let variable = typed::<M>(reference, value_type)?;
             let (name, value) = (variable.name, value(place));
             variable.check_range(value)?;
+            let continuous = matches!(variable.role, Role::Input(Field::Real { .. }));
+            if self.phase() == Phase::ContinuousTimeMode && !continuous {
+                return Err(CallError::OnlyAtEvents { name });
+            }
             match &variable.role {
                 Role::Input(field) => field.set(&mut settings.inputs, value),
-                Role::Parameter { tunable: false, .. } if self.phase() == Phase::StepComplete => {
+                Role::Parameter { tunable: false, .. } if self.phase().is_running() => {
                     return Err(CallError::Fixed { name });
                 }
                 Role::Parameter { field, .. } => field.set(&mut settings.parameters, value),
                 Role::Output { .. } => return Err(CallError::ReadOnly { name, kind: "an output" }),
+                Role::Derivative { .. } => return Err(CallError::ReadOnly { name, kind: "a derivative" }),
                 Role::CalculatedParameter { .. } => {
                     return Err(CallError::ReadOnly { name, kind: "calculated" });
                 }
@@ -92,6 +97,7 @@ impl<M: Model> Instance<M> {
             Role::Parameter { field, .. } => field.get(&M::as_read(&self.settings.parameters)),
             Role::CalculatedParameter { get, .. } => finite(variable, Value::Real(get(self.model()?)))?,
             Role::Output { signal, .. } => finite(variable, signal.get(self.outputs()?))?,
+            Role::Derivative { get, .. } => finite(variable, Value::Real(get(self.outputs()?)))?,
         })
     }
 }

@@ -1,4 +1,4 @@
-//! A freshly built library and its 34 functions.
+//! A freshly built library and its functions.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::{c_char, c_double, c_int, c_uint, c_void};
@@ -25,6 +25,18 @@ pub struct Callbacks {
     pub free: *const c_void,
     pub step_finished: *const c_void,
     pub environment: *mut c_void,
+}
+
+/// `fmi2EventInfo`
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EventInfo {
+    pub new_discrete_states_needed: c_int,
+    pub terminate_simulation: c_int,
+    pub nominals_of_continuous_states_changed: c_int,
+    pub values_of_continuous_states_changed: c_int,
+    pub next_event_time_defined: c_int,
+    pub next_event_time: c_double,
 }
 
 macro_rules! library {
@@ -84,6 +96,16 @@ library! {
     get_directional_derivative = "fmi2GetDirectionalDerivative": fn(Component, *const Reference, usize, *const Reference, usize, *const c_double, *mut c_double) -> Status;
     set_input_derivatives = "fmi2SetRealInputDerivatives": fn(Component, *const Reference, usize, *const c_int, *const c_double) -> Status;
     get_output_derivatives = "fmi2GetRealOutputDerivatives": fn(Component, *const Reference, usize, *const c_int, *mut c_double) -> Status;
+    enter_event_mode = "fmi2EnterEventMode": fn(Component) -> Status;
+    new_discrete_states = "fmi2NewDiscreteStates": fn(Component, *mut EventInfo) -> Status;
+    enter_continuous_time_mode = "fmi2EnterContinuousTimeMode": fn(Component) -> Status;
+    completed_integrator_step = "fmi2CompletedIntegratorStep": fn(Component, c_int, *mut c_int, *mut c_int) -> Status;
+    set_time = "fmi2SetTime": fn(Component, c_double) -> Status;
+    set_continuous_states = "fmi2SetContinuousStates": fn(Component, *const c_double, usize) -> Status;
+    get_derivatives = "fmi2GetDerivatives": fn(Component, *mut c_double, usize) -> Status;
+    get_event_indicators = "fmi2GetEventIndicators": fn(Component, *mut c_double, usize) -> Status;
+    get_continuous_states = "fmi2GetContinuousStates": fn(Component, *mut c_double, usize) -> Status;
+    get_nominals = "fmi2GetNominalsOfContinuousStates": fn(Component, *mut c_double, usize) -> Status;
     do_step = "fmi2DoStep": fn(Component, c_double, c_double, c_int) -> Status;
     cancel_step = "fmi2CancelStep": fn(Component) -> Status;
     get_status = "fmi2GetStatus": fn(Component, c_int, *mut Status) -> Status;

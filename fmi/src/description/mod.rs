@@ -41,8 +41,17 @@ fn written<M: Model>() -> io::Result<String> {
             ("generationDateAndTime", identity.date),
             ("variableNamingConvention", "structured"),
         ])
+        .with_attributes(
+            M::CONTINUOUS
+                .map(|equations| ("numberOfEventIndicators", equations.event_indicators().to_string()))
+                .iter()
+                .map(|(name, count)| (*name, count.as_str())),
+        )
         .write_inner_content(|xml| {
-            co_simulation(xml, &identity)?;
+            if M::CONTINUOUS.is_some() {
+                model_exchange(xml, &identity)?;
+            }
+            co_simulation::<M>(xml, &identity)?;
             units::write::<M>(xml)?;
             log_categories(xml, &identity)?;
             default_experiment(xml, &identity.default_experiment)?;
@@ -54,19 +63,35 @@ fn written<M: Model>() -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-/// The capabilities of this crate, the same for every model.
-fn co_simulation(xml: &mut Xml, identity: &Identity) -> io::Result<()> {
+/// Capabilities of model exchange.
+fn model_exchange(xml: &mut Xml, identity: &Identity) -> io::Result<()> {
+    xml.create_element("ModelExchange")
+        .with_attributes([
+            ("modelIdentifier", identity.model_identifier),
+            ("completedIntegratorStepNotNeeded", "false"),
+            ("canBeInstantiatedOnlyOncePerProcess", "false"),
+            ("canNotUseMemoryManagementFunctions", "true"),
+            ("canGetAndSetFMUstate", "true"),
+            ("canSerializeFMUstate", "true"),
+            ("providesDirectionalDerivative", "true"),
+        ])
+        .write_empty()?;
+    Ok(())
+}
+
+/// Capabilities of co-simulation.
+fn co_simulation<M: Model>(xml: &mut Xml, identity: &Identity) -> io::Result<()> {
     xml.create_element("CoSimulation")
         .with_attributes([
             ("modelIdentifier", identity.model_identifier),
             ("canHandleVariableCommunicationStepSize", "true"),
             ("canInterpolateInputs", "true"),
-            ("maxOutputDerivativeOrder", "0"),
+            ("maxOutputDerivativeOrder", if M::OUTPUT_RATES.is_some() { "1" } else { "0" }),
             ("canBeInstantiatedOnlyOncePerProcess", "false"),
             ("canNotUseMemoryManagementFunctions", "true"),
             ("canGetAndSetFMUstate", "true"),
             ("canSerializeFMUstate", "true"),
-            ("providesDirectionalDerivative", "false"),
+            ("providesDirectionalDerivative", if M::CONTINUOUS.is_some() { "true" } else { "false" }),
         ])
         .write_empty()?;
     Ok(())

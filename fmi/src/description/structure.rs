@@ -3,6 +3,7 @@
 use std::io;
 
 use super::Xml;
+use crate::continuous::states;
 use crate::model::Model;
 use crate::variables::{Role, Variable, variables};
 
@@ -14,10 +15,18 @@ fn indexed<M: Model>() -> impl Iterator<Item = (usize, &'static Variable<M>)> {
 pub(super) fn write<M: Model>(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("ModelStructure").write_inner_content(|xml| {
         xml.create_element("Outputs").write_inner_content(|xml| {
-            let outputs = indexed::<M>().filter(|(_, variable)| matches!(variable.role, Role::Output { .. }));
-            // Inputs act from a communication point on, so no output there depends on them.
-            outputs.map(|(index, _)| index).try_for_each(|index| unknown(xml, index, ""))
+            let mut outputs =
+                indexed::<M>().filter(|(_, variable)| matches!(variable.role, Role::Output { .. }));
+            outputs.try_for_each(|(index, variable)| unknown(xml, index, &feed_through::<M>(variable)))
         })?;
+        if states::<M>().next().is_some() {
+            xml.create_element("Derivatives").write_inner_content(|xml| {
+                let mut derivatives =
+                    indexed::<M>().filter(|(_, variable)| matches!(variable.role, Role::Derivative { .. }));
+                derivatives
+                    .try_for_each(|(index, variable)| unknown(xml, index, &feed_through::<M>(variable)))
+            })?;
+        }
         xml.create_element("InitialUnknowns").write_inner_content(|xml| {
             indexed::<M>()
                 .filter_map(|(index, variable)| Some((index, variable.initially_depends_on()?)))
@@ -35,10 +44,24 @@ fn unknown(xml: &mut Xml, index: usize, dependencies: &str) -> io::Result<()> {
     Ok(())
 }
 
+/// Indices of the inputs and states that an output or a derivative depends on at the same instant. Without equations inputs act from a
+/// communication point on, so that no output there depends on them.
+fn feed_through<M: Model>(unknown: &Variable<M>) -> String {
+    let names = M::CONTINUOUS.map_or(&[][..], |equations| equations.dependencies(unknown.name));
+    let is_state = |variable: &Variable<M>| states::<M>().any(|state| state.name == variable.name);
+    let known = |variable: &Variable<M>| matches!(variable.role, Role::Input(_)) || is_state(variable);
+    indices(names, known)
+}
+
 /// Indices of the inputs and parameters whose names begin so.
 fn known<M: Model>(names: &[&str]) -> String {
+    indices::<M>(names, |variable| matches!(variable.role, Role::Input(_) | Role::Parameter { .. }))
+}
+
+/// Indices of the variables of a kind whose names begin so.
+fn indices<M: Model>(names: &[&str], is_of_kind: impl Fn(&Variable<M>) -> bool) -> String {
     let indices: Vec<String> = indexed::<M>()
-        .filter(|(_, variable)| matches!(variable.role, Role::Input(_) | Role::Parameter { .. }))
+        .filter(|(_, variable)| is_of_kind(variable))
         .filter(|(_, variable)| names.iter().any(|name| variable.name.starts_with(name)))
         .map(|(index, _)| index.to_string())
         .collect();

@@ -4,7 +4,7 @@ use std::io;
 
 use super::Xml;
 use crate::model::Model;
-use crate::variables::{Value, ValueReference, Variable, variables};
+use crate::variables::{Role, Value, ValueReference, Variable, variables};
 
 pub(super) fn write<M: Model>(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -36,7 +36,7 @@ fn scalar_variable<M: Model>(
 fn initial<M: Model>(variable: &Variable<M>) -> Option<&'static str> {
     match variable.causality() {
         "parameter" => Some("exact"),
-        "output" | "calculatedParameter" => Some("calculated"),
+        "output" | "local" | "calculatedParameter" => Some("calculated"),
         _ => None,
     }
 }
@@ -48,6 +48,10 @@ fn value_element<M: Model>(xml: &mut Xml, variable: &Variable<M>) -> io::Result<
         // The unit is written again: not every importer follows declaredType.
         attributes.extend(quantity.unit.map(|unit| ("unit", unit.name.to_owned())));
         attributes.extend(quantity.display_unit.map(|unit| ("displayUnit", unit.to_owned())));
+    }
+    if let Role::Derivative { of, .. } = variable.role {
+        let index = variables::<M>().position(|(_, state)| state.name == of).map(|place| place + 1);
+        attributes.extend(index.map(|index| ("derivative", index.to_string())));
     }
     attributes.extend(variable.choice().map(|choice| ("declaredType", choice.name.to_owned())));
     let (minimum, maximum) = variable.range();

@@ -1,6 +1,6 @@
 //! The C names of the functions.
 
-/// Exports one or more [`Model`](crate::Model)s as an FMI 2.0 co-simulation library: the 34 functions of the interface under
+/// Exports one or more [`Model`](crate::Model)s as an FMI 2.0 library: the 44 functions of the interface under
 /// their C names. For the root of a crate of type `cdylib`, once. `fmi2Instantiate` finds the model by its GUID.
 #[macro_export]
 macro_rules! export_fmi2 {
@@ -33,6 +33,16 @@ macro_rules! export_fmi2 {
                 fmi2GetDirectionalDerivative = get_directional_derivative(unknown: *const fmi2_types::ValueReference, unknowns: usize, known: *const fmi2_types::ValueReference, knowns: usize, known_change: *const fmi2_types::Real, unknown_change: *mut fmi2_types::Real);
                 fmi2SetRealInputDerivatives = set_real_input_derivatives(vr: *const fmi2_types::ValueReference, count: usize, order: *const fmi2_types::Integer, value: *const fmi2_types::Real);
                 fmi2GetRealOutputDerivatives = get_real_output_derivatives(vr: *const fmi2_types::ValueReference, count: usize, order: *const fmi2_types::Integer, value: *mut fmi2_types::Real);
+                fmi2EnterEventMode = enter_event_mode();
+                fmi2NewDiscreteStates = new_discrete_states(info: *mut fmi2_types::EventInfo);
+                fmi2EnterContinuousTimeMode = enter_continuous_time_mode();
+                fmi2CompletedIntegratorStep = completed_integrator_step(no_set_state_prior_to_point: fmi2_types::Boolean, enter_event_mode: *mut fmi2_types::Boolean, terminate_simulation: *mut fmi2_types::Boolean);
+                fmi2SetTime = set_time(time: fmi2_types::Real);
+                fmi2SetContinuousStates = set_continuous_states(x: *const fmi2_types::Real, count: usize);
+                fmi2GetDerivatives = get_derivatives(derivatives: *mut fmi2_types::Real, count: usize);
+                fmi2GetEventIndicators = get_event_indicators(indicators: *mut fmi2_types::Real, count: usize);
+                fmi2GetContinuousStates = get_continuous_states(x: *mut fmi2_types::Real, count: usize);
+                fmi2GetNominalsOfContinuousStates = get_nominals_of_continuous_states(nominals: *mut fmi2_types::Real, count: usize);
                 fmi2DoStep = do_step(point: fmi2_types::Real, step: fmi2_types::Real, no_set_state_prior_to_point: fmi2_types::Boolean);
                 fmi2CancelStep = cancel_step();
                 fmi2GetStatus = get_status(kind: fmi2_types::StatusKind, value: *mut fmi2_types::Integer);

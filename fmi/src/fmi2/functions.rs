@@ -1,4 +1,4 @@
-//! The 34 functions of an FMI 2.0 co-simulation library, for the models of a library.
+//! The 44 functions of an FMI 2.0 library for co-simulation and model exchange, for the models of a library.
 //!
 //! [`export_fmi2`](crate::export_fmi2) gives them their C names.
 
@@ -9,8 +9,8 @@ use super::instantiate::{Request, free, instantiate as make};
 use super::lifecycle::Function;
 use super::status::{no_status, step_status};
 use super::types::{
-    Boolean, Byte, CallbackFunctions, Component, FALSE, FmuState, Integer, LAST_SUCCESSFUL_TIME, Real,
-    Status, StatusKind, String, TERMINATED, TRUE, ValueReference,
+    Boolean, Byte, CallbackFunctions, Component, EventInfo, FALSE, FmuState, Integer, LAST_SUCCESSFUL_TIME,
+    Real, Status, StatusKind, String, TERMINATED, TRUE, ValueReference,
 };
 use crate::component::SavedState;
 use crate::error::{CallError, SavedStateError};
@@ -196,13 +196,16 @@ functions! {
         Ok(())
     };
 
-    /// Not available: `providesDirectionalDerivative` is false.
+    /// Derivatives of outputs and derivatives along a direction in inputs and states.
     get_directional_derivative(
-        _unknown: *const ValueReference, _unknowns: usize, _known: *const ValueReference, _knowns: usize,
-        _known_change: *const Real, _unknown_change: *mut Real,
-    ), GET_DIRECTIONAL_DERIVATIVE => |_| Err(CallError::NotOffered(
-        "directional derivatives are not available (providesDirectionalDerivative = false)",
-    ));
+        unknown: *const ValueReference, unknowns: usize, known: *const ValueReference, knowns: usize,
+        known_change: *const Real, unknown_change: *mut Real,
+    ), GET_DIRECTIONAL_DERIVATIVE => |instance| {
+        let (unknown, known) = (array("vUnknown_ref", unknown, unknowns)?, array("vKnown_ref", known, knowns)?);
+        let direction = array("dvKnown", known_change, knowns)?;
+        let into = array_mut("dvUnknown", unknown_change, unknowns)?;
+        instance.directional_derivative(unknown, known, direction, into)
+    };
 
     /// Sets derivatives of inputs for the next step.
     set_real_input_derivatives(
@@ -212,13 +215,67 @@ functions! {
         instance.set_input_derivatives(vr, order, array("value", value, count)?)
     };
 
-    /// Not available: `maxOutputDerivativeOrder` is 0.
+    /// Time derivatives of outputs.
     get_real_output_derivatives(
-        _vr: *const ValueReference, count: usize, _order: *const Integer, _value: *mut Real,
-    ), GET_OUTPUT_DERIVATIVES =>
-        |_| if count == 0 { Ok(()) } else { Err(CallError::NotOffered(
-            "output derivatives are not available (maxOutputDerivativeOrder = 0)",
-        )) };
+        vr: *const ValueReference, count: usize, order: *const Integer, value: *mut Real,
+    ), GET_OUTPUT_DERIVATIVES => |instance| {
+        let (vr, order) = (array("vr", vr, count)?, array("order", order, count)?);
+        instance.output_derivatives(vr, order, array_mut("value", value, count)?)
+    };
+
+    /// Model exchange: begins an event.
+    enter_event_mode(), ENTER_EVENT_MODE => |instance| instance.enter_event_mode();
+
+    /// Model exchange: goes through an event.
+    new_discrete_states(info: *mut EventInfo), NEW_DISCRETE_STATES => |instance| {
+        let info = reference_mut("eventInfo", info)?;
+        let event = instance.new_discrete_states()?;
+        *info = EventInfo {
+            new_discrete_states_needed: FALSE,
+            terminate_simulation: FALSE,
+            nominals_of_continuous_states_changed: FALSE,
+            values_of_continuous_states_changed: boolean(event.states_changed),
+            next_event_time_defined: FALSE,
+            next_event_time: 0.0,
+        };
+        Ok(())
+    };
+
+    /// Model exchange: goes on behind an event.
+    enter_continuous_time_mode(), ENTER_CONTINUOUS_TIME_MODE => |instance| instance.enter_continuous_time_mode();
+
+    /// Model exchange: whether an event is needed after a step of the solver.
+    completed_integrator_step(
+        _no_set_state_prior_to_point: Boolean, enter_event_mode: *mut Boolean, terminate_simulation: *mut Boolean,
+    ), COMPLETED_INTEGRATOR_STEP => |instance| {
+        let enter = reference_mut("enterEventMode", enter_event_mode)?;
+        let terminate = reference_mut("terminateSimulation", terminate_simulation)?;
+        (*enter, *terminate) = (boolean(instance.completed_integrator_step()?), FALSE);
+        Ok(())
+    };
+
+    /// Model exchange: sets the time.
+    set_time(time: Real), SET_TIME => |instance| instance.set_time(time);
+
+    /// Model exchange: sets the states.
+    set_continuous_states(x: *const Real, count: usize), SET_CONTINUOUS_STATES =>
+        |instance| instance.set_continuous_states(array("x", x, count)?);
+
+    /// Model exchange: the derivatives of the states.
+    get_derivatives(derivatives: *mut Real, count: usize), GET_DERIVATIVES =>
+        |instance| instance.derivatives(array_mut("derivatives", derivatives, count)?);
+
+    /// Model exchange: the event indicators.
+    get_event_indicators(indicators: *mut Real, count: usize), GET_EVENT_INDICATORS =>
+        |instance| instance.event_indicators(array_mut("eventIndicators", indicators, count)?);
+
+    /// Model exchange: the states.
+    get_continuous_states(x: *mut Real, count: usize), GET_CONTINUOUS_STATES =>
+        |instance| instance.continuous_states(array_mut("x", x, count)?);
+
+    /// Model exchange: typical magnitudes of the states.
+    get_nominals_of_continuous_states(nominals: *mut Real, count: usize), GET_NOMINALS =>
+        |instance| instance.nominals_of_continuous_states(array_mut("x_nominal", nominals, count)?);
 
     /// Advances from a communication point to the next.
     do_step(point: Real, step: Real, _no_set_state_prior_to_point: Boolean), DO_STEP =>

@@ -51,6 +51,7 @@ mod tests {
     use crate::fmi2::types::{CallbackLogger, ComponentEnvironment, Status, String as FmiString};
     use crate::instance::Instance;
     use crate::lag::Lag;
+    use crate::lifecycle::Kind;
     use crate::logger::Logger;
 
     type Log = Vec<(Status, String, String)>;
@@ -79,7 +80,7 @@ mod tests {
             unsafe { std::mem::transmute::<*const c_void, CallbackLogger>(record as *const c_void) };
         // SAFETY: the log outlives the instance.
         let sink = unsafe { sink(callback, std::ptr::from_mut(log).cast(), c"test".into()) };
-        Instance::new(Logger::new(sink, false))
+        Instance::new(Kind::CoSimulation, Logger::new(sink, false))
     }
 
     #[test]

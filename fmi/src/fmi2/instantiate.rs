@@ -6,11 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
 use super::logger::sink;
-use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component as Pointer};
+use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component as Pointer, MODEL_EXCHANGE};
 use crate::component::Component;
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::message_of;
 use crate::library::LibraryModel;
+use crate::lifecycle::Kind;
 use crate::logger::Logger;
 
 /// Why no instance was made.
@@ -18,8 +19,8 @@ use crate::logger::Logger;
 pub(super) enum InstantiationError {
     #[error("instanceName is NULL or empty")]
     NoName,
-    #[error("fmuType = {fmu_type}; only fmi2CoSimulation is supported")]
-    NotCoSimulation { fmu_type: c_int },
+    #[error("fmuType = {fmu_type}; {model} supports {supported}")]
+    Kind { fmu_type: c_int, model: &'static str, supported: &'static str },
     #[error("fmuGUID is NULL")]
     NoGuid,
     #[error(
@@ -55,7 +56,7 @@ pub(super) unsafe fn instantiate(models: &[LibraryModel], request: &Request<'_>)
     let chosen = catch_unwind(AssertUnwindSafe(|| choose(models, request)))
         .unwrap_or_else(|payload| Err(InstantiationError::Panic(message_of(&*payload))));
     match chosen {
-        Ok(model) => Box::into_raw(Box::new(model.instance(logger))).cast(),
+        Ok((model, kind)) => Box::into_raw(Box::new(model.instance(kind, logger))).cast(),
         Err(error) => {
             logger.refused(&format!("fmi2Instantiate: {error}"));
             std::ptr::null_mut()
@@ -66,22 +67,33 @@ pub(super) unsafe fn instantiate(models: &[LibraryModel], request: &Request<'_>)
 fn choose<'a>(
     models: &'a [LibraryModel],
     request: &Request<'_>,
-) -> Result<&'a LibraryModel, InstantiationError> {
+) -> Result<(&'a LibraryModel, Kind), InstantiationError> {
     if request.name.is_none_or(CStr::is_empty) {
         return Err(InstantiationError::NoName);
     }
-    if request.fmu_type != CO_SIMULATION {
-        return Err(InstantiationError::NotCoSimulation { fmu_type: request.fmu_type });
-    }
     let given = request.guid.ok_or(InstantiationError::NoGuid)?.to_string_lossy();
-    models.iter().find(|model| model.guid() == given).ok_or_else(|| InstantiationError::OtherGuid {
-        given: given.into_owned(),
-        expected: models
-            .iter()
-            .map(|model| format!("{} ({})", model.guid(), model.name()))
-            .collect::<Vec<_>>()
-            .join(", "),
-    })
+    let model =
+        models.iter().find(|model| model.guid() == given).ok_or_else(|| InstantiationError::OtherGuid {
+            given: given.into_owned(),
+            expected: models
+                .iter()
+                .map(|model| format!("{} ({})", model.guid(), model.name()))
+                .collect::<Vec<_>>()
+                .join(", "),
+        })?;
+    match request.fmu_type {
+        CO_SIMULATION => Ok((model, Kind::CoSimulation)),
+        MODEL_EXCHANGE if model.exchanges() => Ok((model, Kind::ModelExchange)),
+        fmu_type => Err(InstantiationError::Kind {
+            fmu_type,
+            model: model.name(),
+            supported: if model.exchanges() {
+                "0 (fmi2ModelExchange) and 1 (fmi2CoSimulation)"
+            } else {
+                "only 1 (fmi2CoSimulation)"
+            },
+        }),
+    }
 }
 
 /// Frees an instance; NULL is none.

@@ -15,10 +15,16 @@ const STEP_COMPLETE: u8 = Phase::StepComplete as u8;
 const TERMINATED: u8 = Phase::Terminated as u8;
 const ERROR: u8 = Phase::Error as u8;
 
-const SETTABLE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE;
-const GETTABLE: u8 = INITIALIZATION | STEP_COMPLETE | TERMINATED | ERROR;
+const EVENT_MODE: u8 = Phase::EventMode as u8;
+const CONTINUOUS_TIME_MODE: u8 = Phase::ContinuousTimeMode as u8;
+
+const EXCHANGE: u8 = EVENT_MODE | CONTINUOUS_TIME_MODE;
+const SETTABLE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EXCHANGE;
+const GETTABLE: u8 = INITIALIZATION | STEP_COMPLETE | EXCHANGE | TERMINATED | ERROR;
+/// Of model exchange alone.
+const SOLVED: u8 = INITIALIZATION | EXCHANGE | TERMINATED | ERROR;
 const STEPPED: u8 = STEP_COMPLETE | TERMINATED | ERROR;
-const ALIVE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | TERMINATED | ERROR;
+const ALIVE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EXCHANGE | TERMINATED | ERROR;
 const NEVER: u8 = 0;
 
 impl Function {
@@ -26,7 +32,7 @@ impl Function {
     pub const SETUP_EXPERIMENT: Self = Self::new("fmi2SetupExperiment", INSTANTIATED);
     pub const ENTER_INITIALIZATION_MODE: Self = Self::new("fmi2EnterInitializationMode", INSTANTIATED);
     pub const EXIT_INITIALIZATION_MODE: Self = Self::new("fmi2ExitInitializationMode", INITIALIZATION);
-    pub const TERMINATE: Self = Self::new("fmi2Terminate", STEP_COMPLETE);
+    pub const TERMINATE: Self = Self::new("fmi2Terminate", STEP_COMPLETE | EXCHANGE);
     pub const RESET: Self = Self::new("fmi2Reset", ALIVE);
     pub const GET_REAL: Self = Self::new("fmi2GetReal", GETTABLE);
     pub const GET_INTEGER: Self = Self::new("fmi2GetInteger", GETTABLE);
@@ -52,6 +58,18 @@ impl Function {
     pub const GET_INTEGER_STATUS: Self = Self::new("fmi2GetIntegerStatus", STEPPED);
     pub const GET_BOOLEAN_STATUS: Self = Self::new("fmi2GetBooleanStatus", STEPPED);
     pub const GET_STRING_STATUS: Self = Self::new("fmi2GetStringStatus", STEPPED);
+
+    pub const ENTER_EVENT_MODE: Self = Self::new("fmi2EnterEventMode", EXCHANGE);
+    pub const NEW_DISCRETE_STATES: Self = Self::new("fmi2NewDiscreteStates", EVENT_MODE);
+    pub const ENTER_CONTINUOUS_TIME_MODE: Self = Self::new("fmi2EnterContinuousTimeMode", EVENT_MODE);
+    pub const COMPLETED_INTEGRATOR_STEP: Self =
+        Self::new("fmi2CompletedIntegratorStep", CONTINUOUS_TIME_MODE);
+    pub const SET_TIME: Self = Self::new("fmi2SetTime", EXCHANGE);
+    pub const SET_CONTINUOUS_STATES: Self = Self::new("fmi2SetContinuousStates", CONTINUOUS_TIME_MODE);
+    pub const GET_DERIVATIVES: Self = Self::new("fmi2GetDerivatives", SOLVED);
+    pub const GET_EVENT_INDICATORS: Self = Self::new("fmi2GetEventIndicators", SOLVED);
+    pub const GET_CONTINUOUS_STATES: Self = Self::new("fmi2GetContinuousStates", SOLVED);
+    pub const GET_NOMINALS: Self = Self::new("fmi2GetNominalsOfContinuousStates", INSTANTIATED | SOLVED);
 
     const fn new(name: &'static str, allowed: u8) -> Self {
         Self { name, allowed }

@@ -1,4 +1,4 @@
-//! FMI 2.0 for co-simulation: the shim between C and an instance. `functions` does what the 34 exported functions do,
+//! FMI 2.0 for co-simulation and model exchange: the shim between C and an instance. `functions` does what the 44 exported functions do,
 //! `guard` finds the instance, `lifecycle` says what is legal when.
 
 mod export;

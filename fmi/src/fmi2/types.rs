@@ -26,6 +26,8 @@ pub const TRUE: Boolean = 1;
 /// `fmi2False`
 pub const FALSE: Boolean = 0;
 
+/// `fmi2Type`, value `fmi2ModelExchange`.
+pub const MODEL_EXCHANGE: c_int = 0;
 /// `fmi2Type`, value `fmi2CoSimulation`.
 pub const CO_SIMULATION: c_int = 1;
 
@@ -57,6 +59,24 @@ pub const PENDING_STATUS: StatusKind = 1;
 pub const LAST_SUCCESSFUL_TIME: StatusKind = 2;
 /// `fmi2Terminated`
 pub const TERMINATED: StatusKind = 3;
+
+/// `fmi2EventInfo`: what follows from an event.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct EventInfo {
+    /// Whether the importer must call `fmi2NewDiscreteStates` again.
+    pub new_discrete_states_needed: Boolean,
+    /// Whether the model wants to end the simulation.
+    pub terminate_simulation: Boolean,
+    /// Whether nominals of states have changed.
+    pub nominals_of_continuous_states_changed: Boolean,
+    /// Whether states have jumped.
+    pub values_of_continuous_states_changed: Boolean,
+    /// Whether the time of the next event is known.
+    pub next_event_time_defined: Boolean,
+    /// That time, s.
+    pub next_event_time: Real,
+}
 
 /// `fmi2CallbackLogger`: environment, instance name, status, category, printf format, arguments.
 pub type CallbackLogger = unsafe extern "C" fn(ComponentEnvironment, String, Status, String, String, ...);

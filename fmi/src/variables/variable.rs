@@ -37,6 +37,17 @@ pub enum Role<M: Model> {
         /// Type, range and place.
         field: Field<M::Parameters>,
     },
+    /// The time derivative of an output that is a state of [`Continuous`](crate::Continuous).
+    Derivative {
+        /// Name of the state.
+        of: &'static str,
+        /// The inputs and parameters that its initial value depends on, as for outputs.
+        initially_depends_on: &'static [&'static str],
+        /// Its quantity.
+        quantity: &'static Quantity,
+        /// Reads it.
+        get: fn(&M::Outputs) -> f64,
+    },
     /// A number that is computed from parameters.
     CalculatedParameter {
         /// The parameters that it depends on. Each entry stands for all whose names begin with it.
@@ -82,6 +93,18 @@ impl<M: Model> Variable<M> {
         Self { name, description, role: Role::Output { initially_depends_on, signal } }
     }
 
+    /// The time derivative of the output with the name `of`, which is a state.
+    pub const fn derivative(
+        name: &'static str,
+        description: &'static str,
+        of: &'static str,
+        initially_depends_on: &'static [&'static str],
+        quantity: &'static Quantity,
+        get: fn(&M::Outputs) -> f64,
+    ) -> Self {
+        Self { name, description, role: Role::Derivative { of, initially_depends_on, quantity, get } }
+    }
+
     /// A parameter that is fixed during the run.
     pub const fn fixed(name: &'static str, description: &'static str, field: Field<M::Parameters>) -> Self {
         Self { name, description, role: Role::Parameter { tunable: false, field } }
@@ -109,7 +132,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.value_type(),
             Role::Output { signal, .. } => signal.value_type(),
             Role::Parameter { field, .. } => field.value_type(),
-            Role::CalculatedParameter { .. } => Type::Real,
+            Role::Derivative { .. } | Role::CalculatedParameter { .. } => Type::Real,
         }
     }
 
@@ -119,7 +142,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.quantity(),
             Role::Output { signal, .. } => signal.quantity(),
             Role::Parameter { field, .. } => field.quantity(),
-            Role::CalculatedParameter { quantity, .. } => Some(quantity),
+            Role::Derivative { quantity, .. } | Role::CalculatedParameter { quantity, .. } => Some(quantity),
         }
     }
 
@@ -129,7 +152,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.choice(),
             Role::Output { signal, .. } => signal.choice(),
             Role::Parameter { field, .. } => field.choice(),
-            Role::CalculatedParameter { .. } => None,
+            Role::Derivative { .. } | Role::CalculatedParameter { .. } => None,
         }
     }
 
@@ -139,6 +162,7 @@ impl<M: Model> Variable<M> {
             Role::Input(_) => "input",
             Role::Output { .. } => "output",
             Role::Parameter { .. } => "parameter",
+            Role::Derivative { .. } => "local",
             Role::CalculatedParameter { .. } => "calculatedParameter",
         }
     }
@@ -147,6 +171,7 @@ impl<M: Model> Variable<M> {
     pub fn variability(&self) -> &'static str {
         match self.role {
             Role::Input(_) | Role::Output { .. } if self.value_type() == Type::Real => "continuous",
+            Role::Derivative { .. } => "continuous",
             Role::Input(_) | Role::Output { .. } => "discrete",
             Role::Parameter { tunable: false, .. } => "fixed",
             // They may follow from tunable parameters.
@@ -160,7 +185,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.range(),
             Role::Output { signal, .. } => signal.range(),
             Role::Parameter { field, .. } => field.range(),
-            Role::CalculatedParameter { .. } => (None, None),
+            Role::Derivative { .. } | Role::CalculatedParameter { .. } => (None, None),
         }
     }
 
@@ -169,14 +194,16 @@ impl<M: Model> Variable<M> {
         match &self.role {
             Role::Input(field) => Some(field.get(&M::Inputs::default())),
             Role::Parameter { field, .. } => Some(field.get(&M::Parameters::default())),
-            Role::Output { .. } | Role::CalculatedParameter { .. } => None,
+            Role::Output { .. } | Role::Derivative { .. } | Role::CalculatedParameter { .. } => None,
         }
     }
 
     /// What its initial value depends on, as names or beginnings of names, if it is an unknown.
     pub fn initially_depends_on(&self) -> Option<&'static [&'static str]> {
         match self.role {
-            Role::Output { initially_depends_on, .. } => Some(initially_depends_on),
+            Role::Output { initially_depends_on, .. } | Role::Derivative { initially_depends_on, .. } => {
+                Some(initially_depends_on)
+            }
             Role::CalculatedParameter { depends_on, .. } => Some(depends_on),
             Role::Input(_) | Role::Parameter { .. } => None,
         }

@@ -1,7 +1,7 @@
-//! A first-order lag, τ ẏ = k u − y, with a variable of each kind. The input is sampled every millisecond.
+//! A first-order lag, τ ẏ = k u − y, with a variable of each kind. In co-simulation the input is sampled every millisecond.
 
 use fmi::variables::{Choice, Field, Quantity, Signal, Unit, Variable};
-use fmi::{Experiment, Identity, Model, SavedStateFormat, Words};
+use fmi::{Continuous, Experiment, Identity, Model, SavedStateFormat, Seed, Words};
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -48,19 +48,39 @@ pub struct Lag {
 
 pub struct Outputs {
     y: f64,
+    rate: f64,
     samples: u32,
     direction: i32,
     settled: bool,
 }
 
 const PERIOD_US: u64 = 1_000;
+/// So near to its goal it has settled.
+const NEAR: f64 = 0.01;
 
 impl Lag {
-    /// k u, the value that it goes to.
-    fn goal(&self) -> f64 {
+    /// k, signed and divided.
+    fn slope(&self) -> f64 {
         let p = &self.parameters;
         let sign = if p.sign == 1 { 1.0 } else { -1.0 };
-        sign * p.gain * self.state.u / f64::from(p.divisor)
+        sign * p.gain / f64::from(p.divisor)
+    }
+
+    /// k u, the value that it goes to.
+    fn goal(&self) -> f64 {
+        self.slope() * self.state.u
+    }
+
+    /// All outputs when y goes to `goal`.
+    fn towards(&self, y: f64, goal: f64) -> Outputs {
+        let rest = goal - y;
+        Outputs {
+            y,
+            rate: rest / self.parameters.time_constant_s,
+            samples: u32::try_from(self.state.sample_us / PERIOD_US).unwrap_or(u32::MAX),
+            direction: if rest < 0.0 { 2 } else { 1 },
+            settled: rest.abs() < NEAR,
+        }
     }
 
     /// The exact solution for a constant input, from the last sample on.
@@ -88,6 +108,8 @@ impl Model for Lag {
         words: Words::GENERAL,
     };
     const VARIABLES: &'static [&'static [Variable<Self>]] = &[&VARIABLES];
+    const CONTINUOUS: Option<&'static dyn Continuous<Self>> = Some(&Equations);
+    const OUTPUT_RATES: Option<fn(&Self) -> Outputs> = Some(|lag| lag.towards(lag.outputs().rate, 0.0));
     type Parameters = Parameters;
     type Inputs = Inputs;
     type State = State;
@@ -136,10 +158,63 @@ impl Model for Lag {
     }
 
     fn outputs(&self) -> Outputs {
-        let y = self.y_at(self.state.time_us);
-        let rest = self.goal() - y;
-        let samples = u32::try_from(self.state.sample_us / PERIOD_US).unwrap_or(u32::MAX);
-        Outputs { y, samples, direction: if rest < 0.0 { 2 } else { 1 }, settled: rest.abs() < 0.01 }
+        self.towards(self.y_at(self.state.time_us), self.goal())
+    }
+}
+
+/// One state, y. At an event the input is taken that acts while it is held, and what `settled` says.
+struct Equations;
+
+impl Equations {
+    fn goal(lag: &Lag, inputs: &Inputs) -> f64 {
+        lag.slope() * if inputs.hold { lag.state.u } else { inputs.u }
+    }
+}
+
+impl Continuous<Lag> for Equations {
+    fn event_indicators(&self) -> usize {
+        1
+    }
+
+    fn states(&self, lag: &Lag, states: &mut [f64]) {
+        states[0] = lag.state.y;
+    }
+
+    fn set_states(&self, lag: &mut Lag, states: &[f64]) {
+        lag.state.y = states[0];
+    }
+
+    fn derivatives(&self, lag: &Lag, inputs: &Inputs, derivatives: &mut [f64]) {
+        derivatives[0] = self.outputs(lag, inputs).rate;
+    }
+
+    fn outputs(&self, lag: &Lag, inputs: &Inputs) -> Outputs {
+        lag.towards(lag.state.y, Self::goal(lag, inputs))
+    }
+
+    fn indicators(&self, lag: &Lag, inputs: &Inputs, indicators: &mut [f64]) {
+        indicators[0] = (Self::goal(lag, inputs) - lag.state.y).abs() - NEAR;
+    }
+
+    fn update(&self, lag: &mut Lag, inputs: &Inputs) -> bool {
+        if !inputs.hold {
+            lag.state.u = inputs.u;
+        }
+        false
+    }
+
+    fn tangent(&self, lag: &Lag, inputs: &Inputs, seed: &Seed<Lag>) -> Outputs {
+        let du = if inputs.hold { 0.0 } else { seed.inputs.u };
+        let dy = seed.states[0];
+        lag.towards(dy, lag.slope() * du)
+    }
+
+    fn dependencies(&self, unknown: &str) -> &'static [&'static str] {
+        match unknown {
+            "y" => &["y"],
+            "samples" => &[],
+            _ => &["y", "u", "hold"],
+        }
     }
 }
 
@@ -172,7 +247,7 @@ macro_rules! real {
 
 type Row = Variable<Lag>;
 
-const VARIABLES: [Row; 12] = [
+const VARIABLES: [Row; 13] = [
     Row::input("u", "Input", real!(Inputs, NUMBER, -10.0..=10.0, u)),
     Row::input(
         "hold",
@@ -193,6 +268,14 @@ const VARIABLES: [Row; 12] = [
         Signal::Enumeration { choice: DIRECTION, get: |outputs| outputs.direction },
     ),
     Row::output("settled", "Whether it is there", GOAL, Signal::Boolean { get: |outputs| outputs.settled }),
+    Row::derivative(
+        "der(y)",
+        "Time derivative of the output",
+        "y",
+        &["u", "gain", "sign", "divisor", "time_constant"],
+        &NUMBER,
+        |outputs| outputs.rate,
+    ),
     Row::tunable("time_constant", "Time constant", real!(Parameters, TIME, 0.01..=100.0, time_constant_s)),
     Row::tunable("gain", "Gain", real!(Parameters, NUMBER, 0.0..=100.0, gain)),
     Row::fixed(

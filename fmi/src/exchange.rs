@@ -1,0 +1,110 @@
+//! Model exchange: the importer's solver integrates the states.
+
+use crate::continuous::{Continuous, equations, states};
+use crate::error::CallError;
+use crate::instance::Instance;
+use crate::lifecycle::{Kind, Phase};
+use crate::model::Model;
+
+/// What follows from an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Event {
+    /// Whether a state has jumped.
+    pub states_changed: bool,
+}
+
+impl<M: Model> Instance<M> {
+    pub fn enter_event_mode(&mut self) -> Result<(), CallError> {
+        self.set_phase(Phase::EventMode);
+        Ok(())
+    }
+
+    pub fn enter_continuous_time_mode(&mut self) -> Result<(), CallError> {
+        self.set_phase(Phase::ContinuousTimeMode);
+        Ok(())
+    }
+
+    /// Goes through an event. One pass is enough: it leaves the model consistent.
+    pub fn new_discrete_states(&mut self) -> Result<Event, CallError> {
+        let equations = self.exchanged()?;
+        let (model, inputs) = self.run()?;
+        let states_changed = equations.update(model, inputs);
+        self.forget_outputs();
+        Ok(Event { states_changed })
+    }
+
+    /// Whether the importer shall enter event mode.
+    pub fn completed_integrator_step(&mut self) -> Result<bool, CallError> {
+        let equations = self.exchanged()?;
+        let (model, _) = self.run()?;
+        Ok(equations.needs_event(model))
+    }
+
+    /// Sets the states, one number each; none on an error.
+    pub fn set_continuous_states(&mut self, given: &[f64]) -> Result<(), CallError> {
+        let equations = self.exchanged()?;
+        same_count("nx", given.len(), states::<M>().count())?;
+        if let Some((state, &value)) = states::<M>().zip(given).find(|(_, value)| !value.is_finite()) {
+            return Err(CallError::StateNotFinite { name: state.name, value });
+        }
+        let (model, _) = self.run()?;
+        equations.set_states(model, given);
+        self.forget_outputs();
+        Ok(())
+    }
+
+    /// The states.
+    pub fn continuous_states(&mut self, into: &mut [f64]) -> Result<(), CallError> {
+        let equations = self.exchanged()?;
+        same_count("nx", into.len(), states::<M>().count())?;
+        let (model, _) = self.run()?;
+        equations.states(model, into);
+        Ok(())
+    }
+
+    /// Typical magnitudes of the states.
+    pub fn nominals_of_continuous_states(&self, into: &mut [f64]) -> Result<(), CallError> {
+        self.exchanged()?;
+        same_count("nx", into.len(), states::<M>().count())?;
+        into.iter_mut().zip(states::<M>()).for_each(|(nominal, state)| *nominal = state.nominal);
+        Ok(())
+    }
+
+    /// The derivatives of the states. If one is not finite, the solver may try a shorter step.
+    pub fn derivatives(&mut self, into: &mut [f64]) -> Result<(), CallError> {
+        let equations = self.exchanged()?;
+        same_count("nx", into.len(), states::<M>().count())?;
+        let (model, inputs) = self.run()?;
+        equations.derivatives(model, inputs, into);
+        match states::<M>().zip(into.iter()).find(|(_, value)| !value.is_finite()) {
+            Some((state, &value)) => Err(CallError::NoDerivative { name: state.derivative.1.name, value }),
+            None => Ok(()),
+        }
+    }
+
+    /// The event indicators.
+    pub fn event_indicators(&mut self, into: &mut [f64]) -> Result<(), CallError> {
+        let equations = self.exchanged()?;
+        same_count("ni", into.len(), equations.event_indicators())?;
+        let (model, inputs) = self.run()?;
+        equations.indicators(model, inputs, into);
+        match into.iter().position(|value| !value.is_finite()) {
+            Some(place) => Err(CallError::NoIndicator { place, value: into[place] }),
+            None => Ok(()),
+        }
+    }
+
+    /// The equations, if this instance was made for model exchange.
+    fn exchanged(&self) -> Result<&'static dyn Continuous<M>, CallError> {
+        match self.kind() {
+            Kind::ModelExchange => equations::<M>(),
+            Kind::CoSimulation => Err(CallError::NotOffered(
+                "this instance was made for co-simulation; instantiate it for model exchange",
+            )),
+        }
+    }
+}
+
+fn same_count(argument: &'static str, given: usize, expected: usize) -> Result<(), CallError> {
+    if given == expected { Ok(()) } else { Err(CallError::Count { argument, given, expected }) }
+}
