@@ -37,8 +37,10 @@ pub type Unknown = (usize, Vec<usize>);
 pub struct Description {
     pub text: String,
     pub guid: String,
+    pub event_indicators: usize,
     pub variables: Vec<Variable>,
     pub outputs: Vec<Unknown>,
+    pub derivatives: Vec<Unknown>,
     pub initial_unknowns: Vec<Unknown>,
 }
 
@@ -63,7 +65,9 @@ impl Description {
             }
         });
         let unknowns = |list: &str| -> Vec<Unknown> {
-            let list = root.descendants().find(|node| node.has_tag_name(list)).expect("a list of unknowns");
+            let Some(list) = root.descendants().find(|node| node.has_tag_name(list)) else {
+                return Vec::new();
+            };
             let indices =
                 |text: String| text.split_whitespace().map(|i| i.parse().expect("a number")).collect();
             list.children()
@@ -76,8 +80,11 @@ impl Description {
         };
         Self {
             guid: required(root, "guid"),
+            event_indicators: attribute(root, "numberOfEventIndicators")
+                .map_or(0, |n| n.parse().expect("a number")),
             variables: variables.collect(),
             outputs: unknowns("Outputs"),
+            derivatives: unknowns("Derivatives"),
             initial_unknowns: unknowns("InitialUnknowns"),
             text,
         }

@@ -5,7 +5,7 @@ use std::ptr;
 use std::sync::Mutex;
 
 use super::description::Description;
-use super::library::{Callbacks, Component, Library, OK, Reference, State, Status};
+use super::library::{Callbacks, Component, EventInfo, Library, OK, Reference, State, Status};
 use super::subject::Subject;
 
 /// One message that the library logged.
@@ -69,6 +69,11 @@ pub fn callbacks(log: &Log) -> Callbacks {
     }
 }
 
+/// `fmi2ModelExchange`
+const MODEL_EXCHANGE: c_int = 0;
+/// `fmi2CoSimulation`
+const CO_SIMULATION: c_int = 1;
+
 /// An instance that frees itself.
 pub struct Instance<'l> {
     pub library: &'l Library,
@@ -94,6 +99,15 @@ impl<'l> Instance<'l> {
 
     /// A fresh instance.
     pub fn with_logging(subject: &'l Subject, logging_on: bool) -> Self {
+        Self::of_kind(subject, CO_SIMULATION, logging_on)
+    }
+
+    /// A fresh instance for model exchange, which logs everything.
+    pub fn for_model_exchange(subject: &'l Subject) -> Self {
+        Self::of_kind(subject, MODEL_EXCHANGE, true)
+    }
+
+    fn of_kind(subject: &'l Subject, fmu_type: c_int, logging_on: bool) -> Self {
         let log = Box::new(Log::default());
         let callbacks = Box::new(callbacks(&log));
         let guid = CString::new(subject.description.guid.as_str()).expect("a GUID has no NUL");
@@ -101,7 +115,7 @@ impl<'l> Instance<'l> {
         let component = unsafe {
             (subject.library.instantiate)(
                 c"instance".as_ptr(),
-                1,
+                fmu_type,
                 guid.as_ptr(),
                 ptr::null(),
                 &*callbacks,
@@ -312,6 +326,103 @@ impl<'l> Instance<'l> {
             assert_eq!((self.library.serialize_state)(self.component, state, bytes.as_mut_ptr(), size), OK);
             bytes
         }
+    }
+
+    pub fn enter_event_mode(&mut self) -> Status {
+        // SAFETY: see `setup`.
+        unsafe { (self.library.enter_event_mode)(self.component) }
+    }
+
+    pub fn new_discrete_states(&mut self) -> EventInfo {
+        let mut info = EventInfo::default();
+        // SAFETY: see `setup`.
+        assert_eq!(unsafe { (self.library.new_discrete_states)(self.component, &mut info) }, OK);
+        info
+    }
+
+    pub fn enter_continuous_time_mode(&mut self) -> Status {
+        // SAFETY: see `setup`.
+        unsafe { (self.library.enter_continuous_time_mode)(self.component) }
+    }
+
+    pub fn set_time(&mut self, time: f64) -> Status {
+        // SAFETY: see `setup`.
+        unsafe { (self.library.set_time)(self.component, time) }
+    }
+
+    pub fn set_continuous_states(&mut self, states: &[f64]) -> Status {
+        // SAFETY: see `setup`.
+        unsafe { (self.library.set_continuous_states)(self.component, states.as_ptr(), states.len()) }
+    }
+
+    pub fn continuous_states(&mut self) -> Vec<f64> {
+        self.numbers(self.description.derivatives.len(), self.library.get_continuous_states)
+    }
+
+    pub fn derivatives(&mut self) -> Vec<f64> {
+        self.numbers(self.description.derivatives.len(), self.library.get_derivatives)
+    }
+
+    pub fn nominals(&mut self) -> Vec<f64> {
+        self.numbers(self.description.derivatives.len(), self.library.get_nominals)
+    }
+
+    pub fn event_indicators(&mut self) -> Vec<f64> {
+        self.numbers(self.description.event_indicators, self.library.get_event_indicators)
+    }
+
+    fn numbers(
+        &mut self,
+        count: usize,
+        get: unsafe extern "C" fn(Component, *mut f64, usize) -> Status,
+    ) -> Vec<f64> {
+        let mut numbers = vec![f64::NAN; count];
+        // SAFETY: see `setup`.
+        assert_eq!(unsafe { get(self.component, numbers.as_mut_ptr(), count) }, OK, "{:?}", self.log.take());
+        numbers
+    }
+
+    /// Derivatives of `unknowns` along a direction in `knowns`.
+    pub fn directional_derivative(
+        &mut self,
+        unknowns: &[&str],
+        direction: &[(&str, f64)],
+    ) -> Result<Vec<f64>, Status> {
+        let reference = |name: &&str| self.description.reference(name);
+        let unknowns: Vec<_> = unknowns.iter().map(reference).collect();
+        let knowns: Vec<_> = direction.iter().map(|(name, _)| reference(name)).collect();
+        let direction: Vec<_> = direction.iter().map(|(_, value)| *value).collect();
+        let mut values = vec![f64::NAN; unknowns.len()];
+        // SAFETY: see `setup`.
+        let status = unsafe {
+            (self.library.get_directional_derivative)(
+                self.component,
+                unknowns.as_ptr(),
+                unknowns.len(),
+                knowns.as_ptr(),
+                knowns.len(),
+                direction.as_ptr(),
+                values.as_mut_ptr(),
+            )
+        };
+        if status == OK { Ok(values) } else { Err(status) }
+    }
+
+    /// First time derivatives of outputs.
+    pub fn output_derivatives(&mut self, names: &[&str], order: c_int) -> Result<Vec<f64>, Status> {
+        let references: Vec<_> = names.iter().map(|name| self.description.reference(name)).collect();
+        let (orders, mut values) = (vec![order; names.len()], vec![f64::NAN; names.len()]);
+        // SAFETY: see `setup`.
+        let status = unsafe {
+            (self.library.get_output_derivatives)(
+                self.component,
+                references.as_ptr(),
+                names.len(),
+                orders.as_ptr(),
+                values.as_mut_ptr(),
+            )
+        };
+        if status == OK { Ok(values) } else { Err(status) }
     }
 
     /// A state from bytes, or the status and NULL.

@@ -35,6 +35,8 @@ fn names_are_unique_and_structured(subject: &'static Subject) {
     let names: BTreeSet<_> = variables(subject).map(|v| v.name.as_str()).collect();
     assert_eq!(names.len(), variables(subject).count());
     for name in names {
+        // The derivative of a variable with a structured name.
+        let name = name.strip_prefix("der(").and_then(|rest| rest.strip_suffix(')')).unwrap_or(name);
         for part in name.split('.') {
             let (stem, index) = part.split_once('[').unwrap_or((part, "1]"));
             let mut letters = stem.chars();
@@ -105,6 +107,7 @@ fn attributes_are_a_legal_combination(subject: &'static Subject) {
             ("parameter", "fixed", Some("exact")),
             ("parameter", "tunable", Some("exact")),
             ("calculatedParameter", "tunable", Some("calculated")),
+            ("local", "continuous", Some("calculated")),
         ];
         assert!(legal.contains(&combination), "{}: {combination:?}", variable.name);
         let has_start = variable.attribute("start").is_some();
@@ -144,20 +147,44 @@ fn structure_lists_exactly_the_unknowns_in_order(subject: &'static Subject) {
         unknowns.iter().map(|(index, _)| *index).collect()
     };
     assert_eq!(listed(&subject.description.outputs), indices(subject, &["output"]));
-    // FMI 2.0.4, section 2.2.8; there are no continuous states.
+    assert_eq!(listed(&subject.description.derivatives), indices(subject, &["local"]));
+    // FMI 2.0.4, section 2.2.8; the continuous states are outputs.
     let is_unknown = |variable: &Variable| match variable.causality.as_str() {
         "output" => ["approx", "calculated"].contains(&variable.initial.as_deref().unwrap_or_default()),
-        causality => causality == "calculatedParameter",
+        causality => ["calculatedParameter", "local"].contains(&causality),
     };
     let unknowns: Vec<usize> =
         (1..).zip(variables(subject)).filter(|(_, v)| is_unknown(v)).map(|(index, _)| index).collect();
     assert_eq!(listed(&subject.description.initial_unknowns), unknowns);
-    let known = indices(subject, &["input", "parameter"]);
-    for (index, dependencies) in
-        subject.description.outputs.iter().chain(&subject.description.initial_unknowns)
-    {
-        assert!(dependencies.is_sorted(), "{index}");
-        assert!(dependencies.iter().all(|dependency| known.contains(dependency)), "{index}");
+    let of_outputs = subject.description.outputs.iter().chain(&subject.description.derivatives);
+    let states = states(subject);
+    let inputs = [indices(subject, &["input"]), states].concat();
+    let initial = indices(subject, &["input", "parameter"]);
+    let checks = [
+        (of_outputs.collect::<Vec<_>>(), inputs),
+        (subject.description.initial_unknowns.iter().collect(), initial),
+    ];
+    for (unknowns, known) in checks {
+        for (index, dependencies) in unknowns {
+            assert!(dependencies.is_sorted(), "{index}");
+            assert!(dependencies.iter().all(|dependency| known.contains(dependency)), "{index}");
+        }
+    }
+}
+
+/// Indices of the continuous states: what the derivatives are derivatives of.
+fn states(subject: &'static Subject) -> Vec<usize> {
+    variables(subject).filter_map(|v| v.number("derivative")).map(|index| index as usize).collect()
+}
+
+/// FMI 2.0.4, section 2.2.7: each derivative belongs to a continuous output, and no two to the same one.
+fn derivatives_belong_to_states(subject: &'static Subject) {
+    let states = states(subject);
+    assert_eq!(states.len(), subject.description.derivatives.len());
+    assert_eq!(states.iter().collect::<BTreeSet<_>>().len(), states.len());
+    for state in states {
+        let state = &subject.description.variables[state - 1];
+        assert_eq!((&*state.causality, &*state.variability), ("output", "continuous"), "{}", state.name);
     }
 }
 
@@ -260,8 +287,17 @@ fn head_is_what_importers_need(subject: &'static Subject) {
     }
     let author = root.attribute("author").expect("an author");
     assert!(copyright.ends_with(author), "{author}");
-    let simulation = root.first_element_child().expect("a child");
-    assert!(simulation.has_tag_name("CoSimulation"));
+    let kinds = root.children().filter(|n| n.attribute("modelIdentifier").is_some());
+    let kinds: Vec<_> = kinds.collect();
+    let names: Vec<_> = kinds.iter().map(|kind| kind.tag_name().name()).collect();
+    let exchanges = !subject.description.derivatives.is_empty();
+    assert_eq!(names, if exchanges { vec!["ModelExchange", "CoSimulation"] } else { vec!["CoSimulation"] });
+    assert_eq!(root.attribute("numberOfEventIndicators").is_some(), exchanges);
+    for kind in &kinds {
+        let differentiates = kind.attribute("providesDirectionalDerivative") == Some("true");
+        assert_eq!(differentiates, exchanges);
+    }
+    let simulation = kinds.last().expect("a kind");
     assert_eq!(simulation.attribute("modelIdentifier"), Some(subject.sample.model_identifier));
     let experiment = root.children().find(|n| n.has_tag_name("DefaultExperiment")).expect("an experiment");
     let number = |name| experiment.attribute(name).expect("given").parse::<f64>().expect("a number");
@@ -276,6 +312,7 @@ for_each_model! {
     start_values_lie_in_their_ranges,
     start_values_are_those_of_a_fresh_instance,
     structure_lists_exactly_the_unknowns_in_order,
+    derivatives_belong_to_states,
     initial_dependencies_are_complete,
     units_and_types_are_defined,
     head_is_what_importers_need,

@@ -15,9 +15,15 @@ const HEADER: usize = 40;
 const LENGTH: std::ops::Range<usize> = 28..36;
 const CHECKSUM: std::ops::Range<usize> = 36..40;
 
-/// Place in the life, clock, parameters and inputs, derivatives of inputs, run.
-type Payload =
-    (u32, (f64, Option<f64>, f64), (Configuration, Inputs), Vec<(u32, i32, f64)>, Option<SimulationState>);
+/// Kind of the run, place in the life, clock, parameters and inputs, derivatives of inputs, run.
+type Payload = (
+    u32,
+    u32,
+    (f64, Option<f64>, f64),
+    (Configuration, Inputs),
+    Vec<(u32, i32, f64)>,
+    Option<SimulationState>,
+);
 
 /// Makes header and payload fit together.
 fn sign(bytes: &mut [u8]) {
@@ -50,15 +56,18 @@ fn absurd_content_with_a_good_checksum_is_refused() {
         assert_eq!(instance.deserialize(&encoded(&good, &payload)), Err(ERROR), "{payload:?}");
         instance.log.last();
     };
-    refused(|(_, _, (_, inputs), ..)| inputs.reference.position_m.x = f64::NAN);
-    refused(|(_, _, (_, inputs), ..)| inputs.reference.position_m.x = 1e7);
-    refused(|(_, _, (configuration, _), ..)| configuration.airframe.mass_kg = 0.0);
-    refused(|(_, _, (configuration, _), ..)| configuration.controllers.altitude.terms = 1_000_000);
-    refused(|(_, _, (configuration, _), ..)| configuration.limits.thrust_min = 20.0);
-    refused(|(_, clock, ..)| *clock = (0.0, None, 0.0));
+    refused(|(_, _, _, (_, inputs), ..)| inputs.reference.position_m.x = f64::NAN);
+    refused(|(_, _, _, (_, inputs), ..)| inputs.reference.position_m.x = 1e7);
+    refused(|(_, _, _, (configuration, _), ..)| configuration.airframe.mass_kg = 0.0);
+    refused(|(_, _, _, (configuration, _), ..)| configuration.controllers.altitude.terms = 1_000_000);
+    refused(|(_, _, _, (configuration, _), ..)| configuration.limits.thrust_min = 20.0);
+    refused(|(_, _, clock, ..)| *clock = (0.0, None, 0.0));
     refused(|(.., run)| *run = None);
     // The sixth place in the life: lost.
-    refused(|(phase, ..)| *phase = 5);
+    refused(|(_, phase, ..)| *phase = 5);
+    // Model exchange, which this model has not, and a place in the life that only model exchange has.
+    refused(|(kind, ..)| *kind = 1);
+    refused(|(_, phase, ..)| *phase = 6);
 }
 
 fn trailing_bytes_in_the_payload_are_refused(subject: &'static Subject) {

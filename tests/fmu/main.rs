@@ -23,6 +23,7 @@ macro_rules! for_each_model {
     };
 }
 
+mod derivatives;
 mod description;
 mod flight;
 mod floating_point;
@@ -31,6 +32,7 @@ mod input_derivatives;
 mod lifecycle;
 mod logging;
 mod misuse;
+mod model_exchange;
 mod parameters;
 mod stack;
 mod state;

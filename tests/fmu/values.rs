@@ -199,7 +199,11 @@ fn what_is_not_settable_stays(subject: &'static Subject) {
         let text = instance.log.last().text;
         assert!(text.contains(&variable.name), "{text}");
         if variable.value_type == "Real" {
-            let kind = if variable.causality == "output" { "an output" } else { "calculated" };
+            let kind = match variable.causality.as_str() {
+                "output" => "an output",
+                "local" => "a derivative",
+                _ => "calculated",
+            };
             assert!(text.contains(&format!("cannot be set: it is {kind} (read-only)")), "{text}");
         }
     }

@@ -19,7 +19,7 @@ pub(super) const IDENTITY: Identity = Identity {
     default_experiment: Experiment { stop_time_s: 20.0, step_size_s: 0.025 },
     // An hour; it takes seconds.
     longest_step_s: 3600.0,
-    saved_state: SavedStateFormat { magic: *b"LMPCQRST", version: 4 },
+    saved_state: SavedStateFormat { magic: *b"LMPCQRST", version: 5 },
     words: Words {
         run: "flight",
         retuned: "parameters changed, controllers redesigned",
