@@ -1,46 +1,54 @@
-//! The FMU file: the library, its description, documentation, icon and licences in one archive.
+//! An FMU file: the library, its description, documentation, icon and licences in one archive.
 
 use std::path::{Path, PathBuf};
 
 use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
+use crate::product::{PRODUCTS, Product};
 use crate::{documentation, licenses, merge, platform};
 use xtask::files;
 use xtask::workspace::Workspace;
 
-/// Writes the FMU and prints its path and size. `others` are FMUs of the same sources from other platforms.
-pub fn write(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> Result<(), Failure> {
-    let description = fmi::description::model_description::<fmu::ClosedLoop>();
+/// Writes all FMUs and prints their paths and sizes. `others` are FMUs of the same sources from other platforms: each goes into the
+/// FMU of the same name.
+pub fn write_all(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> Result<(), Failure> {
+    let of =
+        |product: &Product, other: &Path| other.file_stem().is_some_and(|stem| stem == product.identifier);
+    if let Some(path) = others.iter().find(|other| !PRODUCTS.iter().any(|product| of(product, other))) {
+        return Err(Failure::OtherModel { path: path.clone() });
+    }
+    let licences = licenses::texts(workspace)?;
+    for product in &PRODUCTS {
+        let others = others.iter().filter(|other| of(product, other));
+        write(workspace, product, library, &licences, others)?;
+    }
+    Ok(())
+}
+
+fn write<'a>(
+    workspace: &Workspace,
+    product: &Product,
+    library: &Path,
+    licences: &[(&str, String)],
+    others: impl Iterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    let description = (product.description)();
     let mut archive = Archive::default();
-    archive.add_binary(&platform::entry()?, files::read(library)?);
-    archive.add("documentation/index.html", documentation::page(workspace, &description)?.into_bytes());
+    archive.add_binary(&platform::entry(product.identifier)?, files::read(library)?);
+    let page = documentation::page(workspace, product, &description)?;
+    archive.add("documentation/index.html", page.into_bytes());
     archive.add("model.png", files::read(&workspace.fmu_assets().join("model.png"))?);
-    for (name, text) in licenses::texts(workspace)? {
-        archive.add(&format!("licenses/{name}"), text.into_bytes());
+    for (name, text) in licences {
+        archive.add(&format!("licenses/{name}"), text.clone().into_bytes());
     }
     for other in others {
         merge::binaries(&mut archive, other, &description)?;
     }
     archive.add(MODEL_DESCRIPTION, description.into_bytes());
 
-    let path = workspace.fmu();
+    let path = workspace.fmus().join(format!("{}.fmu", product.identifier));
     let bytes = archive.into_bytes().map_err(|source| Failure::Archive { path: path.clone(), source })?;
     files::write(&path, &bytes)?;
     println!("{} ({:.0} kB)", workspace.shown(&path), bytes.len() as f64 / 1000.0);
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use fmi::Model;
-    use fmu::ClosedLoop;
-    use xtask::workspace::Workspace;
-
-    /// Importers expect the file to be named after the model.
-    #[test]
-    fn the_file_is_named_after_the_model() {
-        let workspace = Workspace::find().expect("cargo knows the workspace");
-        let name = format!("{}.fmu", ClosedLoop::IDENTITY.model_identifier);
-        assert_eq!(workspace.fmu().file_name(), Some(name.as_ref()));
-    }
 }

@@ -2,7 +2,7 @@
 //! starts without waiting for the engine to compile.
 //!
 //! ```text
-//! modelDescription.xml        fmi::description of fmu::ClosedLoop
+//! modelDescription.xml        fmi::description of a model of fmu: product
 //! model.png                   fmu/assets
 //! binaries/linux64/….so       platform, merge
 //! documentation/index.html    documentation ◄─ variables, picture
@@ -18,6 +18,7 @@ mod licenses;
 mod merge;
 mod picture;
 mod platform;
+mod product;
 mod variables;
 
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Writes target/fmu/LmpcQuadrotor.fmu.
+    /// Writes the FMUs into target/fmu.
     Fmu {
         /// The built library.
         #[arg(long, value_name = "FILE")]
@@ -65,10 +66,10 @@ fn main() -> ExitCode {
 fn run(task: &Task) -> Result<(), Failure> {
     let workspace = Workspace::find()?;
     match task {
-        Task::Fmu { library, merge } => fmu_file::write(&workspace, library, merge),
+        Task::Fmu { library, merge } => fmu_file::write_all(&workspace, library, merge),
         Task::ModelDescription => {
             let path = workspace.model_description();
-            files::write(&path, fmi::description::model_description::<fmu::ClosedLoop>().as_bytes())?;
+            files::write(&path, (product::CLOSED_LOOP.description)().as_bytes())?;
             println!("{}", workspace.shown(&path));
             Ok(())
         }

@@ -1,12 +1,9 @@
 //! The place of a library in an FMU, which depends on the platform.
 
-use fmi::Model;
-use fmu::ClosedLoop;
-
 use crate::failure::Failure;
 
-/// `binaries/<platform>/<model identifier>.<extension>` for this machine.
-pub fn entry() -> Result<String, Failure> {
+/// `binaries/<platform>/<identifier>.<extension>` for this machine and the model with this identifier.
+pub fn entry(identifier: &str) -> Result<String, Failure> {
     use std::env::consts::{ARCH, DLL_EXTENSION, OS};
     let platform = match (OS, cfg!(target_pointer_width = "64")) {
         ("linux", true) => "linux64",
@@ -16,5 +13,5 @@ pub fn entry() -> Result<String, Failure> {
         ("macos", true) => "darwin64",
         _ => return Err(Failure::Platform { os: OS, architecture: ARCH }),
     };
-    Ok(format!("binaries/{platform}/{}.{DLL_EXTENSION}", ClosedLoop::IDENTITY.model_identifier))
+    Ok(format!("binaries/{platform}/{identifier}.{DLL_EXTENSION}"))
 }

@@ -47,9 +47,14 @@ impl Workspace {
         self.root.join("tests").join("python")
     }
 
-    /// The FMU that is built.
+    /// The folder of the FMUs that are built.
+    pub fn fmus(&self) -> PathBuf {
+        self.target.join("fmu")
+    }
+
+    /// The FMU of the closed loop.
     pub fn fmu(&self) -> PathBuf {
-        self.target.join("fmu").join("LmpcQuadrotor.fmu")
+        self.fmus().join("LmpcQuadrotor.fmu")
     }
 
     /// What the demo writes.

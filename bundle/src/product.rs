@@ -1,0 +1,42 @@
+//! The FMUs that are written, each of one model of the library.
+
+use fmi::Model;
+use fmi::description::model_description;
+use fmu::ClosedLoop;
+
+/// An FMU.
+pub struct Product {
+    /// Name of the file and of the library in it, without extensions.
+    pub identifier: &'static str,
+    /// The text of its `modelDescription.xml`.
+    pub description: fn() -> String,
+    /// Template of its documentation, in `fmu/assets`.
+    pub template: &'static str,
+}
+
+/// Flies with nothing but a reference: `modelDescription.xml` at the root of the repository is its.
+pub const CLOSED_LOOP: Product = Product::of::<ClosedLoop>("documentation.html");
+
+/// All of them.
+pub const PRODUCTS: [Product; 1] = [CLOSED_LOOP];
+
+impl Product {
+    const fn of<M: Model>(template: &'static str) -> Self {
+        Self { identifier: M::IDENTITY.model_identifier, description: model_description::<M>, template }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use xtask::workspace::Workspace;
+
+    use super::CLOSED_LOOP;
+
+    /// What the other tasks take for the FMU.
+    #[test]
+    fn the_file_is_named_after_the_model() {
+        let workspace = Workspace::find().expect("cargo knows the workspace");
+        let name = format!("{}.fmu", CLOSED_LOOP.identifier);
+        assert_eq!(workspace.fmu(), workspace.fmus().join(name));
+    }
+}
