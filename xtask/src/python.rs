@@ -37,11 +37,12 @@ const LAYERS: [Layer; 2] = [
         made_from: "made-from.txt",
     },
     Layer {
-        what: "Installing the tests' Python packages (first time; downloads about 205 MB)",
+        what: "Installing the tests' Python packages (first time; downloads about 260 MB)",
         lists: &[
             Pinned { file: "requirements.txt", complete: false },
             Pinned { file: "programs.txt", complete: true },
             Pinned { file: "optimum.txt", complete: true },
+            Pinned { file: "sweep.txt", complete: true },
         ],
         made_from: "made-from-tests.txt",
     },
