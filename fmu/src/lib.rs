@@ -1,6 +1,7 @@
 //! The closed-loop quadrotor as an FMI 2.0 co-simulation library.
 //!
 //! `closed_loop` is the model with its one table of names, value references, units, ranges and start values;
+//! `tables` has what several models share,
 //! `quantities` and `units` are what its variables measure. Everything that has to do with the interface is
 //! in [`fmi`].
 
@@ -8,6 +9,7 @@
 
 mod closed_loop;
 mod quantities;
+mod tables;
 mod units;
 
 pub use closed_loop::{ClosedLoop, FlightError};
