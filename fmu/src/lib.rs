@@ -8,10 +8,15 @@
 #![forbid(unsafe_code)]
 
 mod closed_loop;
+mod controller;
 mod quantities;
 mod tables;
 mod units;
 
 pub use closed_loop::{ClosedLoop, FlightError};
+pub use controller::{
+    AttitudeMeasurement, Controller, ControllerError, ControllerInputs, ControllerOutputs,
+    ControllerParameters, ControllerState, MeasuredMotion, Measurements, RotorSpeedMeasurement,
+};
 
-fmi::export_fmi2!(ClosedLoop);
+fmi::export_fmi2!(ClosedLoop, Controller);

@@ -102,9 +102,7 @@ impl Model for ClosedLoop {
     }
 
     fn initialized(&self) -> String {
-        let reports = self.0.design().reports();
-        let radii = reports.map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
-        format!("initialized; spectral radii of the closed loops: {}", radii.join(", "))
+        figures::initialized(self.0.design())
     }
 }
 

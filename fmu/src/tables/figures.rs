@@ -12,6 +12,12 @@ pub(crate) trait Designed {
     fn design(&self) -> &CascadeDesign;
 }
 
+/// What is logged when initialization ends.
+pub(crate) fn initialized(design: &CascadeDesign) -> String {
+    let radii = design.reports().map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
+    format!("initialized; spectral radii of the closed loops: {}", radii.join(", "))
+}
+
 /// One figure of the controller at `$index` of [`quadrotor::CascadeDesign::reports`].
 macro_rules! figure {
     ($name:literal, $index:literal, $field:ident, $depends_on:expr, $description:literal) => {
