@@ -126,7 +126,7 @@ mod simulation_state;
 
 pub use configuration::error::ConfigurationError;
 pub use configuration::parameter::{Access, Choice, Mutability, Parameter};
-pub use configuration::parameters::PARAMETERS;
+pub use configuration::parameters::{Configured, PARAMETERS};
 pub use configuration::quantity::{Quantity, ValueRange};
 pub use configuration::settings::{
     Configuration, ControllerKind, ControllerSettings, Controllers, Environment, InitialState, Limits,

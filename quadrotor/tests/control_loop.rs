@@ -4,7 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
     AttitudeTarget, Configuration, ConfigurationError, ControlError, ControlInputs, ControlLaw, ControlLoop,
-    ControlState, ControllerKind, InitialState, Measurement, PlantState, PositionReference, Target,
+    ControlState, ControllerKind, InitialState, Inputs, Measurement, PlantState, PositionReference,
+    Simulation, Target,
 };
 
 mod common;
@@ -158,4 +159,45 @@ fn a_measurement_that_is_none_is_refused_and_forgotten() {
             assert_eq!(control, sound);
         }
     }
+}
+
+/// The commanded wrench is what the lag of the rotors answers to: over each sample of the attitude controller the plant's thrust and
+/// torques go towards it as a first-order lag does.
+#[test]
+fn the_plant_answers_to_the_commanded_wrench_with_a_first_order_lag() {
+    const SAMPLE_US: u64 = 10_000;
+    let configuration = Configuration::default();
+    let kept = (-0.01 / configuration.airframe.rotor_time_constant_s).exp();
+    let inputs = Inputs::default();
+    let mut flight = Simulation::new(&configuration, &inputs).unwrap();
+    let (mut moved, mut turned) = (0.0_f64, 0.0_f64);
+    for sample in 1..400 {
+        let before = flight.outputs();
+        flight.advance_to(sample * SAMPLE_US, &inputs).unwrap();
+        let (after, wanted) = (flight.outputs(), flight.control().state().commanded_wrench());
+        let thrust_n = wanted.thrust_n + (before.thrust_n - wanted.thrust_n) * kept;
+        let torque_n_m = wanted.torque_n_m + (before.torque_n_m - wanted.torque_n_m) * kept;
+        assert!((after.thrust_n - thrust_n).abs() < 1e-6, "{sample}: {} {thrust_n}", after.thrust_n);
+        assert!((after.torque_n_m - torque_n_m).norm() < 1e-6, "{sample}: {} {torque_n_m}", after.torque_n_m);
+        moved = moved.max((wanted.thrust_n - before.thrust_n).abs());
+        turned = turned.max((wanted.torque_n_m - before.torque_n_m).norm());
+    }
+    assert!(moved > 0.1 && turned > 0.01, "{moved} {turned}");
+    let disarmed = Inputs { armed: false, ..inputs };
+    flight.advance_to(4_100_000, &disarmed).unwrap();
+    assert_eq!(flight.control().state().commanded_wrench().thrust_n, 0.0);
+}
+
+#[test]
+fn a_vehicle_is_taken_over_anew_as_by_a_new_loop() {
+    let configuration = flying(ControllerKind::Lmpc);
+    let mut control = new_loop(&configuration, 0);
+    control.advance_to(2_000_000, &asked, &mut swaying).unwrap();
+    control.take_over(&asked(7_001_000), &mut swaying, 7_001_000).unwrap();
+    assert_eq!(control, new_loop(&configuration, 7_001_000));
+    let mut broken = swaying(0);
+    broken.motion.position_m.x = f64::NAN;
+    let refused = control.take_over(&asked(8_000_000), &mut broken, 8_000_000);
+    assert_eq!(refused, Err(ConfigurationError::Measurement));
+    assert_eq!(control, new_loop(&configuration, 7_001_000));
 }

@@ -5,20 +5,21 @@ use std::borrow::Cow;
 use fmi::variables::{Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
-    Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError, SimulationState,
+    CascadeDesign, Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError,
+    SimulationState,
 };
 use thiserror::Error;
 
-use super::{calculated, identity, inputs, outputs, parameters};
+use super::{identity, inputs, outputs, parameters};
 use crate::quantities;
+use crate::tables::figures::{self, Designed};
 
 /// The quadrotor with its controllers.
 pub struct ClosedLoop(Simulation);
 
-impl ClosedLoop {
-    /// The engine.
-    pub(super) fn flight(&self) -> &Simulation {
-        &self.0
+impl Designed for ClosedLoop {
+    fn design(&self) -> &CascadeDesign {
+        self.0.design()
     }
 }
 
@@ -37,8 +38,17 @@ impl Model for ClosedLoop {
     const IDENTITY: Identity = identity::IDENTITY;
     /// Time is not among them: in co-simulation nobody needs it, and FMI Library wants a start value that FMI 2.0
     /// forbids.
-    const VARIABLES: &'static [&'static [Variable<Self>]] =
-        &[&inputs::INPUTS, &outputs::OUTPUTS, &parameters::TABLE, &calculated::CALCULATED];
+    const VARIABLES: &'static [&'static [Variable<Self>]] = &[
+        &inputs::REFERENCE,
+        &inputs::DISTURBANCE,
+        &inputs::ARMED,
+        &outputs::MOTION,
+        &outputs::STEERING,
+        &outputs::ERRORS,
+        &outputs::ACTIVITY,
+        &parameters::TABLE,
+        &figures::figures(),
+    ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = Configuration;
     type Inputs = Inputs;
@@ -92,9 +102,7 @@ impl Model for ClosedLoop {
     }
 
     fn initialized(&self) -> String {
-        let reports = self.0.design().reports();
-        let radii = reports.map(|(name, report)| format!("{name} {:.4}", report.spectral_radius));
-        format!("initialized; spectral radii of the closed loops: {}", radii.join(", "))
+        figures::initialized(self.0.design())
     }
 }
 

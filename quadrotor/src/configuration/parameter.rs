@@ -2,9 +2,9 @@
 
 use crate::{Configuration, ConfigurationError, Unit, ValueRange};
 
-/// One parameter of a [`Configuration`].
+/// One parameter of a [`Configuration`], or of settings `T` that contain one ([`Configured`](crate::Configured)).
 #[derive(Clone, Copy, Debug)]
-pub struct Parameter {
+pub struct Parameter<T: 'static = Configuration> {
     /// Public name, structured with dots.
     pub name: &'static str,
     /// What it is, for a person.
@@ -14,7 +14,7 @@ pub struct Parameter {
     /// When a change takes effect.
     pub mutability: Mutability,
     /// Its type, range and place in the configuration.
-    pub access: Access,
+    pub access: Access<T>,
 }
 
 /// When a changed value of a parameter takes effect.
@@ -29,9 +29,9 @@ pub enum Mutability {
     Start,
 }
 
-/// Type, range and place of a parameter.
+/// Type, range and place of a parameter in `T`.
 #[derive(Clone, Copy, Debug)]
-pub enum Access {
+pub enum Access<T: 'static = Configuration> {
     /// A real number within [minimum, maximum].
     Real {
         /// Smallest value.
@@ -39,9 +39,9 @@ pub enum Access {
         /// Largest value.
         maximum: f64,
         /// Reads it.
-        get: fn(&Configuration) -> f64,
+        get: fn(&T) -> f64,
         /// Writes it, unchecked.
-        set: fn(&mut Configuration, f64),
+        set: fn(&mut T, f64),
     },
     /// A whole number within [minimum, maximum].
     Integer {
@@ -50,25 +50,25 @@ pub enum Access {
         /// Largest value.
         maximum: i32,
         /// Reads it.
-        get: fn(&Configuration) -> i32,
+        get: fn(&T) -> i32,
         /// Writes it, unchecked.
-        set: fn(&mut Configuration, i32),
+        set: fn(&mut T, i32),
     },
     /// One of some named items, counted from 1.
     Enumeration {
         /// What is chosen.
         choice: &'static Choice,
         /// Reads it.
-        get: fn(&Configuration) -> i32,
+        get: fn(&T) -> i32,
         /// Writes it; what is no item changes nothing.
-        set: fn(&mut Configuration, i32),
+        set: fn(&mut T, i32),
     },
     /// A switch.
     Boolean {
         /// Reads it.
-        get: fn(&Configuration) -> bool,
+        get: fn(&T) -> bool,
         /// Writes it.
-        set: fn(&mut Configuration, bool),
+        set: fn(&mut T, bool),
     },
 }
 

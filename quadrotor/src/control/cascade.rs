@@ -11,6 +11,7 @@ use crate::control::flat_attitude::FlatAttitude;
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
+use crate::control::rotor_command::RotorCommand;
 use crate::control::thrust_lag::ThrustLag;
 use crate::design::controller_limits::{
     COMMANDED_TILT_SHARE, holding_horizontal_m_s2, least_thrust_n, thrust_range_n,
@@ -182,7 +183,7 @@ impl Cascade {
         self.activity.altitude = activity;
     }
 
-    /// A sample of the attitude controller: from the accelerations wanted to rotor speeds, rad/s. The reference of now, and the one of when
+    /// A sample of the attitude controller: from the accelerations wanted to rotor commands. The reference of now, and the one of when
     /// the rotors will have answered.
     pub(crate) fn sample_attitude(
         &mut self,
@@ -190,7 +191,7 @@ impl Cascade {
         design: &CascadeDesign,
         seen: &Observation,
         (reference, answered): (&PositionReference, &PositionReference),
-    ) -> [f64; 4] {
+    ) -> RotorCommand {
         self.reference_m_s2 = against_drag(configuration, reference);
         let upright = upright(&seen.body);
         let attitude = self.required_attitude(configuration, upright, reference);
@@ -246,7 +247,7 @@ impl Cascade {
         seen: &Observation,
         target: &AttitudeTarget,
         time_us: u64,
-    ) -> [f64; 4] {
+    ) -> RotorCommand {
         let (phi, theta, _) = target.attitude.euler_angles();
         self.tilt_reference_rad = [phi, theta];
         let period_us = configuration.controllers.attitude.sample_time_us;
@@ -269,7 +270,7 @@ impl Cascade {
         seen: &Observation,
         required: &AttitudeReference,
         (thrust_n, least_thrust_n): (f64, f64),
-    ) -> [f64; 4] {
+    ) -> RotorCommand {
         let controllers = &configuration.controllers;
         let period_s = controllers.attitude.sample_time_s();
         let thrust_range_n = (thrust_n, least_thrust_n);
@@ -278,16 +279,16 @@ impl Cascade {
         let wanted = Wrench { thrust_n, torque_n_m: asked.torque_n_m() };
         let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
         let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
-        let rotor_command_rad_s =
+        let speed_rad_s =
             core::array::from_fn(|rotor| lag.command_rad_s(thrusts_n[rotor], seen.rotor_speed_rad_s[rotor]));
         let settled_rad_s = core::array::from_fn(|rotor| {
-            lag.settled_rad_s(rotor_command_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
+            lag.settled_rad_s(speed_rad_s[rotor], seen.rotor_speed_rad_s[rotor])
         });
         let made = wrench_of_rotors(&configuration.airframe, &settled_rad_s);
         self.activity.attitude = activity;
         self.activity.attitude.cut(&wanted.torque_n_m, &made.torque_n_m);
         self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
-        rotor_command_rad_s
+        RotorCommand { speed_rad_s, wrench: made }
     }
 }
 

@@ -84,6 +84,20 @@ impl ControlLoop {
         Ok(Self { design: LoopDesign::new(configuration)?, state })
     }
 
+    /// Begins anew, with the same controllers: takes over a vehicle at `time_us`, as [`ControlLoop::new`] does.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::Measurement`]; nothing has changed then.
+    pub fn take_over(
+        &mut self,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Result<(), ConfigurationError> {
+        self.state = ControlState::new(&self.design.configuration, inputs, instruments, time_us)?;
+        Ok(())
+    }
+
     /// The configuration.
     pub fn configuration(&self) -> &Configuration {
         &self.design.configuration

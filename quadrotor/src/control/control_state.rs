@@ -11,11 +11,12 @@ use crate::control::learning::mass_and_drag::{FlightSample, MassAndDrag};
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
+use crate::control::rotor_command::RotorCommand;
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlError, Controllers, Measurement,
-    PositionReference, RigidBody,
+    PositionReference, RigidBody, Wrench,
 };
 
 /// Everything that changes in a control loop, and all there is of it to save and restore.
@@ -35,8 +36,8 @@ pub struct ControlState {
     estimator: Estimator,
     learned: MassAndDrag,
     cascade: Cascade,
-    /// Commanded speeds of the rotors while armed, rad/s.
-    rotor_command_rad_s: [f64; 4],
+    /// What is commanded while armed.
+    command: RotorCommand,
 }
 
 /// Which controllers sample at an instant.
@@ -84,7 +85,7 @@ impl ControlState {
             estimator: estimator(configuration, &first, time_us),
             learned: MassAndDrag::new(configuration),
             cascade,
-            rotor_command_rad_s: start.rotor_speed_rad_s,
+            command: RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s),
         })
     }
 
@@ -173,7 +174,17 @@ impl ControlState {
 
     /// Commanded speeds of the rotors, rad/s, in the order of the airframe's layout.
     pub fn rotor_command_rad_s(&self) -> [f64; 4] {
-        if self.armed { self.rotor_command_rad_s } else { [0.0; 4] }
+        self.command().speed_rad_s
+    }
+
+    /// Thrust and torques that are commanded, after the allocation to the rotors and its limits. The rotors' speeds are commanded so that
+    /// thrust and torques answer with the first-order lag of the rotors; flight without a rotor commands speeds that make them at last.
+    pub fn commanded_wrench(&self) -> Wrench {
+        self.command().wrench
+    }
+
+    fn command(&self) -> RotorCommand {
+        if self.armed { self.command } else { RotorCommand::none() }
     }
 
     /// The reference that the cascade tracks at `time_us`, after shaping.
@@ -243,7 +254,7 @@ impl ControlState {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
             let shaping = self.guidance.is_shaped();
             (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
-            self.rotor_command_rad_s = start.rotor_speed_rad_s;
+            self.command = RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s);
         }
         if inputs.armed && !self.armed {
             self.limits = CommandLimits::new(&configuration.limits);
@@ -293,7 +304,7 @@ impl ControlState {
             // Only the attitude controller's clock counts for the other laws.
             _ if !due.attitude => return Ok(()),
             Target::Attitude(target) => {
-                self.rotor_command_rad_s = self.cascade.sample_attitude_target(
+                self.command = self.cascade.sample_attitude_target(
                     configuration,
                     &design.cascade,
                     &seen,
@@ -304,7 +315,8 @@ impl ControlState {
             Target::WithoutRotor { lost, reference } => {
                 let law = design.rotor_loss.of(*lost)?;
                 let measured = &measurement.rotor_speed_rad_s;
-                self.rotor_command_rad_s = law.step(configuration, &seen.body, measured, reference);
+                let speeds_rad_s = law.step(configuration, &seen.body, measured, reference);
+                self.command = RotorCommand::held(&configuration.airframe, speeds_rad_s);
             }
         }
         if due.attitude {
@@ -331,7 +343,7 @@ impl ControlState {
             velocity_m_s: seen.velocity_m_s,
             attitude: seen.rotation(),
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),
-            rotor_command_rad_s: &self.rotor_command_rad_s,
+            rotor_command_rad_s: &self.command.speed_rad_s,
             time_us,
         };
         let believed = self.learned.in_place_of_belief(configuration);
@@ -376,7 +388,7 @@ impl ControlState {
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
             let answered_us = time_us + lag_us + configuration.controllers.attitude.sample_time_us / 2;
             let references = (self.guidance.reference(time_us), self.guidance.preview(answered_us));
-            self.rotor_command_rad_s =
+            self.command =
                 self.cascade.sample_attitude(configuration, cascade, seen, (&references.0, &references.1));
         }
     }
@@ -395,7 +407,7 @@ impl ControlState {
             configuration,
             &design.estimator,
             &seen.measured,
-            &self.rotor_command_rad_s,
+            &self.command.speed_rad_s,
             times,
         );
     }

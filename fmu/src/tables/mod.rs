@@ -1,0 +1,11 @@
+//! Rows that several models have in their tables of variables.
+//!
+//! A row is generic over its model: what it reads and writes is reached through a small trait that the model's parameters,
+//! inputs or outputs implement.
+
+pub(crate) mod figures;
+pub(crate) mod identity;
+pub(crate) mod parameters;
+pub(crate) mod references;
+pub(crate) mod rows;
+pub(crate) mod steering;

@@ -1,0 +1,84 @@
+//! Controllers and plant under a master of two steps: one after the other, or both at once.
+
+use fmi::Model;
+use fmu::{Controller, ControllerInputs, ControllerParameters, MeasuredMotion};
+use quadrotor::{Configuration, Inputs, Plant, PlantInputs, PlantState};
+
+/// Step of the plant's integration, µs.
+pub const GRID_US: u64 = 1_000;
+
+/// In which order a master steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// The controllers first: the plant gets the command of the same step.
+    GaussSeidel,
+    /// At once: the plant gets the command of the step before.
+    Jacobi,
+}
+
+/// Controllers and a plant that know nothing of each other.
+pub struct Pair {
+    pub controller: Controller,
+    pub plant: Plant,
+    pub state: PlantState,
+    order: Order,
+}
+
+/// What sensors without noise measure.
+pub fn measured(state: &PlantState) -> MeasuredMotion {
+    let body = &state.body;
+    let (phi, theta, psi) = body.rotation().euler_angles();
+    let q = &body.attitude;
+    MeasuredMotion {
+        position_m: body.position_m.into(),
+        velocity_m_s: body.velocity_m_s.into(),
+        quaternion: [q.w, q.i, q.j, q.k],
+        attitude_rad: [phi, theta, psi],
+        body_rate_rad_s: body.body_rate_rad_s.into(),
+        rotor_speed_rad_s: state.rotor_speed_rad_s,
+    }
+}
+
+/// What the controllers get of the closed loop's inputs.
+pub fn with_measured(inputs: &Inputs, measured: MeasuredMotion) -> ControllerInputs {
+    ControllerInputs { reference: inputs.reference, armed: inputs.armed, measured }
+}
+
+/// The plant that begins where a configuration says.
+pub fn plant_of(configuration: &Configuration, armed: bool) -> (Plant, PlantState) {
+    let plant = Plant::new(&configuration.airframe, &configuration.environment);
+    let initial = &configuration.initial;
+    let state = if armed {
+        PlantState::hovering(initial, &configuration.airframe)
+    } else {
+        PlantState::at_rest(initial)
+    };
+    (plant, state)
+}
+
+impl Pair {
+    pub fn new(parameters: &ControllerParameters, inputs: &Inputs, order: Order) -> Self {
+        let (plant, state) = plant_of(&parameters.configuration, inputs.armed);
+        let controller = Controller::new(parameters, &with_measured(inputs, measured(&state))).unwrap();
+        Self { controller, plant, state, order }
+    }
+
+    /// One communication step, with inputs that are held over it.
+    pub fn step(&mut self, step_us: u64, inputs: &Inputs) {
+        let (begin_us, before) = (self.controller.time_us(), self.controller.outputs());
+        let held = with_measured(inputs, measured(&self.state));
+        self.controller.advance_to(begin_us + step_us, &|_| held).unwrap();
+        let outputs = if self.order == Order::Jacobi { before } else { self.controller.outputs() };
+        let acting = PlantInputs {
+            disturbance: inputs.disturbance,
+            ..PlantInputs::rotor_speeds(outputs.rotor_command_rad_s)
+        };
+        // The grid of the closed loop, and the rest of a step that ends between two of its points.
+        let (mut now_us, end_us) = (begin_us, begin_us + step_us);
+        while now_us < end_us {
+            let next_us = ((now_us / GRID_US + 1) * GRID_US).min(end_us);
+            self.state = self.plant.step(&self.state, &acting, (next_us - now_us) as f64 / 1e6);
+            now_us = next_us;
+        }
+    }
+}
