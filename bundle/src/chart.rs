@@ -29,26 +29,32 @@ pub struct Chart {
     pub lines: Vec<Line>,
 }
 
+/// Name of all references.
+const REFERENCE: &str = "reference";
+
 /// A line through points, and its name in the legend.
 pub struct Line {
     points: Vec<(f64, f64)>,
     style: String,
-    legend: Option<(&'static str, &'static str)>,
+    name: &'static str,
 }
 
 impl Line {
-    /// A coloured line of some width with a name.
-    pub fn solid(points: Vec<(f64, f64)>, colour: &'static str, width: f64, name: &'static str) -> Self {
-        Self {
-            points,
-            style: format!("stroke=\"{colour}\" stroke-width=\"{width}\""),
-            legend: Some((name, colour)),
-        }
+    /// A coloured line of some width with a name. `dashes` are lengths of dashes and gaps, or "none" for a solid line.
+    pub fn new(
+        points: Vec<(f64, f64)>,
+        colour: &'static str,
+        width: f64,
+        dashes: &'static str,
+        name: &'static str,
+    ) -> Self {
+        let style = format!("stroke=\"{colour}\" stroke-width=\"{width}\" stroke-dasharray=\"{dashes}\"");
+        Self { points, style, name }
     }
 
-    /// A thin dashed line for a reference.
+    /// A thin dotted line for a reference.
     pub fn dashed(points: Vec<(f64, f64)>) -> Self {
-        Self { points, style: "stroke=\"#333\" stroke-dasharray=\"5 4\"".to_owned(), legend: None }
+        Self { points, style: "stroke=\"#333\" stroke-dasharray=\"1 3\"".to_owned(), name: REFERENCE }
     }
 }
 
@@ -85,7 +91,7 @@ impl Svg {
         let Self { body, width, height } = self;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-             height=\"{height}\" font-family=\"sans-serif\" font-size=\"13\" role=\"img\">\n{body}</svg>"
+             height=\"{height}\" font-family=\"sans-serif\" font-size=\"15\" role=\"img\">\n{body}</svg>"
         )
     }
 
@@ -107,7 +113,7 @@ impl Svg {
             self.text(left - 6.0, y + 4.0, "end", &format!("{value}"));
         }
         self.text(left + width / 2.0, bottom + 36.0, "middle", chart.x_title);
-        let (x, y) = (left - 42.0, top + height / 2.0);
+        let (x, y) = (left - 46.0, top + height / 2.0);
         self.element(format_args!(
             "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" transform=\"rotate(-90 {x} {y})\">{}</text>",
             chart.y_title
@@ -116,16 +122,16 @@ impl Svg {
 
     fn legend(&mut self, chart: &Chart) {
         let (left, top, width, _) = chart.place;
-        let named = chart.lines.iter().filter_map(|line| line.legend);
-        let reference = chart.lines.iter().any(|line| line.legend.is_none());
-        let entries: Vec<_> = named.chain(reference.then_some(("reference", "#333"))).collect();
-        for (row, (name, colour)) in entries.into_iter().enumerate() {
+        // References look alike: one entry is enough.
+        let mut entries: Vec<&Line> = chart.lines.iter().collect();
+        entries.dedup_by_key(|line| line.name);
+        for (row, Line { style, name, .. }) in entries.into_iter().enumerate() {
             let (x, y) = (left + width + 14.0, top + 12.0 + 20.0 * row as f64);
             self.element(format_args!(
-                "<line x1=\"{x}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{colour}\" stroke-width=\"3\"/>",
-                x + 22.0
+                "<line x1=\"{x}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" {style}/>",
+                x + 34.0
             ));
-            self.text(x + 28.0, y + 4.0, "start", name);
+            self.text(x + 40.0, y + 4.0, "start", name);
         }
     }
 

@@ -1,17 +1,25 @@
-//! documentation/index.html: the template with the generated parts put in.
+//! documentation/index.html: the page that all FMUs share, with the model's own part and the generated ones put in.
 
 use crate::failure::Failure;
 use crate::product::Product;
-use crate::{picture, variables};
+use crate::{enumerations, picture, variables};
 use xtask::files;
 use xtask::workspace::Workspace;
 
 /// The page.
 pub fn page(workspace: &Workspace, product: &Product, description: &str) -> Result<String, Failure> {
-    let template = files::read_text(&workspace.fmu_assets().join(product.template))?;
-    Ok(template
+    let asset = |name: &str| files::read_text(&workspace.fmu_assets().join(name));
+    let experiment = product.default_experiment;
+    Ok(asset("page.html")?
+        .replace("{{model}}", &asset(product.page)?)
+        .replace("{{import}}", &asset("import.html")?)
+        .replace("{{identifier}}", product.identifier)
+        .replace("{{shown}}", product.shown)
+        .replace("{{stop}}", &experiment.stop_time_s.to_string())
+        .replace("{{step}}", &experiment.step_size_s.to_string())
         .replace("{{version}}", env!("CARGO_PKG_VERSION"))
-        .replace("{{flight}}", &picture::of_default_flight()?)
+        .replace("{{flight}}", &picture::of_default_flight(experiment.stop_time_s)?)
+        .replace("{{enumerations}}", &enumerations::tables(description)?)
         .replace("{{variables}}", &variables::tables(description)?))
 }
 
@@ -27,6 +35,8 @@ mod tests {
         for product in &PRODUCTS {
             let page = page(&workspace, product, &(product.description)()).expect("the page is made");
             assert!(!page.contains("{{") && !page.contains("}}"));
+            // Telephones and narrow windows.
+            assert!(page.contains("name=\"viewport\""));
             // Well-formed, so that every browser shows the equations.
             let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");
             roxmltree::Document::parse(&body).expect("is well-formed");

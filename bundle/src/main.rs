@@ -5,15 +5,17 @@
 //! modelDescription.xml        fmi::description of a model of fmu: product
 //! model.png                   fmu/assets
 //! binaries/linux64/….so       platform, merge
-//! documentation/index.html    documentation ◄─ variables, picture
+//! documentation/index.html    documentation ◄─ variables, enumerations, picture
 //! licenses/                   licenses
 //! ```
 
 mod archive;
 mod chart;
 mod documentation;
+mod enumerations;
 mod failure;
 mod fmu_file;
+mod html;
 mod licenses;
 mod merge;
 mod picture;

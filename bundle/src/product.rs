@@ -1,7 +1,7 @@
 //! The FMUs that are written, each of one model of the library.
 
-use fmi::Model;
 use fmi::description::model_description;
+use fmi::{Experiment, Model};
 use fmu::ClosedLoop;
 
 /// An FMU.
@@ -10,19 +10,30 @@ pub struct Product {
     pub identifier: &'static str,
     /// The text of its `modelDescription.xml`.
     pub description: fn() -> String,
-    /// Template of its documentation, in `fmu/assets`.
-    pub template: &'static str,
+    /// Its part of the documentation, in `fmu/assets`.
+    pub page: &'static str,
+    /// Outputs that its default experiment is about.
+    pub shown: &'static str,
+    /// Its default experiment.
+    pub default_experiment: Experiment,
 }
 
 /// Flies with nothing but a reference: `modelDescription.xml` at the root of the repository is its.
-pub const CLOSED_LOOP: Product = Product::of::<ClosedLoop>("documentation.html");
+pub const CLOSED_LOOP: Product =
+    Product::of::<ClosedLoop>("closed_loop.html", "position.x position.y position.z");
 
 /// All of them.
 pub const PRODUCTS: [Product; 1] = [CLOSED_LOOP];
 
 impl Product {
-    const fn of<M: Model>(template: &'static str) -> Self {
-        Self { identifier: M::IDENTITY.model_identifier, description: model_description::<M>, template }
+    const fn of<M: Model>(page: &'static str, shown: &'static str) -> Self {
+        Self {
+            identifier: M::IDENTITY.model_identifier,
+            description: model_description::<M>,
+            page,
+            shown,
+            default_experiment: M::IDENTITY.default_experiment,
+        }
     }
 }
 

@@ -5,11 +5,13 @@ use std::fmt::Write;
 use roxmltree::{Document, Node};
 
 use crate::failure::Failure;
+use crate::html::escaped;
 
 /// Groups of the table: title, causality.
-const GROUPS: [(&str, &str); 4] = [
+const GROUPS: [(&str, &str); 5] = [
     ("Inputs", "input"),
     ("Outputs", "output"),
+    ("Derivatives of states", "local"),
     ("Parameters", "parameter"),
     ("Calculated parameters", "calculatedParameter"),
 ];
@@ -30,7 +32,7 @@ pub fn tables(description: &str) -> Result<String, Failure> {
             // Writing to a String cannot fail.
             let _ = write!(
                 html,
-                "<h3>{title}</h3>\n<table>\n<tr><th>Name</th><th>Unit</th><th>Start</th><th>Range</th>\
+                "<h3>{title}</h3>\n<table class=\"variables\">\n<tr><th>Name</th><th>Unit</th><th>Start</th><th>Range</th>\
                  <th>Description</th></tr>\n{rows}</table>\n"
             );
         }
@@ -51,7 +53,8 @@ fn row(variable: Node) -> String {
     };
     let tunable = if variable.attribute("variability") == Some("tunable") { " (tunable)" } else { "" };
     format!(
-        "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td><td>{}{tunable}</td></tr>\n",
+        "<tr><td><code>{}</code></td><td>{}</td><td data-label=\"start\">{}</td><td data-label=\"range\">{}</td>\
+         <td>{}{tunable}</td></tr>\n",
         escaped(variable.attribute("name").unwrap_or("")),
         escaped(&unit),
         escaped(&short(attribute("start"))),
@@ -82,10 +85,6 @@ fn short(number: &str) -> String {
     }
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
 #[cfg(test)]
 mod tests {
     use super::tables;
@@ -98,6 +97,9 @@ mod tests {
         let variables =
             fmi::description::model_description::<fmu::ClosedLoop>().matches("<ScalarVariable ").count();
         assert_eq!(rows, variables, "variables of a causality that the documentation leaves out");
-        assert!(html.contains("<td><code>airframe.mass</code></td><td>kg</td><td>0.7</td>"), "{html}");
+        assert!(
+            html.contains("<td><code>airframe.mass</code></td><td>kg</td><td data-label=\"start\">0.7</td>"),
+            "{html}"
+        );
     }
 }
