@@ -108,7 +108,8 @@ impl Plant {
         inputs: &PlantInputs,
     ) -> [Option<f64>; Switch::COUNT] {
         let mut watched = Watched::in_mode(mode);
-        self.forces(state, inputs, &mut watched);
+        // All that looks at branches.
+        self.observed(state, inputs, false, &mut watched);
         let mut guards = *watched.guards();
         if self.has_ground() {
             let margins = self.holding_margins(state, inputs);
