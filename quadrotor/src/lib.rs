@@ -13,7 +13,9 @@
 //! Three types do the work, each usable by itself:
 //!
 //! * [`Plant`] is the vehicle without its controllers: f(x, u), and a Runge–Kutta step of it. Its four rotors may lie
-//!   anywhere ([`RotorLayout`]: "+", "X", "H" or your own).
+//!   anywhere ([`RotorLayout`]: "+", "X", "H" or your own). Its equations hold for any [`Real`]: with [`Dual`] numbers they give
+//!   exact derivatives ([`PlantState::with_seed`]). For an integrator that stops at events there are the modes and event
+//!   indicators of [`Plant::derivative_in`].
 //! * [`ControlLoop`] is the controllers without a vehicle: references and measurements in, rotor commands out, sampled at
 //!   its own exact instants. It flies any plant or a real vehicle; `examples/fly_another_plant.rs` is an example.
 //! * [`Simulation`] runs both on one schedule of integer microseconds. The same inputs give the same flight, bit for bit.

@@ -68,7 +68,8 @@ impl Plant {
     }
 
     /// The mode and the state after an event: switches whose indicators have changed their signs are switched, and those that
-    /// matter now are set. A vehicle that begins to be held stops. Without an event both stay.
+    /// matter now are set. A vehicle that static friction holds, or begins to hold, stops. Otherwise the state stays, and
+    /// without an event the mode does.
     pub fn event(
         &self,
         mode: PlantMode,
@@ -79,23 +80,16 @@ impl Plant {
         let mut known = self.guards(Some(mode), &state, inputs).map(|guard| guard.is_some());
         for _ in 0..PASSES {
             let guards = self.guards(Some(mode), &state, inputs);
-            let mut next = PlantMode::default();
-            for (index, guard) in guards.into_iter().enumerate() {
-                let on = match guard {
-                    Some(guard) if known[index] => shifted(guard, mode.has(index)) > 0.0,
-                    Some(guard) => guard > 0.0,
-                    None => false,
-                };
-                known[index] |= guard.is_some();
-                next = next.with(index, on);
+            let next = next_mode(mode, &guards, &known);
+            let mut after = state;
+            if next.is_on(Switch::Held) {
+                hold(&mut after);
             }
-            if next == mode {
+            if (next, after) == (mode, state) {
                 break;
             }
-            mode = next;
-            if mode.is_on(Switch::Held) {
-                hold(&mut state);
-            }
+            known = core::array::from_fn(|index| known[index] || guards[index].is_some());
+            (mode, state) = (next, after);
         }
         (mode, state)
     }
@@ -117,6 +111,18 @@ impl Plant {
         }
         guards
     }
+}
+
+/// Switches that matter, switched beyond their hysteresis if they were `known` to matter before.
+fn next_mode(
+    mode: PlantMode,
+    guards: &[Option<f64>; Switch::COUNT],
+    known: &[bool; Switch::COUNT],
+) -> PlantMode {
+    (0..Switch::COUNT).fold(PlantMode::default(), |next, index| {
+        let shift = |guard: f64| if known[index] { shifted(guard, mode.has(index)) } else { guard };
+        next.with(index, guards[index].is_some_and(|guard| shift(guard) > 0.0))
+    })
 }
 
 /// The guard of a switch, which is switched a little beyond its bound.
