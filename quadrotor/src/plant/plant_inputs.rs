@@ -63,6 +63,27 @@ impl<T: Real> PlantInputs<T> {
     }
 }
 
+impl PlantInputs {
+    /// The name of the first input that is not finite.
+    pub(crate) fn not_finite(&self) -> Option<&'static str> {
+        let drive = match &self.actuation {
+            Actuation::RotorSpeeds(command) if !command.iter().all(|speed| speed.is_finite()) => {
+                Some("rotor.command")
+            }
+            Actuation::Wrench(wrench) if !wrench.thrust_n.is_finite() => Some("command.thrust"),
+            Actuation::Wrench(wrench) if !wrench.torque_n_m.iter().all(|torque| torque.is_finite()) => {
+                Some("command.torque")
+            }
+            _ => None,
+        };
+        let faults = || {
+            let valid = self.rotor_faults.iter().flatten().all(|fault| fault.is_valid());
+            (!valid).then_some("rotor_faults")
+        };
+        drive.or_else(|| self.disturbance.not_finite()).or_else(faults)
+    }
+}
+
 impl<T: Scalar + Copy> PlantInputs<T> {
     /// Made of each of the numbers of both inputs, as long as the same drives both; otherwise of the numbers of `self` and
     /// `absent`. The faults are those of `self`.

@@ -5,6 +5,7 @@ use quadrotor::{Airframe, BatteryPack, RotorAerodynamics, RotorSpin};
 /// Every term that the default leaves out.
 pub fn all_physics() -> Airframe {
     Airframe {
+        inertia_kg_m2: [0.1, 0.11, 0.18],
         products_of_inertia_kg_m2: [0.004, -0.006, 0.003],
         centre_of_gravity_m: [0.01, -0.02, 0.03],
         rotor_spin: RotorSpin { inertia_kg_m2: 1e-4, fall_time_ratio: 2.0 },
