@@ -13,7 +13,9 @@
 //! Three types do the work, each usable by itself:
 //!
 //! * [`Plant`] is the vehicle without its controllers: f(x, u), and a Runge–Kutta step of it. Its four rotors may lie
-//!   anywhere ([`RotorLayout`]: "+", "X", "H" or your own).
+//!   anywhere ([`RotorLayout`]: "+", "X", "H" or your own). Its equations hold for any [`Real`]: with [`Dual`] numbers they give
+//!   exact derivatives ([`PlantState::with_seed`]). For an integrator that stops at events there are the modes and event
+//!   indicators of [`Plant::derivative_in`].
 //! * [`ControlLoop`] is the controllers without a vehicle: references and measurements in, rotor commands out, sampled at
 //!   its own exact instants. It flies any plant or a real vehicle; `examples/fly_another_plant.rs` is an example.
 //! * [`Simulation`] runs both on one schedule of integer microseconds. The same inputs give the same flight, bit for bit.
@@ -118,6 +120,7 @@ mod guidance;
 mod inputs;
 mod outputs;
 mod plant;
+mod plant_simulation;
 mod schedule;
 mod sensors;
 mod simulation;
@@ -172,10 +175,15 @@ pub use lmpc::Status as ControllerStatus;
 pub use outputs::Outputs;
 pub use plant::airframe::{Airframe, GRAVITY_M_S2};
 pub use plant::battery_pack::{BatteryOutput, BatteryPack, cell_voltage_v};
+pub use plant::differentiation::dual::Dual;
+pub use plant::differentiation::real::Real;
 pub use plant::disturbance::Disturbance;
 pub use plant::dynamics::Plant;
+pub use plant::events::plant_mode::PlantMode;
+pub use plant::events::switch::Switch;
 pub use plant::overload::Overload;
 pub use plant::plant_inputs::{Actuation, PlantInputs};
+pub use plant::plant_outputs::PlantOutputs;
 pub use plant::plant_state::PlantState;
 pub use plant::presets::AirframePreset;
 pub use plant::rigid_body::{External, RigidBody};
@@ -184,6 +192,7 @@ pub use plant::rotor_fault::RotorFault;
 pub use plant::rotor_layout::{Direction, Rotor, RotorLayout};
 pub use plant::rotor_map::{Wrench, wrench_of_rotors};
 pub use plant::rotor_spin::RotorSpin;
+pub use plant_simulation::{PlantSimulation, PlantSimulationState};
 pub use simulation::Simulation;
 pub use simulation_error::SimulationError;
 pub use simulation_state::SimulationState;

@@ -1,7 +1,5 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
-use nalgebra::Vector3;
-
 use crate::attitude::wrapped;
 use crate::design::loop_design::LoopDesign;
 use crate::schedule::next_point_us;
@@ -164,29 +162,25 @@ impl Simulation {
     /// What can be observed now.
     pub fn outputs(&self) -> Outputs {
         let (control, time_us) = (self.control.state(), self.world.time_us);
-        let plant = self.plant_at(time_us);
-        let rotation = plant.body.rotation();
-        let (phi, theta, psi) = rotation.euler_angles();
-        let inputs = self.plant_inputs();
-        let wrench = self.plant.wrench(&plant, &inputs);
+        let plant = self.plant.outputs(&self.plant_at(time_us), &self.plant_inputs());
         let setpoint = control.reference(time_us);
         Outputs {
             time_us,
-            position_m: plant.body.position_m,
-            velocity_m_s: plant.body.velocity_m_s,
-            acceleration_m_s2: self.plant.acceleration_m_s2(&plant, &inputs),
-            body_velocity_m_s: rotation.inverse_transform_vector(&plant.body.velocity_m_s),
-            attitude_rad: Vector3::new(phi, theta, psi),
-            quaternion: [rotation.w, rotation.i, rotation.j, rotation.k],
-            body_rate_rad_s: plant.body.body_rate_rad_s,
-            thrust_n: wrench.thrust_n,
-            torque_n_m: wrench.torque_n_m,
+            position_m: plant.position_m,
+            velocity_m_s: plant.velocity_m_s,
+            acceleration_m_s2: plant.acceleration_m_s2,
+            body_velocity_m_s: plant.body_velocity_m_s,
+            attitude_rad: plant.attitude_rad,
+            quaternion: plant.quaternion,
+            body_rate_rad_s: plant.body_rate_rad_s,
+            thrust_n: plant.wrench.thrust_n,
+            torque_n_m: plant.wrench.torque_n_m,
             rotor_speed_rad_s: plant.rotor_speed_rad_s,
-            battery: self.plant.battery(&plant),
+            battery: plant.battery,
             tilt_reference_rad: control.tilt_reference_rad(),
             setpoint,
-            tracking_error_m: plant.body.position_m - setpoint.position_m,
-            yaw_error_rad: wrapped(psi - setpoint.yaw_rad),
+            tracking_error_m: plant.position_m - setpoint.position_m,
+            yaw_error_rad: wrapped(plant.attitude_rad.z - setpoint.yaw_rad),
             activity: control.activity(),
         }
     }

@@ -41,8 +41,10 @@ impl Configuration {
         Self { preset: self.preset, ..resolved }
     }
 
-    /// The preset's airframe, under the paper's name.
-    fn with_airframe(&self) -> Self {
+    /// The configuration with the preset's airframe alone, under the paper's name: what a plant flies with that is not ours to
+    /// control. Limits and controllers stay as they are.
+    #[must_use]
+    pub fn with_airframe(&self) -> Self {
         let mut published = Self { airframe: self.preset.airframe(), ..Self::default() };
         if self.airframe.layout != RotorLayout::default() {
             published.airframe.layout = self.airframe.layout;

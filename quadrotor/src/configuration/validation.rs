@@ -63,6 +63,21 @@ pub(crate) fn validate_airframe(configuration: &Configuration) -> Result<(), Con
     Mixer::new(&configuration.airframe).map(|_| ())
 }
 
+/// Checks what a plant needs that nobody has to be able to control: airframe, environment and start in their ranges, a rigid
+/// body's inertia, and a start above the ground.
+pub(crate) fn validate_plant(configuration: &Configuration) -> Result<(), ConfigurationError> {
+    let of_plant = |parameter: &&Parameter| {
+        ["airframe.", "environment.", "initial."].iter().any(|group| parameter.name.starts_with(group))
+    };
+    PARAMETERS.iter().filter(of_plant).try_for_each(|parameter| parameter.check(configuration))?;
+    if configuration.preset != AirframePreset::Paper {
+        return Err(ConfigurationError::Unresolved { name: configuration.preset.name() });
+    }
+    validate_products_of_inertia(&configuration.airframe)?;
+    validate_rotor_inertia(&configuration.airframe)?;
+    validate_start(configuration)
+}
+
 /// The rotors must carry the vehicle, with thrust to spare, and let it sink.
 fn validate_rotors(airframe: &Airframe) -> Result<(), ConfigurationError> {
     let (weakest, strongest) = airframe.thrust_range_n();

@@ -179,10 +179,10 @@ impl AttitudeController {
         thrust_n: (f64, f64),
     ) -> (AskedTorque, ControllerActivity) {
         self.turn_with_the_body(&seen.attitude);
-        let to_body = seen.attitude.inverse() * reference.attitude;
+        let in_body = seen.attitude.inverse() * reference.attitude;
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
-        let rate_error_rad_s = seen.body_rate_rad_s - to_body * reference.rate_rad_s;
+        let rate_error_rad_s = seen.body_rate_rad_s - in_body * reference.rate_rad_s;
         let spin = Spin {
             inertia_kg_m2,
             body_rate_rad_s: seen.body_rate_rad_s,
@@ -200,7 +200,7 @@ impl AttitudeController {
         let mut disturbance_rad_s2 = seen.disturbance_rad_s2;
         let held_rad_s2 = HELD_TURN_SHARE * turn_rad_s2.max(0.0);
         disturbance_rad_s2.z = disturbance_rad_s2.z.clamp(-held_rad_s2, held_rad_s2);
-        let reference_acceleration = to_body * reference.acceleration_rad_s2;
+        let reference_acceleration = in_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
         let error_rad = going_on(&attitude_error(&reference.attitude, &seen.attitude), &rate_error_rad_s);
         let deviation = Deviation {
@@ -217,7 +217,7 @@ impl AttitudeController {
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
             } else {
-                reference_acceleration + to_body * reference.jerk_rad_s3 * lag_s
+                reference_acceleration + in_body * reference.jerk_rad_s3 * lag_s
             },
             disturbance: disturbance_rad_s2,
         };

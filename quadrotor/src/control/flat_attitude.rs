@@ -87,14 +87,14 @@ impl FlatAttitude {
 
         let (roll_rad, pitch_rad) = tilt_angles(&down, heading.yaw_rad);
         let attitude = UnitQuaternion::from_euler_angles(roll_rad, pitch_rad, heading.yaw_rad);
-        let to_body = attitude.inverse();
+        let in_body = attitude.inverse();
         let turn = Turn {
             roll: (libm::sin(roll_rad), libm::cos(roll_rad)),
             pitch: (libm::sin(pitch_rad), libm::cos(pitch_rad)),
             yaw: (heading.yaw_rate_rad_s, heading.yaw_acceleration_rad_s2),
         };
         let (body_rate_rad_s, angular_acceleration_rad_s2) =
-            turn.of(&(to_body * down_rate), &(to_body * down_acceleration));
+            turn.of(&(in_body * down_rate), &(in_body * down_acceleration));
         Self {
             attitude,
             roll_rad,

@@ -115,11 +115,13 @@ impl Airframe {
 
 impl Airframe {
     /// Whether the centre of mass lies amid the rotors.
+    #[inline]
     pub(crate) fn is_centred(&self) -> bool {
         self.centre_of_gravity_m == [0.0; 3]
     }
 
     /// Places of the rotors, FRD from the centre of mass, m.
+    #[inline]
     pub(crate) fn rotor_places_m(&self) -> [Vector3<f64>; 4] {
         let (l, centre_of_gravity) = (self.arm_length_m, Vector3::from(self.centre_of_gravity_m));
         self.layout.rotors.map(|rotor| Vector3::new(l * rotor.x, l * rotor.y, 0.0) - centre_of_gravity)

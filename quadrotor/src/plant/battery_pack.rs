@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Airframe;
+use crate::plant::differentiation::real::Real;
+use crate::plant::events::branches::{Branches, ByValue};
+use crate::plant::events::switch::Switch;
 
 /// Share of the electric power that becomes mechanical power of the rotors.
 const DRIVE_EFFICIENCY: f64 = 0.75;
@@ -34,55 +37,87 @@ impl Default for BatteryPack {
 
 /// What a battery gives.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct BatteryOutput {
+pub struct BatteryOutput<T = f64> {
     /// Voltage at the terminals, V.
-    pub voltage_v: f64,
+    pub voltage_v: T,
     /// Current to the motors, A.
-    pub current_a: f64,
+    pub current_a: T,
     /// Remaining share of the charge, 0 to 1.
-    pub remaining: f64,
+    pub remaining: T,
 }
+
+/// Remaining share of the charge at the knee of the voltage.
+const KNEE: f64 = 0.1;
 
 /// Voltage of a lithium-polymer cell without load, V, by the remaining share of its charge: 4.2 V full, 3.7 V at the knee of
 /// a tenth, 3.3 V empty.
 pub fn cell_voltage_v(remaining: f64) -> f64 {
-    if remaining > 0.1 { 3.7 + 0.5 * (remaining - 0.1) / 0.9 } else { 3.3 + 0.4 * remaining / 0.1 }
+    cell_voltage(remaining, remaining > KNEE)
+}
+
+fn cell_voltage<T: Real>(remaining: T, above_knee: bool) -> T {
+    if above_knee { (remaining - KNEE) * 0.5 / 0.9 + 3.7 } else { remaining * 0.4 / KNEE + 3.3 }
 }
 
 impl BatteryPack {
     /// Share of its commanded speed that a rotor goes to at a voltage, V.
-    pub fn speed_share(&self, voltage_v: f64) -> f64 {
-        if self.sag { voltage_v / self.voltage_v } else { 1.0 }
+    pub fn speed_share<T: Real>(&self, voltage_v: T) -> T {
+        if self.sag { voltage_v / self.voltage_v } else { T::one() }
     }
 
     /// What the pack gives to a load of `power_w` when `discharge` of its charge is drawn.
     ///
     /// U I = P and U = U_oc − R I make U = (U_oc + √(U_oc² − 4 R P))/2. A pack gives no more than U_oc²/4R; beyond that the
     /// voltage stays at half, and the current at what goes with it.
-    pub fn output(&self, power_w: f64, discharge: f64) -> BatteryOutput {
+    pub fn output<T: Real>(&self, power_w: T, discharge: T) -> BatteryOutput<T> {
+        self.output_in(power_w, discharge, &mut ByValue)
+    }
+
+    /// The same, with its branches chosen.
+    pub(crate) fn output_in<T: Real>(
+        &self,
+        power_w: T,
+        discharge: T,
+        branches: &mut impl Branches,
+    ) -> BatteryOutput<T> {
         if !self.sag {
-            return BatteryOutput {
-                voltage_v: self.voltage_v,
-                current_a: power_w / self.voltage_v,
-                remaining: 1.0,
-            };
+            let voltage_v = T::constant(self.voltage_v);
+            return BatteryOutput { voltage_v, current_a: power_w / self.voltage_v, remaining: T::one() };
         }
-        let remaining = (1.0 - discharge).clamp(0.0, 1.0);
-        let open_v = self.voltage_v * cell_voltage_v(remaining) / cell_voltage_v(1.0);
-        let root = libm::sqrt((open_v * open_v - 4.0 * self.resistance_ohm * power_w).max(0.0));
+        let remaining = self.remaining(discharge, branches);
+        let above_knee = branches.exceeds(Switch::AboveKnee, remaining.value(), KNEE, 1.0);
+        let open_v = cell_voltage(remaining, above_knee) * self.voltage_v / cell_voltage_v(1.0);
+        let (open_squared, taken) = (open_v * open_v, power_w * (4.0 * self.resistance_ohm));
+        let overloaded = branches.exceeds(
+            Switch::Overloaded,
+            taken.value(),
+            open_squared.value(),
+            self.voltage_v * self.voltage_v,
+        );
+        // Not beyond the bound in either mode: there is no root there.
+        let root = if overloaded { T::zero() } else { (open_squared - taken).at_least(0.0).sqrt() };
         let voltage_v = (open_v + root) / 2.0;
-        let strongest_w = open_v * open_v / (4.0 * self.resistance_ohm);
-        BatteryOutput { voltage_v, current_a: power_w.min(strongest_w) / voltage_v, remaining }
+        let strongest_w = open_squared / (4.0 * self.resistance_ohm);
+        let drawn_w = if power_w.value() < strongest_w.value() { power_w } else { strongest_w };
+        BatteryOutput { voltage_v, current_a: drawn_w / voltage_v, remaining }
+    }
+
+    /// Remaining share of the charge, between nothing and all.
+    fn remaining<T: Real>(&self, discharge: T, branches: &mut impl Branches) -> T {
+        if branches.exceeds(Switch::Empty, discharge.value(), 1.0, 1.0) {
+            return T::zero();
+        }
+        // Nothing charges the pack: it does not come here from below.
+        if discharge.value() < 0.0 { T::one() } else { -discharge + 1.0 }
     }
 }
 
 impl Airframe {
     /// Electric power of rotors at these speeds, W: P = Σ k₂ Ω² Ω, drag torque times speed, over the efficiency of the drive.
-    pub fn electric_power_w(&self, rotor_speed_rad_s: &[f64; 4]) -> f64 {
+    pub fn electric_power_w<T: Real>(&self, rotor_speed_rad_s: &[T; 4]) -> T {
         let k2 = self.torque_coefficient_n_m_s2;
-        let mechanical_w: f64 =
-            rotor_speed_rad_s.iter().map(|speed| k2 * speed * speed * libm::fabs(*speed)).sum();
-        mechanical_w / DRIVE_EFFICIENCY
+        let powers_w = rotor_speed_rad_s.map(|speed| speed * k2 * speed * speed.abs());
+        powers_w.into_iter().fold(T::zero(), |sum, power| sum + power) / DRIVE_EFFICIENCY
     }
 
     /// Largest resistance of the battery, Ω, with which the full pack still turns the rotors in hover with `least` of the

@@ -1,17 +1,42 @@
 //! What pushes the vehicle from outside.
 
-use nalgebra::Vector3;
+use nalgebra::{Scalar, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::plant::differentiation::real::Real;
+
 /// Forces and torques from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
-pub struct Disturbance {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "T: Scalar + Serialize", deserialize = "T: Scalar + Deserialize<'de>"))]
+pub struct Disturbance<T = f64> {
     /// Force at the centre of mass, NED, N.
-    pub force_n: Vector3<f64>,
+    pub force_n: Vector3<T>,
     /// Torque, FRD, N·m.
-    pub torque_n_m: Vector3<f64>,
+    pub torque_n_m: Vector3<T>,
     /// Wind that drag is relative to, NED, m/s.
-    pub wind_m_s: Vector3<f64>,
+    pub wind_m_s: Vector3<T>,
+}
+
+/// None, in still air.
+impl<T: Real> Default for Disturbance<T> {
+    fn default() -> Self {
+        Self { force_n: Vector3::zeros(), torque_n_m: Vector3::zeros(), wind_m_s: Vector3::zeros() }
+    }
+}
+
+impl<T: Scalar + Copy> Disturbance<T> {
+    /// Made of each of the numbers of both disturbances.
+    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
+        &self,
+        other: &Disturbance<U>,
+        f: impl Fn(T, U) -> V,
+    ) -> Disturbance<V> {
+        Disturbance {
+            force_n: self.force_n.zip_map(&other.force_n, &f),
+            torque_n_m: self.torque_n_m.zip_map(&other.torque_n_m, &f),
+            wind_m_s: self.wind_m_s.zip_map(&other.wind_m_s, &f),
+        }
+    }
 }
 
 impl Disturbance {

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::plant::differentiation::real::{Real, constant};
 use crate::{Airframe, External, RigidBody};
 
 impl Airframe {
@@ -10,22 +11,22 @@ impl Airframe {
     /// f = −C (v − w) − R D Rᵀ (v − w), along the axes of the world and along those of the body: the second term is the drag
     /// of Faessler, Franchi, Scaramuzza 2018, "Differential flatness of quadrotor dynamics subject to rotor drag for accurate
     /// tracking of high-speed trajectories" (there per mass). It acts at the rotors' centre, whose velocity is v.
-    pub(crate) fn drag(&self, body: &RigidBody, wind_m_s: &Vector3<f64>) -> External {
+    pub(crate) fn drag<T: Real>(&self, body: &RigidBody<T>, wind_m_s: &Vector3<T>) -> External<T> {
         let mut airspeed = body.velocity_m_s - wind_m_s;
-        let centre = -Vector3::from(self.centre_of_gravity_m);
+        let centre: Vector3<T> = -constant::<T>(self.centre_of_gravity_m);
         if !self.is_centred() {
-            airspeed += body.rotation() * body.body_rate_rad_s.cross(&centre);
+            airspeed += body.orientation().in_world(&body.body_rate_rad_s.cross(&centre));
         }
-        let mut force_n = -Vector3::from(self.drag_n_s_m).component_mul(&airspeed);
+        let mut force_n = -constant::<T>(self.drag_n_s_m).component_mul(&airspeed);
         if self.body_drag_n_s_m != [0.0; 3] {
-            let rotation = body.rotation();
-            let along_body = rotation.inverse_transform_vector(&airspeed);
-            force_n -= rotation * Vector3::from(self.body_drag_n_s_m).component_mul(&along_body);
+            let orientation = body.orientation();
+            let along_body = orientation.in_body(&airspeed);
+            force_n -= orientation.in_world(&constant::<T>(self.body_drag_n_s_m).component_mul(&along_body));
         }
         let torque_n_m = if self.is_centred() {
             Vector3::zeros()
         } else {
-            centre.cross(&body.rotation().inverse_transform_vector(&force_n))
+            centre.cross(&body.orientation().in_body(&force_n))
         };
         External { force_n, torque_n_m }
     }

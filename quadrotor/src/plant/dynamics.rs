@@ -2,11 +2,14 @@
 
 use nalgebra::Vector3;
 
-use crate::plant::ground::{contact, is_held};
+use crate::plant::differentiation::real::Real;
+use crate::plant::events::branches::{Branches, ByValue};
+use crate::plant::forces::Forces;
+use crate::plant::ground::{HoldingMargins, cannot_be_held, contact};
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
 use crate::plant::rotor_forces::{RotorForces, Surroundings};
-use crate::{Airframe, BatteryOutput, Environment, External, Wrench};
+use crate::{Airframe, Environment, RotorFault};
 
 /// The vehicle without its controllers: equations and constants, no state.
 ///
@@ -41,93 +44,97 @@ impl Plant {
         &self.airframe
     }
 
-    /// Thrust and torques about the centre of mass that drive the body now: those of the rotors, or the ones in their place.
-    /// The torques of spinning rotors ([`RotorSpin`](crate::RotorSpin)) are not among them.
-    pub fn wrench(&self, state: &PlantState, inputs: &PlantInputs) -> Wrench {
-        self.loads(state, inputs).0
+    /// Whether there is ground at z = 0.
+    pub(crate) fn has_ground(&self) -> bool {
+        self.ground_plane
     }
 
-    /// What the battery gives now.
-    pub fn battery(&self, state: &PlantState) -> BatteryOutput {
-        let power_w = self.airframe.electric_power_w(&state.rotor_speed_rad_s);
-        self.airframe.battery.output(power_w, state.discharge)
-    }
-
-    /// Acceleration in NED, m/s²; none along the ground while static friction holds the vehicle.
-    pub fn acceleration_m_s2(&self, state: &PlantState, inputs: &PlantInputs) -> Vector3<f64> {
-        let acceleration = self.derivative(state, inputs).body.velocity_m_s;
-        if self.is_held(state, inputs) { Vector3::new(0.0, 0.0, acceleration.z) } else { acceleration }
-    }
-
-    /// f(x, u): the time derivative of the state. It is continuous and has no memory, so that any integrator can use it. Its
-    /// slope jumps where a foot touches the ground, where a rotor with different lags meets its command, and where the
-    /// thrust or the voltage reaches a bound.
+    /// f(x, u): the time derivative of the state. It has no memory, so that any integrator can use it. Where a foot comes to the
+    /// ground with a vertical speed it jumps; its slope jumps where a foot begins to slip fast, where a rotor with different
+    /// lags meets its command, where the ground effect or the thrust of a rotor reaches a bound, and at the knee and the end of
+    /// the battery's charge and at its greatest power. [`Plant::derivative_in`] is smooth between [events](Plant::event).
+    ///
     /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
     /// [`Plant::step`] adds the rule that holds it still.
-    pub fn derivative(&self, state: &PlantState, inputs: &PlantInputs) -> PlantState {
-        let airframe = &self.airframe;
-        let (wrench, mut external) = self.loads(state, inputs);
+    pub fn derivative<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantState<T> {
+        self.forces(state, inputs, &mut ByValue).derivative(&self.airframe, state)
+    }
+
+    /// All that acts on the plant.
+    pub(crate) fn forces<T: Real>(
+        &self,
+        state: &PlantState<T>,
+        inputs: &PlantInputs<T>,
+        branches: &mut impl Branches,
+    ) -> Forces<T> {
+        let mut forces = self.loads(state, inputs, branches);
         if self.ground_plane {
-            let ground = contact(airframe, &state.body);
-            external.force_n += ground.force_n;
-            external.torque_n_m += ground.torque_n_m;
+            let ground = contact(&self.airframe, &state.body, branches);
+            forces.external.force_n += ground.force_n;
+            forces.external.torque_n_m += ground.torque_n_m;
         }
-        PlantState {
-            body: state.body.derivative(airframe, &wrench, &external),
-            rotor_speed_rad_s: self.rotor_acceleration_rad_s2(state, inputs),
-            discharge: self.discharge_rate(state, inputs),
-        }
+        forces
     }
 
-    /// ω̇ = (ω_goal − ω) / τ, as far as the rotors are sound.
-    fn rotor_acceleration_rad_s2(&self, state: &PlantState, inputs: &PlantInputs) -> [f64; 4] {
-        let Actuation::RotorSpeeds(mut command_rad_s) = inputs.actuation else { return [0.0; 4] };
-        if self.airframe.battery.sag {
-            let share = self.airframe.battery.speed_share(self.battery(state).voltage_v);
-            command_rad_s = command_rad_s.map(|command| command * share);
-        }
-        core::array::from_fn(|rotor| {
-            let present = state.rotor_speed_rad_s[rotor];
-            let goal = match inputs.rotor_faults[rotor] {
-                Some(fault) => fault.goal_rad_s(command_rad_s[rotor], present),
-                None => command_rad_s[rotor],
-            };
-            (goal - present) / self.airframe.lag_s(goal, present)
-        })
-    }
-
-    /// Share of the battery's charge that is drawn per second.
-    fn discharge_rate(&self, state: &PlantState, inputs: &PlantInputs) -> f64 {
-        match inputs.actuation {
-            Actuation::RotorSpeeds(_) if self.airframe.battery.sag => {
-                self.battery(state).current_a / self.airframe.battery.capacity_a_s
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// All that acts on the body but gravity and the ground: thrust and torques that drive it, and the rest.
-    fn loads(&self, state: &PlantState, inputs: &PlantInputs) -> (Wrench, External) {
+    /// All that acts on the plant but the ground: thrust and torques that drive it, and the rest.
+    pub(crate) fn loads<T: Real>(
+        &self,
+        state: &PlantState<T>,
+        inputs: &PlantInputs<T>,
+        branches: &mut impl Branches,
+    ) -> Forces<T> {
         let (airframe, disturbance) = (&self.airframe, &inputs.disturbance);
         let mut external = airframe.drag(&state.body, &disturbance.wind_m_s);
         external.force_n += disturbance.force_n;
         external.torque_n_m += disturbance.torque_n_m;
-        if let Actuation::Wrench(wrench) = inputs.actuation {
-            return (wrench, external);
-        }
+        let command_rad_s = match &inputs.actuation {
+            Actuation::RotorSpeeds(command_rad_s) => command_rad_s,
+            Actuation::Wrench(wrench) => return Forces::without_rotors(*wrench, external),
+        };
+        let (rotor_acceleration_rad_s2, discharge_per_s) =
+            self.drive(state, command_rad_s, &inputs.rotor_faults, branches);
         let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_plane: self.ground_plane };
-        let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around);
+        let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around, branches);
         if lateral_n != Vector3::zeros() {
-            external.force_n += state.body.rotation() * lateral_n;
+            external.force_n += state.body.orientation().in_world(&lateral_n);
         }
         if airframe.rotor_spin.inertia_kg_m2 > 0.0 {
             external.torque_n_m += airframe.spin_torque_n_m(
                 &state.body.body_rate_rad_s,
                 &state.rotor_speed_rad_s,
-                &self.rotor_acceleration_rad_s2(state, inputs),
+                &rotor_acceleration_rad_s2,
             );
         }
-        (wrench, external)
+        Forces { wrench, external, rotor_acceleration_rad_s2, discharge_per_s }
+    }
+
+    /// Accelerations of the rotors, rad/s², ω̇ = (ω_goal − ω) / τ as far as they are sound, and the share of the battery's charge
+    /// that is drawn per second.
+    fn drive<T: Real>(
+        &self,
+        state: &PlantState<T>,
+        command_rad_s: &[T; 4],
+        faults: &[Option<RotorFault>; 4],
+        branches: &mut impl Branches,
+    ) -> ([T; 4], T) {
+        let (mut command_rad_s, mut discharge_per_s) = (*command_rad_s, T::zero());
+        let pack = &self.airframe.battery;
+        if pack.sag {
+            let power_w = self.airframe.electric_power_w(&state.rotor_speed_rad_s);
+            let battery = pack.output_in(power_w, state.discharge, branches);
+            let share = pack.speed_share(battery.voltage_v);
+            command_rad_s = command_rad_s.map(|command| command * share);
+            discharge_per_s = battery.current_a / pack.capacity_a_s;
+        }
+        let accelerations = core::array::from_fn(|rotor| {
+            let present = state.rotor_speed_rad_s[rotor];
+            let goal = match faults[rotor] {
+                Some(fault) => fault.goal_rad_s(command_rad_s[rotor], present),
+                None => command_rad_s[rotor],
+            };
+            (goal - present) / self.airframe.lag_s(goal.value(), present.value())
+        });
+        (accelerations, discharge_per_s)
     }
 
     /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
@@ -135,42 +142,55 @@ impl Plant {
     /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
     /// 0.1 m/s, and is pulled along the ground by less than μ N (μ = 0.7) keeps its place and heading exactly, while it may
     /// still sink or tilt on its feet. Pulled by more, it slips.
-    pub fn step(&self, state: &PlantState, inputs: &PlantInputs, h_s: f64) -> PlantState {
+    pub fn step<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>, h_s: f64) -> PlantState<T> {
         if !self.is_held(state, inputs) {
             return runge_kutta(state, h_s, |state| self.derivative(state, inputs));
         }
         let mut still = *state;
         hold(&mut still);
-        runge_kutta(&still, h_s, |state| {
-            let mut derivative = self.derivative(state, inputs);
-            (derivative.body.position_m.x, derivative.body.position_m.y) = (0.0, 0.0);
-            hold(&mut derivative);
-            derivative
-        })
+        runge_kutta(&still, h_s, |state| held(self.derivative(state, inputs)))
     }
 
     /// Whether static friction holds the vehicle where it is.
-    fn is_held(&self, state: &PlantState, inputs: &PlantInputs) -> bool {
-        if !self.ground_plane {
+    pub(crate) fn is_held<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
+        if !self.ground_plane || cannot_be_held(&self.airframe, &state.body) {
             return false;
         }
+        let (state, inputs) = (state.zip_map(state, |x, _| x.value()), inputs.values());
+        self.holding_margins(&state, &inputs).is_held()
+    }
+
+    /// How far static friction is from letting the vehicle go, or from holding it.
+    pub(crate) fn holding_margins(&self, state: &PlantState, inputs: &PlantInputs) -> HoldingMargins {
         // What it would be pulled by at rest.
         let mut still = *state;
         hold(&mut still);
-        let (wrench, mut pull) = self.loads(&still, inputs);
-        pull.force_n += still.body.rotation() * Vector3::new(0.0, 0.0, -wrench.thrust_n);
+        let Forces { wrench, external: mut pull, .. } = self.loads(&still, inputs, &mut ByValue);
+        let thrust_n = Vector3::new(0.0, 0.0, -wrench.thrust_n);
+        pull.force_n += still.body.orientation().in_world(&thrust_n);
         pull.torque_n_m += wrench.torque_n_m;
-        is_held(&self.airframe, &state.body, &pull)
+        HoldingMargins::new(&self.airframe, &state.body, &pull)
     }
 }
 
 /// Stops the motion along the ground, or its change.
-fn hold(state: &mut PlantState) {
+pub(crate) fn hold<T: Real>(state: &mut PlantState<T>) {
     let body = &mut state.body;
-    (body.velocity_m_s.x, body.velocity_m_s.y, body.body_rate_rad_s.z) = (0.0, 0.0, 0.0);
+    (body.velocity_m_s.x, body.velocity_m_s.y, body.body_rate_rad_s.z) = (T::zero(), T::zero(), T::zero());
 }
 
-fn runge_kutta(state: &PlantState, h_s: f64, f: impl Fn(&PlantState) -> PlantState) -> PlantState {
+/// The derivative of what is held.
+pub(crate) fn held<T: Real>(mut derivative: PlantState<T>) -> PlantState<T> {
+    (derivative.body.position_m.x, derivative.body.position_m.y) = (T::zero(), T::zero());
+    hold(&mut derivative);
+    derivative
+}
+
+fn runge_kutta<T: Real>(
+    state: &PlantState<T>,
+    h_s: f64,
+    f: impl Fn(&PlantState<T>) -> PlantState<T>,
+) -> PlantState<T> {
     let k1 = f(state);
     let k2 = f(&state.plus(&k1, h_s / 2.0));
     let k3 = f(&state.plus(&k2, h_s / 2.0));

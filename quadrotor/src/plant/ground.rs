@@ -1,7 +1,11 @@
 //! Contact with a ground plane at z = 0.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
+use crate::plant::differentiation::real::{Real, constant};
+use crate::plant::events::branches::{Branches, ByValue};
+use crate::plant::events::switch::Switch;
+use crate::plant::orientation::Orientation;
 use crate::plant::plant_state::PlantState;
 use crate::plant::rigid_body::{External, RigidBody};
 use crate::{Airframe, GRAVITY_M_S2, InitialState};
@@ -22,42 +26,101 @@ const DEEPEST_START_M: f64 = 0.01;
 /// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one below, or above, each rotor, level with
 /// the centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
 ///
-/// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`is_held`] decides when static
-/// friction holds the vehicle instead.
-pub(crate) fn contact(airframe: &Airframe, body: &RigidBody) -> External {
+/// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`HoldingMargins`] decide when
+/// static friction holds the vehicle instead.
+pub(crate) fn contact<T: Real>(
+    airframe: &Airframe,
+    body: &RigidBody<T>,
+    branches: &mut impl Branches,
+) -> External<T> {
     let mut total = External::default();
-    if is_above(airframe, body) {
+    if may_skip(branches) && is_above(airframe, body) {
         return total;
     }
-    let rotation = body.rotation();
-    for foot in feet(airframe) {
-        let Some((normal, velocity)) = footing(airframe, body, &rotation, &foot) else { continue };
-        let slip = libm::hypot(velocity.x, velocity.y);
-        let friction = FRICTION_COEFFICIENT * normal / slip.max(FRICTION_SLIP_M_S);
-        let force = Vector3::new(-friction * velocity.x, -friction * velocity.y, -normal);
+    let orientation = body.orientation();
+    for (index, foot) in feet(airframe).into_iter().enumerate() {
+        let foot = constant(foot);
+        let depth = depth_m(body, &orientation, &foot);
+        if may_skip(branches) && depth.value() <= 0.0 {
+            continue;
+        }
+        let footing = Footing::new(airframe, body, &orientation, &foot, depth);
+        let Some(normal) = footing.normal_n(airframe, index, branches) else { continue };
+        let (x, y) = (footing.velocity_m_s.x, footing.velocity_m_s.y);
+        let slip = x.hypot(y);
+        let slides =
+            branches.exceeds(Switch::Slides(index), slip.value(), FRICTION_SLIP_M_S, FRICTION_SLIP_M_S);
+        let limit = normal * FRICTION_COEFFICIENT;
+        let friction = if slides { limit / slip } else { limit / FRICTION_SLIP_M_S };
+        let force = Vector3::new(-friction * x, -friction * y, -normal);
         total.force_n += force;
-        total.torque_n_m += foot.cross(&rotation.inverse_transform_vector(&force));
+        total.torque_n_m += foot.cross(&orientation.in_body(&force));
     }
     total
 }
 
-/// Whether static friction holds the vehicle where it is: all feet carry load, it slips more slowly than sliding friction
-/// needs to develop, and the feet together can take the `pull`, which is all force and torque but the ground's and gravity.
-pub(crate) fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
-    let reach_m = reach_m(airframe);
-    let slip_m_s = body.velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z) * reach_m;
-    if is_above(airframe, body) || slip_m_s >= FRICTION_SLIP_M_S {
-        return false;
+/// Whether what is off by its value need not be looked at.
+fn may_skip<B: Branches>(_: &B) -> bool {
+    B::BY_VALUE
+}
+
+/// How far static friction is from letting the vehicle go, or from holding it.
+pub(crate) struct HoldingMargins {
+    /// By how much it slips more slowly than sliding friction needs to develop, m/s; nothing is held from zero on.
+    pub(crate) slip_m_s: f64,
+    /// What the foot with the least load bears, N; nothing is held from zero down.
+    pub(crate) least_load_n: f64,
+    /// What the feet can take beyond the pull, N; nothing is held below zero.
+    pub(crate) grip_n: f64,
+}
+
+impl HoldingMargins {
+    /// Of a body under a `pull`, which is all force and torque but the ground's and gravity: all feet must carry load, it must
+    /// slip more slowly than sliding friction needs to develop, and the feet together must be able to take the pull.
+    pub(crate) fn new(airframe: &Airframe, body: &RigidBody, pull: &External) -> Self {
+        let orientation = body.orientation();
+        let footings = feet(airframe).map(|foot| {
+            Footing::new(airframe, body, &orientation, &foot, depth_m(body, &orientation, &foot))
+        });
+        let load_n: f64 = footings
+            .iter()
+            .enumerate()
+            .map(|(index, footing)| footing.normal_n(airframe, index, &mut ByValue).unwrap_or(0.0))
+            .sum();
+        // A foot at the nearest rotor bears |f|/4 + |τ|/4r of at most μ N/4. With an offset centre of gravity the feet bear
+        // unequal loads, and this is an approximation.
+        let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
+        let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
+        Self {
+            slip_m_s: FRICTION_SLIP_M_S - slip_m_s(airframe, body),
+            least_load_n: footings.iter().map(Footing::pressing_n).fold(f64::INFINITY, f64::min),
+            grip_n: FRICTION_COEFFICIENT * load_n - demand_n,
+        }
     }
-    let rotation = body.rotation();
-    let normals = feet(airframe)
-        .map(|foot| footing(airframe, body, &rotation, &foot).map_or(0.0, |(normal, _)| normal));
-    // A foot at the nearest rotor bears |f|/4 + |τ|/4r of at most μ N/4. With an offset centre of gravity the feet bear
-    // unequal loads, and this is an approximation.
-    let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
-    let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
-    let load_n: f64 = normals.iter().sum();
-    normals.iter().all(|normal| *normal > 0.0) && demand_n <= FRICTION_COEFFICIENT * load_n
+
+    /// Whether static friction holds the vehicle where it is.
+    pub(crate) fn is_held(&self) -> bool {
+        self.slip_m_s > 0.0 && self.least_load_n > 0.0 && self.grip_n >= 0.0
+    }
+
+    /// The least of them, as a share of what is usual.
+    pub(crate) fn least(&self, airframe: &Airframe) -> f64 {
+        let weight_n = airframe.weight_n();
+        (self.slip_m_s / FRICTION_SLIP_M_S)
+            .min(4.0 * self.least_load_n / weight_n)
+            .min(self.grip_n / weight_n)
+    }
+}
+
+/// Whether the vehicle is so high, or so fast along the ground, that static friction cannot hold it under any pull.
+pub(crate) fn cannot_be_held<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> bool {
+    is_above(airframe, body) || slip_m_s(airframe, body) >= FRICTION_SLIP_M_S
+}
+
+/// How fast the outermost foot may slip along the ground, m/s.
+fn slip_m_s<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> f64 {
+    let velocity_m_s = body.velocity_m_s.map(T::value);
+    velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m(airframe)
 }
 
 /// The greatest z, NED, m, from which a flight can start above the ground with this initial attitude: there the lowest foot
@@ -70,47 +133,82 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) ->
 }
 
 /// Whether no foot can touch the ground in any attitude.
-fn is_above(airframe: &Airframe, body: &RigidBody) -> bool {
-    body.position_m.z < -reach_m(airframe)
+fn is_above<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> bool {
+    body.position_m.z.value() < -reach_m(airframe)
 }
 
 /// No foot is farther from the centre of mass, m.
+#[inline]
 fn reach_m(airframe: &Airframe) -> f64 {
     let [x, y, _] = airframe.centre_of_gravity_m;
     airframe.arm_length_m * airframe.layout.reach() + libm::hypot(x, y)
 }
 
 /// Feet in line with the rotors, FRD from the centre of mass, m.
+#[inline]
 fn feet(airframe: &Airframe) -> [Vector3<f64>; 4] {
     airframe.rotor_places_m().map(|place| Vector3::new(place.x, place.y, 0.0))
 }
 
-/// Load of a foot, N, and its velocity, NED, m/s, if it touches the ground.
-fn footing(
-    airframe: &Airframe,
-    body: &RigidBody,
-    rotation: &UnitQuaternion<f64>,
-    foot: &Vector3<f64>,
-) -> Option<(f64, Vector3<f64>)> {
-    let depth = body.position_m.z + (rotation * foot).z;
-    if depth <= 0.0 {
-        return None;
+/// How deep a foot, FRD from the centre of mass, m, is in the ground, m.
+fn depth_m<T: Real>(body: &RigidBody<T>, orientation: &Orientation<T>, foot: &Vector3<T>) -> T {
+    body.position_m.z + orientation.in_world(foot).z
+}
+
+/// No foot pushes harder, N: 200 g, so that a fall from any height stays a number.
+#[inline]
+fn strongest_n(airframe: &Airframe) -> f64 {
+    200.0 * airframe.mass_kg * GRAVITY_M_S2
+}
+
+/// A foot and the ground.
+struct Footing<T> {
+    /// Force of the spring, N: negative above the ground.
+    spring_n: T,
+    /// Force of spring and damper, N.
+    load_n: T,
+    /// NED, m/s.
+    velocity_m_s: Vector3<T>,
+}
+
+impl<T: Real> Footing<T> {
+    fn new(
+        airframe: &Airframe,
+        body: &RigidBody<T>,
+        orientation: &Orientation<T>,
+        foot: &Vector3<T>,
+        depth: T,
+    ) -> Self {
+        let mass = airframe.mass_kg / 4.0;
+        let stiffness = mass * CONTACT_FREQUENCY_RAD_S * CONTACT_FREQUENCY_RAD_S;
+        let damping = 2.0 * CONTACT_DAMPING_RATIO * mass * CONTACT_FREQUENCY_RAD_S;
+        let velocity_m_s = body.velocity_m_s + orientation.in_world(&body.body_rate_rad_s.cross(foot));
+        let spring_n = depth * stiffness;
+        Self { spring_n, load_n: spring_n + velocity_m_s.z * damping, velocity_m_s }
     }
-    let mass = airframe.mass_kg / 4.0;
-    let stiffness = mass * CONTACT_FREQUENCY_RAD_S * CONTACT_FREQUENCY_RAD_S;
-    let damping = 2.0 * CONTACT_DAMPING_RATIO * mass * CONTACT_FREQUENCY_RAD_S;
-    // A fall from any height stays a number: no foot pushes with more than 200 g.
-    let strongest = 200.0 * airframe.mass_kg * GRAVITY_M_S2;
-    let velocity = body.velocity_m_s + rotation * body.body_rate_rad_s.cross(foot);
-    // The ground only pushes.
-    Some(((stiffness * depth + damping * velocity.z).clamp(0.0, strongest), velocity))
+
+    /// What the foot presses with, N: positive on the ground, which only pushes.
+    fn pressing_n(&self) -> f64 {
+        self.spring_n.value().min(self.load_n.value())
+    }
+
+    /// What the foot presses with, N, if it does.
+    fn normal_n(&self, airframe: &Airframe, index: usize, branches: &mut impl Branches) -> Option<T> {
+        let strongest = strongest_n(airframe);
+        if !branches.exceeds(Switch::Bears(index), self.pressing_n(), 0.0, airframe.weight_n() / 4.0) {
+            return None;
+        }
+        let hardest = branches.exceeds(Switch::Hardest(index), self.load_n.value(), strongest, strongest);
+        Some(if hardest { T::constant(strongest) } else { self.load_n })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
-    use super::{contact, is_held};
+    use super::{HoldingMargins, contact};
+    use crate::plant::events::branches::ByValue;
     use crate::{Airframe, Direction, External, GRAVITY_M_S2, RigidBody, Rotor, RotorLayout};
 
     /// Two long arms and two short ones: reach 2 and nearest 0.5 arm lengths of 0.5 m.
@@ -133,7 +231,7 @@ mod tests {
     }
 
     fn force(depth_m: f64, velocity_m_s: [f64; 3]) -> Vector3<f64> {
-        let ground = contact(&airframe(), &level(depth_m, velocity_m_s));
+        let ground = contact(&airframe(), &level(depth_m, velocity_m_s), &mut ByValue);
         assert!(ground.torque_n_m.norm() < 1e-9 * (1.0 + ground.force_n.norm()), "level feet share a load");
         ground.force_n
     }
@@ -174,15 +272,19 @@ mod tests {
         let depth = 0.01;
         let mut body = level(depth - 0.25 * libm::sin(roll), [0.0; 3]);
         body.attitude = rotation.into_inner();
-        let ground = contact(&airframe(), &body);
+        let ground = contact(&airframe(), &body, &mut ByValue);
         let load = 0.5 * 2500.0 * depth;
         assert!((ground.force_n - Vector3::new(0.0, 0.0, -load)).norm() < 1e-9, "{ground:?}");
         let torque = Vector3::new(-0.25 * load * libm::cos(roll), 0.0, 0.0);
         assert!((ground.torque_n_m - torque).norm() < 1e-9, "{ground:?}");
         // A rate about the down axis moves that foot backwards, and friction pulls it forward.
         body.body_rate_rad_s.z = 1.0;
-        let spun = contact(&airframe(), &body);
+        let spun = contact(&airframe(), &body, &mut ByValue);
         assert!((spun.force_n.x - 0.7 * load).abs() < 1e-9 && spun.torque_n_m.z < 0.0, "{spun:?}");
+    }
+
+    fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
+        HoldingMargins::new(airframe, body, pull).is_held()
     }
 
     fn pull(force_n: f64, torque_n_m: f64) -> External {

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::Airframe;
+use crate::plant::differentiation::real::{Real, constant};
 
 /// How far rounding may carry the largest principal moment beyond the sum of the other two, as a share of that sum: of a
 /// flat plate it is exactly the sum.
@@ -32,23 +33,24 @@ impl Airframe {
     }
 
     /// Whether the body axes are the principal axes.
+    #[inline]
     pub(crate) fn has_principal_axes(&self) -> bool {
         self.products_of_inertia_kg_m2 == [0.0; 3]
     }
 
     /// Angular acceleration of the body, FRD, rad/s², at a body rate, rad/s, under a torque, N·m: Euler's equation
     /// J ω̇ = τ − ω × Jω, the second line of (3).
-    pub(crate) fn angular_acceleration_rad_s2(
+    pub(crate) fn angular_acceleration_rad_s2<T: Real>(
         &self,
-        rate_rad_s: &Vector3<f64>,
-        torque_n_m: &Vector3<f64>,
-    ) -> Vector3<f64> {
+        rate_rad_s: &Vector3<T>,
+        torque_n_m: &Vector3<T>,
+    ) -> Vector3<T> {
         if self.has_principal_axes() {
-            let moments = Vector3::from(self.inertia_kg_m2);
+            let moments: Vector3<T> = constant(self.inertia_kg_m2);
             let torque = torque_n_m - rate_rad_s.cross(&moments.component_mul(rate_rad_s));
             return torque.component_div(&moments);
         }
-        let inertia = self.inertia_tensor_kg_m2();
+        let inertia = self.inertia_tensor_kg_m2().map(T::constant);
         let torque = torque_n_m - rate_rad_s.cross(&(inertia * rate_rad_s));
         // Cramer's rule. A singular tensor, which validation refuses, gives values that are not finite.
         let [x, y, z] = [0, 1, 2].map(|index| inertia.column(index).into_owned());

@@ -2,13 +2,18 @@
 
 pub(crate) mod airframe;
 pub(crate) mod battery_pack;
+pub(crate) mod differentiation;
 pub(crate) mod disturbance;
 pub(crate) mod drag;
 pub(crate) mod dynamics;
+pub(crate) mod events;
+pub(crate) mod forces;
 pub(crate) mod ground;
 pub(crate) mod inertia;
+pub(crate) mod orientation;
 pub(crate) mod overload;
 pub(crate) mod plant_inputs;
+pub(crate) mod plant_outputs;
 pub(crate) mod plant_state;
 pub(crate) mod presets;
 pub(crate) mod rigid_body;

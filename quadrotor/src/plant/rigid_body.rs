@@ -1,69 +1,95 @@
 //! The six-degree-of-freedom rigid body (2)–(3), with a quaternion in place of the Euler angles.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, Scalar, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::plant::differentiation::real::Real;
+use crate::plant::orientation::{Orientation, times_imaginary};
 use crate::{Airframe, GRAVITY_M_S2, Wrench};
 
 /// Position and velocity in NED, attitude FRD into NED, body rates in FRD.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RigidBody {
+#[serde(bound(serialize = "T: Scalar + Serialize", deserialize = "T: Scalar + Deserialize<'de>"))]
+pub struct RigidBody<T: Scalar = f64> {
     /// x, y, z, m.
-    pub position_m: Vector3<f64>,
+    pub position_m: Vector3<T>,
     /// Velocity in NED, m/s.
-    pub velocity_m_s: Vector3<f64>,
+    pub velocity_m_s: Vector3<T>,
     /// Hamilton quaternion, unit but for rounding inside an integration step.
-    pub attitude: Quaternion<f64>,
+    pub attitude: Quaternion<T>,
     /// p, q, r, rad/s.
-    pub body_rate_rad_s: Vector3<f64>,
+    pub body_rate_rad_s: Vector3<T>,
 }
 
 /// External force in NED, N, and torque in FRD, N·m, other than gravity and rotors.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub struct External {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct External<T = f64> {
     /// NED, N.
-    pub force_n: Vector3<f64>,
+    pub force_n: Vector3<T>,
     /// FRD, N·m.
-    pub torque_n_m: Vector3<f64>,
+    pub torque_n_m: Vector3<T>,
+}
+
+/// None.
+impl<T: Real> Default for External<T> {
+    fn default() -> Self {
+        Self { force_n: Vector3::zeros(), torque_n_m: Vector3::zeros() }
+    }
+}
+
+impl<T: Real> RigidBody<T> {
+    /// Time derivative under rotor wrench and external force and torque.
+    pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench<T>, external: &External<T>) -> Self {
+        let rate = self.body_rate_rad_s;
+        let torque = rotors.torque_n_m + external.torque_n_m;
+        Self {
+            position_m: self.velocity_m_s,
+            velocity_m_s: self.acceleration_m_s2(airframe, rotors.thrust_n, &external.force_n),
+            // q̇ = ½ q ⊗ [0, p, q, r]: the second line of (2) without its singularity at θ = ±90°
+            attitude: Quaternion { coords: times_imaginary(&self.attitude, &rate).coords * T::constant(0.5) },
+            body_rate_rad_s: airframe.angular_acceleration_rad_s2(&rate, &torque),
+        }
+    }
+
+    /// Acceleration, NED, m/s², under a thrust and an external force, NED, N.
+    pub(crate) fn acceleration_m_s2(
+        &self,
+        airframe: &Airframe,
+        thrust_n: T,
+        force_n: &Vector3<T>,
+    ) -> Vector3<T> {
+        // World frame NED: v̇ = g e₃ − (F/m) R e₃ + f/m. With v = R [u v w]ᵀ this is the first line of (3), R is that of (2).
+        let thrust = self.orientation().in_world(&Vector3::new(T::zero(), T::zero(), -thrust_n));
+        let gravity = Vector3::new(T::zero(), T::zero(), T::constant(GRAVITY_M_S2));
+        gravity + (thrust + force_n) / T::constant(airframe.mass_kg)
+    }
+
+    /// The rotation FRD into NED. Inside an integration step the quaternion is not exactly unit: it is normalised.
+    pub(crate) fn orientation(&self) -> Orientation<T> {
+        Orientation::new(&self.attitude)
+    }
+}
+
+impl<T: Scalar + Copy> RigidBody<T> {
+    /// Made of each of the numbers of both bodies.
+    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
+        &self,
+        other: &RigidBody<U>,
+        f: impl Fn(T, U) -> V,
+    ) -> RigidBody<V> {
+        RigidBody {
+            position_m: self.position_m.zip_map(&other.position_m, &f),
+            velocity_m_s: self.velocity_m_s.zip_map(&other.velocity_m_s, &f),
+            attitude: Quaternion { coords: self.attitude.coords.zip_map(&other.attitude.coords, &f) },
+            body_rate_rad_s: self.body_rate_rad_s.zip_map(&other.body_rate_rad_s, &f),
+        }
+    }
 }
 
 impl RigidBody {
     /// The rotation FRD into NED.
     pub fn rotation(&self) -> UnitQuaternion<f64> {
         UnitQuaternion::new_normalize(self.attitude)
-    }
-
-    /// Time derivative under rotor wrench and external force and torque.
-    pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench, external: &External) -> Self {
-        // R of (2). Inside an integration step the quaternion is not exactly unit: normalise.
-        let rotation = self.rotation();
-        let rate = self.body_rate_rad_s;
-
-        // World frame NED: v̇ = g e₃ − (F/m) R e₃ + f/m. With v = R [u v w]ᵀ this is the first line of (3).
-        let thrust = rotation * Vector3::new(0.0, 0.0, -rotors.thrust_n);
-        let acceleration =
-            Vector3::new(0.0, 0.0, GRAVITY_M_S2) + (thrust + external.force_n) / airframe.mass_kg;
-
-        // q̇ = ½ q ⊗ [0, p, q, r]: the second line of (2) without its singularity at θ = ±90°
-        let attitude_rate = self.attitude * Quaternion::from_imag(rate) * 0.5;
-
-        let torque = rotors.torque_n_m + external.torque_n_m;
-        Self {
-            position_m: self.velocity_m_s,
-            velocity_m_s: acceleration,
-            attitude: attitude_rate,
-            body_rate_rad_s: airframe.angular_acceleration_rad_s2(&rate, &torque),
-        }
-    }
-
-    /// self + h · derivative, each component for itself.
-    pub(crate) fn plus(&self, derivative: &Self, h: f64) -> Self {
-        Self {
-            position_m: self.position_m + derivative.position_m * h,
-            velocity_m_s: self.velocity_m_s + derivative.velocity_m_s * h,
-            attitude: self.attitude + derivative.attitude * h,
-            body_rate_rad_s: self.body_rate_rad_s + derivative.body_rate_rad_s * h,
-        }
     }
 
     /// Whether a vehicle can have this motion: it is finite and has an attitude.
@@ -90,16 +116,6 @@ mod tests {
             attitude: Quaternion::new(1.0, 0.0, 0.0, 0.0),
             body_rate_rad_s: Vector3::new(7.0, 8.0, 9.0),
         }
-    }
-
-    #[test]
-    fn a_step_adds_a_multiple_of_each_component() {
-        let derivative = RigidBody { attitude: Quaternion::new(0.0, 2.0, 4.0, 6.0), ..body() };
-        let next = body().plus(&derivative, 0.5);
-        assert_eq!(next.position_m, Vector3::new(1.5, 3.0, 4.5));
-        assert_eq!(next.velocity_m_s, Vector3::new(6.0, 7.5, 9.0));
-        assert_eq!(next.attitude, Quaternion::new(1.0, 1.0, 2.0, 3.0));
-        assert_eq!(next.body_rate_rad_s, Vector3::new(10.5, 12.0, 13.5));
     }
 
     #[test]

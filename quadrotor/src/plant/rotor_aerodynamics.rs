@@ -4,6 +4,10 @@ use core::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::plant::differentiation::real::Real;
+use crate::plant::events::branches::Branches;
+use crate::plant::events::switch::Switch;
+
 /// Density of the air at sea level in the international standard atmosphere, kg/m³.
 const AIR_DENSITY_KG_M3: f64 = 1.225;
 /// Largest thrust as a multiple of the static one at the same speed: the linear inflow ends in the vortex ring state, and
@@ -12,6 +16,8 @@ const MOST_THRUST: f64 = 1.5;
 /// Closest distance to the ground that Cheeseman and Bennett's image holds for, rotor radii; below it the effect is that
 /// there.
 const CLOSEST_RADII: f64 = 0.5;
+/// What differences of thrusts are compared with, N.
+const THRUST_N: f64 = 1.0;
 
 /// Aerodynamic coefficients of one rotor, all for a hub that moves through the air. The default leaves everything out, as
 /// the paper does.
@@ -59,6 +65,7 @@ impl Default for RotorAerodynamics {
 
 impl RotorAerodynamics {
     /// Whether a rotor makes k₁Ω² along its axis and nothing else, wherever it is and however it moves.
+    #[inline]
     pub(crate) fn is_static(&self) -> bool {
         let Self {
             drag_coefficient_n_s2_m: drag,
@@ -70,42 +77,62 @@ impl RotorAerodynamics {
         [drag, inflow, lift] == [0.0; 3] && !ground_effect
     }
 
-    /// Thrust, N, of a rotor that makes `static_n` at rest, turns with `speed_rad_s`, climbs with `climb_m_s` along its axis
-    /// and has the squared lateral airspeed `lateral_m2_s2`.
-    pub(crate) fn thrust_n(
+    /// Thrust, N, of the rotor at `index`, which makes `static_n` at rest, turns with `speed_rad_s`, climbs with `climb_m_s`
+    /// along its axis and has the squared lateral airspeed `lateral_m2_s2`.
+    pub(crate) fn thrust_n<T: Real>(
         &self,
-        static_n: f64,
-        speed_rad_s: f64,
-        climb_m_s: f64,
-        lateral_m2_s2: f64,
-    ) -> f64 {
-        let lost_n = self.inflow_coefficient_n_s2_m * speed_rad_s * climb_m_s;
-        let gained_n = self.translational_lift_coefficient_n_s2_m2 * lateral_m2_s2;
-        (static_n - lost_n + gained_n).min(MOST_THRUST * static_n).max(0.0)
+        index: usize,
+        [static_n, speed_rad_s, climb_m_s, lateral_m2_s2]: [T; 4],
+        branches: &mut impl Branches,
+    ) -> T {
+        let lost_n = speed_rad_s * self.inflow_coefficient_n_s2_m * climb_m_s;
+        let gained_n = lateral_m2_s2 * self.translational_lift_coefficient_n_s2_m2;
+        let (thrust_n, most_n) = (static_n - lost_n + gained_n, static_n * MOST_THRUST);
+        if branches.exceeds(Switch::MostThrust(index), thrust_n.value(), most_n.value(), THRUST_N) {
+            return most_n;
+        }
+        if branches.exceeds(Switch::NoThrust(index), 0.0, thrust_n.value(), THRUST_N) {
+            T::zero()
+        } else {
+            thrust_n
+        }
     }
 
-    /// By how much the ground multiplies `thrust_n` of a rotor whose hub is `height_m` above it and whose axis leans from the
-    /// vertical by an angle with the cosine `upright`.
+    /// By how much the ground multiplies `thrust_n` of the rotor at `index`, whose hub is `height_m` above it and whose axis
+    /// leans from the vertical by an angle with the cosine `upright`.
     ///
     /// T/T∞ = 1/(1 − (R/4z)²/(1 + (V/v_i)²)) with the induced velocity v_i = √(T/2ρπR²) and the lateral airspeed V (Cheeseman
     /// and Bennett 1955, "The effect of the ground on a helicopter rotor in forward flight", ARC R&M 3021). z is measured
     /// along the axis of the rotor, which has no ground below it when it points down. Below half a radius the ratio stays at
     /// 4/3.
-    pub(crate) fn ground_ratio(&self, thrust_n: f64, height_m: f64, upright: f64, lateral_m2_s2: f64) -> f64 {
-        if !self.ground_effect || upright <= 0.0 || thrust_n <= 0.0 {
-            return 1.0;
+    pub(crate) fn ground_ratio<T: Real>(
+        &self,
+        index: usize,
+        [thrust_n, height_m, upright, lateral_m2_s2]: [T; 4],
+        branches: &mut impl Branches,
+    ) -> T {
+        if !self.ground_effect || !branches.exceeds(Switch::Upright, upright.value(), 0.0, 1.0) {
+            return T::one();
         }
-        let distance_m = (height_m / upright).max(CLOSEST_RADII * self.radius_m);
-        let image = self.radius_m / (4.0 * distance_m);
+        let closest_m = CLOSEST_RADII * self.radius_m;
+        let aslant_m = height_m / upright.at_least(f64::MIN_POSITIVE);
+        let close = branches.exceeds(Switch::NearGround(index), closest_m, aslant_m.value(), self.radius_m);
+        if thrust_n.value() <= 0.0 {
+            return T::one();
+        }
+        // Not beyond the bound in either mode: the image has a pole there.
+        let distance_m = if close { T::constant(closest_m) } else { aslant_m.at_least(closest_m) };
+        let image = T::constant(self.radius_m) / (distance_m * 4.0);
         let disc_m2 = PI * self.radius_m * self.radius_m;
-        let below = thrust_n / (thrust_n + 2.0 * AIR_DENSITY_KG_M3 * disc_m2 * lateral_m2_s2);
-        1.0 / (1.0 - image * image * below)
+        let below = thrust_n / (thrust_n + lateral_m2_s2 * (2.0 * AIR_DENSITY_KG_M3 * disc_m2));
+        T::one() / (T::one() - image * image * below)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::RotorAerodynamics;
+    use crate::plant::events::branches::ByValue;
 
     const ROTOR: RotorAerodynamics = RotorAerodynamics {
         drag_coefficient_n_s2_m: 1e-4,
@@ -117,8 +144,9 @@ mod tests {
 
     #[test]
     fn a_climb_loses_thrust_and_forward_flight_gains_some_within_bounds() {
-        let thrust =
-            |speed: f64, climb: f64, lateral: f64| ROTOR.thrust_n(2.0, speed, climb, lateral * lateral);
+        let thrust = |speed: f64, climb: f64, lateral: f64| {
+            ROTOR.thrust_n(0, [2.0, speed, climb, lateral * lateral], &mut ByValue)
+        };
         assert_eq!(thrust(300.0, 0.0, 0.0), 2.0);
         assert!((thrust(300.0, 5.0, 0.0) - 1.7).abs() < 1e-15);
         assert!((thrust(300.0, -5.0, 0.0) - 2.3).abs() < 1e-15);
@@ -126,15 +154,16 @@ mod tests {
         assert_eq!(thrust(300.0, 50.0, 0.0), 0.0);
         assert_eq!(thrust(300.0, -50.0, 0.0), 3.0);
         // A rotor that stands still makes none.
-        assert_eq!(ROTOR.thrust_n(0.0, 0.0, -5.0, 100.0), 0.0);
+        assert_eq!(ROTOR.thrust_n(0, [0.0, 0.0, -5.0, 100.0], &mut ByValue), 0.0);
         assert!(!ROTOR.is_static() && RotorAerodynamics::default().is_static());
     }
 
     /// Cheeseman and Bennett's table: 16/15 at one radius, 64/63 at two, 4/3 at a half and below.
     #[test]
     fn the_ground_adds_thrust() {
-        let ratio =
-            |height: f64, upright: f64, speed: f64| ROTOR.ground_ratio(3.0, height, upright, speed * speed);
+        let ratio = |height: f64, upright: f64, speed: f64| {
+            ROTOR.ground_ratio(0, [3.0, height, upright, speed * speed], &mut ByValue)
+        };
         for (radii, expected) in
             [(1.0, 16.0 / 15.0), (2.0, 64.0 / 63.0), (0.5, 4.0 / 3.0), (0.0, 4.0 / 3.0), (-1.0, 4.0 / 3.0)]
         {
@@ -145,8 +174,8 @@ mod tests {
         // Aslant the ground is farther along the axis, and there is none above.
         assert!((ratio(0.2, 0.5, 0.0) - 64.0 / 63.0).abs() < 1e-15);
         assert_eq!(ratio(0.2, -0.5, 0.0), 1.0);
-        assert_eq!(ROTOR.ground_ratio(0.0, 0.2, 1.0, 0.0), 1.0);
+        assert_eq!(ROTOR.ground_ratio(0, [0.0, 0.2, 1.0, 0.0], &mut ByValue), 1.0);
         let off = RotorAerodynamics { ground_effect: false, ..ROTOR };
-        assert_eq!(off.ground_ratio(3.0, 0.2, 1.0, 0.0), 1.0);
+        assert_eq!(off.ground_ratio(0, [3.0, 0.2, 1.0, 0.0], &mut ByValue), 1.0);
     }
 }

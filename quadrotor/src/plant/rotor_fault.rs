@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::plant::differentiation::real::Real;
+
 /// What is wrong with a rotor. Disarmed, all of them come to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RotorFault {
@@ -18,9 +20,9 @@ pub enum RotorFault {
 
 impl RotorFault {
     /// The speed that the rotor goes to, rad/s, under a commanded speed and at its present speed.
-    pub(crate) fn goal_rad_s(self, command_rad_s: f64, present_rad_s: f64) -> f64 {
+    pub(crate) fn goal_rad_s<T: Real>(self, command_rad_s: T, present_rad_s: T) -> T {
         match self {
-            Self::Off => 0.0,
+            Self::Off => T::zero(),
             Self::Stuck => present_rad_s,
             // Thrust and drag torque go with ω².
             Self::Weak { share } => command_rad_s * libm::sqrt(share),

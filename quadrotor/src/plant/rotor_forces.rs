@@ -2,29 +2,36 @@
 
 use nalgebra::Vector3;
 
+use crate::plant::differentiation::real::{Real, constant};
+use crate::plant::events::branches::Branches;
 use crate::{Airframe, PlantState, Wrench, wrench_of_rotors};
 
 /// Forces of all rotors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct RotorForces {
+pub(crate) struct RotorForces<T> {
     /// Thrust along the rotors' axis, and all torques about the centre of mass.
-    pub(crate) wrench: Wrench,
+    pub(crate) wrench: Wrench<T>,
     /// Force in the plane of the rotors, FRD, N: their drag.
-    pub(crate) lateral_n: Vector3<f64>,
+    pub(crate) lateral_n: Vector3<T>,
 }
 
 /// The air around the rotors and the ground below.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surroundings {
+pub(crate) struct Surroundings<T> {
     /// NED, m/s.
-    pub(crate) wind_m_s: Vector3<f64>,
+    pub(crate) wind_m_s: Vector3<T>,
     /// Whether there is ground at z = 0.
     pub(crate) ground_plane: bool,
 }
 
-impl RotorForces {
+impl<T: Real> RotorForces<T> {
     /// Of the rotors of a plant in this state.
-    pub(crate) fn new(airframe: &Airframe, state: &PlantState, around: &Surroundings) -> Self {
+    pub(crate) fn new(
+        airframe: &Airframe,
+        state: &PlantState<T>,
+        around: &Surroundings<T>,
+        branches: &mut impl Branches,
+    ) -> Self {
         if airframe.is_centred() && airframe.rotor_aerodynamics.is_static() {
             let wrench = wrench_of_rotors(airframe, &state.rotor_speed_rad_s);
             return Self { wrench, lateral_n: Vector3::zeros() };
@@ -32,24 +39,27 @@ impl RotorForces {
         let (k1, k2) = (airframe.thrust_coefficient_n_s2, airframe.torque_coefficient_n_m_s2);
         let aerodynamics = &airframe.rotor_aerodynamics;
         let body = &state.body;
-        let rotation = body.rotation();
-        let upright = (rotation * Vector3::z()).z;
-        let airspeed = rotation.inverse_transform_vector(&(body.velocity_m_s - around.wind_m_s));
+        let orientation = body.orientation();
+        let upright = orientation.in_world(&Vector3::z()).z;
+        let airspeed = orientation.in_body(&(body.velocity_m_s - around.wind_m_s));
         let mut total = Self { wrench: Wrench::default(), lateral_n: Vector3::zeros() };
         let rotors = airframe.layout.rotors.iter().zip(airframe.rotor_places_m());
-        for ((rotor, place), speed) in rotors.zip(state.rotor_speed_rad_s) {
+        for (index, (rotor, place)) in rotors.enumerate() {
+            let (place, speed) = (constant(place), state.rotor_speed_rad_s[index]);
             let air = airspeed + body.body_rate_rad_s.cross(&place);
-            let lateral_m2_s2 = air.xy().norm_squared();
-            let mut thrust_n = aerodynamics.thrust_n(k1 * speed * speed, speed, -air.z, lateral_m2_s2);
+            let lateral_m2_s2 = air.x * air.x + air.y * air.y;
+            let mut thrust_n =
+                aerodynamics.thrust_n(index, [speed * k1 * speed, speed, -air.z, lateral_m2_s2], branches);
             if around.ground_plane {
-                let height_m = -(body.position_m.z + (rotation * place).z);
-                thrust_n *= aerodynamics.ground_ratio(thrust_n, height_m, upright, lateral_m2_s2);
+                let height_m = -(body.position_m.z + orientation.in_world(&place).z);
+                let there = [thrust_n, height_m, upright, lateral_m2_s2];
+                thrust_n *= aerodynamics.ground_ratio(index, there, branches);
             }
-            let drag = -aerodynamics.drag_coefficient_n_s2_m * speed;
-            let lateral_n = Vector3::new(drag * air.x, drag * air.y, 0.0);
+            let drag = speed * -aerodynamics.drag_coefficient_n_s2_m;
+            let lateral_n = Vector3::new(drag * air.x, drag * air.y, T::zero());
             total.wrench.thrust_n += thrust_n;
             total.wrench.torque_n_m += place.cross(&(lateral_n - Vector3::z() * thrust_n));
-            total.wrench.torque_n_m.z += rotor.direction.torque_sign() * k2 * speed * speed;
+            total.wrench.torque_n_m.z += speed * (rotor.direction.torque_sign() * k2) * speed;
             total.lateral_n += lateral_n;
         }
         total
@@ -61,9 +71,11 @@ mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
     use super::{RotorForces, Surroundings};
+    use crate::plant::events::branches::ByValue;
     use crate::{Airframe, InitialState, PlantState, RotorAerodynamics, wrench_of_rotors};
 
-    const CALM: Surroundings = Surroundings { wind_m_s: Vector3::new(0.0, 0.0, 0.0), ground_plane: true };
+    const CALM: Surroundings<f64> =
+        Surroundings { wind_m_s: Vector3::new(0.0, 0.0, 0.0), ground_plane: true };
 
     fn state(speeds: [f64; 4], velocity_m_s: [f64; 3]) -> PlantState {
         let initial = InitialState { velocity_m_s, position_m: [0.0, 0.0, -50.0], ..InitialState::default() };
@@ -85,7 +97,7 @@ mod tests {
         };
         let airframe = windmill(aerodynamics, [0.0; 3]);
         let speeds = [310.0, 240.0, 190.0, 280.0];
-        let forces = RotorForces::new(&airframe, &state(speeds, [0.0; 3]), &CALM);
+        let forces = RotorForces::new(&airframe, &state(speeds, [0.0; 3]), &CALM, &mut ByValue);
         let map = wrench_of_rotors(&airframe, &speeds);
         assert!((forces.wrench.thrust_n - map.thrust_n).abs() < 1e-14);
         assert!((forces.wrench.torque_n_m - map.torque_n_m).norm() < 1e-15);
@@ -97,7 +109,7 @@ mod tests {
     fn an_offset_centre_of_gravity_shifts_the_moment() {
         let airframe = windmill(RotorAerodynamics::default(), [0.02, -0.03, 0.05]);
         let speeds = [310.0, 240.0, 190.0, 280.0];
-        let forces = RotorForces::new(&airframe, &state(speeds, [1.0, 2.0, 3.0]), &CALM);
+        let forces = RotorForces::new(&airframe, &state(speeds, [1.0, 2.0, 3.0]), &CALM, &mut ByValue);
         let map = wrench_of_rotors(&airframe, &speeds);
         // A thrust behind the centre of mass, which is ahead, pitches down; one on its right rolls to the left.
         let expected = map.torque_n_m + Vector3::new(-0.03, -0.02, 0.0) * map.thrust_n;
@@ -112,19 +124,19 @@ mod tests {
             RotorAerodynamics { drag_coefficient_n_s2_m: 1e-4, ..RotorAerodynamics::default() };
         let airframe = windmill(aerodynamics, [0.0, 0.0, 0.05]);
         let mut moving = state([250.0; 4], [3.0, -4.0, 7.0]);
-        let forces = RotorForces::new(&airframe, &moving, &CALM);
+        let forces = RotorForces::new(&airframe, &moving, &CALM, &mut ByValue);
         assert!((forces.lateral_n - Vector3::new(-0.3, 0.4, 0.0)).norm() < 1e-15);
         // (0, 0, −0.05) × (−0.3, 0.4, 0)
         assert!((forces.wrench.torque_n_m - Vector3::new(0.02, 0.015, 0.0)).norm() < 1e-15);
         moving = state([250.0; 4], [0.0; 3]);
         moving.body.body_rate_rad_s.z = 2.0;
-        let turned = RotorForces::new(&airframe, &moving, &CALM).wrench.torque_n_m;
+        let turned = RotorForces::new(&airframe, &moving, &CALM, &mut ByValue).wrench.torque_n_m;
         assert!((turned - Vector3::new(0.0, 0.0, -0.1 * 0.275 * 0.275 * 2.0)).norm() < 1e-15, "{turned}");
         // In a wind of the same velocity nothing drags, however it leans.
         moving = state([250.0; 4], [3.0, -4.0, 7.0]);
         moving.body.attitude = UnitQuaternion::from_euler_angles(0.4, -0.3, 2.0).into_inner();
         let drifting = Surroundings { wind_m_s: moving.body.velocity_m_s, ground_plane: false };
-        assert_eq!(RotorForces::new(&airframe, &moving, &drifting).lateral_n.norm(), 0.0);
+        assert_eq!(RotorForces::new(&airframe, &moving, &drifting, &mut ByValue).lateral_n.norm(), 0.0);
     }
 
     /// A roll to the right lowers the right rotor: it descends, gains thrust, and damps the roll.
@@ -135,7 +147,7 @@ mod tests {
         let airframe = windmill(aerodynamics, [0.0; 3]);
         let mut rolling = state([250.0; 4], [0.0; 3]);
         rolling.body.body_rate_rad_s = Vector3::new(2.0, -1.0, 0.0);
-        let torque = RotorForces::new(&airframe, &rolling, &CALM).wrench.torque_n_m;
+        let torque = RotorForces::new(&airframe, &rolling, &CALM, &mut ByValue).wrench.torque_n_m;
         // Two rotors on each axis: 2 k_z Ω l² p
         let damping = 2.0 * 2e-4 * 250.0 * 0.275 * 0.275;
         assert!((torque - Vector3::new(-2.0 * damping, damping, 0.0)).norm() < 1e-14, "{torque}");
@@ -149,9 +161,9 @@ mod tests {
         let mut low = state([250.0; 4], [0.0; 3]);
         low.body.position_m.z = -0.3;
         low.body.attitude = UnitQuaternion::from_euler_angles(0.2, 0.0, 0.0).into_inner();
-        let forces = RotorForces::new(&airframe, &low, &CALM);
+        let forces = RotorForces::new(&airframe, &low, &CALM, &mut ByValue);
         assert!(forces.wrench.torque_n_m.x < -0.005 && forces.wrench.torque_n_m.y.abs() < 1e-15);
         let none = Surroundings { ground_plane: false, ..CALM };
-        assert!(RotorForces::new(&airframe, &low, &none).wrench.torque_n_m.norm() < 1e-15);
+        assert!(RotorForces::new(&airframe, &low, &none, &mut ByValue).wrench.torque_n_m.norm() < 1e-15);
     }
 }

@@ -22,6 +22,7 @@ pub enum Direction {
 
 impl Direction {
     /// Sign of its drag torque about the body's down axis.
+    #[inline]
     pub fn torque_sign(self) -> f64 {
         match self {
             Self::Clockwise => -1.0,
@@ -116,6 +117,7 @@ impl RotorLayout {
     }
 
     /// Distance of the outermost rotor from the centre of mass, arm lengths.
+    #[inline]
     pub(crate) fn reach(&self) -> f64 {
         self.rotors.iter().map(|rotor| libm::hypot(rotor.x, rotor.y)).fold(0.0, f64::max)
     }

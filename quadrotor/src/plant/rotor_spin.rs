@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::Airframe;
+use crate::plant::differentiation::real::Real;
 
 /// What a rotor's motor and mass do beside the first-order lag. The default leaves both out, as the paper does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +26,7 @@ impl Default for RotorSpin {
 impl Airframe {
     /// Time constant of the lag of a rotor that turns at `present_rad_s` towards `goal_rad_s`, s. It jumps where the two
     /// meet, but the acceleration (goal − present)/τ is zero there and stays continuous.
+    #[inline]
     pub(crate) fn lag_s(&self, goal_rad_s: f64, present_rad_s: f64) -> f64 {
         let rising_s = self.rotor_time_constant_s;
         if goal_rad_s < present_rad_s { rising_s * self.rotor_spin.fall_time_ratio } else { rising_s }
@@ -42,20 +44,20 @@ impl Airframe {
     /// from above. Its balance J ω̇ + ḣ + ω × (Jω + h) = τ leaves −ω × h, the gyroscopic torque, and −ḣ, the reaction to the
     /// spin-up (Bouabdallah 2007, "Design and control of quadrotors with application to autonomous flying"; Mahony,
     /// Kumar, Corke 2012, "Multirotor aerial vehicles").
-    pub(crate) fn spin_torque_n_m(
+    pub(crate) fn spin_torque_n_m<T: Real>(
         &self,
-        rate_rad_s: &Vector3<f64>,
-        rotor_speed_rad_s: &[f64; 4],
-        rotor_acceleration_rad_s2: &[f64; 4],
-    ) -> Vector3<f64> {
+        rate_rad_s: &Vector3<T>,
+        rotor_speed_rad_s: &[T; 4],
+        rotor_acceleration_rad_s2: &[T; 4],
+    ) -> Vector3<T> {
         // The drag torque on the body has the opposite direction of the rotor's turn.
-        let along_axis = |values: &[f64; 4]| -> f64 {
+        let along_axis = |values: &[T; 4]| {
             let rotors = self.layout.rotors.iter().zip(values);
-            self.rotor_spin.inertia_kg_m2
-                * rotors.map(|(rotor, value)| -rotor.direction.torque_sign() * value).sum::<f64>()
+            let turns = rotors.map(|(rotor, value)| *value * -rotor.direction.torque_sign());
+            turns.fold(T::zero(), |sum, turn| sum + turn) * self.rotor_spin.inertia_kg_m2
         };
-        let momentum = Vector3::new(0.0, 0.0, along_axis(rotor_speed_rad_s));
-        let reaction = Vector3::new(0.0, 0.0, along_axis(rotor_acceleration_rad_s2));
+        let momentum = Vector3::new(T::zero(), T::zero(), along_axis(rotor_speed_rad_s));
+        let reaction = Vector3::new(T::zero(), T::zero(), along_axis(rotor_acceleration_rad_s2));
         -rate_rad_s.cross(&momentum) - reaction
     }
 }

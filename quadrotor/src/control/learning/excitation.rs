@@ -68,8 +68,8 @@ impl Moving {
     /// Of a filter as far as it is filled.
     fn of(terms: &Terms) -> Self {
         let scale = 1.0 / terms.filled.max(f64::EPSILON);
-        let along = terms.to_body * terms.acceleration_m_s2 * (scale * scale);
-        let speed = terms.to_body.transpose() * terms.velocity_m_s * (scale * scale);
+        let along = terms.in_body * terms.acceleration_m_s2 * (scale * scale);
+        let speed = terms.in_body.transpose() * terms.velocity_m_s * (scale * scale);
         Self {
             thrust_m_s2: terms.thrust_m_s2 * scale,
             acceleration_m_s2: along.z,

@@ -221,7 +221,7 @@ impl MassAndDrag {
 
     /// By how much the acceleration along the thrust differs from what mass, drag and the force of the last seconds explain, m/s².
     fn change_along_thrust_m_s2(&self, terms: &Terms) -> f64 {
-        let change = terms.to_body * (self.force_m_s2() - self.steady_force_m_s2);
+        let change = terms.in_body * (self.force_m_s2() - self.steady_force_m_s2);
         (self.innovation(terms) + change).z
     }
 
@@ -259,7 +259,7 @@ fn row(terms: &Terms, axis: usize) -> Unknowns {
     row[0] = if axis == 2 { -terms.thrust_m_s2 } else { 0.0 };
     for world in 0..3 {
         row[1 + world] = -terms.velocity_m_s[(axis, world)];
-        row[4 + world] = terms.to_body[(axis, world)];
+        row[4 + world] = terms.in_body[(axis, world)];
     }
     row
 }

@@ -32,7 +32,7 @@ pub(crate) struct Terms {
     /// Rᵀ diag(v): what drag along each world axis acts by, m/s.
     pub(crate) velocity_m_s: Matrix3<f64>,
     /// Rᵀ: what a force along each world axis acts by.
-    pub(crate) to_body: Matrix3<f64>,
+    pub(crate) in_body: Matrix3<f64>,
     /// a, NED, m/s².
     pub(crate) acceleration_m_s2: Vector3<f64>,
     /// 1 unfiltered: how much of the filter's memory is filled.
@@ -69,7 +69,7 @@ pub(crate) struct Sampled {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Interval {
     velocity_m_s: Vector3<f64>,
-    to_body: Matrix3<f64>,
+    in_body: Matrix3<f64>,
     thrust_m_s2: f64,
     duration_s: f64,
 }
@@ -80,7 +80,7 @@ impl Terms {
             specific_force_m_s2: Vector3::zeros(),
             thrust_m_s2: 0.0,
             velocity_m_s: Matrix3::zeros(),
-            to_body: Matrix3::zeros(),
+            in_body: Matrix3::zeros(),
             acceleration_m_s2: Vector3::zeros(),
             filled: 0.0,
         }
@@ -90,14 +90,14 @@ impl Terms {
     fn new(
         acceleration_m_s2: Vector3<f64>,
         velocity_m_s: &Vector3<f64>,
-        to_body: Matrix3<f64>,
+        in_body: Matrix3<f64>,
         thrust_m_s2: f64,
     ) -> Self {
         Self {
-            specific_force_m_s2: to_body * (acceleration_m_s2 - Vector3::z() * GRAVITY_M_S2),
+            specific_force_m_s2: in_body * (acceleration_m_s2 - Vector3::z() * GRAVITY_M_S2),
             thrust_m_s2,
-            velocity_m_s: to_body * Matrix3::from_diagonal(velocity_m_s),
-            to_body,
+            velocity_m_s: in_body * Matrix3::from_diagonal(velocity_m_s),
+            in_body,
             acceleration_m_s2,
             filled: 1.0,
         }
@@ -108,7 +108,7 @@ impl Terms {
         self.specific_force_m_s2 += (others.specific_force_m_s2 - self.specific_force_m_s2) * share;
         self.thrust_m_s2 += (others.thrust_m_s2 - self.thrust_m_s2) * share;
         self.velocity_m_s += (others.velocity_m_s - self.velocity_m_s) * share;
-        self.to_body += (others.to_body - self.to_body) * share;
+        self.in_body += (others.in_body - self.in_body) * share;
         self.acceleration_m_s2 += (others.acceleration_m_s2 - self.acceleration_m_s2) * share;
         self.filled += (others.filled - self.filled) * share;
     }
@@ -116,7 +116,7 @@ impl Terms {
     /// Whether all of them are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let vectors = self.specific_force_m_s2.iter().chain(&self.acceleration_m_s2);
-        let mut numbers = vectors.chain(&self.velocity_m_s).chain(&self.to_body);
+        let mut numbers = vectors.chain(&self.velocity_m_s).chain(&self.in_body);
         self.thrust_m_s2.is_finite() && numbers.all(|number| number.is_finite())
     }
 }
@@ -133,14 +133,14 @@ impl MotionEquation {
         let duration_s = now.time_us.checked_sub(last.time_us).filter(|us| *us > 0)? as f64 / 1e6;
         let thrust_m_s2 = (now.thrust_m_s2 + last.thrust_m_s2) / 2.0;
         let middle = last.attitude.nlerp(&now.attitude, 0.5);
-        let to_body = *middle.to_rotation_matrix().transpose().matrix();
+        let in_body = *middle.to_rotation_matrix().transpose().matrix();
         let raw = match (now.motion, last.motion) {
             (MeasuredMotion::Velocity(now), MeasuredMotion::Velocity(before)) => {
-                Terms::new((now - before) / duration_s, &((now + before) / 2.0), to_body, thrust_m_s2)
+                Terms::new((now - before) / duration_s, &((now + before) / 2.0), in_body, thrust_m_s2)
             }
             (MeasuredMotion::Position(now), MeasuredMotion::Position(before)) => {
                 let velocity_m_s = (now - before) / duration_s;
-                let interval = Interval { velocity_m_s, to_body, thrust_m_s2, duration_s };
+                let interval = Interval { velocity_m_s, in_body, thrust_m_s2, duration_s };
                 let start = Interval { velocity_m_s: last.estimated_velocity_m_s, ..interval };
                 between(&self.interval.replace(interval).unwrap_or(start), &interval)
             }
@@ -168,7 +168,7 @@ fn between(one: &Interval, next: &Interval) -> Terms {
     Terms::new(
         change / (both_s / 2.0),
         &(one.velocity_m_s * before + next.velocity_m_s * after),
-        one.to_body * before + next.to_body * after,
+        one.in_body * before + next.in_body * after,
         one.thrust_m_s2 * before + next.thrust_m_s2 * after,
     )
 }
@@ -236,7 +236,7 @@ mod tests {
                 let residual = terms.specific_force_m_s2
                     + Vector3::z() * (terms.thrust_m_s2 * MU)
                     + terms.velocity_m_s * Vector3::repeat(DRAG_1_S)
-                    - terms.to_body * force();
+                    - terms.in_body * force();
                 worst = worst.max(residual.norm());
                 count += 1;
             }
