@@ -209,7 +209,6 @@ impl<const N: usize> QuadraticProgram<N> {
         z
     }
 
-    /// v·z of a constraint's unit normal.
     fn solution(
         &self,
         z: &SVector<f64, N>,

@@ -183,7 +183,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints
 
     fn most_violated(&self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
         let signals = &self.controller.signals;
-        let values = signals.at(&self.known, z.as_slice());
+        let mut values = [0.0; SIGNALS];
+        signals.set_at(&self.known, z.as_slice(), &mut values);
         let slack = self.slack_of(z);
         let (mut worst, mut least) = (None, 0.0);
         for (index, limit) in signals.limits().iter().enumerate() {
