@@ -186,8 +186,8 @@ impl<const N: usize> QuadraticProgram<N> {
             return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
         }
 
-        let rows = Rows { program: self, h };
-        let mut search = DualSearch::new(&rows, z_0, warm_start);
+        let mut rows = Rows { program: self, h };
+        let mut search = DualSearch::new(&mut rows, z_0, warm_start);
         let outcome = search.run(iteration_limit);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
@@ -257,7 +257,7 @@ impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
         self.h.bound(constraint) * self.program.scales[constraint]
     }
 
-    fn most_violated(&self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
         let n = self.program.unknowns;
         let z = &z.as_slice()[..n];
         let (mut worst, mut least) = (None, 0.0);

@@ -113,6 +113,11 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         self.signals.rows()
     }
 
+    /// σ that an element of z stands for.
+    fn slack_of(&self, z: &SVector<f64, E>) -> f64 {
+        z[self.unknowns - 1] * self.slack_unit
+    }
+
     /// The program of one sample.
     fn program<'a>(
         &'a self,
@@ -130,6 +135,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             upper: sample.upper,
             least: core::array::from_fn(least),
             known: self.signals.known(sample, input),
+            signals: [0.0; SIGNALS],
         }
     }
 }
@@ -146,12 +152,8 @@ struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usiz
     least: [f64; LEAST],
     /// The part of each signal that is known before z is chosen.
     known: [f64; SIGNALS],
-}
-
-impl<const N: usize, const P: usize, const Q: usize, const E: usize> Program<'_, N, P, Q, E> {
-    fn slack_of(&self, z: &SVector<f64, E>) -> f64 {
-        z[self.controller.unknowns - 1] * self.controller.slack_unit
-    }
+    /// The signals at the z that was looked at last.
+    signals: [f64; SIGNALS],
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints<E>
@@ -181,26 +183,28 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints
         (upper(self.upper, place.limit.first_bound + place.direction) - known) * signals.scale(constraint)
     }
 
-    fn most_violated(&self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
         let signals = &self.controller.signals;
-        let mut values = [0.0; SIGNALS];
-        signals.set_at(&self.known, z.as_slice(), &mut values);
-        let slack = self.slack_of(z);
+        signals.set_at(&self.known, z.as_slice(), &mut self.signals);
+        let slack = self.controller.slack_of(z);
         let (mut worst, mut least) = (None, 0.0);
         for (index, limit) in signals.limits().iter().enumerate() {
             let give = limit.relaxation * slack;
             // Within rounding, as below.
             let least_room = self.least.get(index).map_or(f64::NEG_INFINITY, |least| least + give);
             let room = least_room * (1.0 + FEASIBILITY);
+            let squared_room = if room > 0.0 { room * room } else { f64::NEG_INFINITY };
+            let squared_longest = limit.longest * limit.longest;
+            let bounds = self.upper.get(limit.first_bound..).unwrap_or_default();
             for sample in 0..limit.samples {
-                let signal = limit.at(sample, &values);
+                let signal = limit.at(sample, &self.signals);
                 // Most samples end here: |direction · signal| ≤ |direction| |signal|.
-                if room > 0.0 && limit.longest * limit.longest * squared(&signal) <= room * room {
+                if squared_longest * squared(&signal) <= squared_room {
                     continue;
                 }
-                for (side, direction) in limit.directions.iter().enumerate() {
-                    let value = along(direction, &signal);
-                    let upper = upper(self.upper, limit.first_bound + side) + give;
+                // What is not bounded is not violated.
+                for (side, (direction, bound)) in limit.directions.iter().zip(bounds).enumerate() {
+                    let (value, upper) = (along(direction, &signal), bound + give);
                     if value <= upper {
                         continue;
                     }
@@ -228,12 +232,12 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
         if !(z_0.norm_squared().is_finite() && sample.upper.iter().all(|upper| !upper.is_nan())) {
             return self.unconstrained.step(state, sample);
         }
-        let program = self.program(sample, &(sample.input_reference + state.feedback()));
+        let mut program = self.program(sample, &(sample.input_reference + state.feedback()));
         if program.most_violated(&z_0, &[]).is_none() {
             return self.unconstrained.step(state, sample);
         }
         let warm_start = state.warm_start.strict();
-        let mut search = DualSearch::new(&program, z_0, warm_start);
+        let mut search = DualSearch::new(&mut program, z_0, warm_start);
         let outcome = search.run(ITERATIONS);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
@@ -245,7 +249,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
             self.stabilizing.state_gain() * sample.increment + self.stabilizing.output_gain() * sample.error;
         let increment = self.first_move * search.z - stabilizing;
         let status = match outcome {
-            Outcome::Optimal if program.slack_of(&search.z) > RELAXED => Status::Relaxed,
+            Outcome::Optimal if self.slack_of(&search.z) > RELAXED => Status::Relaxed,
             Outcome::Optimal => Status::Optimal,
             // The slack meets all limits; in floating point they may come out as if not.
             Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
