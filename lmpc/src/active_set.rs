@@ -197,10 +197,12 @@ impl<const N: usize> ActiveSet<N> {
 
     /// R⁻¹ y on the active columns.
     fn back_substituted(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut x = SVector::zeros();
+        let mut x = *y;
         for i in (0..self.count).rev() {
-            let known: f64 = (i + 1..self.count).map(|k| self.r[(i, k)] * x[k]).sum();
-            x[i] = (y[i] - known) / self.r[(i, i)];
+            let column = self.r.column(i);
+            x[i] /= column[i];
+            let solved = x[i];
+            subtract_scaled(&mut x.as_mut_slice()[..i], &column.as_slice()[..i], solved);
         }
         x
     }

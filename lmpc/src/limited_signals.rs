@@ -12,6 +12,8 @@ use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
 pub(crate) const COMPONENTS: usize = 3;
 /// Most values of signals on all samples together: what a step keeps on the stack.
 pub(crate) const SIGNALS: usize = 640;
+/// So many are kept in less room, which takes less time to clear.
+pub(crate) const FEW_SIGNALS: usize = 96;
 
 /// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Component by
 /// component, limit by limit, sample by sample, so that a column of a map is long:
@@ -41,6 +43,8 @@ pub(crate) struct PlacedLimit {
     /// Length of the longest direction.
     pub(crate) longest: f64,
     pub(crate) relaxation: f64,
+    /// The largest of its rows' [`LimitedSignals::scale`].
+    pub(crate) largest_scale: f64,
     pub(crate) samples: usize,
     pub(crate) components: usize,
     /// Index of its first bound among [`Sample::upper`].
@@ -195,19 +199,7 @@ impl LimitedSignals {
         let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
         state.add_block(0, components, N, |row, at| limit.state[(row, at)]);
         input.add_block(0, components, P, |row, at| limit.input[(row, at)]);
-        let placed = PlacedLimit {
-            directions: directions(&limit.directions),
-            longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
-            relaxation: limit.relaxation,
-            samples: signals.len(),
-            components,
-            first_bound,
-            first_moved: self.count,
-            first: [0; COMPONENTS],
-            first_row: self.scales.len(),
-            state,
-            input,
-        };
+        let first_row = self.scales.len();
         for signal in &signals {
             for direction in limit.directions.row_iter() {
                 let along = direction * &signal.of_plan;
@@ -216,8 +208,21 @@ impl LimitedSignals {
                 self.scales.push(if length > 0.0 { 1.0 / length } else { 0.0 });
             }
         }
+        self.limits.push(PlacedLimit {
+            directions: directions(&limit.directions),
+            longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
+            relaxation: limit.relaxation,
+            largest_scale: self.scales[first_row..].iter().copied().fold(0.0, f64::max),
+            samples: signals.len(),
+            components,
+            first_bound,
+            first_moved: self.count,
+            first: [0; COMPONENTS],
+            first_row,
+            state,
+            input,
+        });
         self.count += components * signals.len();
-        self.limits.push(placed);
         signals
     }
 
@@ -264,13 +269,18 @@ impl LimitedSignals {
         Place { limit, sample: within / sides, direction: within % sides }
     }
 
-    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1).
-    pub(crate) fn known<const N: usize, const P: usize, const Q: usize>(
+    /// How many values there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1). S must be their number or more.
+    pub(crate) fn known<const N: usize, const P: usize, const Q: usize, const S: usize>(
         &self,
         sample: &Sample<'_, N, P, Q>,
         input: &SVector<f64, P>,
-    ) -> [f64; SIGNALS] {
-        let mut known = [0.0; SIGNALS];
+    ) -> [f64; S] {
+        let mut known = [0.0; S];
         for limit in &self.limits {
             let held = limit.signal(sample.measured.as_slice(), input.as_slice());
             let moved = sample.moved.get(limit.first_moved..).unwrap_or_default();
@@ -289,7 +299,7 @@ impl LimitedSignals {
     }
 
     /// Sets the signals to those at z.
-    pub(crate) fn set_at(&self, known: &[f64; SIGNALS], z: &[f64], signals: &mut [f64; SIGNALS]) {
+    pub(crate) fn set_at(&self, known: &[f64], z: &[f64], signals: &mut [f64]) {
         signals[..self.count].copy_from_slice(&known[..self.count]);
         self.of_plan.add_product(z, signals);
     }

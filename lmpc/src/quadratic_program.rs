@@ -83,6 +83,10 @@ impl<const N: usize> WarmStart<N> {
         self.constraints.iter().take(self.count as usize).map(|&constraint| constraint as usize)
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
     pub(crate) fn remember(&mut self, constraints: &[usize]) {
         self.count = 0;
         for (slot, constraint) in self.constraints.iter_mut().zip(constraints) {
