@@ -13,8 +13,10 @@ const DEPENDENT: f64 = 1e-7;
 pub(crate) struct ActiveSet<const N: usize> {
     /// Constraint index of each column.
     constraints: [usize; N],
-    /// b of each constraint n·z ≤ b.
+    /// b of each constraint v·z ≤ b.
     bounds: SVector<f64, N>,
+    /// R⁻ᵀ b: where the constraints hold with equality, along each column of Q.
+    met_at: SVector<f64, N>,
     multipliers: [f64; N],
     count: usize,
     unknowns: usize,
@@ -37,6 +39,7 @@ impl<const N: usize> ActiveSet<N> {
         Self {
             constraints: [0; N],
             bounds: SVector::zeros(),
+            met_at: SVector::zeros(),
             multipliers: [0.0; N],
             count: 0,
             unknowns,
@@ -49,6 +52,11 @@ impl<const N: usize> ActiveSet<N> {
         &self.constraints[..self.count]
     }
 
+    /// Whether as many constraints are active as there are unknowns.
+    pub(crate) fn is_full(&self) -> bool {
+        self.count == self.unknowns
+    }
+
     pub(crate) fn multipliers(&self) -> &[f64] {
         &self.multipliers[..self.count]
     }
@@ -59,16 +67,24 @@ impl<const N: usize> ActiveSet<N> {
         let mut within = SVector::zeros();
         let mut rest = *vector;
         for _ in 0..2 {
+            let along = self.along(&rest);
             let rest = &mut rest.as_mut_slice()[..n];
             for j in 0..self.count {
-                let q_j = self.q.column(j);
-                let q_j = &q_j.as_slice()[..n];
-                let along = dot(q_j, rest);
-                within[j] += along;
-                subtract_scaled(rest, q_j, along);
+                within[j] += along[j];
+                subtract_scaled(rest, &self.q.column(j).as_slice()[..n], along[j]);
             }
         }
         (within, rest)
+    }
+
+    /// Qᵀ v.
+    fn along(&self, vector: &SVector<f64, N>) -> SVector<f64, N> {
+        let n = self.unknowns;
+        let mut along = SVector::zeros();
+        for j in 0..self.count {
+            along[j] = dot(&self.q.column(j).as_slice()[..n], &vector.as_slice()[..n]);
+        }
+        along
     }
 
     /// Splits a normal into what depends on the active ones and the rest.
@@ -76,7 +92,7 @@ impl<const N: usize> ActiveSet<N> {
         let n = self.unknowns;
         let (within, mut rest) = self.orthogonal_part(normal);
         let mut rest_squared = dot(&rest.as_slice()[..n], &rest.as_slice()[..n]);
-        if rest_squared <= DEPENDENT * DEPENDENT || self.count == n {
+        if rest_squared <= DEPENDENT * DEPENDENT || self.is_full() {
             rest.fill(0.0);
             rest_squared = 0.0;
         }
@@ -101,6 +117,7 @@ impl<const N: usize> ActiveSet<N> {
         self.bounds[self.count] = bound;
         self.multipliers[self.count] = multiplier;
         self.count += 1;
+        self.meet_bounds(self.count - 1);
         true
     }
 
@@ -116,10 +133,8 @@ impl<const N: usize> ActiveSet<N> {
         self.count -= 1;
         for j in column..self.count {
             let (a, b) = (self.r[(j, j)], self.r[(j + 1, j)]);
-            let length = libm::hypot(a, b);
-            if length == 0.0 {
-                continue;
-            }
+            // Not near zero: b was on the diagonal, where dependent normals do not come.
+            let length = libm::sqrt(a * a + b * b);
             let (cosine, sine) = (a / length, b / length);
             for k in j..self.count {
                 let (upper, lower) = (self.r[(j, k)], self.r[(j + 1, k)]);
@@ -131,6 +146,16 @@ impl<const N: usize> ActiveSet<N> {
                 self.q[(k, j)] = cosine * left + sine * right;
                 self.q[(k, j + 1)] = cosine * right - sine * left;
             }
+        }
+        self.meet_bounds(column);
+    }
+
+    /// R⁻ᵀ b from column `first` on.
+    fn meet_bounds(&mut self, first: usize) {
+        for i in first..self.count {
+            let of_those_before = self.r.column(i);
+            let known = dot(&of_those_before.as_slice()[..i], &self.met_at.as_slice()[..i]);
+            self.met_at[i] = (self.bounds[i] - known) / self.r[(i, i)];
         }
     }
 
@@ -148,8 +173,7 @@ impl<const N: usize> ActiveSet<N> {
     /// R u = Qᵀz − R⁻ᵀ b
     /// ```
     pub(crate) fn solve_multipliers(&mut self, z: &SVector<f64, N>) -> Option<usize> {
-        let (along, _) = self.orthogonal_part(z);
-        let u = self.back_substituted(&(along - self.forward_substituted(&self.bounds)));
+        let u = self.back_substituted(&(self.along(z) - self.met_at));
         let mut worst = None;
         for j in 0..self.count {
             self.multipliers[j] = u[j];
@@ -163,31 +187,22 @@ impl<const N: usize> ActiveSet<N> {
     /// The point nearest to z where Vᵀz = b: (I − Q Qᵀ) z + Q R⁻ᵀ b.
     pub(crate) fn nearest(&self, z: &SVector<f64, N>) -> SVector<f64, N> {
         let n = self.unknowns;
-        let mut nearest = if self.count == n { SVector::zeros() } else { self.orthogonal_part(z).1 };
-        let along = self.forward_substituted(&self.bounds);
+        let mut nearest = if self.is_full() { SVector::zeros() } else { self.orthogonal_part(z).1 };
         for j in 0..self.count {
             let q_j = self.q.column(j);
-            subtract_scaled(&mut nearest.as_mut_slice()[..n], &q_j.as_slice()[..n], -along[j]);
+            subtract_scaled(&mut nearest.as_mut_slice()[..n], &q_j.as_slice()[..n], -self.met_at[j]);
         }
         nearest
     }
 
-    /// R⁻ᵀ x on the active columns.
-    fn forward_substituted(&self, x: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut y = SVector::zeros();
-        for i in 0..self.count {
-            let known: f64 = (0..i).map(|k| self.r[(k, i)] * y[k]).sum();
-            y[i] = (x[i] - known) / self.r[(i, i)];
-        }
-        y
-    }
-
     /// R⁻¹ y on the active columns.
     fn back_substituted(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
-        let mut x = SVector::zeros();
+        let mut x = *y;
         for i in (0..self.count).rev() {
-            let known: f64 = (i + 1..self.count).map(|k| self.r[(i, k)] * x[k]).sum();
-            x[i] = (y[i] - known) / self.r[(i, i)];
+            let column = self.r.column(i);
+            x[i] /= column[i];
+            let solved = x[i];
+            subtract_scaled(&mut x.as_mut_slice()[..i], &column.as_slice()[..i], solved);
         }
         x
     }

@@ -1,6 +1,7 @@
 //! Inner loops over slices of equal length.
 
 /// Σ aᵢ bᵢ in four partial sums, which the compiler turns into vector instructions.
+#[inline]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (a_chunks, a_rest) = a.as_chunks::<4>();
@@ -20,6 +21,7 @@ pub(crate) fn dot_of_magnitudes(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// a ← a − t b.
+#[inline]
 pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
     for (x, y) in a.iter_mut().zip(b) {
         *x -= t * y;

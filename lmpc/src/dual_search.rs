@@ -21,12 +21,12 @@ pub(crate) trait Constraints<const N: usize> {
     fn bound(&self, constraint: usize) -> f64;
 
     /// The constraint that z violates most, by more than rounding, among those that are not active.
-    fn most_violated(&self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize>;
+    fn most_violated(&mut self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize>;
 }
 
 /// One run of the dual method of Goldfarb and Idnani (1983): the point nearest to z₀ that keeps all constraints.
 pub(crate) struct DualSearch<'a, const N: usize, C: Constraints<N>> {
-    constraints: &'a C,
+    constraints: &'a mut C,
     z_0: SVector<f64, N>,
     pub(crate) z: SVector<f64, N>,
     pub(crate) active: ActiveSet<N>,
@@ -37,7 +37,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
     /// A search that begins at the unconstrained optimum, or with the constraints that were active before as far as they
     /// still push instead of pull.
     pub(crate) fn new<const W: usize>(
-        constraints: &'a C,
+        constraints: &'a mut C,
         z_0: SVector<f64, N>,
         warm_start: &WarmStart<W>,
     ) -> Self {
@@ -66,49 +66,68 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
     }
 
     pub(crate) fn run(&mut self, iteration_limit: u32) -> Outcome {
-        while let Some(constraint) = self.constraints.most_violated(&self.z, self.active.constraints()) {
-            let normal = self.constraints.normal(constraint);
-            let bound = self.constraints.bound(constraint);
-            let n = self.constraints.unknowns();
-            let mut multiplier = 0.0;
-            loop {
-                if self.iterations >= iteration_limit {
-                    return Outcome::IterationLimit;
+        let mut has_moved = false;
+        loop {
+            if let Some(constraint) = self.constraints.most_violated(&self.z, self.active.constraints()) {
+                has_moved = true;
+                if let Err(outcome) = self.activate(constraint, iteration_limit) {
+                    return outcome;
                 }
-                self.iterations += 1;
-                let split = self.active.split(&normal);
-                let sinking = self.active.exchange(&split);
-                // How far until the first active multiplier is used up, and until the constraint is met.
-                let leaving = self.first_to_leave(&sinking);
-                let until_met = if split.rest_squared > 0.0 {
-                    let along = dot(&normal.as_slice()[..n], &self.z.as_slice()[..n]);
-                    (along - bound).max(0.0) / split.rest_squared
-                } else {
-                    f64::INFINITY
-                };
-                let until_leaving = leaving.map_or(f64::INFINITY, |(_, t)| t);
-                let t = until_met.min(until_leaving);
-                if t == f64::INFINITY {
-                    return Outcome::Infeasible;
-                }
-                subtract_scaled(&mut self.z.as_mut_slice()[..n], &split.rest.as_slice()[..n], t);
-                self.active.sink(&sinking, t);
-                multiplier += t;
-                match leaving {
-                    Some((column, until)) if until < until_met => self.active.remove(column),
-                    _ => {
-                        self.active.add(constraint, &split, bound, multiplier);
+            } else if has_moved {
+                // The steps have led here but for their rounding.
+                self.meet_active();
+                has_moved = false;
+            } else {
+                return Outcome::Optimal;
+            }
+        }
+    }
+
+    /// Goes on to where a violated constraint holds with equality.
+    fn activate(&mut self, constraint: usize, iteration_limit: u32) -> Result<(), Outcome> {
+        let normal = self.constraints.normal(constraint);
+        let bound = self.constraints.bound(constraint);
+        let n = self.constraints.unknowns();
+        let mut multiplier = 0.0;
+        loop {
+            if self.iterations >= iteration_limit {
+                return Err(Outcome::IterationLimit);
+            }
+            self.iterations += 1;
+            let split = self.active.split(&normal);
+            let sinking = self.active.exchange(&split);
+            // How far until the first active multiplier is used up, and until the constraint is met.
+            let leaving = self.first_to_leave(&sinking);
+            let until_met = if split.rest_squared > 0.0 {
+                let along = dot(&normal.as_slice()[..n], &self.z.as_slice()[..n]);
+                (along - bound).max(0.0) / split.rest_squared
+            } else {
+                f64::INFINITY
+            };
+            let until_leaving = leaving.map_or(f64::INFINITY, |(_, t)| t);
+            let t = until_met.min(until_leaving);
+            if t == f64::INFINITY {
+                return Err(Outcome::Infeasible);
+            }
+            subtract_scaled(&mut self.z.as_mut_slice()[..n], &split.rest.as_slice()[..n], t);
+            self.active.sink(&sinking, t);
+            multiplier += t;
+            match leaving {
+                Some((column, until)) if until < until_met => self.active.remove(column),
+                _ => {
+                    self.active.add(constraint, &split, bound, multiplier);
+                    if self.active.is_full() {
+                        // All of z follows from bounds, which may be much smaller than z₀ and its steps.
                         self.meet_active();
-                        break;
                     }
+                    return Ok(());
                 }
             }
         }
-        Outcome::Optimal
     }
 
-    /// Puts z where the active constraints hold with equality, nearest to z₀: where the steps have led to but for
-    /// rounding, which is that of the bounds and not of the steps, however far z₀ lies.
+    /// Puts z where the active constraints hold with equality, nearest to z₀: the rounding is that of the bounds and not
+    /// of the steps, however far z₀ lies.
     fn meet_active(&mut self) {
         self.z = self.active.nearest(&self.z_0);
     }

@@ -12,12 +12,14 @@ use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
 pub(crate) const COMPONENTS: usize = 3;
 /// Most values of signals on all samples together: what a step keeps on the stack.
 pub(crate) const SIGNALS: usize = 640;
+/// So many are kept in less room, which takes less time to clear.
+pub(crate) const FEW_SIGNALS: usize = 96;
 
-/// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Limit by limit,
-/// component by component, sample by sample:
+/// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Component by
+/// component, limit by limit, sample by sample, so that a column of a map is long:
 ///
 /// ```text
-/// signal = of_increment Δx_m(k) + of_error (y − r) + of_input (u_r(k) + v(k−1)) + of_state x_m(k) + of_plan z
+/// signal = C x_m(k) + D (u_r(k) + v(k−1)) + of_increment Δx_m(k) + of_error (y − r) + of_plan z
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LimitedSignals {
@@ -25,9 +27,9 @@ pub(crate) struct LimitedSignals {
     count: usize,
     of_increment: SparseColumns,
     of_error: SparseColumns,
-    of_input: SparseColumns,
-    of_state: SparseColumns,
     of_plan: SparseColumns,
+    /// Where the columns of each component are in [`LimitedSignals::of_plan`].
+    plan_of_component: [Range<usize>; COMPONENTS],
     /// m, which limit, and which of its samples that is, in the order of m.
     by_sample: Vec<(usize, usize, usize)>,
     /// One over the length of each row in z and the slack, in the order of [`LimitedSignals::place`].
@@ -41,14 +43,17 @@ pub(crate) struct PlacedLimit {
     /// Length of the longest direction.
     pub(crate) longest: f64,
     pub(crate) relaxation: f64,
+    /// The largest of its rows' [`LimitedSignals::scale`].
+    pub(crate) largest_scale: f64,
     pub(crate) samples: usize,
     pub(crate) components: usize,
     /// Index of its first bound among [`Sample::upper`].
     pub(crate) first_bound: usize,
-    pub(crate) first_signal: usize,
+    /// Index of its first value among [`Sample::moved`].
+    first_moved: usize,
+    /// Where the samples of each component begin among all signals.
+    first: [usize; COMPONENTS],
     first_row: usize,
-    /// Where the columns of each component are in [`LimitedSignals::of_plan`].
-    of_plan: [Range<usize>; COMPONENTS],
     /// C and D.
     state: SparseColumns,
     input: SparseColumns,
@@ -61,15 +66,28 @@ impl PlacedLimit {
     }
 
     /// The components at a sample among all signals.
+    #[inline]
     pub(crate) fn at(&self, sample: usize, signals: &[f64]) -> [f64; COMPONENTS] {
         core::array::from_fn(|component| {
-            if component < self.components {
-                signals[self.first_signal + component * self.samples + sample]
-            } else {
-                0.0
-            }
+            if component < self.components { signals[self.first[component] + sample] } else { 0.0 }
         })
     }
+
+    /// C x + D u.
+    fn signal(&self, state: &[f64], input: &[f64]) -> [f64; COMPONENTS] {
+        let mut signal = [0.0; COMPONENTS];
+        self.state.add_product(state, &mut signal);
+        self.input.add_product(input, &mut signal);
+        signal
+    }
+}
+
+/// The components of a limit at one of its samples.
+struct SignalAt {
+    /// Of \[Δx_m; y − r\].
+    of_state: DMatrix<f64>,
+    /// Of z.
+    of_plan: DMatrix<f64>,
 }
 
 /// A constraint: a direction of a limit at a sample.
@@ -120,15 +138,15 @@ impl LimitedSignals {
             count: 0,
             of_increment: SparseColumns::default(),
             of_error: SparseColumns::default(),
-            of_input: SparseColumns::default(),
-            of_state: SparseColumns::default(),
             of_plan: SparseColumns::default(),
+            plan_of_component: Default::default(),
             by_sample: Vec::new(),
             scales: Vec::new(),
         };
         let end = limits.iter().flat_map(|limit| &limit.samples).max().map_or(0, |last| last + 1);
         let motion = Motion::new(design, N, P, end);
         let mut bounds = 0;
+        let mut signals = Vec::new();
         for limit in limits {
             let components = limit.directions.ncols();
             validate::shape("C of a limit", &limit.state, (components, N))?;
@@ -138,8 +156,11 @@ impl LimitedSignals {
                 &limit.directions,
                 (limit.directions.nrows(), components.min(COMPONENTS)),
             )?;
-            placed.add::<N, P, Q>(limit, &motion, inverse, slack_unit, bounds);
+            signals.push(placed.add::<N, P, Q>(limit, &motion, inverse, slack_unit, bounds));
             bounds += limit.directions.nrows();
+        }
+        for component in 0..COMPONENTS {
+            placed.add_component::<N, Q>(component, &signals);
         }
         if placed.count > SIGNALS {
             return Err(DesignError::Dimension {
@@ -152,7 +173,7 @@ impl LimitedSignals {
         Ok(placed)
     }
 
-    /// Adds a limit on those of its samples on which a decision moves it.
+    /// Adds a limit on those of its samples on which a decision moves it: its signals there.
     fn add<const N: usize, const P: usize, const Q: usize>(
         &mut self,
         limit: &SignalLimit,
@@ -160,10 +181,9 @@ impl LimitedSignals {
         inverse: &DMatrix<f64>,
         slack_unit: f64,
         first_bound: usize,
-    ) {
+    ) -> Vec<SignalAt> {
         let terms = inverse.nrows();
         let mut signals = Vec::new();
-        let mut decided = Vec::new();
         let mut samples = limit.samples.clone();
         samples.sort_unstable();
         samples.dedup();
@@ -172,47 +192,57 @@ impl LimitedSignals {
             let of_plan = signal.columns(N + Q, terms) * inverse.transpose();
             if of_plan.amax() > 0.0 {
                 self.by_sample.push((m, self.limits.len(), signals.len()));
-                signals.push((m, signal));
-                decided.push(of_plan);
+                signals.push(SignalAt { of_state: signal.columns(0, N + Q).into_owned(), of_plan });
             }
         }
         let components = limit.directions.ncols();
         let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
         state.add_block(0, components, N, |row, at| limit.state[(row, at)]);
         input.add_block(0, components, P, |row, at| limit.input[(row, at)]);
-        let mut placed = PlacedLimit {
-            directions: directions(&limit.directions),
-            longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
-            relaxation: limit.relaxation,
-            samples: signals.len(),
-            components,
-            first_bound,
-            first_signal: self.count,
-            first_row: self.scales.len(),
-            of_plan: Default::default(),
-            state,
-            input,
-        };
-        for component in 0..components {
-            let first = self.count + component * signals.len();
-            let rows = signals.len();
-            self.of_increment.add_block(first, rows, N, |row, at| signals[row].1[(component, at)]);
-            self.of_error.add_block(first, rows, Q, |row, at| signals[row].1[(component, N + at)]);
-            self.of_input.add_block(first, rows, P, |_, at| limit.input[(component, at)]);
-            self.of_state.add_block(first, rows, N, |_, at| limit.state[(component, at)]);
-            placed.of_plan[component] =
-                self.of_plan.add_block(first, rows, terms, |row, at| decided[row][(component, at)]);
-        }
-        for of_plan in &decided {
+        let first_row = self.scales.len();
+        for signal in &signals {
             for direction in limit.directions.row_iter() {
-                let along = direction * of_plan;
+                let along = direction * &signal.of_plan;
                 let give = limit.relaxation * slack_unit;
                 let length = libm::sqrt(along.norm_squared() + give * give);
                 self.scales.push(if length > 0.0 { 1.0 / length } else { 0.0 });
             }
         }
+        self.limits.push(PlacedLimit {
+            directions: directions(&limit.directions),
+            longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
+            relaxation: limit.relaxation,
+            largest_scale: self.scales[first_row..].iter().copied().fold(0.0, f64::max),
+            samples: signals.len(),
+            components,
+            first_bound,
+            first_moved: self.count,
+            first: [0; COMPONENTS],
+            first_row,
+            state,
+            input,
+        });
         self.count += components * signals.len();
-        self.limits.push(placed);
+        signals
+    }
+
+    /// Places a component of all limits that have it behind those before, `signals` being those of each limit.
+    fn add_component<const N: usize, const Q: usize>(&mut self, component: usize, signals: &[Vec<SignalAt>]) {
+        let before: usize =
+            self.limits.iter().map(|limit| limit.samples * limit.components.min(component)).sum();
+        let mut rows = Vec::new();
+        for (limit, signals) in self.limits.iter_mut().zip(signals) {
+            if component < limit.components {
+                limit.first[component] = before + rows.len();
+                rows.extend(signals);
+            }
+        }
+        let terms = rows.first().map_or(0, |signal| signal.of_plan.ncols());
+        let count = rows.len();
+        self.of_increment.add_block(before, count, N, |row, at| rows[row].of_state[(component, at)]);
+        self.of_error.add_block(before, count, Q, |row, at| rows[row].of_state[(component, N + at)]);
+        self.plan_of_component[component] =
+            self.of_plan.add_block(before, count, terms, |row, at| rows[row].of_plan[(component, at)]);
     }
 
     pub(crate) fn limits(&self) -> &[PlacedLimit] {
@@ -239,29 +269,39 @@ impl LimitedSignals {
         Place { limit, sample: within / sides, direction: within % sides }
     }
 
-    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1).
-    pub(crate) fn known<const N: usize, const P: usize, const Q: usize>(
+    /// How many values there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1). S must be their number or more.
+    pub(crate) fn known<const N: usize, const P: usize, const Q: usize, const S: usize>(
         &self,
         sample: &Sample<'_, N, P, Q>,
         input: &SVector<f64, P>,
-    ) -> [f64; SIGNALS] {
-        let mut known = [0.0; SIGNALS];
-        for (value, moved) in known.iter_mut().zip(sample.moved).take(self.count) {
-            *value = *moved;
+    ) -> [f64; S] {
+        let mut known = [0.0; S];
+        for limit in &self.limits {
+            let held = limit.signal(sample.measured.as_slice(), input.as_slice());
+            let moved = sample.moved.get(limit.first_moved..).unwrap_or_default();
+            for component in 0..limit.components {
+                let known = &mut known[limit.first[component]..][..limit.samples];
+                known.fill(held[component]);
+                let moved = moved.get(component * limit.samples..).unwrap_or_default();
+                for (value, moved) in known.iter_mut().zip(moved) {
+                    *value += moved;
+                }
+            }
         }
         self.of_increment.add_product(sample.increment.as_slice(), &mut known);
         self.of_error.add_product(sample.error.as_slice(), &mut known);
-        self.of_input.add_product(input.as_slice(), &mut known);
-        self.of_state.add_product(sample.measured.as_slice(), &mut known);
         known
     }
 
-    /// The signals at z.
-    pub(crate) fn at(&self, known: &[f64; SIGNALS], z: &[f64]) -> [f64; SIGNALS] {
-        let mut signals = [0.0; SIGNALS];
+    /// Sets the signals to those at z.
+    pub(crate) fn set_at(&self, known: &[f64], z: &[f64], signals: &mut [f64]) {
         signals[..self.count].copy_from_slice(&known[..self.count]);
-        self.of_plan.add_product(z, &mut signals);
-        signals
+        self.of_plan.add_product(z, signals);
     }
 
     /// What z adds to the left side of a constraint: a vector of the elements of z.
@@ -270,8 +310,8 @@ impl LimitedSignals {
         let limit = place.limit;
         let direction = &limit.directions[place.direction];
         for (component, share) in direction.iter().enumerate().take(limit.components) {
-            let row = limit.first_signal + component * limit.samples + place.sample;
-            let columns = limit.of_plan[component].clone();
+            let row = limit.first[component] + place.sample;
+            let columns = self.plan_of_component[component].clone();
             self.of_plan.for_each_in_row(columns, row, |at, factor| normal[at] += share * factor);
         }
         normal
@@ -290,11 +330,9 @@ impl LimitedSignals {
             }
             let (state, input) = &latest.1;
             let limit = &self.limits[limit];
-            let mut signal = [0.0; COMPONENTS];
-            limit.state.add_product(state.as_slice(), &mut signal);
-            limit.input.add_product(input.as_slice(), &mut signal);
+            let signal = limit.signal(state.as_slice(), input.as_slice());
             for (component, value) in signal.iter().enumerate().take(limit.components) {
-                moved.values[limit.first_signal + component * limit.samples + sample] = *value;
+                moved.values[limit.first_moved + component * limit.samples + sample] = *value;
             }
         }
         moved

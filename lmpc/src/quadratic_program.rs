@@ -83,6 +83,10 @@ impl<const N: usize> WarmStart<N> {
         self.constraints.iter().take(self.count as usize).map(|&constraint| constraint as usize)
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
     pub(crate) fn remember(&mut self, constraints: &[usize]) {
         self.count = 0;
         for (slot, constraint) in self.constraints.iter_mut().zip(constraints) {
@@ -186,8 +190,8 @@ impl<const N: usize> QuadraticProgram<N> {
             return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
         }
 
-        let rows = Rows { program: self, h };
-        let mut search = DualSearch::new(&rows, z_0, warm_start);
+        let mut rows = Rows { program: self, h };
+        let mut search = DualSearch::new(&mut rows, z_0, warm_start);
         let outcome = search.run(iteration_limit);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
@@ -209,7 +213,6 @@ impl<const N: usize> QuadraticProgram<N> {
         z
     }
 
-    /// v·z of a constraint's unit normal.
     fn solution(
         &self,
         z: &SVector<f64, N>,
@@ -258,7 +261,7 @@ impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
         self.h.bound(constraint) * self.program.scales[constraint]
     }
 
-    fn most_violated(&self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
         let n = self.program.unknowns;
         let z = &z.as_slice()[..n];
         let (mut worst, mut least) = (None, 0.0);

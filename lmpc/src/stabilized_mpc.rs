@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SMatrix, SVector};
 
 use crate::controller_state::Decision;
 use crate::dual_search::{Constraints, DualSearch};
-use crate::limited_signals::{COMPONENTS, LimitedSignals, MovedSignals, SIGNALS};
+use crate::limited_signals::{COMPONENTS, FEW_SIGNALS, LimitedSignals, MovedSignals, SIGNALS};
 use crate::{
     Controller, ControllerState, DesignError, Outcome, Sample, SignalLimit, StabilizedDesign, StateFeedback,
     Status, Step, WarmStart,
@@ -113,12 +113,53 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         self.signals.rows()
     }
 
+    /// σ that an element of z stands for.
+    fn slack_of(&self, z: &SVector<f64, E>) -> f64 {
+        z[self.unknowns - 1] * self.slack_unit
+    }
+
+    /// What limits make of the unconstrained optimum z₀, with room for S signals; `None` when it keeps them.
+    fn limited<const W: usize, const S: usize>(
+        &self,
+        state: &mut ControllerState<N, P, W>,
+        sample: &Sample<'_, N, P, Q>,
+        z_0: SVector<f64, E>,
+    ) -> Option<Decision<P>> {
+        let mut program = self.program::<S>(sample, &(sample.input_reference + state.feedback()));
+        let warm_start = state.warm_start.strict();
+        if warm_start.is_empty() && program.most_violated(&z_0, &[]).is_none() {
+            return None;
+        }
+        let mut search = DualSearch::new(&mut program, z_0, warm_start);
+        let outcome = search.run(ITERATIONS);
+        if outcome == Outcome::Optimal {
+            warm_start.remember(search.active.constraints());
+            if warm_start.is_empty() {
+                return None;
+            }
+        } else {
+            *warm_start = WarmStart::default();
+        }
+        // Δu = −K_s x + L(0)ᵀη
+        let stabilizing =
+            self.stabilizing.state_gain() * sample.increment + self.stabilizing.output_gain() * sample.error;
+        let increment = self.first_move * search.z - stabilizing;
+        let status = match outcome {
+            Outcome::Optimal if self.slack_of(&search.z) > RELAXED => Status::Relaxed,
+            Outcome::Optimal => Status::Optimal,
+            // The slack meets all limits; in floating point they may come out as if not.
+            Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
+        };
+        let active = search.active.constraints().len();
+        Some(Decision::program(state.feedback() + increment, status, search.iterations, active))
+    }
+
     /// The program of one sample.
-    fn program<'a>(
+    fn program<'a, const S: usize>(
         &'a self,
         sample: &'a Sample<'_, N, P, Q>,
         input: &SVector<f64, P>,
-    ) -> Program<'a, N, P, Q, E> {
+    ) -> Program<'a, N, P, Q, E, S> {
         let limits = self.signals.limits();
         let least = |index: usize| {
             let Some(limit) = limits.get(index) else { return f64::NEG_INFINITY };
@@ -130,6 +171,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             upper: sample.upper,
             least: core::array::from_fn(least),
             known: self.signals.known(sample, input),
+            signals: [0.0; S],
         }
     }
 }
@@ -138,24 +180,20 @@ fn upper(values: &[f64], bound: usize) -> f64 {
     values.get(bound).copied().unwrap_or(f64::INFINITY)
 }
 
-/// The limits of one sample, as constraints of z.
-struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize> {
+/// The limits of one sample, as constraints of z, with room for S signals.
+struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize> {
     controller: &'a StabilizedMpc<N, P, Q, E>,
     upper: &'a [f64],
     /// The least bound of each of the first limits.
     least: [f64; LEAST],
     /// The part of each signal that is known before z is chosen.
-    known: [f64; SIGNALS],
+    known: [f64; S],
+    /// The signals at the z that was looked at last.
+    signals: [f64; S],
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize> Program<'_, N, P, Q, E> {
-    fn slack_of(&self, z: &SVector<f64, E>) -> f64 {
-        z[self.controller.unknowns - 1] * self.controller.slack_unit
-    }
-}
-
-impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints<E>
-    for Program<'_, N, P, Q, E>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize> Constraints<E>
+    for Program<'_, N, P, Q, E, S>
 {
     fn unknowns(&self) -> usize {
         self.controller.unknowns
@@ -181,25 +219,32 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints
         (upper(self.upper, place.limit.first_bound + place.direction) - known) * signals.scale(constraint)
     }
 
-    fn most_violated(&self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
         let signals = &self.controller.signals;
-        let values = signals.at(&self.known, z.as_slice());
-        let slack = self.slack_of(z);
+        signals.set_at(&self.known, z.as_slice(), &mut self.signals);
+        let slack = self.controller.slack_of(z);
         let (mut worst, mut least) = (None, 0.0);
         for (index, limit) in signals.limits().iter().enumerate() {
             let give = limit.relaxation * slack;
-            // Within rounding, as below.
-            let least_room = self.least.get(index).map_or(f64::NEG_INFINITY, |least| least + give);
-            let room = least_room * (1.0 + FEASIBILITY);
+            let least_bound = self.least.get(index).map_or(f64::NEG_INFINITY, |bound| bound + give);
+            // Up to this length no signal breaks the limit by more than rounding, and more than the worst so far:
+            // |direction · signal| ≤ |direction| |signal|.
+            let kept = |worst: f64| {
+                let room = least_bound * (1.0 + FEASIBILITY) - worst / limit.largest_scale;
+                if room > 0.0 { room * room } else { f64::NEG_INFINITY }
+            };
+            let mut squared_room = kept(least);
+            let squared_longest = limit.longest * limit.longest;
+            let bounds = self.upper.get(limit.first_bound..).unwrap_or_default();
             for sample in 0..limit.samples {
-                let signal = limit.at(sample, &values);
-                // Most samples end here: |direction · signal| ≤ |direction| |signal|.
-                if room > 0.0 && limit.longest * limit.longest * squared(&signal) <= room * room {
+                let signal = limit.at(sample, &self.signals);
+                // Most samples end here.
+                if squared_longest * squared(&signal) <= squared_room {
                     continue;
                 }
-                for (side, direction) in limit.directions.iter().enumerate() {
-                    let value = along(direction, &signal);
-                    let upper = upper(self.upper, limit.first_bound + side) + give;
+                // What is not bounded is not violated.
+                for (side, (direction, bound)) in limit.directions.iter().zip(bounds).enumerate() {
+                    let (value, upper) = (along(direction, &signal), bound + give);
                     if value <= upper {
                         continue;
                     }
@@ -210,6 +255,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> Constraints
                     let rounding = FEASIBILITY * (libm::fabs(upper) + size) * scale;
                     if room < least && room < -rounding && !active.contains(&constraint) {
                         (worst, least) = (Some(constraint), room);
+                        squared_room = kept(least);
                     }
                 }
             }
@@ -227,35 +273,15 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
         if !(z_0.norm_squared().is_finite() && sample.upper.iter().all(|upper| !upper.is_nan())) {
             return self.unconstrained.step(state, sample);
         }
-        let program = self.program(sample, &(sample.input_reference + state.feedback()));
-        if program.most_violated(&z_0, &[]).is_none() {
-            return self.unconstrained.step(state, sample);
-        }
-        let warm_start = state.warm_start.strict();
-        let mut search = DualSearch::new(&program, z_0, warm_start);
-        let outcome = search.run(ITERATIONS);
-        if outcome == Outcome::Optimal {
-            warm_start.remember(search.active.constraints());
+        let decision = if self.signals.count() <= FEW_SIGNALS {
+            self.limited::<W, FEW_SIGNALS>(state, sample, z_0)
         } else {
-            *warm_start = WarmStart::default();
-        }
-        // Δu = −K_s x + L(0)ᵀη
-        let stabilizing =
-            self.stabilizing.state_gain() * sample.increment + self.stabilizing.output_gain() * sample.error;
-        let increment = self.first_move * search.z - stabilizing;
-        let status = match outcome {
-            Outcome::Optimal if program.slack_of(&search.z) > RELAXED => Status::Relaxed,
-            Outcome::Optimal => Status::Optimal,
-            // The slack meets all limits; in floating point they may come out as if not.
-            Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
+            self.limited::<W, SIGNALS>(state, sample, z_0)
         };
-        let decision = Decision::program(
-            state.feedback() + increment,
-            status,
-            search.iterations,
-            search.active.constraints().len(),
-        );
-        state.take(sample, &decision)
+        match decision {
+            Some(decision) => state.take(sample, &decision),
+            None => self.unconstrained.step(state, sample),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::limit_row::PredictionWalk;
 use crate::moves_walk::MovesWalk;
 use crate::optimal_gain::OptimalGain;
 use crate::validate::symmetrized;
-use crate::{DesignError, Quantity, StateSpace, spectral_radius, validate};
+use crate::{Augmented, DesignError, Quantity, StateSpace, Weights, spectral_radius, validate};
 
 /// Design of a state-space MPC.
 ///
@@ -47,6 +47,27 @@ pub struct StateSpaceMpcWeights {
 }
 
 impl StateSpaceMpcWeights {
+    /// The same costs as Q and R on \[Δx; y − r\] and Δu of an augmented model: see [`Weights`]. What Q has between increments and
+    /// errors does not count.
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`] when the weights are those of another model.
+    pub fn of_augmented(
+        model: &Augmented,
+        weights: &Weights,
+        terminal: Option<DMatrix<f64>>,
+    ) -> Result<Self, DesignError> {
+        let (states, all) = (model.plant().states(), model.states());
+        validate::shape("Q", weights.q(), (all, all))?;
+        let outputs = all - states;
+        Ok(Self {
+            output: weights.q().view((states, states), (outputs, outputs)).into_owned(),
+            moves: weights.r().clone(),
+            increment: weights.q().view((0, 0), (states, states)).into_owned(),
+            terminal,
+        })
+    }
+
     fn check(&self, plant: &StateSpace) -> Result<(), DesignError> {
         let (n, p, q) = (plant.states(), plant.inputs(), plant.outputs());
         validate::shape("Q", &self.output, (q, q))?;

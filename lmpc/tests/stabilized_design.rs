@@ -15,6 +15,16 @@ fn vector(values: &[f64], size: usize) -> DVector<f64> {
     DVector::from_fn(size, |i, _| values[i % values.len()])
 }
 
+/// In motion and away from the set-point, as eight values tell.
+fn start(values: &[f64], channels: usize) -> Start {
+    Start {
+        measured: vector(&values[1..], 3 * channels),
+        increment: vector(values, 3 * channels) * 0.1,
+        error: vector(&values[5..], channels),
+        input: vector(&values[2..], channels),
+    }
+}
+
 fn usual() -> Case {
     Case { sample_time_s: 0.05, lag_s: 0.1, increment_weight: 1.0, slower: 100.0, terms: 5, scale: 0.7 }
 }
@@ -62,13 +72,7 @@ proptest! {
         eta in prop::collection::vec(-1.0..1.0, 5),
     ) {
         let design = case.design(channels);
-        let states = 3 * channels;
-        let start = Start {
-            measured: DVector::zeros(states),
-            increment: vector(&x, states) * 0.1,
-            error: vector(&x[5..], channels),
-            input: DVector::zeros(channels),
-        };
+        let start = start(&x, channels);
         let eta = vector(&eta, case.terms * channels);
         let planned = simulate(&design, &start, &eta, SETTLED);
         let (cost, simulated) = (design.cost_of(&start.augmented(), &eta), simulated_cost(&design, &planned));
@@ -85,12 +89,7 @@ proptest! {
     ) {
         let design = case.design(channels);
         let states = 3 * channels;
-        let start = Start {
-            measured: vector(&x[1..], states),
-            increment: vector(&x, states) * 0.1,
-            error: vector(&x[5..], channels),
-            input: vector(&x[2..], channels),
-        };
+        let start = start(&x, channels);
         let eta = vector(&eta, case.terms * channels);
         let planned = simulate(&design, &start, &eta, 30);
         let first = simulated_cost(&design, &simulate(&design, &start, &eta, 1));

@@ -46,29 +46,32 @@ pub fn tune(configuration: &Configuration) -> Result<String, Error> {
     let goal = |size: f64| Trial::step([size].into());
     let vertical = [0.1, 1.0, 5.0, 20.0, -0.1, -1.0, -5.0, -20.0].map(goal);
     page += &of_loop::<3, 1, { unknowns(1, MOST_TERMS) }>("altitude", &loops.altitude, &vertical, 400)?;
-    let goals = |x: f64, y: f64| Trial::step([x, y].into());
     let across = |goal: f64, speed_m_s: f64| {
-        let mut trial = goals(goal, 0.0);
+        let mut trial = both(goal, 0.0);
         trial.state[6 + 1] = speed_m_s;
         trial.increment[6] = speed_m_s * configuration.controllers.position.sample_time_s();
         trial
     };
     let horizontal = [
-        goals(0.1, 0.0),
-        goals(1.0, 0.0),
-        goals(5.0, 0.0),
-        goals(20.0, 0.0),
-        goals(4.0, 3.0),
+        both(0.1, 0.0),
+        both(1.0, 0.0),
+        both(5.0, 0.0),
+        both(20.0, 0.0),
+        both(4.0, 3.0),
         across(5.0, 3.0),
         across(0.0, 6.0),
     ];
     page += &of_loop::<12, 2, { unknowns(2, MOST_TERMS) }>("position", &loops.position, &horizontal, 400)?;
-    let goals = |x: f64, y: f64| Trial::step([x, y].into());
-    let lean = [goals(0.05, 0.0), goals(0.3, 0.0), goals(1.0, 0.0), goals(0.4, -0.3), goals(2.5, 0.0)];
+    let lean = [both(0.05, 0.0), both(0.3, 0.0), both(1.0, 0.0), both(0.4, -0.3), both(2.5, 0.0)];
     page += &of_loop::<6, 2, { unknowns(2, MOST_TERMS) }>("roll and pitch", &loops.lean, &lean, 400)?;
     let turn = [0.05, 0.3, 1.0, 3.0].map(goal);
     page += &of_loop::<3, 1, { unknowns(1, MOST_TERMS) }>("yaw", &loops.turn, &turn, 1200)?;
     Ok(page)
+}
+
+/// A step of two outputs.
+fn both<const N: usize>(x: f64, y: f64) -> Trial<N, 2, 2> {
+    Trial::step([x, y].into())
 }
 
 fn of_loop<const N: usize, const P: usize, const E: usize>(

@@ -21,11 +21,10 @@ PUBLISHED = {
     "heavy": (10.0, 316.9, 3.6, 0.02),
 }
 
-#: Drag is not fed forward: with it the demo's bars for the way, in mm and %, are these.
-DRAGGED = {"RMS error": 60.0, "overshoot": 2.0}
-#: A weakness of the Laguerre MPC: a raw step of 5 m takes the hummingbird 6.6 % beyond its goal and the iris 4.4 %, with drag and without.
-#: Neither the state-space MPC under the same limits nor the regulator goes beyond it.
-RAW_STEP_OVERSHOOT = 7.0
+#: Rotor drag and slower loops: bar for the way and for its last point, mm. Measured: up to 7.1 and 8.4 mm, both of the Crazyflie.
+SMOOTH_MM = 12.0
+#: A raw step takes no preset further beyond its goal, %. Measured: up to 3.0 %, of the Crazyflie.
+RAW_STEP_OVERSHOOT = 3.5
 #: Slower loops and weaker rotors take longer: the demo's durations are those of the paper's airframe.
 PATIENCE = {"crazyflie": 1.45, "iris": 1.4}
 
@@ -105,11 +104,12 @@ def test_each_preset_flies_the_demo(unzipped, model_description, preset, name):
     errors = measures.measure(flight, flights.GOAL, result, 0.6)
     missed = []
     for check in flight.checks(errors):
-        on_the_way = [bound for what, bound in DRAGGED.items() if check.what.startswith(what)]
+        bound = check.bound
         if name == "step" and check.what.startswith("overshoot"):
-            on_the_way = [RAW_STEP_OVERSHOOT]
+            bound = RAW_STEP_OVERSHOOT
         # The last point of the trajectory is reached while drag still acts on the way behind it.
-        final = [DRAGGED["RMS error"]] if check.what.startswith("final error") else []
-        if not replace(check, bound=max([check.bound, *on_the_way, *final])).met:
+        if check.what.startswith(("RMS error", "final error")):
+            bound = SMOOTH_MM
+        if not replace(check, bound=bound).met:
             missed.append(check)
     assert not missed

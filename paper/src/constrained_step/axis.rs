@@ -1,6 +1,6 @@
 //! One loop of the cascade as it flies in hover, with the steps that it is measured by.
 
-use lmpc::{Augmented, DesignError, Dlqr, LaguerreBasis, SignalLimit};
+use lmpc::{Augmented, DesignError, Dlqr, SignalLimit};
 use nalgebra::{DVector, DVectorView};
 use quadrotor::{Configuration, HoverLoops, LinearLoop};
 
@@ -87,14 +87,6 @@ impl Axis {
         DVector::from_fn(self.linear.model.states(), |state, _| {
             if state % per_channel == 0 { goal[state / per_channel] } else { 0.0 }
         })
-    }
-
-    /// One basis per input.
-    ///
-    /// # Errors
-    /// As [`LaguerreBasis::new`].
-    pub fn bases(&self, terms: usize, scale: f64) -> Result<Vec<LaguerreBasis>, DesignError> {
-        (0..self.linear.model.inputs()).map(|_| LaguerreBasis::new(terms, scale)).collect()
     }
 
     /// The regulator of the same weights (54), α = 1.

@@ -136,7 +136,7 @@ pub fn finite_laguerre(
     }
     let linear = &axis.linear;
     let model = Augmented::new(&linear.model);
-    let bases = axis.bases(terms, scale)?;
+    let bases = linear.bases(terms, scale)?;
     let design = LmpcDesign::new(&model, &linear.weights, &bases, linear.prediction_horizon, weighting)?;
     sized!(axis, sized, MANY, (axis, &design, &linear.plain_limits()))
 }
@@ -175,17 +175,12 @@ pub fn state_space(axis: &Axis, moves: usize, end: End) -> Result<Controller, De
 /// As [`StateSpaceMpcDesign::with_weights`].
 pub fn state_space_design(axis: &Axis, moves: usize, end: End) -> Result<StateSpaceMpcDesign, DesignError> {
     let linear = &axis.linear;
-    let (states, outputs) = (linear.model.states(), linear.model.outputs());
-    let q = linear.weights.q();
-    let weights = StateSpaceMpcWeights {
-        output: q.view((states, states), (outputs, outputs)).into_owned(),
-        moves: linear.weights.r().clone(),
-        increment: q.view((0, 0), (states, states)).into_owned(),
-        terminal: match end {
-            End::Nothing => None,
-            End::Riccati => Some(axis.regulator()?.cost().clone()),
-        },
+    let terminal = match end {
+        End::Nothing => None,
+        End::Riccati => Some(axis.regulator()?.cost().clone()),
     };
+    let weights =
+        StateSpaceMpcWeights::of_augmented(&Augmented::new(&linear.model), &linear.weights, terminal)?;
     StateSpaceMpcDesign::with_weights(&linear.model, &weights, linear.prediction_horizon, moves)
 }
 

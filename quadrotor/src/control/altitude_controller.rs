@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
-use crate::control::observed_motion::ObservedMotion;
+use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::ALTITUDE_MANY;
@@ -74,21 +74,14 @@ impl AltitudeController {
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let deviation =
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
-        let change = measured - self.controller.measured() - Vector3::new(position, velocity, acceleration);
-        let increment = match &design.altitude.motion {
-            Some(model) => self.observed.increment(
-                model,
-                &deviation,
-                &change,
-                &self.controller.feedback(),
-                &Vector3::zeros(),
-            ),
-            None => {
-                let sample_time_s = configuration.controllers.altitude.sample_time_s();
-                self.observed.watch(&deviation, &change, sample_time_s);
-                change
-            }
+        let motion = MotionSample {
+            deviation,
+            change: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
+            feedback: self.controller.feedback(),
+            jump: Vector3::zeros(),
         };
+        let sample_time_s = configuration.controllers.altitude.sample_time_s();
+        let increment = self.observed.step(design.altitude.motion.as_ref(), &motion, sample_time_s);
         let sample = Sample {
             measured,
             increment,

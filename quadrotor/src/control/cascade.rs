@@ -150,7 +150,6 @@ impl Cascade {
             &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
             (&now, later),
             (present, most_horizontal(lightest, tilt_rad).min(holding)),
-            |wanted| within(wanted, present),
         );
         let feedback = applied - now.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
@@ -320,13 +319,7 @@ pub(crate) fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
 
 /// A horizontal acceleration, NED, m/s², shortened to [`most_horizontal`].
 fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
-    within(wanted, most_horizontal(vertical_m_s2, tilt_rad))
-}
-
-/// A vector shortened to a limit.
-fn within(wanted: Vector2<f64>, limit: f64) -> Vector2<f64> {
-    let norm = wanted.norm();
-    if norm > limit { wanted * (limit / norm) } else { wanted }
+    wanted.cap_magnitude(most_horizontal(vertical_m_s2, tilt_rad))
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

@@ -4,9 +4,9 @@ use lmpc::{DesignError, StateSpace};
 use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-/// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1 would be an incremental
-/// law by measured increments, which passes on the noise of the velocity undiminished, and forgets one half of a kick that a limit cuts
-/// off. At this one a disturbance is found within two samples.
+/// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1
+/// would be an incremental law by measured increments, which passes on the noise of the velocity undiminished, and forgets one
+/// half of a kick that a limit cuts off. At this one a disturbance is found within two samples.
 const NEW: f64 = 0.5;
 
 /// A model of N states and P inputs, channel by channel: the output, its rate, and others.
@@ -74,6 +74,19 @@ impl<const N: usize, const P: usize> Default for ObservedMotion<N, P> {
     }
 }
 
+/// What is seen of the motion at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MotionSample<const N: usize, const P: usize> {
+    /// x(k) − x_r(k).
+    pub(crate) deviation: SVector<f64, N>,
+    /// By how much the state has changed since the last sample beside the reference's own motion.
+    pub(crate) change: SVector<f64, N>,
+    /// v(k−1).
+    pub(crate) feedback: SVector<f64, P>,
+    /// w, by how much the reference's own derivatives have jumped.
+    pub(crate) jump: SVector<f64, N>,
+}
+
 impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// With a deviation at the last sample and a disturbance.
     pub(crate) fn new(deviation: SVector<f64, N>, disturbance: SVector<f64, P>) -> Self {
@@ -85,14 +98,25 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         self.disturbance
     }
 
+    /// The increment Δx(k) that a law goes by: of the motion that leads to the deviation, or as it was measured when there is no model.
+    pub(crate) fn step(
+        &mut self,
+        model: Option<&MotionModel<N, P>>,
+        seen: &MotionSample<N, P>,
+        sample_time_s: f64,
+    ) -> SVector<f64, N> {
+        match model {
+            Some(model) => self.increment(model, seen),
+            None => {
+                self.watch(seen, sample_time_s);
+                seen.change
+            }
+        }
+    }
+
     /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
     /// disturbance without a model, as far as the accelerations at both ends of the sample do not explain how the rate has changed.
-    pub(crate) fn watch(
-        &mut self,
-        deviation: &SVector<f64, N>,
-        change: &SVector<f64, N>,
-        sample_time_s: f64,
-    ) {
+    fn watch(&mut self, MotionSample { deviation, change, .. }: &MotionSample<N, P>, sample_time_s: f64) {
         for channel in 0..P {
             let [rate, acceleration] = [1, 2].map(|derivative| N / P * channel + derivative);
             let explained = (deviation[acceleration] + self.deviation[acceleration]) / 2.0;
@@ -115,8 +139,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         }
     }
 
-    /// A sample: the deviation from the reference, and by how much it has changed since the last one without what the reference has
-    /// jumped by, under the feedback v(k−1). w is by how much the reference's own derivatives have jumped. Returns the increment Δx(k) of the motion that leads to the deviation:
+    /// The increment Δx(k) of the motion that leads to the deviation:
     ///
     /// ```text
     /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
@@ -126,10 +149,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     pub(crate) fn increment(
         &mut self,
         model: &MotionModel<N, P>,
-        deviation: &SVector<f64, N>,
-        change: &SVector<f64, N>,
-        feedback: &SVector<f64, P>,
-        jump: &SVector<f64, N>,
+        MotionSample { deviation, change, feedback, jump }: &MotionSample<N, P>,
     ) -> SVector<f64, N> {
         let driven = model.by_input * feedback;
         let expected = model.transition * self.deviation - self.deviation

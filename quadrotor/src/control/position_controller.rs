@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
-use crate::control::observed_motion::ObservedMotion;
+use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
 use crate::design::position_limits::{
@@ -43,8 +43,8 @@ impl PositionController {
         Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
-    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and `most_m_s2` later on, and `limited` brings
-    /// one within what the vehicle can do.
+    /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and
+    /// `most_m_s2` later on.
     pub(crate) fn step(
         &mut self,
         configuration: &Configuration,
@@ -52,7 +52,6 @@ impl PositionController {
         seen: &HorizontalMotion,
         (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
         (present_m_s2, most_m_s2): (f64, f64),
-        limited: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> (Vector2<f64>, ControllerActivity) {
         let limits = &configuration.limits;
         let measured = by_axis([
@@ -62,17 +61,6 @@ impl PositionController {
             seen.jerk_m_s3,
             seen.snap_m_s4,
             seen.asked_snap_m_s4,
-        ]);
-        let [x, y] = reference.increments_since(&self.reference);
-        let of_reference = |derivative: usize| Vector2::new(x[derivative], y[derivative]);
-        let explained = by_axis([
-            of_reference(0),
-            of_reference(1),
-            of_reference(2),
-            of_reference(3),
-            of_reference(4),
-            // Feedback is none of the reference.
-            Vector2::zeros(),
         ]);
         let error = seen.position_m - reference.position;
         // An error is closed against its direction.
@@ -101,36 +89,26 @@ impl PositionController {
             let speeds = ASKED.map(|sample| ahead(sample).velocity.norm());
             (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
         };
+        let deviation = with_position(&(measured - state_of(reference)), &error);
         let zero = Vector2::zeros();
-        let deviation = by_axis([
-            error,
-            seen.velocity_m_s - reference.velocity,
-            seen.acceleration_m_s2 - reference.thrust,
-            seen.jerk_m_s3 - reference.jerk,
-            seen.snap_m_s4 - reference.snap,
-            seen.asked_snap_m_s4,
-        ]);
-        let change = measured - self.controller.measured() - explained;
-        let turned =
+        let driven =
             deviation + by_axis([zero, zero, zero, zero, seen.disturbance_m_s4, seen.disturbance_m_s4]);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
-        let jump = by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]);
-        let increment = match &design.position.motion {
+        let model = design.position.motion.as_ref();
+        let motion = MotionSample {
             // The rotors hold the body against torques that disturb it: what turns it is both together.
-            Some(model) => {
-                self.observed.increment(model, &turned, &change, &self.controller.feedback(), &jump)
-            }
-            None => {
-                let sample_time_s = configuration.controllers.position.sample_time_s();
-                self.observed.watch(&deviation, &change, sample_time_s);
-                change
-            }
+            deviation: if model.is_some() { driven } else { deviation },
+            change: measured - self.controller.measured() - motion_of(reference, &self.reference),
+            feedback: self.controller.feedback(),
+            jump: by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]),
         };
+        let sample_time_s = configuration.controllers.position.sample_time_s();
+        let increment = self.observed.step(model, &motion, sample_time_s);
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),
             // What disturbs the vehicle accelerates it, too.
-            deviation: turn.state(&(turned + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
+            deviation: turn.state(&(driven + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
@@ -138,13 +116,13 @@ impl PositionController {
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
-        let mut turned = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
-        let mut step = design.position.law.step(&mut turned, &sample);
+        let mut along = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
+        let mut step = design.position.law.step(&mut along, &sample);
         let back = turn.inverse();
-        self.controller = turned.map(|state| back.state(state), |input| back.vector(input));
+        self.controller = along.map(|state| back.state(state), |input| back.vector(input));
         step.input = back.vector(&step.input);
         self.reference = *reference;
-        let applied = limited(step.input);
+        let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
@@ -184,6 +162,24 @@ fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
         reference.snap,
         Vector2::zeros(),
     ])
+}
+
+/// By how much the motion of a reference moves that state from the sample before.
+fn motion_of(reference: &ReferenceMotion<2>, before: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
+    let increments = reference.increments_since(before);
+    SVector::from_fn(|state, _| {
+        increments[state / AXIS_STATES].get(state % AXIS_STATES).copied().unwrap_or_default()
+    })
+}
+
+/// The same state at another position.
+fn with_position(
+    state: &SVector<f64, POSITION_STATES>,
+    position_m: &Vector2<f64>,
+) -> SVector<f64, POSITION_STATES> {
+    let mut moved = *state;
+    (moved[0], moved[AXIS_STATES]) = (position_m.x, position_m.y);
+    moved
 }
 
 /// x and its derivatives, then y and its derivatives.

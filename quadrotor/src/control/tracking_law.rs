@@ -134,13 +134,7 @@ fn state_space<const P: usize>(
     weights: &Weights,
     regulator: &Dlqr,
 ) -> Result<StateSpaceMpcDesign, DesignError> {
-    let (q, states) = (weights.q(), model.plant().states());
-    let weights = StateSpaceMpcWeights {
-        output: q.view((states, states), (P, P)).into_owned(),
-        moves: weights.r().clone(),
-        increment: q.view((0, 0), (states, states)).into_owned(),
-        terminal: Some(regulator.cost().clone()),
-    };
+    let weights = StateSpaceMpcWeights::of_augmented(model, weights, Some(regulator.cost().clone()))?;
     let (horizon, moves) = (settings.prediction_horizon as usize, settings.control_horizon as usize);
     StateSpaceMpcDesign::with_weights(model.plant(), &weights, horizon, moves)
 }

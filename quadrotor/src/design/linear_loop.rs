@@ -1,5 +1,6 @@
 //! The linear program of one controller, as it flies: to study it without a vehicle.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use lmpc::{
@@ -69,10 +70,17 @@ impl LinearLoop {
     /// # Errors
     /// Those of [`LaguerreBasis::new`] and [`StabilizedDesign::new`].
     pub fn design(&self, terms: usize, scale: f64) -> Result<StabilizedDesign, DesignError> {
-        let bases: Vec<LaguerreBasis> =
-            (0..self.model.inputs()).map(|_| LaguerreBasis::new(terms, scale)).collect::<Result<_, _>>()?;
         let model = Augmented::new(&self.model);
+        let bases = self.bases(terms, scale)?;
         StabilizedDesign::new(&model, &self.weights, &self.stabilizing_gain, &bases, self.lambda)
+    }
+
+    /// N = `terms` and a = `scale` for each input.
+    ///
+    /// # Errors
+    /// Those of [`LaguerreBasis::new`].
+    pub fn bases(&self, terms: usize, scale: f64) -> Result<Vec<LaguerreBasis>, DesignError> {
+        Ok(vec![LaguerreBasis::new(terms, scale)?; self.model.inputs()])
     }
 
     /// The same limits for a [`lmpc::StateSpaceMpc`] or [`lmpc::LaguerreMpc`].

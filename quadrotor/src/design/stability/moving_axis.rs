@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::control::observed_motion::{MotionModel, ObservedMotion};
+use crate::control::observed_motion::{MotionModel, MotionSample, ObservedMotion};
 use crate::design::estimator_design::Axis;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::design::stability::loop_events::LoopEvent;
@@ -99,13 +99,13 @@ impl<const K: usize> MovingAxis<K> {
         let increment = match &self.motion {
             Some(model) => {
                 let mut observed = ObservedMotion::new(before.into(), [state.found].into());
-                let increment = observed.increment(
-                    model,
-                    &deviation.into(),
-                    &change,
-                    &[state.feedback].into(),
-                    &SVector::zeros(),
-                );
+                let seen = MotionSample {
+                    deviation: deviation.into(),
+                    change,
+                    feedback: [state.feedback].into(),
+                    jump: SVector::zeros(),
+                };
+                let increment = observed.increment(model, &seen);
                 state.found = observed.disturbance()[0];
                 increment
             }
@@ -127,7 +127,8 @@ impl<const K: usize> MovingAxis<K> {
         state.measured = seen;
     }
 
-    /// The estimator's step to the next sample of the attitude controller: by the acceleration that it models, m/s², and the error of the measured position, m.
+    /// The estimator's step to the next sample of the attitude controller: by the acceleration that it models, m/s², and the
+    /// error of the measured position, m.
     pub(crate) fn predict(&self, state: &mut Moving, modelled: f64, noise: f64) {
         let measured = state.position + noise;
         state.estimate =
