@@ -262,6 +262,7 @@ pub(super) fn vehicle(
         battery: BatteryPack::default(),
         plans: Plans::default(),
         autostart: arguments.autostart.unwrap_or(false),
+        foreign: None,
     };
     let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
     let airframe_note = chosen.map(|chosen| {

@@ -5,9 +5,8 @@ use std::time::{Duration, Instant};
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
 use autopilot::file_work::FileWorker;
-use quadrotor::SimulationError;
-use vehicle::Mode;
 use vehicle::parameters::Speed;
+use vehicle::{FlightError, Mode};
 
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::loss::Loss;
@@ -121,8 +120,8 @@ impl Member {
     /// One tick on.
     ///
     /// # Errors
-    /// [`SimulationError`]: the flight cannot go on; its time is still that of the last good tick.
-    pub(super) fn tick(&mut self, now: Instant) -> Result<(), SimulationError> {
+    /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
+    pub(super) fn tick(&mut self, now: Instant) -> Result<(), FlightError> {
         set_simulation_time(self.time_us());
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
@@ -133,8 +132,8 @@ impl Member {
     }
 
     /// Why its simulation has ended before the run, if it has.
-    pub fn loss(&self) -> Option<Loss> {
-        self.loss
+    pub fn loss(&self) -> Option<&Loss> {
+        self.loss.as_ref()
     }
 
     /// Its simulation has ended: so do its files, and nothing waits for it any more.
