@@ -43,9 +43,9 @@ pub struct Setup {
     pub booleans: Vec<(u32, bool)>,
     /// Real variables to read after each step.
     pub outputs: Vec<u32>,
-    /// Longest time of loading and initializing, and of the end.
+    /// Longest time of loading and initializing.
     pub longest_start: Duration,
-    /// Longest time of a step.
+    /// Longest time of a step, and of the end.
     pub longest_step: Duration,
 }
 
@@ -59,7 +59,6 @@ pub struct Guarded {
     listener: Listener,
     watchdog: Watchdog,
     slip: PathBuf,
-    longest_start: Duration,
     longest_step: Duration,
     last_words: VecDeque<String>,
     /// What was said while it failed, to be taken after.
@@ -112,7 +111,6 @@ impl Guarded {
                 let _gone = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();
             }),
             slip,
-            longest_start: setup.longest_start,
             longest_step: setup.longest_step,
             last_words: VecDeque::new(),
             said: Vec::new(),
@@ -147,7 +145,7 @@ impl Guarded {
     /// # Errors
     /// [`GuestError`] of the end.
     pub fn finish(&mut self) -> Result<(), GuestError> {
-        match self.ask(&Request::Finish, self.longest_start)? {
+        match self.ask(&Request::Finish, self.longest_step)? {
             Response::Finished => Ok(()),
             Response::Failed(what) => Err(self.error(Cause::Failed(what))),
             Response::Values(_) => Err(self.error(Cause::Babbled("values".to_owned()))),

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
 use autopilot::file_work::FileWorker;
+use vehicle::foreign::ForeignModel;
 use vehicle::parameters::Speed;
-use vehicle::{FlightError, Mode};
+use vehicle::{FlightError, Mode, Vehicle};
 
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::loss::Loss;
@@ -50,14 +51,22 @@ impl Member {
     /// A vehicle that has just started, behind the links of a hub.
     pub(super) fn new(
         participant: &Participant,
+        model: Option<Box<dyn ForeignModel>>,
         speed: Speed,
         hub: usize,
         parameters: Option<ParameterFile>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
         let Participant { system_id, links, vehicle } = participant;
+        let autopilot = match model {
+            None => Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
+            Some(model) => {
+                let flown = Vehicle::flown_by(vehicle, model)?;
+                Autopilot::of(flown, vehicle, *system_id, speed, links, unix_start_us)
+            }
+        };
         Ok(Self {
-            autopilot: Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
+            autopilot,
             hub,
             last_heartbeat: Instant::now(),
             lockstep: None,
