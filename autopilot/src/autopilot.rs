@@ -1,10 +1,10 @@
 //! The whole vehicle as MAVLink sees it, without a socket and without a clock: received frames and ticks of simulation
 //! time go in, messages come out.
 
-use quadrotor::{ConfigurationError, SimulationError};
+use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
-use vehicle::{Severity, Vehicle, VehicleSettings};
+use vehicle::{FlightError, Severity, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
 use crate::context::Context;
@@ -35,8 +35,19 @@ impl Autopilot {
         links: &[LinkProfile],
         unix_start_us: u64,
     ) -> Result<Self, ConfigurationError> {
+        Ok(Self::of(Vehicle::new(settings)?, settings, system_id, speed, links, unix_start_us))
+    }
+
+    /// The same for a vehicle that has been made from these settings.
+    pub fn of(
+        mut vehicle: Vehicle,
+        settings: &VehicleSettings,
+        system_id: u8,
+        speed: Speed,
+        links: &[LinkProfile],
+        unix_start_us: u64,
+    ) -> Self {
         let mut services = Registry::new();
-        let mut vehicle = Vehicle::new(settings)?;
         vehicle.set_unix_start_us(unix_start_us);
         let mut context = Context {
             parameters: Parameters::new(settings, &vehicle, system_id, speed),
@@ -48,7 +59,7 @@ impl Autopilot {
             links: links.to_vec(),
         };
         services.start(&mut context);
-        Ok(Self { context, services })
+        Self { context, services }
     }
 
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
@@ -64,8 +75,8 @@ impl Autopilot {
     /// Flies one tick on and sends what is due then.
     ///
     /// # Errors
-    /// [`SimulationError`]: the flight cannot go on.
-    pub fn tick(&mut self) -> Result<(), SimulationError> {
+    /// [`FlightError`]: the flight cannot go on.
+    pub fn tick(&mut self) -> Result<(), FlightError> {
         self.context.vehicle.tick()?;
         self.services.tick(&mut self.context);
         self.services.announce(&mut self.context);

@@ -2,9 +2,8 @@
 
 use std::sync::OnceLock;
 
-use quadrotor::ConfigurationError;
 use vehicle::parameters::{Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Value};
-use vehicle::{Refusal, Vehicle, VehicleSettings};
+use vehicle::{ChangeError, Refusal, Vehicle, VehicleSettings};
 
 use crate::codec::parameter_hash;
 use crate::parameter_metadata::ParameterMetadata;
@@ -120,7 +119,7 @@ impl Parameters {
         let now = vehicle.simulation().configuration();
         (configuration.initial, configuration.environment) = (now.initial, now.environment);
         configuration.reference = now.reference;
-        let denied = |error: ConfigurationError| Refusal::denied(error.to_string());
+        let denied = |error: ChangeError| Refusal::denied(error.to_string());
         vehicle.adopt(&configuration, &self.settings.conduct).map_err(denied)?;
         self.changed = true;
         Ok(())

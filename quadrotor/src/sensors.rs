@@ -69,7 +69,7 @@ impl NoiseState {
 
 impl Sensors {
     /// Whether nothing is added to the truth.
-    pub(crate) fn is_exact(&self) -> bool {
+    pub fn is_exact(&self) -> bool {
         [self.position_noise_m, self.velocity_noise_m_s, self.attitude_noise_rad, self.body_rate_noise_rad_s]
             == [0.0; 4]
     }

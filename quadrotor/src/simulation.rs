@@ -159,6 +159,44 @@ impl Simulation {
         Ok(())
     }
 
+    /// The equations of the vehicle.
+    pub fn plant(&self) -> &Plant {
+        &self.plant
+    }
+
+    /// Rotors and rigid body at the last event.
+    pub fn plant_state(&self) -> &PlantState {
+        &self.world.plant
+    }
+
+    /// Samples inputs and control loop as [`Simulation::advance_to`] does at an event, and returns what acts on the plant from
+    /// there on: for a plant from elsewhere, whose motion [`Simulation::place`] then takes in. Neither is of use in the
+    /// middle between two events.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; nothing has changed then.
+    pub fn command(&mut self, inputs: &Inputs) -> Result<PlantInputs, SimulationError> {
+        if self.control.next_sample_us() <= self.world.event_us {
+            self.sample(inputs)?;
+        }
+        Ok(self.plant_inputs())
+    }
+
+    /// Goes on to `time_us`, at which a plant from elsewhere is in this state. That is an event.
+    ///
+    /// # Errors
+    /// [`SimulationError`]; nothing has changed then.
+    pub fn place(&mut self, time_us: u64, state: PlantState) -> Result<(), SimulationError> {
+        if time_us < self.world.time_us {
+            return Err(SimulationError::Backwards { time_us: self.world.time_us, requested_us: time_us });
+        }
+        if state.has_diverged() {
+            return Err(SimulationError::Diverged { time_us, overload: None });
+        }
+        (self.world.event_us, self.world.time_us, self.world.plant) = (time_us, time_us, state);
+        Ok(())
+    }
+
     /// What can be observed now.
     pub fn outputs(&self) -> Outputs {
         let (control, time_us) = (self.control.state(), self.world.time_us);

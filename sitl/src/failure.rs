@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use quadrotor::{ConfigurationError, SimulationError};
+use vehicle::FlightError;
 use vehicle::parameters::{ParameterFileError, SetError};
 
 use crate::fleet::Loss;
@@ -80,6 +81,9 @@ pub enum Failure {
     /// The simulation of the only vehicle cannot go on.
     #[error("the simulation failed: {0}")]
     Simulation(#[from] SimulationError),
+    /// The flight cannot go on, or begin.
+    #[error("the simulation failed: {0}")]
+    Flight(#[from] FlightError),
     /// The simulation of vehicles of a fleet could not go on; the others flew to their end.
     #[error("the simulation failed: {}", .0.iter().map(Loss::to_string).collect::<Vec<_>>().join("; "))]
     Lost(Vec<Loss>),
@@ -113,11 +117,23 @@ impl Failure {
     /// Exit code of the program.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Simulation(_) | Self::Lost(_) | Self::Signals(_) => 1,
+            Self::Flight(error) => code_of(error),
+            // Whoever asks why finds out about what is not ours first.
+            Self::Lost(losses) => losses.iter().map(|loss| code_of(&loss.error)).max().unwrap_or(1),
+            Self::Simulation(_) | Self::Signals(_) => 1,
             Self::Value { .. } | Self::Usage(_) | Self::Configuration(_) | Self::Set(_) => 2,
             Self::Link(_) => 3,
             Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } | Self::Incomplete(_) => 4,
             Self::Differs { .. } | Self::FliesOn { .. } => 5,
         }
+    }
+}
+
+/// Exit code of a flight that could not go on.
+fn code_of(error: &FlightError) -> u8 {
+    match error {
+        FlightError::Simulation(_) => 1,
+        FlightError::Configuration(_) => 2,
+        FlightError::Foreign { .. } => 6,
     }
 }

@@ -18,6 +18,7 @@ mod failure;
 pub mod files;
 pub mod fleet;
 pub mod flight_log;
+pub mod fmu;
 pub mod hil;
 pub mod link;
 mod pace;

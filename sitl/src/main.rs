@@ -5,8 +5,12 @@ use std::process::ExitCode;
 
 use clap::FromArgMatches;
 use sitl::configuration::{Arguments, environment, help, mistake};
+use sitl::fmu::HOST_ARGUMENT;
 
 fn main() -> ExitCode {
+    if std::env::args_os().skip(1).eq([HOST_ARGUMENT]) {
+        importer::host();
+    }
     let read = help::command().try_get_matches().and_then(|matches| Arguments::from_arg_matches(&matches));
     let ended = match read {
         Ok(arguments) => {

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use vehicle::{Notice, Severity};
 
-use crate::configuration::{Arguments, Settings, check_replay, file, parameter_list};
+use crate::configuration::{Arguments, Settings, check_replay, file, fmu_listing, parameter_list};
 use crate::failure::Failure;
 use crate::fleet::Loss;
 use crate::hil::{HilSettings, Simulator};
@@ -26,6 +26,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     start_log(arguments.log.clone().unwrap_or_default().into());
     if let Some(format) = arguments.list_parameters {
         say(parameter_list(&Settings::resolve(&arguments)?, format).trim_end());
+        return Ok(());
+    }
+    if arguments.fmu_check == Some(true) && arguments.replay.is_none() {
+        let settings = Settings::resolve(&arguments)?;
+        if let (Some(choice), Some(first)) = (&settings.fmu, settings.vehicles.first()) {
+            say(fmu_listing(choice, &first.vehicle)?.trim_end());
+        }
         return Ok(());
     }
     if let Some(path) = &arguments.replay {

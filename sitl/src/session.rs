@@ -57,7 +57,7 @@ impl Session {
                 digest: member.digest().value(),
             })
             .collect();
-        let losses = members.iter().filter_map(Member::loss).collect();
+        let losses = members.iter().filter_map(Member::loss).cloned().collect();
         Summary { wall: start.elapsed(), flights, losses, incomplete }
     }
 }

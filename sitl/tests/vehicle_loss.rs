@@ -17,6 +17,7 @@ use seal::sealed;
 use sitl::configuration::{Arguments, Settings};
 use sitl::record::{RecordEnd, replay};
 use sitl::{Failure, Session, Summary};
+use vehicle::FlightError;
 
 const END_US: u64 = 6_000_000;
 /// No range allows this wind, m/s: it carries a vehicle out of the numbers within seconds.
@@ -70,7 +71,9 @@ fn one_of_a_fleet_is_lost_and_the_others_fly_the_same_flights() {
         let line = format!("--vehicles 3 --formation line,3 {sharing}");
         let summary = flown(settings(&line, folder.path()));
         let [loss] = summary.losses.as_slice() else { panic!("{sharing}: {:?}", summary.losses) };
-        let SimulationError::Diverged { time_us, overload: Some(overload) } = loss.error else {
+        let FlightError::Simulation(SimulationError::Diverged { time_us, overload: Some(overload) }) =
+            loss.error
+        else {
             panic!("{loss}")
         };
         assert_eq!((loss.system_id, overload.name), (2, "wind.velocity.x"));

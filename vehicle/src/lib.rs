@@ -11,6 +11,7 @@
 //!  mode         flight modes
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
 //!  vehicle      the state machines over the closed loop, and the place that decides between them
+//!  foreign      a closed loop or a plant from elsewhere, in place of ours
 //!  parameters   all settings by their identifiers
 //! ```
 
@@ -20,6 +21,8 @@
 pub mod estimation;
 pub mod fault;
 pub mod fence;
+mod flight_error;
+pub mod foreign;
 pub mod identity;
 mod mode;
 pub mod parameters;
@@ -27,10 +30,11 @@ pub mod plan;
 mod vehicle;
 pub mod world;
 
+pub use flight_error::FlightError;
 pub use mode::Mode;
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, Conduct, Failsafe,
-    FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice,
-    PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
+    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
+    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
+    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
     TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

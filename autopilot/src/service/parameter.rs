@@ -160,7 +160,7 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
 
 /// What is worth a warning about the vehicle's closed loop.
 fn stability_warnings(context: &Context) -> Vec<StabilityWarning> {
-    context.vehicle.simulation().control().stability().warnings().to_vec()
+    context.vehicle.stability_warnings().to_vec()
 }
 
 /// Sends a parameter that something else than PARAM_SET has changed.

@@ -8,7 +8,7 @@ use vehicle::estimation::SensorModel;
 use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
-use super::help::{self, FILES, FLEET, HIL, LINKS, SIMULATION, VEHICLE};
+use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
     Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom,
@@ -305,6 +305,30 @@ pub struct Arguments {
     )]
     pub ftp_write: Option<bool>,
 
+    /// FMU that flies (FMI 2.0 co-simulation)
+    ///
+    /// As the closed loop, or as the plant under our controllers, by the inputs that it has. Variables with the names of ours are
+    /// found by themselves; --map names others. Each vehicle has an instance of its own, in a process of its own. With --hil it
+    /// is the plant of the external autopilot. Exit code 6 means that it crashed, hung or reported an error.
+    #[arg(long, env = "LMPC_SITL_FMU", value_name = "FILE.fmu", help_heading = FMU, hide_short_help = true)]
+    pub fmu: Option<PathBuf>,
+
+    /// Names, units, axes and start values of --fmu (TOML)
+    ///
+    /// For an FMU whose variables are not named as ours. `[variables]` has our names and its names, `[frame]` its axes,
+    /// `[parameters]` its start values.
+    #[arg(long, env = "LMPC_SITL_MAP", value_name = "FILE.toml", help_heading = FMU, hide_short_help = true)]
+    pub map: Option<PathBuf>,
+
+    /// List the variables that --fmu is flown by, and exit
+    ///
+    /// With units, conversions and start values. The FMU's code does not run. [default: false]
+    #[arg(
+        long, env = "LMPC_SITL_FMU_CHECK", value_name = "true|false", num_args = 0..=1, default_missing_value = "true",
+        help_heading = FMU, hide_short_help = true
+    )]
+    pub fmu_check: Option<bool>,
+
     /// Only simulate the plant, for an autopilot on TCP
     ///
     /// PX4 connects to port 4560; HOST defaults to 127.0.0.1. Sends HIL_SENSOR, HIL_GPS and HIL_STATE_QUATERNION, receives
@@ -363,6 +387,9 @@ impl Arguments {
             log_count: self.log_count.or(file.log_count),
             ftp_root: self.ftp_root.or(file.ftp_root),
             ftp_write: self.ftp_write.or(file.ftp_write),
+            fmu: self.fmu.or(file.fmu),
+            map: self.map.or(file.map),
+            fmu_check: self.fmu_check.or(file.fmu_check),
             signing_key: self.signing_key.or(file.signing_key),
             accept_signing_setup: self.accept_signing_setup.or(file.accept_signing_setup),
             ready_file: self.ready_file.or(file.ready_file),

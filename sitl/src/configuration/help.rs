@@ -14,6 +14,8 @@ pub const FLEET: &str = "Several vehicles";
 pub const SIMULATION: &str = "Simulation";
 /// What is written and read.
 pub const FILES: &str = "Records, logs and files";
+/// Models of others.
+pub const FMU: &str = "FMU in place of ours";
 /// Hardware and software in the loop.
 pub const HIL: &str = "External autopilot";
 
@@ -75,6 +77,7 @@ Examples:
   Record       lmpc-sitl --record flight.lmpc
   Replay       lmpc-sitl --replay flight.lmpc
   Flight logs  lmpc-sitl --log-dir logs --log-start boot
+  FMU          lmpc-sitl --fmu plant.fmu --map plant.toml
   PX4          lmpc-sitl --hil 4560
 
 Lock-step (--speed max --lockstep always):
@@ -125,7 +128,8 @@ Exit codes:
   2  a flag, value or environment variable is wrong
   3  a port or device cannot be used
   4  a file cannot be used or is incomplete
-  5  a replayed flight differs from the recorded one";
+  5  a replayed flight differs from the recorded one
+  6  an FMU crashed, hung or reported an error";
 
 /// The command line. The names of environment variables follow from those of the flags, and are not listed.
 pub fn command() -> Command {

@@ -40,6 +40,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         record,
         record_size,
         replay: _,
+        fmu,
+        map,
+        fmu_check,
         hil,
         hil_mount,
         tlog,
@@ -84,6 +87,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("autostart", autostart.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
+        ("fmu", fmu.is_some()),
+        ("map", map.is_some()),
+        ("fmu-check", fmu_check.is_some()),
         ("hil", hil.is_some()),
         ("hil-mount", hil_mount.is_some()),
         ("tlog", tlog.is_some()),
@@ -128,6 +134,7 @@ mod tests {
         ("set", "AF_MASS=1"),
         ("fault", "1:gps=off"),
         ("hil-mount", "x"),
+        ("fmu-check", "true"),
         ("log-start", "arm"),
         ("ftp-write", "true"),
         ("accept-signing-setup", "true"),
@@ -156,6 +163,6 @@ mod tests {
                 refused += 1;
             }
         }
-        assert!(refused >= 34, "{refused}");
+        assert!(refused >= 37, "{refused}");
     }
 }

@@ -15,10 +15,11 @@ use vehicle::world::{LocalFrame, WindSettings};
 use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
-use super::{AirframeChoice, Arguments, Clocks, Ports, read_plans, wind_drag, wind_hold};
+use super::{AirframeChoice, Arguments, Clocks, Ports, fmu, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
 use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
+use crate::fmu::FmuChoice;
 use crate::link::{LinkSpecification, default_links};
 use crate::record::Participant;
 
@@ -52,6 +53,8 @@ pub struct Settings {
     pub signing_key: Option<PathBuf>,
     /// Whether a local client may set the key while there is none.
     pub accept_signing_setup: bool,
+    /// What flies in place of our closed loop or plant.
+    pub fmu: Option<FmuChoice>,
     /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
     /// End, µs of simulation time.
@@ -84,6 +87,7 @@ impl Settings {
         let shared = arguments.ports.unwrap_or_default() == Ports::Shared;
         let count = ids.len();
         check_addresses(arguments, &ids)?;
+        let fmu = fmu::choice(arguments)?;
         let member = |(number, system_id): (usize, u8)| {
             let parameters = arguments.parameters.as_deref();
             let parameters =
@@ -91,8 +95,12 @@ impl Settings {
             let (vehicle, notes) = vehicle(arguments, number, count, parameters.as_deref())?;
             let hub = if shared { 0 } else { number };
             let warning = wind_hold::warning(&vehicle.configuration, &vehicle.wind);
+            let about_fmu = match &fmu {
+                Some(choice) => fmu::check(arguments, choice, &vehicle)?,
+                None => Vec::new(),
+            };
             let own = MemberSettings { system_id, vehicle, hub, parameters };
-            Ok((own, notes.into_iter().chain(warning).collect()))
+            Ok((own, notes.into_iter().chain(warning).chain(about_fmu).collect()))
         };
         let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
         let (vehicles, vehicle_notes): (Vec<_>, Vec<_>) = members?.into_iter().unzip();
@@ -110,6 +118,7 @@ impl Settings {
             logs: log_settings(arguments)?,
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
+            fmu,
             accept_signing_setup: arguments.accept_signing_setup.unwrap_or(false),
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments),
@@ -262,6 +271,7 @@ pub(super) fn vehicle(
         battery: BatteryPack::default(),
         plans: Plans::default(),
         autostart: arguments.autostart.unwrap_or(false),
+        foreign: None,
     };
     let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
     let airframe_note = chosen.map(|chosen| {

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use autopilot::codec::Frame;
+use vehicle::foreign::ForeignMotion;
 
 use super::Member;
 use crate::configuration::Settings;
@@ -57,6 +58,13 @@ impl Books {
     pub fn ground_station(&mut self, member: usize, time_us: u64, heard: bool) {
         if let Some(recorder) = &mut self.recorder {
             recorder.ground_station(member, time_us, heard);
+        }
+    }
+
+    /// What flies in place of ours has moved a member in the tick that began at a time, µs.
+    pub fn motion(&mut self, member: usize, time_us: u64, motion: &ForeignMotion) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.motion(member, time_us, motion);
         }
     }
 

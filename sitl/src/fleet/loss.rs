@@ -3,17 +3,17 @@
 use std::fmt;
 use std::time::Instant;
 
-use quadrotor::SimulationError;
+use vehicle::FlightError;
 
 use super::Fleet;
 
 /// A vehicle whose simulation failed, and why.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
     /// System id of the vehicle.
     pub system_id: u8,
     /// Why.
-    pub error: SimulationError,
+    pub error: FlightError,
 }
 
 impl fmt::Display for Loss {
@@ -24,7 +24,7 @@ impl fmt::Display for Loss {
 
 impl Fleet {
     /// The simulation of a vehicle has failed: its clients are told and hear no more of it, and its files end.
-    pub(super) fn lose(&mut self, number: usize, error: SimulationError, now: Instant) {
+    pub(super) fn lose(&mut self, number: usize, error: FlightError, now: Instant) {
         let Some(member) = self.members.get_mut(number) else { return };
         let loss = Loss { system_id: member.autopilot.system_id(), error };
         tracing::error!("{loss}; the simulation of this vehicle has ended");

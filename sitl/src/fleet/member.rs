@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
 use autopilot::file_work::FileWorker;
-use quadrotor::SimulationError;
-use vehicle::Mode;
+use vehicle::foreign::ForeignModel;
 use vehicle::parameters::Speed;
+use vehicle::{FlightError, Mode, Vehicle};
 
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::loss::Loss;
@@ -51,14 +51,22 @@ impl Member {
     /// A vehicle that has just started, behind the links of a hub.
     pub(super) fn new(
         participant: &Participant,
+        model: Option<Box<dyn ForeignModel>>,
         speed: Speed,
         hub: usize,
         parameters: Option<ParameterFile>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
         let Participant { system_id, links, vehicle } = participant;
+        let autopilot = match model {
+            None => Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
+            Some(model) => {
+                let flown = Vehicle::flown_by(vehicle, model)?;
+                Autopilot::of(flown, vehicle, *system_id, speed, links, unix_start_us)
+            }
+        };
         Ok(Self {
-            autopilot: Autopilot::new(vehicle, *system_id, speed, links, unix_start_us)?,
+            autopilot,
             hub,
             last_heartbeat: Instant::now(),
             lockstep: None,
@@ -121,8 +129,8 @@ impl Member {
     /// One tick on.
     ///
     /// # Errors
-    /// [`SimulationError`]: the flight cannot go on; its time is still that of the last good tick.
-    pub(super) fn tick(&mut self, now: Instant) -> Result<(), SimulationError> {
+    /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
+    pub(super) fn tick(&mut self, now: Instant) -> Result<(), FlightError> {
         set_simulation_time(self.time_us());
         self.autopilot.tick()?;
         self.digest.update(self.autopilot.vehicle());
@@ -133,8 +141,8 @@ impl Member {
     }
 
     /// Why its simulation has ended before the run, if it has.
-    pub fn loss(&self) -> Option<Loss> {
-        self.loss
+    pub fn loss(&self) -> Option<&Loss> {
+        self.loss.as_ref()
     }
 
     /// Its simulation has ended: so do its files, and nothing waits for it any more.

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use autopilot::codec::id;
 use autopilot::envelope::{Destination, Outgoing};
 use vehicle::Severity;
+use vehicle::foreign::ForeignModel;
 
 use super::Member;
 use super::books::Books;
@@ -17,7 +18,9 @@ use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::files::{Disk, FileLock, FileThread, LogFolder};
 use crate::flight_log::FlightLog;
+use crate::fmu::FlownFmu;
 use crate::link::Links;
+use crate::record::Participant;
 
 /// Longest time of one look that long answers may take.
 const LONGEST_TRANSFER: Duration = Duration::from_millis(1);
@@ -63,7 +66,9 @@ impl Fleet {
             .map(|(hub, links)| SigningKeeper::new(key, hub, settings.accept_signing_setup, links))
             .collect::<Result<_, _>>()?;
         // A port that is taken belongs to somebody whose files these may be, too: they come after the links.
-        let participants = settings.participants();
+        let mut participants = settings.participants();
+        // An FMU that does not start leaves no files behind.
+        let mut models = start_models(settings, &mut participants)?.into_iter();
         let books = Books::open(settings, participants.clone(), unix_start_us)?;
         // The vehicles last: they introduce themselves, and then nothing is in the way any more.
         let files = FileThread::new(Disk::open(folder.as_ref(), settings.ftp_root.as_ref())?);
@@ -71,7 +76,9 @@ impl Fleet {
             .zip(participants.iter().zip(&settings.vehicles))
             .map(|(number, (participant, own))| {
                 let parameters = own.parameters.as_deref().map(ParameterFile::open).transpose()?;
-                let member = Member::new(participant, settings.speed, own.hub, parameters, unix_start_us)?;
+                let model = models.next().flatten();
+                let member =
+                    Member::new(participant, model, settings.speed, own.hub, parameters, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
                 Ok(member.keep(files.desk(number), log).keep_step(settings.lockstep))
             })
@@ -153,8 +160,13 @@ impl Fleet {
     pub(super) fn tick(&mut self, number: usize, now: Instant) {
         let flying = |member: &&mut Member| member.loss().is_none();
         let Some(member) = self.members.get_mut(number).filter(flying) else { return };
+        let begun_us = member.time_us();
         match member.tick(now) {
             Ok(()) => {
+                if let Some(motion) = member.autopilot.vehicle().foreign_motion() {
+                    self.books.motion(number, begun_us, motion);
+                    self.books.keep_size(&self.members);
+                }
                 self.send(number, now);
             }
             Err(error) => self.lose(number, error, now),
@@ -259,6 +271,22 @@ impl Fleet {
         lacking.append(&mut self.books.finish(&self.members));
         (self.members, lacking)
     }
+}
+
+/// Starts an FMU for each vehicle that is flown by one, and notes in the participants how they start.
+fn start_models(
+    settings: &Settings,
+    participants: &mut [Participant],
+) -> Result<Vec<Option<Box<dyn ForeignModel>>>, Failure> {
+    let start = |participant: &mut Participant| {
+        let Some(choice) = &settings.fmu else { return Ok(None) };
+        let name = format!("system {}", participant.system_id);
+        let model = FlownFmu::start(choice, &name, &participant.vehicle)?;
+        participant.vehicle.foreign = Some(model.description().clone());
+        let model: Box<dyn ForeignModel> = Box::new(model);
+        Ok(Some(model))
+    };
+    participants.iter_mut().map(start).collect()
 }
 
 /// Whether a message tells the client of lock-step where the vehicle is.

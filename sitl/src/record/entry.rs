@@ -23,6 +23,8 @@ pub enum Event {
     Frame(Origin, Frame),
     /// A ground station is heard, or no more: that is judged by the wall clock.
     GroundStation(bool),
+    /// How a foreign model moves the vehicle in the tick that follows.
+    Motion(Vec<f64>),
     /// The digest of the flight so far, to be compared.
     State(u64),
     /// The end of the flight, with its digest.
@@ -39,6 +41,7 @@ impl Event {
         match self {
             Self::Frame(..) => "frame",
             Self::GroundStation(_) => "station",
+            Self::Motion(_) => "motion",
             Self::State(_) => "state",
             Self::End(_) => "end",
             Self::Limit(_) => "limit",
@@ -56,6 +59,11 @@ impl fmt::Display for Entry {
                 frame.bytes().iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
             }
             Event::GroundStation(heard) => write!(formatter, "{}", u8::from(*heard)),
+            Event::Motion(values) => {
+                let words: Vec<String> =
+                    values.iter().map(|value| format!("{:x}", value.to_bits())).collect();
+                formatter.write_str(&words.join(" "))
+            }
             Event::State(digest) | Event::End(digest) | Event::Limit(digest) | Event::Failure(digest) => {
                 write!(formatter, "{digest:016x}")
             }
@@ -83,6 +91,11 @@ impl Entry {
                 "1" => Event::GroundStation(true),
                 _ => return None,
             },
+            "motion" => {
+                let value = |word| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
+                let values: Vec<f64> = words.by_ref().map(value).collect::<Option<_>>()?;
+                Event::Motion(Some(values).filter(|values| !values.is_empty())?)
+            }
             "state" => Event::State(digest()?),
             "end" => Event::End(digest()?),
             "limit" => Event::Limit(digest()?),
@@ -104,6 +117,21 @@ mod tests {
     use super::{Entry, Event, Frame, Origin, PeerId};
     use autopilot::codec::Version;
     use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
+
+    #[test]
+    fn motions_keep_every_bit() {
+        let values = vec![0.0, -0.0, 1.0 / 3.0, f64::MIN_POSITIVE, -1e300];
+        let entry = Entry { time_us: 7_000, vehicle: 0, event: Event::Motion(values.clone()) };
+        let text = entry.to_string();
+        let Some(Entry { event: Event::Motion(read), .. }) = Entry::parse(&text) else { panic!("{text}") };
+        assert_eq!(
+            read.iter().map(|value| value.to_bits()).collect::<Vec<_>>(),
+            values.iter().map(|value| value.to_bits()).collect::<Vec<_>>()
+        );
+        for wrong in ["motion 1 0", "motion 1 0 x", "motion 1 0 1 ", "motion 1 0 11111111111111111"] {
+            assert_eq!(Entry::parse(wrong), None, "{wrong}");
+        }
+    }
 
     #[test]
     fn entries_read_as_they_are_written_and_nothing_else_does() {

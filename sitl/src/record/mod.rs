@@ -6,6 +6,7 @@
 //! {"format":"lmpc-sitl record 3", …} CRC    the vehicles and their settings
 //! frame TIME_US VEHICLE LINK PEER HEX CRC   a frame that a vehicle received
 //! station TIME_US VEHICLE 0|1 CRC           a ground station is heard no more, or (again)
+//! motion TIME_US VEHICLE VALUE… CRC         how an FMU moved a vehicle in the tick that follows: bits of doubles
 //! state TIME_US VEHICLE DIGEST CRC          once per second of the wall clock: the digest of the flight so far
 //! end TIME_US VEHICLE DIGEST CRC            the end of the flight
 //! limit TIME_US VEHICLE DIGEST CRC          instead of the end: the record has reached its size limit
@@ -21,6 +22,7 @@ mod digest;
 mod entry;
 mod header;
 mod reader;
+mod recorded_model;
 mod recorder;
 mod replay;
 mod traffic_log;

@@ -11,6 +11,7 @@ use super::{Digest, Entry, Event, Header};
 use crate::failure::Failure;
 use crate::files::{FileLock, Notice, Spool, Upkeep};
 use vehicle::Severity;
+use vehicle::foreign::ForeignMotion;
 
 /// What stops a record before the flights end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +67,11 @@ impl Recorder {
     /// Records whether a vehicle hears a ground station from a time on, µs.
     pub fn ground_station(&mut self, vehicle: usize, time_us: u64, heard: bool) {
         self.entry(vehicle, time_us, Event::GroundStation(heard));
+    }
+
+    /// Records how a foreign model has moved a vehicle in the tick that began at a time, µs.
+    pub fn motion(&mut self, vehicle: usize, time_us: u64, motion: &ForeignMotion) {
+        self.entry(vehicle, time_us, Event::Motion(motion.values()));
     }
 
     /// Records how a flight has gone up to a time, µs, by its digest. A record that is cut is compared up to there.

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
-use vehicle::TICK_US;
+use vehicle::{TICK_US, Vehicle};
 
+use super::recorded_model::{Motions, RecordedModel};
 use super::{Digest, Entry, Event, Header, Reader};
 use crate::failure::Failure;
 use crate::summary::Flight;
@@ -55,9 +56,25 @@ pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
         .iter()
         .map(|participant| {
             let (system_id, links) = (participant.system_id, &participant.links);
-            let autopilot =
-                Autopilot::new(&participant.vehicle, system_id, header.speed, links, header.unix_start_us)?;
-            Ok(Flown { system_id, autopilot, digest: Digest::default(), end: RecordEnd::Cut, verified_us: 0 })
+            let settings = &participant.vehicle;
+            let (speed, unix_start_us) = (header.speed, header.unix_start_us);
+            let motions = Motions::default();
+            let autopilot = match &settings.foreign {
+                None => Autopilot::new(settings, system_id, speed, links, unix_start_us)?,
+                Some(foreign) => {
+                    let model = RecordedModel::new(foreign, &motions);
+                    let vehicle = Vehicle::flown_by(settings, Box::new(model))?;
+                    Autopilot::of(vehicle, settings, system_id, speed, links, unix_start_us)
+                }
+            };
+            Ok(Flown {
+                system_id,
+                autopilot,
+                motions,
+                digest: Digest::default(),
+                end: RecordEnd::Cut,
+                verified_us: 0,
+            })
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     survey.announce(path, &header);
@@ -157,6 +174,8 @@ impl Progress {
 struct Flown {
     system_id: u8,
     autopilot: Autopilot,
+    /// Those of an FMU that are read ahead of the flight.
+    motions: Motions,
     digest: Digest,
     end: RecordEnd,
     verified_us: u64,
@@ -187,6 +206,7 @@ impl Flown {
         match entry.event {
             Event::Frame(origin, frame) => self.autopilot.receive(&origin, &frame),
             Event::GroundStation(heard) => self.autopilot.hear_ground_station(heard),
+            Event::Motion(values) => self.motions.push(values),
             Event::State(digest) => self.compare(entry.time_us, digest)?,
             Event::End(digest) => {
                 self.compare(entry.time_us, digest)?;

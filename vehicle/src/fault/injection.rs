@@ -99,6 +99,11 @@ impl Fault {
         matches!(self, Self::Sensor(_, Some(Garbage | Wrong | Slow | Delayed)))
     }
 
+    /// Whether it is a rotor's.
+    pub fn is_of_rotors(&self) -> bool {
+        matches!(self, Self::Rotors(..))
+    }
+
     fn unit_name(&self) -> String {
         match self {
             Self::Sensor(sensor, _) => sensor.name().to_owned(),

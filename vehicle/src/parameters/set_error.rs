@@ -1,6 +1,6 @@
 //! Why a parameter keeps its value.
 
-use quadrotor::ConfigurationError;
+use crate::ChangeError;
 
 /// Why a parameter was not changed. Nothing has changed then. Names are those that were asked for.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -35,13 +35,13 @@ pub enum SetError {
         /// Name asked for.
         name: String,
         /// Why.
-        source: Box<ConfigurationError>,
+        source: Box<ChangeError>,
     },
 }
 
 impl SetError {
     /// The closed loop refuses the value of a parameter.
-    pub fn refused(name: &str, source: ConfigurationError) -> Self {
-        Self::Refused { name: name.to_owned(), source: Box::new(source) }
+    pub fn refused(name: &str, source: impl Into<ChangeError>) -> Self {
+        Self::Refused { name: name.to_owned(), source: Box::new(source.into()) }
     }
 }

@@ -3,16 +3,22 @@
 use nalgebra::Vector3;
 use quadrotor::{
     Configuration, ConfigurationError, Disturbance, EasedLimits, Inputs, Outputs, RigidBody, RotorFault,
-    Simulation, SimulationError,
+    Simulation, StabilityWarning,
 };
 
+use super::change_error::ChangeError;
+use super::foreign_flight::ForeignFlight;
 use super::steering::Steering;
+use crate::FlightError;
+use crate::foreign::{ForeignDescription, ForeignModel, ForeignMotion};
 use crate::world::{Wind, WindSettings};
 
 /// The closed loop and the air around it.
 #[derive(Debug)]
 pub struct ClosedLoop {
     simulation: Simulation,
+    /// What flies in place of our plant or of all of it.
+    foreign: Option<ForeignFlight>,
     /// Limits of the references that the vehicle makes.
     limits: EasedLimits,
     wind: Wind,
@@ -43,12 +49,57 @@ impl ClosedLoop {
         let inputs = Inputs { armed: false, ..Inputs::default() };
         let simulation = Simulation::new(configuration, &inputs)?;
         let limits = EasedLimits::new(&configuration.flyable_limits());
-        Ok(Self { simulation, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
+        Ok(Self { simulation, foreign: None, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
     }
 
-    /// The engine.
+    /// The same with a model from elsewhere, where that starts.
+    ///
+    /// # Errors
+    /// [`FlightError`] if it does not start anywhere.
+    pub fn flown_by(mut self, model: Box<dyn ForeignModel>) -> Result<Self, FlightError> {
+        self.foreign = Some(ForeignFlight::new(model, &mut self.simulation)?);
+        Ok(self)
+    }
+
+    /// The engine; beside a closed loop from elsewhere it keeps configuration and motion.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// The model from elsewhere, if one flies.
+    pub fn foreign(&self) -> Option<&ForeignDescription> {
+        self.foreign.as_ref().map(ForeignFlight::description)
+    }
+
+    /// What that has shown last.
+    pub fn foreign_motion(&self) -> Option<&ForeignMotion> {
+        self.foreign.as_ref().map(ForeignFlight::motion)
+    }
+
+    /// Whether all of it is from elsewhere, so that our controllers rest.
+    fn rests(&self) -> bool {
+        self.foreign.as_ref().is_some_and(ForeignFlight::is_closed_loop)
+    }
+
+    /// What can be observed now.
+    pub fn outputs(&self) -> Outputs {
+        match &self.foreign {
+            Some(foreign) => foreign.outputs(&self.simulation),
+            None => self.simulation.outputs(),
+        }
+    }
+
+    /// Speeds that the rotors are commanded to turn with, rad/s; of a closed loop from elsewhere those that they turn with.
+    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
+        if self.rests() {
+            return self.simulation.plant_state().rotor_speed_rad_s;
+        }
+        self.simulation.rotor_command_rad_s()
+    }
+
+    /// What is worth a warning about our controllers, if they fly.
+    pub fn stability_warnings(&self) -> &[StabilityWarning] {
+        if self.rests() { &[] } else { self.simulation.control().stability().warnings() }
     }
 
     /// The limits that references keep, and the larger ones that the present motion began with.
@@ -69,13 +120,13 @@ impl ClosedLoop {
     /// Flies on by `duration_us`, as it is steered.
     ///
     /// # Errors
-    /// [`SimulationError`]: the flight has left the range of numbers.
+    /// [`FlightError`]: the flight has left the range of numbers, or the model from elsewhere has failed.
     pub fn step(
         &mut self,
         steering: &mut Steering,
         conditions: &Conditions,
         duration_us: u64,
-    ) -> Result<(), SimulationError> {
+    ) -> Result<(), FlightError> {
         let time_us = conditions.outputs.time_us;
         let dt_s = duration_us as f64 / 1e6;
         let asked = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
@@ -87,14 +138,20 @@ impl ClosedLoop {
             rotor_faults: conditions.rotor_faults,
             ..asked
         };
-        self.simulation.advance_to(time_us + duration_us, &inputs)
+        match &mut self.foreign {
+            Some(foreign) => foreign.advance(&mut self.simulation, &inputs, &self.limits, duration_us),
+            None => Ok(self.simulation.advance_to(time_us + duration_us, &inputs)?),
+        }
     }
 
     /// Changes the configuration, on the ground and in flight: see [`Simulation::reconfigure`].
     ///
     /// # Errors
-    /// [`ConfigurationError`]; nothing has changed then.
-    pub fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+    /// [`ChangeError`]; nothing has changed then.
+    pub fn configure(&mut self, configuration: &Configuration) -> Result<(), ChangeError> {
+        if let Some(foreign) = &self.foreign {
+            foreign.check_change(self.simulation.configuration(), configuration)?;
+        }
         self.simulation.reconfigure(configuration)?;
         self.limits.want(&configuration.flyable_limits());
         Ok(())

@@ -2,8 +2,9 @@
 //! controllers measure with noise.
 
 use nalgebra::Vector3;
-use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody, Simulation};
+use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
+use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
 use crate::estimation::{
     Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, TrueMotion, Validity,
@@ -25,35 +26,35 @@ pub struct Perception {
 
 impl Perception {
     /// Begins with the motion of the closed loop, with instruments and an estimator or without.
-    pub fn new(simulation: &Simulation, navigation: Option<Navigation>) -> Self {
-        let truth = simulation.outputs();
+    pub fn new(closed_loop: &ClosedLoop, navigation: Option<Navigation>) -> Self {
+        let truth = closed_loop.outputs();
         let mut perception =
             Self { truth, outputs: truth, navigation, ideal_sensors: IdealSensors::default() };
-        perception.outputs = perception.known(simulation);
+        perception.outputs = perception.known(closed_loop);
         perception
     }
 
     /// Looks at the motion that the last tick has led to. `stands` tells that it is disarmed on the ground.
-    pub fn step(&mut self, simulation: &Simulation, frame: &LocalFrame, faults: &Faults, stands: bool) {
-        self.truth = simulation.outputs();
+    pub fn step(&mut self, closed_loop: &ClosedLoop, frame: &LocalFrame, faults: &Faults, stands: bool) {
+        self.truth = closed_loop.outputs();
         match &mut self.navigation {
             Some(navigation) => navigation.step(&TrueMotion::of(&self.truth), frame, faults, stands),
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
-        self.outputs = self.known(simulation);
+        self.outputs = self.known(closed_loop);
     }
 
     /// Looks at the same motion again: the closed loop has another configuration.
-    pub fn look_again(&mut self, simulation: &Simulation) {
-        self.truth = simulation.outputs();
-        self.outputs = self.known(simulation);
+    pub fn look_again(&mut self, closed_loop: &ClosedLoop) {
+        self.truth = closed_loop.outputs();
+        self.outputs = self.known(closed_loop);
     }
 
     /// The true outputs, with what the vehicle believes in place of the motion.
-    fn known(&self, simulation: &Simulation) -> Outputs {
+    fn known(&self, closed_loop: &ClosedLoop) -> Outputs {
         match &self.navigation {
             Some(navigation) => estimated(&self.truth, navigation),
-            None => match simulation.believed_motion() {
+            None => match closed_loop.simulation().believed_motion() {
                 Some(body) => believed(&self.truth, &body, self.truth.acceleration_m_s2),
                 None => self.truth,
             },

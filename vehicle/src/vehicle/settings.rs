@@ -7,6 +7,7 @@ use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
+use crate::foreign::ForeignDescription;
 use crate::identity::Identity;
 use crate::plan::Plans;
 use crate::world::{Geodetic, WindSettings};
@@ -41,6 +42,9 @@ pub struct VehicleSettings {
     /// Whether it arms and starts its mission by itself as soon as it can.
     #[serde(default)]
     pub autostart: bool,
+    /// What flies in place of our plant or closed loop, if anything does.
+    #[serde(default)]
+    pub foreign: Option<ForeignDescription>,
 }
 
 impl VehicleSettings {
@@ -58,6 +62,7 @@ impl VehicleSettings {
             sensors: SensorSettings::default(),
             plans: Plans::default(),
             autostart: false,
+            foreign: None,
         }
     }
 

@@ -8,7 +8,7 @@ mod queries;
 mod requests;
 
 use nalgebra::Vector3;
-use quadrotor::{ConfigurationError, SimulationError};
+use quadrotor::ConfigurationError;
 
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
@@ -36,7 +36,9 @@ use super::situation::Situation;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
+use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
+use crate::foreign::ForeignModel;
 use crate::mode::Mode;
 use crate::plan::{PlanKind, Site, compile};
 use crate::world::LocalFrame;
@@ -58,13 +60,25 @@ impl Vehicle {
     /// # Errors
     /// As [`Simulation::new`](quadrotor::Simulation::new).
     pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
+        Ok(Self::around(settings, ClosedLoop::new(&settings.flown_configuration(), settings.wind)?))
+    }
+
+    /// The same, flown by a closed loop or a plant from elsewhere.
+    ///
+    /// # Errors
+    /// [`FlightError`] if ours cannot be built, or the model starts nowhere.
+    pub fn flown_by(settings: &VehicleSettings, model: Box<dyn ForeignModel>) -> Result<Self, FlightError> {
+        let closed_loop = ClosedLoop::new(&settings.flown_configuration(), settings.wind)?;
+        Ok(Self::around(settings, closed_loop.flown_by(model)?))
+    }
+
+    fn around(settings: &VehicleSettings, closed_loop: ClosedLoop) -> Self {
         let configuration = settings.flown_configuration();
         let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
             let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
             Navigation::new(settings.sensors.seed, start)
         });
-        let closed_loop = ClosedLoop::new(&configuration, settings.wind)?;
-        let perception = Perception::new(closed_loop.simulation(), navigation);
+        let perception = Perception::new(&closed_loop, navigation);
         let frame = LocalFrame::new(settings.origin);
         let home_m = Vector3::from(configuration.initial.position_m);
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
@@ -95,7 +109,7 @@ impl Vehicle {
             machines,
         };
         vehicle.announce_plans();
-        Ok(vehicle)
+        vehicle
     }
 
     /// What the machines see of the vehicle now.
@@ -113,8 +127,8 @@ impl Vehicle {
     /// Flies one tick on.
     ///
     /// # Errors
-    /// [`SimulationError`]: the flight has left the range of numbers.
-    pub fn tick(&mut self) -> Result<(), SimulationError> {
+    /// [`FlightError`]: the flight cannot go on.
+    pub fn tick(&mut self) -> Result<(), FlightError> {
         if self.machines.autostart.is_pending() {
             self.autostart();
         }
@@ -182,7 +196,7 @@ impl Vehicle {
     }
 
     /// Flies the closed loop as the steering asks.
-    fn advance(&mut self) -> Result<(), SimulationError> {
+    fn advance(&mut self) -> Result<(), FlightError> {
         let conditions = Conditions {
             outputs: self.perception.outputs(),
             height_m: -self.perception.truth().position_m.z,
@@ -195,9 +209,9 @@ impl Vehicle {
 
     /// Perceives the motion after the tick.
     fn perceive(&mut self) {
-        let (simulation, faults) = (self.closed_loop.simulation(), self.machines.injection.faults());
+        let (closed_loop, faults) = (&self.closed_loop, self.machines.injection.faults());
         let stands = self.stands();
-        self.perception.step(simulation, self.setup.frame(), faults, stands);
+        self.perception.step(closed_loop, self.setup.frame(), faults, stands);
     }
 
     /// Draws the power of the tick from the battery.
@@ -247,7 +261,7 @@ fn situation<'a>(
         health: perception.health(),
         estimates: navigation.is_some(),
         fix_velocity_down_m_s: navigation.and_then(Navigation::latest_fix).map(|fix| fix.velocity_m_s.z),
-        rotor_command_rad_s: simulation.rotor_command_rad_s(),
+        rotor_command_rad_s: closed_loop.rotor_command_rad_s(),
         wind_m_s: closed_loop.wind_m_s(),
         battery_remaining: machines.battery.remaining(capacity_ah),
         armed: decided.is_armed(),

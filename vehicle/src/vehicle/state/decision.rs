@@ -1,7 +1,8 @@
 //! The one place that decides: it carries out what the machines ask for, in the order in which they ask.
 
-use quadrotor::{Configuration, ConfigurationError};
+use quadrotor::Configuration;
 
+use super::super::change_error::ChangeError;
 use super::super::failsafe::Cause;
 use super::super::machines::Machines;
 use super::super::notice::Severity;
@@ -117,7 +118,7 @@ impl Vehicle {
     }
 
     /// Lets other limits of speed hold.
-    pub(super) fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ConfigurationError> {
+    pub(super) fn use_speeds(&mut self, speeds: Speeds) -> Result<(), ChangeError> {
         let present = *self.closed_loop.simulation().configuration();
         let configuration = with_speeds(present, speeds.in_force());
         if configuration.limits != present.limits {
@@ -129,7 +130,7 @@ impl Vehicle {
     }
 
     /// Changes the closed loop's parameters; the speeds that hold for now lie over them.
-    pub(super) fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ConfigurationError> {
+    pub(super) fn reconfigure(&mut self, kept: &Configuration) -> Result<(), ChangeError> {
         let speeds = self.machines.speeds.keeping(&kept.limits);
         let before = *self.closed_loop.limits().wanted();
         self.configure(&with_speeds(*kept, speeds.in_force()))?;
@@ -140,9 +141,9 @@ impl Vehicle {
         Ok(())
     }
 
-    fn configure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+    fn configure(&mut self, configuration: &Configuration) -> Result<(), ChangeError> {
         self.closed_loop.configure(configuration)?;
-        self.perception.look_again(self.closed_loop.simulation());
+        self.perception.look_again(&self.closed_loop);
         Ok(())
     }
 }

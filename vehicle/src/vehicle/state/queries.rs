@@ -1,7 +1,7 @@
 //! What can be asked about the vehicle.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, Outputs, Simulation};
+use quadrotor::{Configuration, Outputs, Simulation, StabilityWarning};
 
 use super::super::battery::{Battery, capacity_ah};
 use super::super::conduct::Conduct;
@@ -16,6 +16,7 @@ use super::Vehicle;
 use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, Validity};
 use crate::fault::Faults;
 use crate::fence::{Breach, Fence};
+use crate::foreign::{ForeignDescription, ForeignMotion};
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanKind, Plans, Site};
@@ -72,9 +73,24 @@ impl Vehicle {
         self.perception.readings(self.frame())
     }
 
-    /// The closed loop.
+    /// The engine; beside a closed loop from elsewhere it keeps configuration and motion.
     pub fn simulation(&self) -> &Simulation {
         self.closed_loop.simulation()
+    }
+
+    /// The closed loop or plant from elsewhere, if one flies.
+    pub fn foreign(&self) -> Option<&ForeignDescription> {
+        self.closed_loop.foreign()
+    }
+
+    /// What that has shown last.
+    pub fn foreign_motion(&self) -> Option<&ForeignMotion> {
+        self.closed_loop.foreign_motion()
+    }
+
+    /// What is worth a warning about our controllers, if they fly.
+    pub fn stability_warnings(&self) -> &[StabilityWarning] {
+        self.closed_loop.stability_warnings()
     }
 
     /// The parameters of the closed loop, whatever speeds hold for now.

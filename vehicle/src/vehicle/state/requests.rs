@@ -1,8 +1,9 @@
 //! What may be asked of the vehicle.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, ConfigurationError};
+use quadrotor::Configuration;
 
+use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
@@ -15,6 +16,7 @@ use super::super::steering::{Steering, SteeringKind};
 use super::super::sticks::Sticks;
 use super::Vehicle;
 use crate::fault::Fault;
+use crate::foreign::ForeignRole;
 use crate::mode::Mode;
 use crate::plan::{ChangeSpeed, Look};
 
@@ -37,8 +39,8 @@ impl Vehicle {
     /// hands over to them at its next sample.
     ///
     /// # Errors
-    /// [`ConfigurationError`]; nothing has changed then.
-    pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ConfigurationError> {
+    /// [`ChangeError`]; nothing has changed then.
+    pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ChangeError> {
         if *kept != self.kept_configuration() {
             self.reconfigure(kept)?;
         }
@@ -77,6 +79,10 @@ impl Vehicle {
         }
         if self.navigation().is_none() && fault.needs_readings() {
             let reason = "ideal sensors can only fail as off; start with --sensors realistic";
+            return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
+        }
+        if let Some(model) = self.foreign().filter(|_| fault.is_of_rotors()) {
+            let reason = format!("the rotors are those of {}, whose faults are its own", model.name);
             return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
         self.consult(|parts, _, proposal| parts.injection.inject(fault, proposal));
@@ -236,6 +242,11 @@ impl Vehicle {
             if position && situation.steering.kind() == SteeringKind::Idle {
                 return Err(Refusal::later("Set-point ignored: take off first"));
             }
+        }
+        let follows = self.foreign().filter(|model| model.role == ForeignRole::ClosedLoop);
+        if let (SetPoint::Attitude(_), Some(model)) = (&set_point, follows) {
+            let reason = format!("{} follows positions, not attitudes or thrust", model.name);
+            return Err(Refusal::denied(format!("Set-point denied: {reason}")));
         }
         if let SetPoint::Position(position) = &set_point {
             check_set_point(&situation, position)?;

@@ -1,0 +1,85 @@
+//! `--fmu FILE`: what flies in place of ours, and what it cannot do.
+
+use vehicle::estimation::SensorModel;
+use vehicle::foreign::ForeignRole;
+use vehicle::{Notice, Severity, VehicleSettings};
+
+use super::Arguments;
+use crate::failure::Failure;
+use crate::fmu::{FmuChoice, Mapping, listing};
+
+/// The FMU that is asked for, if one is.
+///
+/// # Errors
+/// [`Failure`] of the map, or of flags that mean nothing without an FMU.
+pub(super) fn choice(arguments: &Arguments) -> Result<Option<FmuChoice>, Failure> {
+    let Some(path) = &arguments.fmu else {
+        for (name, given) in
+            [("--map", arguments.map.is_some()), ("--fmu-check", arguments.fmu_check == Some(true))]
+        {
+            if given {
+                return Err(Failure::Value { name: name.to_owned(), reason: "needs --fmu".to_owned() });
+            }
+        }
+        return Ok(None);
+    };
+    FmuChoice::new(path, arguments.map.as_deref()).map(Some)
+}
+
+/// The table that `--fmu-check` shows of the FMU for a vehicle.
+///
+/// # Errors
+/// [`Failure`] of the FMU.
+pub fn fmu_listing(choice: &FmuChoice, vehicle: &VehicleSettings) -> Result<String, Failure> {
+    choice.open(&vehicle.flown_configuration()).map(|(_, mapping)| listing(&mapping))
+}
+
+/// Looks whether an FMU can be flown by a vehicle that is asked for so. What the user is told about it.
+///
+/// # Errors
+/// [`Failure`] that names what it cannot do.
+pub(super) fn check(
+    arguments: &Arguments,
+    choice: &FmuChoice,
+    vehicle: &VehicleSettings,
+) -> Result<Vec<Notice>, Failure> {
+    let (_, mapping) = choice.open(&vehicle.flown_configuration())?;
+    refuse(arguments, vehicle, &mapping)?;
+    let note = |severity, text| Notice { severity, text };
+    let name = &mapping.model_name;
+    let mut notes = vec![note(Severity::Info, format!("the FMU {name} flies as the {}", mapping.role))];
+    if mapping.role == ForeignRole::ClosedLoop && mapping.armed.is_none() {
+        let text = format!(
+            "the FMU {name} has no input `armed`: disarming does not stop its rotors, it holds its reference"
+        );
+        notes.push(note(Severity::Warning, text));
+    }
+    Ok(notes)
+}
+
+fn refuse(arguments: &Arguments, vehicle: &VehicleSettings, mapping: &Mapping) -> Result<(), Failure> {
+    let name = &mapping.model_name;
+    let wrong = |flag: &str, reason: String| Err(Failure::Value { name: flag.to_owned(), reason });
+    if let Some(scheduled) = vehicle.faults.iter().find(|scheduled| scheduled.fault.is_of_rotors()) {
+        return wrong(
+            "--fault",
+            format!("`{scheduled}`: the rotors are those of the FMU {name}, whose faults are its own"),
+        );
+    }
+    if (vehicle.wind.speed_m_s > 0.0 || vehicle.wind.gusts_m_s > 0.0) && !mapping.takes(crate::fmu::WIND) {
+        let reason = format!(
+            "the FMU {name} has no inputs for the wind; map wind.velocity.x to .z in [variables] of --map, or leave the wind out"
+        );
+        return wrong("--wind, --gusts", reason);
+    }
+    let measured = vehicle.sensors.model != SensorModel::Ideal
+        || !vehicle.configuration.sensors.is_exact()
+        || vehicle.configuration.sensors.output_feedback;
+    if mapping.role == ForeignRole::ClosedLoop && measured && arguments.hil.is_none() {
+        let reason = format!(
+            "the closed loop of the FMU {name} flies by measurements of its own; use the ideal sensors"
+        );
+        return wrong("--sensors, --noise, --kalman", reason);
+    }
+    Ok(())
+}

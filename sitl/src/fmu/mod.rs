@@ -1,0 +1,28 @@
+//! FMUs of others that fly: as the closed loop, or as the plant.
+//!
+//! ```text
+//!  --map map.toml ─► map ─┐
+//!                         ├─► mapping: signals ◄─► variables, with units, frames and start values
+//!  FILE.fmu ─► description┘        │
+//!                                  ▼
+//!  vehicle ── demand ─► flown FMU ── values ─► importer::Guarded (a process of its own)
+//!          ◄─ motion ──           ◄──────────
+//! ```
+
+mod axes;
+mod choice;
+mod flown;
+mod listing;
+mod map;
+mod mapping;
+mod resolve;
+mod signals;
+
+pub use axes::Axes;
+pub use choice::{FmuChoice, HOST_ARGUMENT};
+pub use flown::FlownFmu;
+pub use listing::listing;
+pub use map::Map;
+pub use mapping::Mapping;
+/// The group of the wind among the inputs.
+pub use signals::input::WIND;

@@ -1,0 +1,178 @@
+use importer::StartValue;
+use importer::description::ModelDescription;
+use quadrotor::{AirframePreset, Configuration};
+use vehicle::foreign::ForeignRole;
+
+use super::{Map, Mapping};
+use crate::fmu::listing;
+
+/// A variable: name, causality and type with unit.
+type Row<'a> = (&'a str, &'a str, &'a str);
+
+/// The description of a model with these variables, whose units are defined by hand.
+fn model(rows: &[Row<'_>]) -> ModelDescription {
+    let variables: String = (0..)
+        .zip(rows)
+        .map(|(reference, (name, causality, kind))| {
+            let variability = if *causality == "parameter" { " variability=\"fixed\"" } else { "" };
+            format!(
+                "<ScalarVariable name=\"{name}\" valueReference=\"{reference}\" causality=\"{causality}\"{variability}><{kind}/>\
+                 </ScalarVariable>"
+            )
+        })
+        .collect();
+    let text = format!(
+        "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Model\" guid=\"g\"><CoSimulation modelIdentifier=\"m\"/>\
+         <UnitDefinitions><Unit name=\"degree\"><BaseUnit rad=\"1\" factor=\"0.017453292519943295\"/></Unit>\
+         <Unit name=\"kilometre\"><BaseUnit m=\"1\" factor=\"1000\"/></Unit><Unit name=\"odd\"/></UnitDefinitions>\
+         <ModelVariables>{variables}</ModelVariables></fmiModelDescription>"
+    );
+    ModelDescription::parse(&text).expect("a description")
+}
+
+const METRE: &str = "Real unit=\"m\"";
+const PLAIN: &str = "Real";
+
+fn plant() -> Vec<Row<'static>> {
+    let inputs = ["thrust", "torque.x", "torque.y", "torque.z"].map(|name| (name, "input", PLAIN));
+    let positions = ["position.x", "position.y", "position.z"].map(|name| (name, "output", METRE));
+    let rest = ["velocity.x", "velocity.y", "velocity.z", "body_rate.p", "body_rate.q", "body_rate.r"];
+    let angles = ["attitude.phi", "attitude.theta", "attitude.psi"];
+    let angles = angles.map(|name| (name, "output", "Real unit=\"degree\""));
+    inputs
+        .into_iter()
+        .chain(positions)
+        .chain(rest.map(|name| (name, "output", PLAIN)))
+        .chain(angles)
+        .collect()
+}
+
+fn resolve(map: &str, rows: &[Row<'_>]) -> Result<Mapping, String> {
+    Mapping::new(&Map::parse(map).expect("a map"), &model(rows), &Configuration::default())
+}
+
+#[test]
+fn our_names_are_found_with_their_units() {
+    let mapping = resolve("", &plant()).expect("a mapping");
+    assert_eq!(mapping.role, ForeignRole::Plant);
+    assert_eq!((mapping.inputs.len(), mapping.outputs.len()), (4, 12));
+    let angle = mapping.outputs.iter().find(|channel| channel.variable.0 == "attitude.psi").expect("heading");
+    assert!((angle.conversion.ours(180.0) - std::f64::consts::PI).abs() < 1e-12);
+    let text = listing(&mapping);
+    assert!(text.contains("flies as the plant") && text.contains("degree"), "{text}");
+}
+
+#[test]
+fn other_names_units_and_constants_come_from_the_map() {
+    let rows = plant();
+    let renamed: Vec<Row<'_>> = rows
+        .into_iter()
+        .filter(|(name, ..)| !name.starts_with("body_rate"))
+        .map(|(name, causality, kind)| match name {
+            "position.z" => ("height", "local", "Real unit=\"kilometre\""),
+            "thrust" => ("F", causality, "Real unit=\"odd\""),
+            _ => (name, causality, kind),
+        })
+        .collect();
+    let map = "[variables]\nposition.z = { variable = \"height\", factor = -1 }\n\
+               thrust = { variable = \"F\", unit = \"N\" }\nbody_rate = { p = 0.0, q = 0.0, r = 0 }\n";
+    let mapping = resolve(map, &renamed).expect("a mapping");
+    let down = mapping.outputs.iter().find(|channel| channel.variable.0 == "height").expect("down");
+    assert_eq!(down.conversion.ours(0.01), -10.0);
+    assert_eq!(mapping.constants.len(), 3);
+    let without = map.replace(", unit = \"N\"", "");
+    let error = resolve(&without, &renamed).expect_err("no unit");
+    assert!(
+        error.contains("thrust: the unit `odd` of the variable `F` is not defined; say which one"),
+        "{error}"
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_their_remedy() {
+    let without =
+        |gone: &str| plant().into_iter().filter(|(name, ..)| !name.starts_with(gone)).collect::<Vec<_>>();
+    let with = |row: Row<'static>| plant().into_iter().chain([row]).collect::<Vec<_>>();
+    for (map, rows, expected) in [
+        ("", without("position"), "no output for position.x, position.y, position.z (place of the vehicle"),
+        ("", without("attitude"), "no output for attitude.phi, attitude.theta, attitude.psi"),
+        ("", without("velocity"), "no output for body_velocity.u"),
+        ("", without("thrust"), "no inputs to fly it by: a closed loop has reference.position.x to .z"),
+        ("role = \"closed-loop\"", plant(), "a closed loop needs the inputs reference.position.x to .z"),
+        (
+            "[variables]\nposition.x = \"positon.x\"",
+            plant(),
+            "the FMU has no variable `positon.x`; did you mean `position.x`?",
+        ),
+        (
+            "[variables]\nposition.x = \"thrust\"",
+            plant(),
+            "`thrust` is of causality input; it must be an output",
+        ),
+        (
+            "[variables]\nposition.x = \"on\"",
+            with(("on", "output", "Boolean")),
+            "`on` has the type Boolean; it must be Real",
+        ),
+        (
+            "[variables]\nvelocity.x = \"position.x\"",
+            plant(),
+            "`position.x` has the unit `m`; it must be one that converts into m/s",
+        ),
+        (
+            "[variables]\nacceleration.x = \"velocity.x\"",
+            plant(),
+            "acceleration.y is missing; the other variables of acceleration",
+        ),
+        (
+            "[variables]\narmed = \"thrust\"",
+            plant(),
+            "armed: the variable `thrust` is a Real input; it must be a Boolean input",
+        ),
+        ("[variables]\nthrust = 3.0", plant(), "thrust is an input; it has no constant value"),
+        ("[variables]\nairframe.mass = \"m\"", plant(), "airframe.mass: the FMU has no variable `m`"),
+        ("[variables]\nairframe.mass = \"position.x\"", plant(), "only parameters and inputs can be set"),
+        (
+            "[parameters]\ngain = true",
+            with(("gain", "parameter", PLAIN)),
+            "[parameters] gain: the variable has the type Real",
+        ),
+        (
+            "[parameters]\ngin = 1",
+            with(("gain", "parameter", PLAIN)),
+            "[parameters]: the FMU has no variable `gin`; did you mean `gain`?",
+        ),
+    ] {
+        let error = resolve(map, &rows).expect_err(map);
+        assert!(error.contains(expected) && !error.contains('\n'), "{map}: {error}");
+    }
+}
+
+#[test]
+fn parameters_with_our_names_get_the_vehicles_values() {
+    let rows: Vec<Row<'_>> = plant()
+        .into_iter()
+        .chain([
+            ("airframe.mass", "parameter", PLAIN),
+            ("initial.position.x", "parameter", "Real unit=\"kilometre\""),
+            ("environment.ground_plane", "parameter", "Boolean"),
+            ("airframe.preset", "parameter", "Enumeration"),
+            ("m2", "parameter", PLAIN),
+        ])
+        .collect();
+    let mut configuration =
+        Configuration::for_airframe(&AirframePreset::Iris.airframe()).expect("an airframe that flies");
+    configuration.initial.position_m = [500.0, 0.0, 0.0];
+    let map = Map::parse("[variables]\nairframe.drag.x = \"m2\"\n[parameters]\nairframe.mass = 1.25\n")
+        .expect("a map");
+    let mapping = Mapping::new(&map, &model(&rows), &configuration).expect("a mapping");
+    let value =
+        |name: &str| mapping.values.iter().find(|(known, ..)| known == name).map(|(.., value)| value.clone());
+    assert_eq!(value("airframe.mass"), Some(StartValue::Real(1.25)), "[parameters] go first");
+    assert_eq!(value("initial.position.x"), Some(StartValue::Real(0.5)));
+    assert_eq!(value("environment.ground_plane"), Some(StartValue::Boolean(false)));
+    assert_eq!(value("m2"), Some(StartValue::Real(configuration.airframe.drag_n_s_m[0])));
+    let number = AirframePreset::ALL.iter().position(|preset| *preset == AirframePreset::Iris);
+    let number = i32::try_from(number.expect("a preset") + 1).expect("a number");
+    assert_eq!(value("airframe.preset"), Some(StartValue::Integer(number)));
+}

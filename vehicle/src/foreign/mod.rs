@@ -1,0 +1,7 @@
+//! A closed loop or a plant from elsewhere, in place of ours: what it is told, and what it shows.
+
+mod description;
+mod model;
+
+pub use description::{ForeignDescription, ForeignRole};
+pub use model::{Demand, ForeignModel, ForeignMotion};

@@ -1,0 +1,25 @@
+//! Why parameters of the closed loop do not change.
+
+use quadrotor::ConfigurationError;
+
+use crate::foreign::ForeignRole;
+
+/// Why the parameters of the closed loop do not change. Nothing has changed then.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChangeError {
+    /// The values.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// They describe what flies in place of ours.
+    #[error(
+        "{model} flies as the {role}: parameters of the {part} cannot change in flight; set them at the start"
+    )]
+    Foreign {
+        /// What flies.
+        model: String,
+        /// In place of what.
+        role: ForeignRole,
+        /// What the parameters describe.
+        part: &'static str,
+    },
+}
