@@ -188,7 +188,7 @@ const CONTROLLER: Sample = Sample {
         ("measured.position.x", f64::NAN),
         ("limits.tilt", 9.0),
         ("airframe.mass", 0.8),
-        ("thrust.command", 1.0),
+        ("command.thrust", 1.0),
     ],
     // Warm starts, an estimate and predicted rotor speeds are part of its state.
     eventful: Eventful {
