@@ -6,4 +6,4 @@ mod model;
 mod outputs;
 mod parameters;
 
-pub use model::{ClosedLoop, FlightError};
+pub use model::ClosedLoop;
