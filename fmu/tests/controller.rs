@@ -29,7 +29,7 @@ fn assert_same(pair: &Pair, flight: &Simulation) {
         "{time_us} us"
     );
     assert_eq!(closed.body_rate_rad_s, body.body_rate_rad_s, "{time_us} us");
-    let q = body.rotation();
+    let q = &body.attitude;
     assert_eq!(closed.quaternion, [q.w, q.i, q.j, q.k], "{time_us} us");
     assert_eq!(closed.rotor_speed_rad_s, pair.state.rotor_speed_rad_s, "{time_us} us");
     assert_eq!(flight.rotor_command_rad_s(), commands.rotor_command_rad_s, "{time_us} us");
