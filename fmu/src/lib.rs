@@ -13,3 +13,4 @@ mod units;
 pub use closed_loop::{ClosedLoop, FlightError};
 
 fmi::export_fmi2!(ClosedLoop);
+fmi::export_fmi3!(ClosedLoop);

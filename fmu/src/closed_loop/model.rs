@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Quantity, Variable};
+use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
     Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError, SimulationState,
 };
 use thiserror::Error;
 
-use super::{calculated, identity, inputs, outputs, parameters};
+use super::{arrays, calculated, identity, inputs, outputs, parameters};
 use crate::quantities;
 
 /// The quadrotor with its controllers.
@@ -39,6 +39,7 @@ impl Model for ClosedLoop {
     /// forbids.
     const VARIABLES: &'static [&'static [Variable<Self>]] =
         &[&inputs::INPUTS, &outputs::OUTPUTS, &parameters::TABLE, &calculated::CALCULATED];
+    const ARRAYS: &'static [Array] = arrays::ARRAYS;
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = Configuration;
     type Inputs = Inputs;
