@@ -29,10 +29,14 @@ pub(crate) fn identity<M: Model>() -> u128 {
             hash.value(value);
         }
     }
+    for array in M::ARRAYS {
+        hash.text(array.name);
+        array.components.iter().for_each(|name| hash.text(name));
+    }
     hash.0
 }
 
-/// The GUID that `modelDescription.xml` and `fmi2Instantiate` must agree on.
+/// The GUID that `modelDescription.xml` and the library must agree on; FMI 3.0 calls it the instantiation token.
 pub fn guid<M: Model>() -> String {
     let digits = format!("{:032x}", identity::<M>());
     let (a, rest) = digits.split_at(8);

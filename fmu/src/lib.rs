@@ -20,3 +20,4 @@ pub use controller::{
 };
 
 fmi::export_fmi2!(ClosedLoop, Controller);
+fmi::export_fmi3!(ClosedLoop, Controller);

@@ -1,5 +1,6 @@
 //! The closed loop: `model` is the quadrotor with its controllers as an FMI model, the rest its table of variables.
 
+mod arrays;
 mod identity;
 mod inputs;
 mod model;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Quantity, Variable};
+use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
     CascadeDesign, Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError,
@@ -10,7 +10,7 @@ use quadrotor::{
 };
 use thiserror::Error;
 
-use super::{identity, inputs, outputs, parameters};
+use super::{arrays, identity, inputs, outputs, parameters};
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
 
@@ -49,6 +49,7 @@ impl Model for ClosedLoop {
         &parameters::TABLE,
         &figures::figures(),
     ];
+    const ARRAYS: &'static [Array] = arrays::ARRAYS;
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = Configuration;
     type Inputs = Inputs;
