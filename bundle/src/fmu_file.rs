@@ -1,18 +1,25 @@
 //! The FMU file: the library, its description, documentation, icon and licences in one archive.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
 use crate::{documentation, licenses, merge, platform};
 use xtask::files;
+use xtask::platform::Platform;
 use xtask::workspace::Workspace;
 
 /// Writes the FMU and prints its path and size. `others` are FMUs of the same sources from other platforms.
-pub fn write(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> Result<(), Failure> {
+pub fn write(
+    workspace: &Workspace,
+    libraries: &[(Platform, PathBuf)],
+    others: &[PathBuf],
+) -> Result<(), Failure> {
     let description = fmi::description::model_description::<fmu::ClosedLoop>();
     let mut archive = Archive::default();
-    archive.add_binary(&platform::entry()?, files::read(library)?);
+    for (platform, library) in libraries {
+        archive.add_binary(&platform::entry(*platform), files::read(library)?);
+    }
     archive.add("documentation/index.html", documentation::page(workspace, &description)?.into_bytes());
     archive.add("model.png", files::read(&workspace.fmu_assets().join("model.png"))?);
     for (name, text) in licenses::texts(workspace)? {
@@ -21,6 +28,7 @@ pub fn write(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> Resul
     for other in others {
         merge::binaries(&mut archive, other, &description)?;
     }
+    platform::add_stand_ins(&mut archive);
     archive.add(MODEL_DESCRIPTION, description.into_bytes());
 
     let path = workspace.fmu();
