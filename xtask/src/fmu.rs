@@ -10,6 +10,7 @@ use crate::progress::Progress;
 use crate::release::Release;
 use crate::threads;
 use crate::toolchains::Toolchain;
+use crate::universal;
 use xtask::failure::Failure;
 use xtask::platform::Platform;
 use xtask::process;
@@ -41,7 +42,10 @@ pub fn make_for(
     release: &Release,
     others: &[PathBuf],
 ) -> Result<PathBuf, Failure> {
-    let libraries = || release.build(workspace, progress, Product::Library);
+    let libraries = || {
+        let libraries = release.build(workspace, progress, Product::Library)?;
+        universal::on_macs(workspace, libraries)
+    };
     bundle_beside(workspace, progress, libraries, others, Beside::Nothing)
 }
 

@@ -15,6 +15,7 @@ mod sitl;
 mod test;
 mod threads;
 mod toolchains;
+mod universal;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -46,7 +47,7 @@ enum Task {
     /// The same sources and toolchain give the same bytes. Without --platforms it is for this machine.
     Fmu {
         #[command(flatten)]
-        platforms: Platforms,
+        platforms: ForPlatforms,
         /// Adds the binaries of an FMU that was built from the same sources on another platform; can be repeated.
         #[arg(long, value_name = "OTHER.fmu")]
         merge: Vec<PathBuf>,
@@ -54,14 +55,14 @@ enum Task {
     /// Writes target/sitl/PLATFORM/lmpc-sitl: the MAVLink vehicle, for any machine of some platforms.
     Sitl {
         #[command(flatten)]
-        platforms: Platforms,
+        platforms: ForPlatforms,
     },
     /// Builds the FMU and the MAVLink vehicle for linux64, win64 and aarch64-linux, and runs them under wine and qemu.
     ///
     /// Numbers must be the same on all. Needs Linux on x86.
     Platforms {
         #[command(flatten)]
-        platforms: Platforms,
+        platforms: ForPlatforms,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
@@ -93,7 +94,7 @@ enum Task {
 
 /// For whom something is built.
 #[derive(Args)]
-struct Platforms {
+struct ForPlatforms {
     /// Builds for any machine of these platforms, for Linux with glibc 2.17 or newer. Names of FMI 2.0 or tuples of FMI 3.0.
     #[arg(long, value_name = "PLATFORM,…", value_delimiter = ',')]
     platforms: Vec<Platform>,
@@ -102,7 +103,7 @@ struct Platforms {
     install: bool,
 }
 
-impl Platforms {
+impl ForPlatforms {
     /// Those that are named, each once; else the usual ones.
     fn or(&self, usual: &[Platform]) -> Vec<Platform> {
         let mut platforms = if self.platforms.is_empty() { usual.to_vec() } else { self.platforms.clone() };
@@ -140,7 +141,11 @@ fn run(task: &Task) -> Result<(), Failure> {
             sitl::make(&workspace, &progress, &release).map(|_| ())
         }
         Task::Platforms { platforms } => {
-            let checked = platforms.or(&platforms::CHECKED);
+            let [reference, ..] = platforms::CHECKED;
+            let mut checked = platforms.or(&platforms::CHECKED);
+            if !checked.contains(&reference) {
+                checked.insert(0, reference);
+            }
             platforms::check(&workspace, &progress, &checked, platforms.install)
         }
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
