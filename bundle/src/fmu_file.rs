@@ -7,11 +7,16 @@ use crate::failure::Failure;
 use crate::product::{PRODUCTS, Product};
 use crate::{documentation, licenses, merge, platform};
 use xtask::files;
+use xtask::platform::Platform;
 use xtask::workspace::Workspace;
 
 /// Writes all FMUs and prints their paths and sizes. `others` are FMUs of the same sources from other platforms: each goes into the
 /// FMU of the same name.
-pub fn write_all(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> Result<(), Failure> {
+pub fn write_all(
+    workspace: &Workspace,
+    libraries: &[(Platform, PathBuf)],
+    others: &[PathBuf],
+) -> Result<(), Failure> {
     let of =
         |product: &Product, other: &Path| other.file_stem().is_some_and(|stem| stem == product.identifier);
     if let Some(path) = others.iter().find(|other| !PRODUCTS.iter().any(|product| of(product, other))) {
@@ -20,7 +25,7 @@ pub fn write_all(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> R
     let licences = licenses::texts(workspace)?;
     for product in &PRODUCTS {
         let others = others.iter().filter(|other| of(product, other));
-        write(workspace, product, library, &licences, others)?;
+        write(workspace, product, libraries, &licences, others)?;
     }
     Ok(())
 }
@@ -28,13 +33,15 @@ pub fn write_all(workspace: &Workspace, library: &Path, others: &[PathBuf]) -> R
 fn write<'a>(
     workspace: &Workspace,
     product: &Product,
-    library: &Path,
+    libraries: &[(Platform, PathBuf)],
     licences: &[(&str, String)],
     others: impl Iterator<Item = &'a PathBuf>,
 ) -> Result<(), Failure> {
     let description = (product.description)();
     let mut archive = Archive::default();
-    archive.add_binary(&platform::entry(product.identifier)?, files::read(library)?);
+    for (platform, library) in libraries {
+        archive.add_binary(&platform::entry(*platform, product.identifier), files::read(library)?);
+    }
     let page = documentation::page(workspace, product, &description)?;
     archive.add("documentation/index.html", page.into_bytes());
     archive.add("model.png", files::read(&workspace.fmu_assets().join("model.png"))?);
@@ -44,6 +51,7 @@ fn write<'a>(
     for other in others {
         merge::binaries(&mut archive, other, &description)?;
     }
+    platform::add_stand_ins(&mut archive);
     archive.add(MODEL_DESCRIPTION, description.into_bytes());
 
     let path = workspace.fmus().join(format!("{}.fmu", product.identifier));

@@ -8,6 +8,7 @@ use zip::ZipArchive;
 
 use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
+use crate::platform;
 use xtask::files;
 
 /// Takes over the binaries of an FMU that was built from the same sources on another platform. Platforms
@@ -31,7 +32,16 @@ pub fn binaries(archive: &mut Archive, other: &Path, description: &str) -> Resul
         return Err(Failure::NothingToMerge { path: other.to_owned() });
     }
     for name in further {
-        archive.add_binary(name, entry(&mut read, name).map_err(unreadable)?);
+        let bytes = entry(&mut read, name).map_err(unreadable)?;
+        // A library of ARM in a folder of x86 is no library of x86.
+        let original = platform::stands_for(name).filter(|original| names.contains(original));
+        let is_stand_in = match original {
+            Some(original) => entry(&mut read, &original).map_err(unreadable)? == bytes,
+            None => false,
+        };
+        if !is_stand_in {
+            archive.add_binary(name, bytes);
+        }
     }
     Ok(())
 }
@@ -91,6 +101,24 @@ mod tests {
         assert!(archive.has_folder("binaries/linux64"));
         assert!(archive.has_folder("binaries/win64"));
         assert!(!archive.has_folder("documentation"));
+    }
+
+    #[test]
+    fn a_library_that_stands_in_is_left_behind() {
+        let mut arm = Archive::default();
+        arm.add("modelDescription.xml", DESCRIPTION.into());
+        for folder in ["linux64", "aarch64-linux"] {
+            arm.add_binary(&format!("binaries/{folder}/LmpcQuadrotor.so"), b"ARM".to_vec());
+        }
+        let path = std::env::temp_dir().join(format!("xtask-merge-{}-arm.fmu", std::process::id()));
+        files::write(&path, &arm.into_bytes().expect("writes to memory")).expect("writes to a file");
+        let mut archive = Archive::default();
+        archive.add_binary("binaries/win64/LmpcQuadrotor.dll", b"ours".to_vec());
+        let merged = binaries(&mut archive, &path, DESCRIPTION);
+        std::fs::remove_file(&path).expect("removes its own file");
+        merged.expect("merges");
+        assert!(archive.has_folder("binaries/aarch64-linux"));
+        assert!(!archive.has_folder("binaries/linux64"));
     }
 
     #[test]
