@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::thread;
 
+use crate::paths::Paths;
 use crate::product::{self, Product};
 use crate::program::{self, BUNDLE, Beside};
 use crate::progress::Progress;
@@ -29,7 +30,9 @@ pub fn make(
     let library = || {
         progress.timed("Building the FMU's library", || {
             let toolchain = Toolchain::of_this_machine()?;
-            Ok(vec![(toolchain.platform(), product::build(workspace, &toolchain, None, Product::Library)?)])
+            let paths = Paths::find(workspace)?;
+            let library = product::build(workspace, &toolchain, None, &paths, Product::Library)?;
+            Ok(vec![(toolchain.platform(), library)])
         })
     };
     bundle_beside(workspace, progress, library, others, beside)

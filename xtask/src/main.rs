@@ -5,6 +5,7 @@ mod demo;
 mod fmu;
 mod optimum;
 mod paper;
+mod paths;
 mod platforms;
 mod product;
 mod program;

@@ -1,14 +1,13 @@
 //! What is shipped: built for release, without the paths of the machine that built it.
 
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use crate::paths::Paths;
 use crate::program::VEHICLE;
 use crate::python::Python;
 use crate::toolchains::Toolchain;
-use xtask::cargo::metadata_with_dependencies;
 use xtask::failure::Failure;
 use xtask::platform::Platform;
 use xtask::process;
@@ -94,6 +93,7 @@ pub fn build(
     workspace: &Workspace,
     toolchain: &Toolchain,
     zig: Option<&Python>,
+    paths: &Paths,
     product: Product,
 ) -> Result<PathBuf, Failure> {
     let platform = toolchain.platform();
@@ -103,46 +103,9 @@ pub fn build(
         .args(product.selection())
         .arg("--message-format=json-render-diagnostics")
         .env_remove("RUSTFLAGS")
-        .env("CARGO_ENCODED_RUSTFLAGS", flags(workspace, toolchain)?);
+        .env("CARGO_ENCODED_RUSTFLAGS", paths.flags(toolchain));
     let messages = process::output(&mut build, &format!("building {product} for {platform}"))?;
     product.built(platform, &messages)
-}
-
-/// The caller's compiler flags, and those that replace paths which panics would show: where the sources of
-/// the dependencies lie differs from machine to machine, and is nobody's business.
-fn flags(workspace: &Workspace, toolchain: &Toolchain) -> Result<OsString, Failure> {
-    const SEPARATOR: &str = "\u{1f}";
-    let mut flags: Vec<OsString> = match std::env::var("CARGO_ENCODED_RUSTFLAGS") {
-        Ok(encoded) => encoded.split(SEPARATOR).map(OsString::from).collect(),
-        Err(_) => {
-            let plain = std::env::var("RUSTFLAGS").unwrap_or_default();
-            plain.split_whitespace().map(OsString::from).collect()
-        }
-    };
-    let mut remap = |from: &Path, to: &str| {
-        let mut flag = OsString::from("--remap-path-prefix=");
-        flag.push(from);
-        flag.push("=");
-        flag.push(to);
-        flags.push(flag);
-    };
-    remap(workspace.root(), "lmpc-quadrotor");
-    let mut folders: Vec<PathBuf> = metadata_with_dependencies()?
-        .packages
-        .iter()
-        .filter(|package| package.source.is_some())
-        .filter_map(|package| Some(package.manifest_path.parent()?.parent()?.to_owned()))
-        .collect();
-    folders.sort();
-    folders.dedup();
-    for folder in &folders {
-        remap(folder, "crates");
-    }
-    if let Some(source) = toolchain.standard_source() {
-        remap(source, "rust");
-    }
-    flags.retain(|flag| !flag.is_empty());
-    Ok(flags.join(SEPARATOR.as_ref()))
 }
 
 #[cfg(test)]

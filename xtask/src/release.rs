@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::thread;
 
+use crate::paths::Paths;
 use crate::product::{self, Product};
 use crate::progress::Progress;
 use crate::python::Python;
@@ -16,6 +17,7 @@ use xtask::workspace::Workspace;
 pub struct Release {
     toolchains: Vec<Toolchain>,
     zig: Option<Python>,
+    paths: Paths,
 }
 
 impl Release {
@@ -45,7 +47,7 @@ impl Release {
         } else {
             None
         };
-        Ok(Self { toolchains, zig })
+        Ok(Self { toolchains, zig, paths: Paths::find(workspace)? })
     }
 
     /// The environment with zig, if a platform is linked with it.
@@ -63,7 +65,7 @@ impl Release {
         let build = |toolchain: &Toolchain| {
             let platform = toolchain.platform();
             progress.timed(&format!("Building {product} for {platform}"), || {
-                Ok((platform, product::build(workspace, toolchain, self.zig(), product)?))
+                Ok((platform, product::build(workspace, toolchain, self.zig(), &self.paths, product)?))
             })
         };
         thread::scope(|scope| {

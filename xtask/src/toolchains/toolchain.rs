@@ -1,6 +1,6 @@
 //! Compiler and linker for a platform.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::python::Python;
@@ -64,8 +64,8 @@ impl Toolchain {
     }
 
     /// Source of the standard library that is compiled, or may be.
-    pub fn standard_source(&self) -> Option<&PathBuf> {
-        self.compiler.as_ref().map(|compiler| &compiler.source)
+    pub fn standard_source(&self) -> Option<&Path> {
+        self.compiler.as_ref().map(|compiler| compiler.source.as_path())
     }
 
     /// A command of cargo that builds; what, is still to be said.
