@@ -43,6 +43,15 @@ pub(crate) const ANGULAR_JERK: Quantity = quantity(
 );
 pub(crate) const ROTOR_SPEED: Quantity =
     quantity("RotorSpeed", "Speed of a rotor", Some(&RADIAN_PER_SECOND), Some("rpm"), 250.0);
+pub(crate) const ROTOR_ACCELERATION: Quantity = quantity(
+    "RotorAcceleration",
+    "Rate of change of a rotor's speed",
+    Some(&RADIAN_PER_SECOND_SQUARED),
+    None,
+    1e3,
+);
+pub(crate) const RATE: Quantity =
+    quantity("Rate", "Rate of change of a dimensionless number", Some(&PER_SECOND), None, 1.0);
 pub(crate) const FORCE: Quantity = quantity("Force", "Force", Some(&NEWTON), None, 7.0);
 pub(crate) const TORQUE: Quantity = quantity("Torque", "Torque", Some(&NEWTON_METRE), None, 0.3);
 pub(crate) const MOMENT_OF_INERTIA: Quantity =
@@ -77,7 +86,7 @@ pub(crate) const CURRENT: Quantity = quantity("Current", "Current", Some(&AMPERE
 pub(crate) const RESISTANCE: Quantity = quantity("Resistance", "Resistance", Some(&OHM), None, 0.01);
 pub(crate) const CHARGE: Quantity = quantity("Charge", "Charge", Some(&AMPERE_SECOND), Some("A.h"), 1e4);
 
-/// All quantities, in the order of the description.
+/// All quantities of the closed loop, in the order of its description.
 pub(crate) const ALL: &[&Quantity] = &[
     &NUMBER,
     &TIME,

@@ -19,6 +19,7 @@ const fn unit(
 }
 
 pub(crate) const SECOND: Unit = unit("s", &[("s", "1")], &[("ms", 1e3)]);
+pub(crate) const PER_SECOND: Unit = unit("1/s", &[("s", "-1")], &[]);
 pub(crate) const KILOGRAM: Unit = unit("kg", &[("kg", "1")], &[("g", 1e3)]);
 pub(crate) const METRE: Unit = unit("m", &[("m", "1")], &[]);
 pub(crate) const METRE_PER_SECOND: Unit = unit("m/s", &[("m", "1"), ("s", "-1")], &[]);

@@ -93,6 +93,18 @@ impl PlantSimulation {
         self.state.plant = *state;
     }
 
+    /// Changes the airframe during the flight, now: a payload is dropped by a change of its mass.
+    ///
+    /// # Errors
+    /// As [`PlantSimulation::new`]; nothing has changed then.
+    pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+        validate_plant(configuration)?;
+        // The motion until now was that of the old plant.
+        self.set_plant_state(&self.plant_state());
+        self.plant = Plant::new(&configuration.airframe, &configuration.environment);
+        Ok(())
+    }
+
     /// What can be observed now.
     pub fn outputs(&self) -> PlantOutputs {
         self.plant.outputs(&self.plant_state(), &self.state.inputs)

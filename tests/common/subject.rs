@@ -1,4 +1,4 @@
-//! The models that go through the same checks: the closed-loop quadrotor, and a first-order lag.
+//! The models that go through the same checks: the closed-loop quadrotor, its controllers alone, and a first-order lag.
 
 use super::description::Description;
 use super::library::Library;
@@ -39,8 +39,8 @@ pub struct Sample {
     pub initial: (&'static str, f64, &'static str),
     /// A tunable parameter, a value in its range that does not fit to the others, and one that does.
     pub contradiction: (&'static str, f64, f64),
-    /// Values with which a run breaks within 5 s.
-    pub breaking: Reals,
+    /// Values before and during a run with which it breaks within 5 s.
+    pub breaking: [Reals; 2],
     /// The longest communication step, s.
     pub longest_step: f64,
     /// What may be set together in a run.
@@ -81,6 +81,16 @@ impl Subject {
         }
     }
 
+    /// The controllers.
+    pub fn controller() -> Self {
+        let text = fmi::description::model_description::<fmu::Controller>();
+        Self {
+            library: Library::load(CONTROLLER.library),
+            description: Description::parse(text),
+            sample: CONTROLLER,
+        }
+    }
+
     /// The first-order lag.
     pub fn lag() -> Self {
         let text = fmi::description::model_description::<lag_model::Lag>();
@@ -101,7 +111,7 @@ const CLOSED_LOOP: Sample = Sample {
     initial: ("initial.position.x", 2.0, "position.x"),
     contradiction: ("limits.acceleration.horizontal", 15.0, 2.0),
     // A torque that no body of this size survives.
-    breaking: &[("disturbance.torque.z", 1e3)],
+    breaking: [&[("disturbance.torque.z", 1e3)], &[]],
     longest_step: 3600.0,
     good: &[
         ("reference.position.x", 1.0),
@@ -152,6 +162,74 @@ const CLOSED_LOOP: Sample = Sample {
     numbers: 51,
 };
 
+const CONTROLLER: Sample = Sample {
+    library: "fmu",
+    model_name: "LmpcController",
+    model_identifier: "LmpcController",
+    run: "flight",
+    input: "reference.position.x",
+    switch: "armed",
+    output: "setpoint.position.z",
+    tunable: "limits.tilt",
+    fixed: ("airframe.mass", 0.9),
+    initial: ("airframe.mass", 0.8, "airframe.mass"),
+    contradiction: ("limits.acceleration.horizontal", 15.0, 2.0),
+    // No attitude.
+    breaking: [&[], &[("measured.attitude.q0", 0.0)]],
+    longest_step: 3600.0,
+    good: &[
+        ("reference.position.x", 1.0),
+        ("limits.jerk.vertical", 5.0),
+        ("reference.position.y", 2.0),
+        ("limits.speed.up", 1.5),
+        ("measured.velocity.z", 0.5),
+    ],
+    bad: &[
+        ("measured.position.x", f64::NAN),
+        ("limits.tilt", 9.0),
+        ("airframe.mass", 0.8),
+        ("command.thrust", 1.0),
+    ],
+    // Warm starts, an estimate and predicted rotor speeds are part of its state.
+    eventful: Eventful {
+        reals: &[
+            ("measured.position.x", 0.1),
+            ("measured.velocity.y", 0.2),
+            ("measured.attitude.q1", 0.02),
+            ("airframe.drag.x", 0.1),
+            ("sensor.position_noise", 0.02),
+            ("sensor.attitude_noise", 0.005),
+        ],
+        integers: &[("controller.kind", 2), ("measurement.rotor_speeds", 2)],
+        booleans: &[("sensor.output_feedback", true), ("reference.shaping", false)],
+        on_the_way: &[("reference.position.y", 1.0), ("limits.tilt", 0.45)],
+        derivative: ("measured.position.y", 1, 0.5),
+    },
+    unshaped: &[("reference.shaping", false)],
+    points: &[
+        (&[], &[("environment.ground_plane", false)]),
+        (&[], &[("reference.shaping", false)]),
+        (
+            &[
+                ("measured.position.z", -0.1),
+                ("measured.velocity.x", 2.0),
+                ("measured.attitude.q0", 0.9),
+                ("measured.attitude.q1", 0.2),
+                ("measured.attitude.q2", 0.1),
+                ("measured.attitude.q3", -0.3),
+                ("measured.body_rate.p", 0.2),
+                ("measured.rotor.speed[1]", 260.0),
+                ("measured.rotor.speed[2]", 240.0),
+                ("airframe.drag.x", 0.1),
+            ],
+            &[("environment.ground_plane", true)],
+        ),
+    ],
+    dependent: 20,
+    state_numbers: 90,
+    numbers: 51,
+};
+
 const LAG: Sample = Sample {
     library: "lag",
     model_name: "Lag",
@@ -164,7 +242,7 @@ const LAG: Sample = Sample {
     fixed: ("limit", 40.0),
     initial: ("limit", 20.0, "limit"),
     contradiction: ("gain", 60.0, 3.0),
-    breaking: &[("u", 10.0), ("gain", 50.0)],
+    breaking: [&[("u", 10.0), ("gain", 50.0)], &[]],
     longest_step: 1800.0,
     good: &[("u", 3.0), ("gain", 1.5), ("time_constant", 0.7)],
     bad: &[("u", f64::NAN), ("gain", 1e3), ("limit", 20.0), ("y", 1.0)],

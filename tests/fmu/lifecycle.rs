@@ -147,8 +147,10 @@ fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'stat
     let fresh = flown(&mut Instance::new(subject));
     let mut instance = Instance::new(subject);
     for _ in 0..2 {
-        assert_eq!(instance.set_real(subject.sample.breaking), OK);
+        let [before, during] = subject.sample.breaking;
+        assert_eq!(instance.set_real(before), OK);
         instance.initialize();
+        assert_eq!(instance.set_real(during), OK);
         let mut time = 0.0;
         while instance.do_step(time, 0.1) == OK {
             time += 0.1;
@@ -174,8 +176,10 @@ fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'stat
         assert_eq!(instance.terminate(), OK);
         assert_eq!(instance.reset(), OK);
     }
-    assert_eq!(instance.set_real(subject.sample.breaking), OK);
+    let [before, during] = subject.sample.breaking;
+    assert_eq!(instance.set_real(before), OK);
     instance.initialize();
+    assert_eq!(instance.set_real(during), OK);
     assert_eq!(instance.do_step(0.0, 10.0), ERROR);
     // And now it is freed.
 }

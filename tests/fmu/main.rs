@@ -1,5 +1,5 @@
 //! The built FMI libraries, loaded and called through their C interface. What does not speak of quadrotors is checked
-//! with a second model, too.
+//! with a model that knows none, too.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -11,6 +11,13 @@ macro_rules! for_each_model {
             $(#[test]
             fn $check() {
                 super::$check(crate::closed_loop());
+            })*
+        }
+
+        mod controller {
+            $(#[test]
+            fn $check() {
+                super::$check(crate::controller());
             })*
         }
 
@@ -51,7 +58,13 @@ fn closed_loop() -> &'static Subject {
     SUBJECT.get_or_init(Subject::closed_loop)
 }
 
-/// The second model.
+/// Its controllers alone, from the same library.
+fn controller() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(Subject::controller)
+}
+
+/// A model that knows no quadrotor.
 fn lag() -> &'static Subject {
     static SUBJECT: OnceLock<Subject> = OnceLock::new();
     SUBJECT.get_or_init(Subject::lag)

@@ -86,8 +86,10 @@ impl State {
 
 /// Runs until the model breaks.
 fn diverge(subject: &Subject, instance: &mut Instance) {
-    assert_eq!(instance.set_real(subject.sample.breaking), OK);
+    let [before, during] = subject.sample.breaking;
+    assert_eq!(instance.set_real(before), OK);
     instance.initialize();
+    assert_eq!(instance.set_real(during), OK);
     assert_eq!(instance.do_step(0.0, 5.0), ERROR);
     let message = instance.log.last();
     assert!(

@@ -7,4 +7,4 @@ mod model;
 mod outputs;
 mod parameters;
 
-pub use model::{ClosedLoop, FlightError};
+pub use model::ClosedLoop;

@@ -4,13 +4,10 @@ use std::borrow::Cow;
 
 use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
-use quadrotor::{
-    CascadeDesign, Configuration, ConfigurationError, Inputs, Outputs, Simulation, SimulationError,
-    SimulationState,
-};
-use thiserror::Error;
+use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, SimulationState};
 
 use super::{arrays, identity, inputs, outputs, parameters};
+use crate::flight_error::FlightError;
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
 
@@ -21,17 +18,6 @@ impl Designed for ClosedLoop {
     fn design(&self) -> &CascadeDesign {
         self.0.design()
     }
-}
-
-/// What the engine refuses, in its own words.
-#[derive(Debug, Error)]
-pub enum FlightError {
-    /// A configuration or a saved state.
-    #[error(transparent)]
-    Configuration(#[from] ConfigurationError),
-    /// To fly on.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
 }
 
 impl Model for ClosedLoop {

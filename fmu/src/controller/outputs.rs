@@ -42,10 +42,10 @@ pub(super) const COMMANDS: [Variable<Controller>; 8] = [
     at_least(output("rotor.command[2]", &ROTOR_SPEED, ROTORS, |outputs: &ControllerOutputs| outputs.rotor_command_rad_s[1], "Commanded speed of the right rotor"), 0.0),
     at_least(output("rotor.command[3]", &ROTOR_SPEED, ROTORS, |outputs: &ControllerOutputs| outputs.rotor_command_rad_s[2], "Commanded speed of the back rotor"), 0.0),
     at_least(output("rotor.command[4]", &ROTOR_SPEED, ROTORS, |outputs: &ControllerOutputs| outputs.rotor_command_rad_s[3], "Commanded speed of the left rotor"), 0.0),
-    at_least(output("thrust.command", &FORCE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.thrust_n, "Commanded thrust of the four rotors, after allocation and limits: the thrust answers to it with the rotors' first-order lag"), 0.0),
-    output("torque.command.phi", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.x, "Commanded torque about the forward axis, after allocation and limits"),
-    output("torque.command.theta", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.y, "Commanded torque about the right axis, after allocation and limits"),
-    output("torque.command.psi", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.z, "Commanded torque about the down axis, after allocation and limits"),
+    at_least(output("command.thrust", &FORCE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.thrust_n, "Commanded thrust of the four rotors, after allocation and limits: the thrust answers to it with the rotors' first-order lag"), 0.0),
+    output("command.torque.phi", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.x, "Commanded torque about the forward axis, after allocation and limits"),
+    output("command.torque.theta", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.y, "Commanded torque about the right axis, after allocation and limits"),
+    output("command.torque.psi", &TORQUE, WRENCH, |outputs: &ControllerOutputs| outputs.wrench.torque_n_m.z, "Commanded torque about the down axis, after allocation and limits"),
 ];
 
 /// What the controllers steer by.

@@ -3,8 +3,10 @@
 //! A row is generic over its model: what it reads and writes is reached through a small trait that the model's parameters,
 //! inputs or outputs implement.
 
+pub(crate) mod disturbances;
 pub(crate) mod figures;
 pub(crate) mod identity;
+pub(crate) mod motion;
 pub(crate) mod parameters;
 pub(crate) mod references;
 pub(crate) mod rows;

@@ -49,6 +49,23 @@ pub(crate) const fn table<M: Model<Parameters: Configured>, const COUNT: usize>(
     table
 }
 
+/// The table with those selected parameters tunable that are fixed where controllers depend on them.
+pub(crate) const fn tunable<M: Model, const COUNT: usize>(
+    mut table: [Variable<M>; COUNT],
+    selection: Selection,
+) -> [Variable<M>; COUNT] {
+    let mut i = 0;
+    while i < COUNT {
+        if selection.has(table[i].name)
+            && let Role::Parameter { tunable, .. } = &mut table[i].role
+        {
+            *tunable = true;
+        }
+        i += 1;
+    }
+    table
+}
+
 const fn variable<M: Model>(parameter: &Parameter<M::Parameters>) -> Variable<M> {
     let tunable = matches!(parameter.mutability, Mutability::Tunable);
     let role = Role::Parameter { tunable, field: field(parameter) };
