@@ -1,7 +1,7 @@
 //! The identity of the interface.
 
 use crate::model::Model;
-use crate::variables::{Value, variables};
+use crate::variables::{Value, arrays, variables};
 
 /// A 128-bit hash of the table of variables and the version, by which a description or a saved state of another build of
 /// the model is recognised.
@@ -29,7 +29,7 @@ pub(crate) fn identity<M: Model>() -> u128 {
             hash.value(value);
         }
     }
-    for array in M::ARRAYS {
+    for array in arrays::<M>() {
         hash.text(array.name);
         array.components.iter().for_each(|name| hash.text(name));
     }

@@ -2,7 +2,7 @@
 
 use crate::error::CallError;
 use crate::model::Model;
-use crate::variables::{Type, ValueReference, reference_of, variables};
+use crate::variables::{Type, ValueReference, arrays, reference_of, variables};
 
 /// Name of the independent variable.
 pub(crate) const TIME: &str = "time";
@@ -56,7 +56,7 @@ impl Layout {
     /// The variables of `M`: those of the table, then time, then the event indicators.
     pub fn of<M: Model>() -> Self {
         let arrays: Vec<_> =
-            M::ARRAYS.iter().filter_map(|array| Some((reference_of::<M>(array)?, array))).collect();
+            arrays::<M>().filter_map(|array| Some((reference_of::<M>(array)?, array))).collect();
         let mut entries: Vec<Entry> = Vec::new();
         let mut next = 0;
         for (reference, variable) in variables::<M>() {

@@ -25,8 +25,8 @@ pub trait Model: Sized + 'static {
     /// The table of variables, in groups. A variable's value reference is its index over all groups, from 0.
     const VARIABLES: &'static [&'static [Variable<Self>]];
 
-    /// The arrays of FMI 3.0: variables of the table that it reads and sets together.
-    const ARRAYS: &'static [Array] = &[];
+    /// The arrays of FMI 3.0, in groups: variables of the table that it reads and sets together.
+    const ARRAYS: &'static [&'static [Array]] = &[];
 
     /// Quantities that the description lists first, in this order; others follow in the order in which variables use them.
     const QUANTITIES: &'static [&'static Quantity] = &[];

@@ -29,23 +29,35 @@ impl Array {
 
 /// Fails to compile if the elements of an array are not neighbours in the table.
 pub(crate) const fn check_arrays<M: Model>() {
-    let mut i = 0;
-    while i < M::ARRAYS.len() {
-        let components = M::ARRAYS[i].components;
-        let Some(first) = first_place::<M>(&M::ARRAYS[i]) else {
-            panic!("the first element of an array is not in the table of variables")
-        };
-        let mut j = 1;
-        while j < components.len() {
-            let neighbour = match name_at::<M>(first + j) {
-                Some(name) => are_equal(name, components[j]),
-                None => false,
-            };
-            assert!(neighbour, "the elements of an array must be neighbours in the table of variables");
-            j += 1;
+    let mut group = 0;
+    while group < M::ARRAYS.len() {
+        let mut i = 0;
+        while i < M::ARRAYS[group].len() {
+            check_array::<M>(&M::ARRAYS[group][i]);
+            i += 1;
         }
-        i += 1;
+        group += 1;
     }
+}
+
+const fn check_array<M: Model>(array: &Array) {
+    let Some(first) = first_place::<M>(array) else {
+        panic!("the first element of an array is not in the table of variables")
+    };
+    let mut j = 1;
+    while j < array.components.len() {
+        let neighbour = match name_at::<M>(first + j) {
+            Some(name) => are_equal(name, array.components[j]),
+            None => false,
+        };
+        assert!(neighbour, "the elements of an array must be neighbours in the table of variables");
+        j += 1;
+    }
+}
+
+/// All arrays of a model.
+pub(crate) fn arrays<M: Model>() -> impl Iterator<Item = &'static Array> {
+    M::ARRAYS.iter().copied().flatten()
 }
 
 /// The value reference of an array: that of its first element.

@@ -1,6 +1,5 @@
 //! The closed loop: `model` is the quadrotor with its controllers as an FMI model, the rest its table of variables.
 
-mod arrays;
 mod identity;
 mod inputs;
 mod model;

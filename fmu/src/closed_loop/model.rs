@@ -6,9 +6,10 @@ use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, SimulationState};
 
-use super::{arrays, identity, inputs, outputs, parameters};
+use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
 use crate::quantities;
+use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
 
 /// The quadrotor with its controllers.
@@ -35,7 +36,17 @@ impl Model for ClosedLoop {
         &parameters::TABLE,
         &figures::figures(),
     ];
-    const ARRAYS: &'static [Array] = arrays::ARRAYS;
+    const ARRAYS: &'static [&'static [Array]] = &[
+        arrays::REFERENCE,
+        arrays::DISTURBANCE,
+        arrays::MOTION,
+        arrays::STEERING,
+        outputs::ARRAYS,
+        arrays::AIRFRAME,
+        arrays::AIRFRAME_OF_PLANT,
+        arrays::INITIAL,
+        arrays::CONTROLLERS,
+    ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = Configuration;
     type Inputs = Inputs;

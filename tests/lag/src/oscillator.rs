@@ -72,12 +72,12 @@ impl Model for Oscillator {
         words: Words::GENERAL,
     };
     const VARIABLES: &'static [&'static [Variable<Self>]] = &[&VARIABLES];
-    const ARRAYS: &'static [Array] = &[
+    const ARRAYS: &'static [&'static [Array]] = &[&[
         Array::new("u", "Inputs: first, second", &["u[1]", "u[2]"]),
         Array::new("x", "States: first, second", &["x[1]", "x[2]"]),
         Array::new("der(x)", "Time derivatives of the states", &["der(x[1])", "der(x[2])"]),
         Array::new("initial", "Initial states: first, second", &["initial[1]", "initial[2]"]),
-    ];
+    ]];
     const CONTINUOUS: Option<&'static dyn Continuous<Self>> = Some(&Equations);
     const OUTPUT_RATES: Option<fn(&Self) -> Outputs> = Some(|model| {
         let rate = model.rate(model.state.x, model.state.u);

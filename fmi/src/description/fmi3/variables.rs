@@ -7,7 +7,7 @@ use crate::description::document::{Attributes, Xml, empty};
 use crate::description::numbers::{initial, nominal, real, text};
 use crate::layout::{Content, Entry, Layout, Number};
 use crate::model::Model;
-use crate::variables::{Role, Type, Value, Variable, variable, variables};
+use crate::variables::{Role, Type, Value, Variable, arrays, variable, variables};
 
 pub(super) fn write<M: Model>(xml: &mut Xml, layout: &Layout) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -33,7 +33,7 @@ pub(super) fn elements<M: Model>(entry: &Entry) -> Vec<&'static Variable<M>> {
 fn tabled<M: Model>(xml: &mut Xml, entry: &Entry, value_type: Type) -> io::Result<()> {
     let elements = elements::<M>(entry);
     let Some(first) = elements.first() else { return Ok(()) };
-    let array = M::ARRAYS.iter().find(|array| entry.is_array && array.name == entry.name);
+    let array = arrays::<M>().find(|array| entry.is_array && array.name == entry.name);
     let mut attributes = named(entry, array.map_or(first.description, |array| array.description));
     attributes.push(("causality", first.causality().to_owned()));
     attributes.push(("variability", first.variability().to_owned()));
