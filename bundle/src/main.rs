@@ -29,6 +29,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand, ValueEnum};
 
 use failure::Failure;
+use product::Version;
 use xtask::files;
 use xtask::platform::Platform;
 use xtask::workspace::Workspace;
@@ -78,7 +79,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { library, merge } => fmu_file::write_all(&workspace, library, merge),
         Task::ModelDescription => {
             let path = workspace.model_description();
-            files::write(&path, (product::CLOSED_LOOP.description)().as_bytes())?;
+            files::write(&path, product::CLOSED_LOOP.description(Version::Two).as_bytes())?;
             println!("{}", workspace.shown(&path));
             Ok(())
         }

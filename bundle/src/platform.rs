@@ -3,20 +3,25 @@
 use xtask::platform::Platform;
 
 use crate::archive::Archive;
+use crate::product::Version;
 
 /// Platforms of ARM, each with the one of x86 in whose folder importers on ARM look all the same: FMPy, OpenModelica and FMI
 /// Library take `linux64` on every 64-bit Linux, and FMPy `darwin64` on every Mac.
 const STAND_INS: [(Platform, Platform); 2] =
     [(Platform::Aarch64Linux, Platform::X86_64Linux), (Platform::Aarch64Darwin, Platform::X86_64Darwin)];
 
-/// `binaries/<platform>`.
+/// `binaries/<platform>` of FMI 2.0.
 fn folder(platform: Platform) -> String {
     format!("binaries/{}", platform.fmi2_folder())
 }
 
 /// `binaries/<platform>/<identifier>.<extension>` of the model with this identifier.
-pub fn entry(platform: Platform, identifier: &str) -> String {
-    format!("{}/{identifier}.{}", folder(platform), platform.library_extension())
+pub fn entry(version: Version, platform: Platform, identifier: &str) -> String {
+    let folder = match version {
+        Version::Two => platform.fmi2_folder(),
+        Version::Three => platform.fmi3_folder(),
+    };
+    format!("binaries/{folder}/{identifier}.{}", platform.library_extension())
 }
 
 /// Puts the libraries of ARM also where importers on ARM look, if the archive has none of x86 there.
@@ -49,11 +54,13 @@ mod tests {
 
     use super::{add_stand_ins, entry, stands_for};
     use crate::archive::Archive;
+    use crate::product::Version;
 
     fn with(platforms: &[Platform]) -> Archive {
         let mut archive = Archive::default();
         for platform in platforms {
-            archive.add_binary(&entry(*platform, "Model"), platform.target().as_bytes().to_vec());
+            archive
+                .add_binary(&entry(Version::Two, *platform, "Model"), platform.target().as_bytes().to_vec());
         }
         add_stand_ins(&mut archive);
         archive
