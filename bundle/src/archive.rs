@@ -32,10 +32,17 @@ impl Archive {
         self.entries.insert(path.to_owned(), Entry { bytes, executable: true });
     }
 
+    /// Paths and contents of the entries below a folder.
+    pub fn below<'a>(&'a self, folder: &'a str) -> impl Iterator<Item = (&'a str, &'a [u8])> {
+        let lies_there =
+            move |path: &str| path.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'));
+        let entries = self.entries.iter().map(|(path, entry)| (path.as_str(), entry.bytes.as_slice()));
+        entries.filter(move |(path, _)| lies_there(path))
+    }
+
     /// Whether there is an entry below this folder.
     pub fn has_folder(&self, folder: &str) -> bool {
-        let below = format!("{folder}/");
-        self.entries.keys().any(|path| path.starts_with(&below))
+        self.below(folder).next().is_some()
     }
 
     /// The archive: the description first, the rest by path, all of the same fixed time.

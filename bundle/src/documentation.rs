@@ -1,39 +1,43 @@
 //! documentation/index.html: the page that all FMUs share, with the model's own part and the generated ones put in.
 
 use crate::failure::Failure;
-use crate::product::Product;
+use crate::product::{Product, Version};
 use crate::{enumerations, picture, variables};
 use xtask::files;
 use xtask::workspace::Workspace;
 
 /// The page.
-pub fn page(workspace: &Workspace, product: &Product, description: &str) -> Result<String, Failure> {
+pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Result<String, Failure> {
     let asset = |name: &str| files::read_text(&workspace.fmu_assets().join(name));
+    // The tables are those of FMI 2.0 in both versions: they have every name.
+    let description = product.description(Version::Two);
     let experiment = product.default_experiment;
     Ok(asset("page.html")?
         .replace("{{model}}", &asset(product.page)?)
         .replace("{{import}}", &asset("import.html")?)
+        .replace("{{interface}}", version.name())
+        .replace("{{file}}", &format!("{}.fmu", product.identifier))
         .replace("{{identifier}}", product.identifier)
         .replace("{{shown}}", product.shown)
         .replace("{{stop}}", &experiment.stop_time_s.to_string())
         .replace("{{step}}", &experiment.step_size_s.to_string())
         .replace("{{version}}", env!("CARGO_PKG_VERSION"))
         .replace("{{flight}}", &picture::of_default_flight(experiment.stop_time_s)?)
-        .replace("{{enumerations}}", &enumerations::tables(description)?)
-        .replace("{{variables}}", &variables::tables(description)?))
+        .replace("{{enumerations}}", &enumerations::tables(&description)?)
+        .replace("{{variables}}", &variables::tables(&description)?))
 }
 
 #[cfg(test)]
 mod tests {
     use super::page;
-    use crate::product::PRODUCTS;
+    use crate::product::{PRODUCTS, Version};
     use xtask::workspace::Workspace;
 
     #[test]
     fn every_place_holder_is_filled() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
         for product in &PRODUCTS {
-            let page = page(&workspace, product, &(product.description)()).expect("the page is made");
+            let page = page(&workspace, product, Version::Three).expect("the page is made");
             assert!(!page.contains("{{") && !page.contains("}}"));
             // Telephones and narrow windows.
             assert!(page.contains("name=\"viewport\""));

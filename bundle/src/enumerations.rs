@@ -48,11 +48,11 @@ fn row(item: Node) -> String {
 #[cfg(test)]
 mod tests {
     use super::tables;
-    use crate::product::CLOSED_LOOP;
+    use crate::product::{CLOSED_LOOP, Version};
 
     #[test]
     fn explains_every_status() {
-        let html = tables(&(CLOSED_LOOP.description)()).expect("the description is XML");
+        let html = tables(&CLOSED_LOOP.description(Version::Two)).expect("the description is XML");
         for status in ["optimal", "relaxed", "iteration_limit", "held"] {
             assert!(html.contains(&format!("<td><code>{status}</code></td>")), "{status}");
         }

@@ -31,14 +31,6 @@ pub enum Failure {
         /// Which.
         path: PathBuf,
     },
-    /// No FMI 2.0 platform name for the machine.
-    #[error("FMI 2.0 has no platform name for {os} on {architecture}")]
-    Platform {
-        /// Operating system.
-        os: &'static str,
-        /// Processor.
-        architecture: &'static str,
-    },
     /// The model's own description is not XML.
     #[error("modelDescription.xml cannot be read: {0}")]
     Description(#[from] roxmltree::Error),

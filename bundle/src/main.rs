@@ -26,10 +26,12 @@ mod variables;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 
 use failure::Failure;
+use product::Version;
 use xtask::files;
+use xtask::platform::Platform;
 use xtask::workspace::Workspace;
 
 /// Writes the FMU and its description. Run it through `cargo xtask fmu` and `cargo xtask model-description`.
@@ -44,15 +46,21 @@ struct Arguments {
 enum Task {
     /// Writes the FMUs into target/fmu.
     Fmu {
-        /// The built library.
-        #[arg(long, value_name = "FILE")]
-        library: PathBuf,
+        /// A built library with the platform that it is for; may be repeated.
+        #[arg(long, required = true, value_name = "PLATFORM=FILE", value_parser = library)]
+        library: Vec<(Platform, PathBuf)>,
         /// An FMU of the same sources, built on another platform, whose binaries are added; may be repeated.
         #[arg(long, value_name = "OTHER.fmu")]
         merge: Vec<PathBuf>,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ModelDescription,
+}
+
+/// Reads `linux64=target/release/libfmu.so`.
+fn library(text: &str) -> Result<(Platform, PathBuf), String> {
+    let (platform, file) = text.split_once('=').ok_or("expected PLATFORM=FILE")?;
+    Ok((Platform::from_str(platform, false)?, PathBuf::from(file)))
 }
 
 fn main() -> ExitCode {
@@ -71,7 +79,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { library, merge } => fmu_file::write_all(&workspace, library, merge),
         Task::ModelDescription => {
             let path = workspace.model_description();
-            files::write(&path, (product::CLOSED_LOOP.description)().as_bytes())?;
+            files::write(&path, product::CLOSED_LOOP.description(Version::Two).as_bytes())?;
             println!("{}", workspace.shown(&path));
             Ok(())
         }

@@ -1,15 +1,26 @@
-//! The FMUs that are written, each of one model of the library.
+//! The FMUs that are written: each model of the library, for each version of FMI.
 
-use fmi::description::model_description;
+use std::path::PathBuf;
+
+use fmi::description::{model_description, model_description3};
 use fmi::{Experiment, Model};
-use fmu::ClosedLoop;
+use fmu::{ClosedLoop, Controller, QuadrotorPlant};
+use xtask::workspace::Workspace;
 
-/// An FMU.
+/// A version of FMI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Version {
+    /// 2.0
+    Two,
+    /// 3.0
+    Three,
+}
+
+/// A model as an FMU.
 pub struct Product {
     /// Name of the file and of the library in it, without extensions.
     pub identifier: &'static str,
-    /// The text of its `modelDescription.xml`.
-    pub description: fn() -> String,
+    descriptions: [fn() -> String; 2],
     /// Its part of the documentation, in `fmu/assets`.
     pub page: &'static str,
     /// Outputs that its default experiment is about.
@@ -22,18 +33,52 @@ pub struct Product {
 pub const CLOSED_LOOP: Product =
     Product::of::<ClosedLoop>("closed_loop.html", "position.x position.y position.z");
 
+/// The controllers without a vehicle.
+pub const CONTROLLER: Product =
+    Product::of::<Controller>("controller.html", "setpoint.position.z rotor.command[1]");
+
+/// The vehicle without controllers.
+pub const PLANT: Product = Product::of::<QuadrotorPlant>("plant.html", "position.z velocity.z");
+
 /// All of them.
-pub const PRODUCTS: [Product; 1] = [CLOSED_LOOP];
+pub const PRODUCTS: [Product; 3] = [CLOSED_LOOP, CONTROLLER, PLANT];
+
+impl Version {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Two, Self::Three];
+
+    /// How it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Two => "FMI 2.0",
+            Self::Three => "FMI 3.0",
+        }
+    }
+}
 
 impl Product {
     const fn of<M: Model>(page: &'static str, shown: &'static str) -> Self {
         Self {
             identifier: M::IDENTITY.model_identifier,
-            description: model_description::<M>,
+            descriptions: [model_description::<M>, model_description3::<M>],
             page,
             shown,
             default_experiment: M::IDENTITY.default_experiment,
         }
+    }
+
+    /// The text of its `modelDescription.xml`.
+    pub fn description(&self, version: Version) -> String {
+        self.descriptions[version as usize]()
+    }
+
+    /// Where it is written: FMUs of FMI 3.0 have a folder of their own.
+    pub fn path(&self, workspace: &Workspace, version: Version) -> PathBuf {
+        let folder = match version {
+            Version::Two => workspace.fmus(),
+            Version::Three => workspace.fmus().join("fmi3"),
+        };
+        folder.join(format!("{}.fmu", self.identifier))
     }
 }
 
@@ -41,13 +86,12 @@ impl Product {
 mod tests {
     use xtask::workspace::Workspace;
 
-    use super::CLOSED_LOOP;
+    use super::{CLOSED_LOOP, Version};
 
     /// What the other tasks take for the FMU.
     #[test]
     fn the_file_is_named_after_the_model() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
-        let name = format!("{}.fmu", CLOSED_LOOP.identifier);
-        assert_eq!(workspace.fmu(), workspace.fmus().join(name));
+        assert_eq!(workspace.fmu(), CLOSED_LOOP.path(&workspace, Version::Two));
     }
 }

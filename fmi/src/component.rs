@@ -70,6 +70,14 @@ pub(crate) trait Component {
         direction: &[f64],
         into: &mut [f64],
     ) -> Outcome;
+    /// Derivatives of the weighted sum of `unknowns` with respect to each of `knowns`.
+    fn adjoint_derivative(
+        &mut self,
+        unknowns: &[ValueReference],
+        knowns: &[ValueReference],
+        weights: &[f64],
+        into: &mut [f64],
+    ) -> Outcome;
     /// Time derivatives of outputs.
     fn output_derivatives(
         &mut self,
@@ -99,6 +107,13 @@ pub(crate) trait Component {
     /// Model exchange: the event indicators.
     fn event_indicators(&mut self, into: &mut [f64]) -> Outcome;
 
+    /// Model exchange: number of states.
+    fn number_of_continuous_states(&self) -> Result<usize, CallError>;
+    /// Model exchange: number of event indicators.
+    fn number_of_event_indicators(&self) -> Result<usize, CallError>;
+    /// The event indicators as variables.
+    fn event_indicator_values(&mut self, into: &mut [f64]) -> Outcome;
+
     /// Whether the last step was rejected or failed.
     fn last_step_failed(&self) -> bool;
     /// The current time, s.
@@ -109,6 +124,16 @@ pub(crate) trait Component {
 pub(crate) trait SavedState: Any {
     /// As bytes.
     fn bytes(&self) -> Result<Vec<u8>, CallError>;
+}
+
+/// Copies the bytes of a state to a buffer of exactly their size.
+pub(crate) fn write_bytes(state: &dyn SavedState, buffer: &mut [u8]) -> Result<(), CallError> {
+    let bytes = state.bytes()?;
+    if bytes.len() != buffer.len() {
+        return Err(SavedStateError::Length { actual: buffer.len(), expected: bytes.len() }.into());
+    }
+    buffer.copy_from_slice(&bytes);
+    Ok(())
 }
 
 impl<M: Model> SavedState for Snapshot<M> {
@@ -206,6 +231,16 @@ impl<M: Model> Component for Instance<M> {
         self.directional_derivative(unknowns, knowns, direction, into)
     }
 
+    fn adjoint_derivative(
+        &mut self,
+        unknowns: &[ValueReference],
+        knowns: &[ValueReference],
+        weights: &[f64],
+        into: &mut [f64],
+    ) -> Outcome {
+        self.adjoint_derivative(unknowns, knowns, weights, into)
+    }
+
     fn output_derivatives(
         &mut self,
         references: &[ValueReference],
@@ -253,6 +288,18 @@ impl<M: Model> Component for Instance<M> {
 
     fn event_indicators(&mut self, into: &mut [f64]) -> Outcome {
         self.event_indicators(into)
+    }
+
+    fn number_of_continuous_states(&self) -> Result<usize, CallError> {
+        self.number_of_continuous_states()
+    }
+
+    fn number_of_event_indicators(&self) -> Result<usize, CallError> {
+        self.number_of_event_indicators()
+    }
+
+    fn event_indicator_values(&mut self, into: &mut [f64]) -> Outcome {
+        self.event_indicator_values(into)
     }
 
     fn last_step_failed(&self) -> bool {

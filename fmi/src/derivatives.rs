@@ -1,6 +1,6 @@
 //! Directional derivatives, and time derivatives of outputs.
 
-use crate::continuous::{Seed, equations, real_signal, states};
+use crate::continuous::{Continuous, Seed, equations, real_signal, states};
 use crate::error::CallError;
 use crate::instance::Instance;
 use crate::model::Model;
@@ -16,25 +16,40 @@ impl<M: Model> Instance<M> {
         direction: &[f64],
         into: &mut [f64],
     ) -> Result<(), CallError> {
-        let equations = equations::<M>().map_err(|_| {
-            CallError::NotOffered(
-                "directional derivatives are not available (providesDirectionalDerivative = false)",
-            )
-        })?;
-        let signals = unknowns.iter().map(|&unknown| {
-            let variable = variable::<M>(unknown)?;
-            real_signal(variable).ok_or(CallError::NotAnUnknown { name: variable.name })
-        });
-        let signals = signals.collect::<Result<Vec<_>, _>>()?;
+        let equations = differentiable::<M>()?;
+        let signals = signals::<M>(unknowns)?;
         let (model, inputs) = self.run()?;
         let seed = seed::<M>(inputs, knowns, direction)?;
         let tangent = equations.tangent(model, inputs, &seed);
-        for ((into, signal), &unknown) in into.iter_mut().zip(signals).zip(unknowns) {
-            let value = signal(&tangent);
-            if !value.is_finite() {
-                return Err(CallError::NoDerivative { name: variable::<M>(unknown)?.name, value });
+        for (into, signal) in into.iter_mut().zip(&signals) {
+            *into = signal.derivative(&tangent)?;
+        }
+        Ok(())
+    }
+
+    /// The transposed product: derivatives of the sum of `unknowns`, each times its weight, with respect to each of `knowns`. It takes one
+    /// directional derivative a known.
+    pub fn adjoint_derivative(
+        &mut self,
+        unknowns: &[ValueReference],
+        knowns: &[ValueReference],
+        weights: &[f64],
+        into: &mut [f64],
+    ) -> Result<(), CallError> {
+        let equations = differentiable::<M>()?;
+        let signals = signals::<M>(unknowns)?;
+        if let Some((signal, &value)) = signals.iter().zip(weights).find(|(_, weight)| !weight.is_finite()) {
+            return Err(CallError::NotFinite { name: signal.name, value });
+        }
+        let (model, inputs) = self.run()?;
+        for (into, &known) in into.iter_mut().zip(knowns) {
+            let seed = seed::<M>(inputs, &[known], &[1.0])?;
+            let tangent = equations.tangent(model, inputs, &seed);
+            let mut sum = 0.0;
+            for (signal, weight) in signals.iter().zip(weights) {
+                sum += weight * signal.derivative(&tangent)?;
             }
-            *into = value;
+            *into = sum;
         }
         Ok(())
     }
@@ -65,6 +80,38 @@ impl<M: Model> Instance<M> {
         }
         Ok(())
     }
+}
+
+/// The equations of a model that has derivatives.
+fn differentiable<M: Model>() -> Result<&'static dyn Continuous<M>, CallError> {
+    equations::<M>().map_err(|_| {
+        CallError::NotOffered(
+            "derivatives are not available: the model description does not say that it provides them",
+        )
+    })
+}
+
+/// A variable that has derivatives.
+struct Differentiable<M: Model> {
+    name: &'static str,
+    get: fn(&M::Outputs) -> f64,
+}
+
+impl<M: Model> Differentiable<M> {
+    fn derivative(&self, tangent: &M::Outputs) -> Result<f64, CallError> {
+        let value = (self.get)(tangent);
+        if value.is_finite() { Ok(value) } else { Err(CallError::NoDerivative { name: self.name, value }) }
+    }
+}
+
+/// The variables with these references, all of which must have derivatives.
+fn signals<M: Model>(unknowns: &[ValueReference]) -> Result<Vec<Differentiable<M>>, CallError> {
+    let signals = unknowns.iter().map(|&unknown| {
+        let variable = variable::<M>(unknown)?;
+        let name = variable.name;
+        real_signal(variable).map(|get| Differentiable { name, get }).ok_or(CallError::NotAnUnknown { name })
+    });
+    signals.collect()
 }
 
 /// The direction in the space of states and inputs. A variable that is named twice counts twice.

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::lifecycle::Phase;
 use crate::model::Model;
-use crate::variables::{Type, ValueReference};
+use crate::variables::ValueReference;
 
 /// How serious an error is; each version of the interface maps it to a status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,12 @@ pub(crate) enum CallError {
     #[error("unknown value reference {reference}")]
     UnknownReference { reference: ValueReference },
     #[error("{name} (value reference {reference}) has type {declared}, not {asked}")]
-    WrongType { name: &'static str, reference: ValueReference, declared: Type, asked: Type },
+    WrongType { name: &'static str, reference: ValueReference, declared: &'static str, asked: &'static str },
+    #[error(
+        "value reference {reference} is an element of the array {array}, which is read and set as a whole: use value \
+         reference {first}"
+    )]
+    InsideArray { reference: ValueReference, array: &'static str, first: ValueReference },
     #[error("value reference {reference} is not a String: this model has no String variables")]
     NoStrings { reference: ValueReference },
     #[error("{name} cannot be set: it is {kind} (read-only)")]
@@ -69,11 +74,13 @@ pub(crate) enum CallError {
     NoDerivative { name: &'static str, value: f64 },
     #[error("event indicator {place} = {value:?} is not a finite number in this state; try a shorter step")]
     NoIndicator { place: usize, value: f64 },
-    #[error("{name} has no derivatives: only Real outputs and derivatives of states do")]
+    #[error("{name} has no derivatives: only continuous outputs and derivatives of states do")]
     NotAnUnknown { name: &'static str },
-    #[error("no derivative with respect to {name}: it must be a Real input or a continuous state")]
+    #[error("no derivative with respect to {name}: it must be a continuous input or state")]
     NotAKnown { name: &'static str },
-    #[error("{name} can only be set in event mode; in continuous-time mode only Real inputs can be set")]
+    #[error(
+        "{name} can only be set in event mode; in continuous-time mode only continuous inputs can be set"
+    )]
     OnlyAtEvents { name: &'static str },
     #[error("unknown log category {name:?}; the model description lists them all")]
     UnknownCategory { name: String },

@@ -94,6 +94,25 @@ impl<M: Model> Instance<M> {
         }
     }
 
+    /// Number of states.
+    pub fn number_of_continuous_states(&self) -> Result<usize, CallError> {
+        self.exchanged()?;
+        Ok(states::<M>().count())
+    }
+
+    /// Number of event indicators.
+    pub fn number_of_event_indicators(&self) -> Result<usize, CallError> {
+        Ok(self.exchanged()?.event_indicators())
+    }
+
+    /// The event indicators as variables, which can be read however the run is driven.
+    pub fn event_indicator_values(&mut self, into: &mut [f64]) -> Result<(), CallError> {
+        let equations = equations::<M>()?;
+        let (model, inputs) = self.run()?;
+        equations.indicators(model, inputs, into);
+        Ok(())
+    }
+
     /// The equations, if this instance was made for model exchange.
     fn exchanged(&self) -> Result<&'static dyn Continuous<M>, CallError> {
         match self.kind() {

@@ -1,7 +1,7 @@
 //! The identity of the interface.
 
 use crate::model::Model;
-use crate::variables::{Value, variables};
+use crate::variables::{Value, arrays, variables};
 
 /// A 128-bit hash of the table of variables and the version, by which a description or a saved state of another build of
 /// the model is recognised.
@@ -29,10 +29,14 @@ pub(crate) fn identity<M: Model>() -> u128 {
             hash.value(value);
         }
     }
+    for array in arrays::<M>() {
+        hash.text(array.name);
+        array.components.iter().for_each(|name| hash.text(name));
+    }
     hash.0
 }
 
-/// The GUID that `modelDescription.xml` and `fmi2Instantiate` must agree on.
+/// The GUID that `modelDescription.xml` and the library must agree on; FMI 3.0 calls it the instantiation token.
 pub fn guid<M: Model>() -> String {
     let digits = format!("{:032x}", identity::<M>());
     let (a, rest) = digits.split_at(8);

@@ -22,6 +22,7 @@ mod finite;
 mod finite_values;
 mod floating_point;
 pub mod fmi2;
+pub mod fmi3;
 mod guard;
 mod identity;
 mod input_derivative;
@@ -29,6 +30,7 @@ mod instance;
 #[cfg(test)]
 #[path = "../../tests/lag/src/model.rs"]
 mod lag;
+mod layout;
 mod library;
 mod lifecycle;
 mod logger;

@@ -28,6 +28,51 @@ pub(crate) enum Phase {
     ContinuousTimeMode = 128,
 }
 
+/// A function of the interface and the phases in which it may be called.
+pub(crate) struct Function {
+    /// Exported name.
+    pub name: &'static str,
+    allowed: u8,
+}
+
+impl Function {
+    /// A function that may be called in the phases of a mask.
+    pub const fn new(name: &'static str, allowed: u8) -> Self {
+        Self { name, allowed }
+    }
+
+    /// Whether it may be called in this phase.
+    pub const fn is_allowed_in(&self, phase: Phase) -> bool {
+        self.allowed & phase as u8 != 0
+    }
+}
+
+/// Sets of phases, as bit masks, for the tables of all versions.
+pub(crate) mod phases {
+    use super::Phase;
+
+    pub const INSTANTIATED: u8 = Phase::Instantiated as u8;
+    pub const INITIALIZATION: u8 = Phase::Initialization as u8;
+    pub const STEP_COMPLETE: u8 = Phase::StepComplete as u8;
+    pub const TERMINATED: u8 = Phase::Terminated as u8;
+    pub const ERROR: u8 = Phase::Error as u8;
+    pub const EVENT_MODE: u8 = Phase::EventMode as u8;
+    pub const CONTINUOUS_TIME_MODE: u8 = Phase::ContinuousTimeMode as u8;
+
+    /// After initialization in model exchange.
+    pub const EXCHANGE: u8 = EVENT_MODE | CONTINUOUS_TIME_MODE;
+    /// Where values can be set.
+    pub const SETTABLE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EXCHANGE;
+    /// Where the model can be evaluated.
+    pub const GETTABLE: u8 = INITIALIZATION | STEP_COMPLETE | EXCHANGE | TERMINATED | ERROR;
+    /// Where the model can be evaluated in model exchange.
+    pub const SOLVED: u8 = INITIALIZATION | EXCHANGE | TERMINATED | ERROR;
+    /// After initialization in co-simulation.
+    pub const STEPPED: u8 = STEP_COMPLETE | TERMINATED | ERROR;
+    /// All but after a panic.
+    pub const ALIVE: u8 = INSTANTIATED | INITIALIZATION | STEP_COMPLETE | EXCHANGE | TERMINATED | ERROR;
+}
+
 impl Phase {
     /// Whether the run has begun and goes on.
     pub fn is_running(self) -> bool {

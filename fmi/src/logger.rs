@@ -1,6 +1,6 @@
 //! Messages to the importer.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 
 use crate::error::{CallError, Severity};
 #[cfg(feature = "description")]
@@ -46,34 +46,47 @@ impl Category {
             Self::Warning => "Ignored requests and doubtful parameters",
             Self::Discard => "Information that is not available",
             Self::Error => words.errors,
-            Self::Fatal => "Internal errors; always logged",
+            Self::Fatal => "Internal errors",
         }
     }
 }
 
-/// Names and descriptions of the categories, for the description.
+/// Names and descriptions of the categories, and whether they report errors, for the description.
 #[cfg(feature = "description")]
-pub(crate) fn categories(words: &Words) -> impl Iterator<Item = (String, &'static str)> {
+pub(crate) fn categories(words: &Words) -> impl Iterator<Item = (String, &'static str, bool)> {
     CATEGORIES
         .into_iter()
-        .map(|(category, name)| (name, category.description(words)))
-        .chain([(ALL, "All messages")])
-        .map(|(name, description)| (name.to_string_lossy().into_owned(), description))
+        .map(|(category, name)| {
+            (name, category.description(words), matches!(category, Category::Error | Category::Fatal))
+        })
+        .chain([(ALL, "All messages", false)])
+        .map(|(name, description, of_errors)| (name.to_string_lossy().into_owned(), description, of_errors))
 }
 
 /// Passes one message to the importer in the form of its version of the interface.
 pub(crate) type Sink = Box<dyn Fn(Category, &str)>;
 
+/// A message as both versions of the interface want it: "#" begins a reference to a variable, and a NUL would end it.
+pub(crate) fn printable(message: &str) -> CString {
+    CString::new(message.replace('#', "##").replace('\0', " ")).unwrap_or_default()
+}
+
 /// Which categories the importer wants, and where messages go.
 pub(crate) struct Logger {
     sink: Sink,
     enabled: u8,
+    always: u8,
 }
 
 impl Logger {
-    /// A logger for one instance.
+    /// A logger for one instance. It passes on errors also when logging is off.
     pub fn new(sink: Sink, logging_on: bool) -> Self {
-        Self { sink, enabled: if logging_on { EVERY } else { 0 } }
+        Self { always: Category::Error as u8 | Category::Fatal as u8, ..Self::silenced(sink, logging_on) }
+    }
+
+    /// A logger for one instance, which is silent when logging is off.
+    pub fn silenced(sink: Sink, logging_on: bool) -> Self {
+        Self { sink, enabled: if logging_on { EVERY } else { 0 }, always: 0 }
     }
 
     /// Selects categories; no names select all of them.
@@ -106,14 +119,13 @@ impl Logger {
         self.log(category, &format!("{function}: {error}"));
     }
 
-    /// Logs why no instance was made.
+    /// Tells why no instance was made, which is never kept back.
     pub fn refused(&self, message: &str) {
-        self.log(Category::Error, message);
+        (self.sink)(Category::Error, message);
     }
 
     fn log(&self, category: Category, message: &str) {
-        let always = matches!(category, Category::Error | Category::Fatal);
-        if always || self.enabled & category as u8 != 0 {
+        if (self.enabled | self.always) & category as u8 != 0 {
             (self.sink)(category, message);
         }
     }

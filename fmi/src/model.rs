@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::continuous::Continuous;
-use crate::variables::{Quantity, Variable};
+use crate::variables::{Array, Quantity, Variable};
 
 /// Plain data that can be copied, compared, saved and read again.
 pub trait Data: Clone + Debug + PartialEq + Serialize + DeserializeOwned {}
@@ -24,6 +24,9 @@ pub trait Model: Sized + 'static {
 
     /// The table of variables, in groups. A variable's value reference is its index over all groups, from 0.
     const VARIABLES: &'static [&'static [Variable<Self>]];
+
+    /// The arrays of FMI 3.0, in groups: variables of the table that it reads and sets together.
+    const ARRAYS: &'static [&'static [Array]] = &[];
 
     /// Quantities that the description lists first, in this order; others follow in the order in which variables use them.
     const QUANTITIES: &'static [&'static Quantity] = &[];
@@ -185,6 +188,6 @@ impl Words {
         run: "simulation",
         retuned: "parameters changed",
         events: "Initialization, changed parameters, reset",
-        errors: "Rejected calls and failed simulations; always logged",
+        errors: "Rejected calls and failed simulations",
     };
 }

@@ -124,6 +124,11 @@ fn typed<M: Model>(reference: ValueReference, asked: Type) -> Result<&'static Va
     if declared.of_functions() == asked {
         Ok(variable)
     } else {
-        Err(CallError::WrongType { name: variable.name, reference, declared, asked })
+        Err(CallError::WrongType {
+            name: variable.name,
+            reference,
+            declared: declared.name(),
+            asked: asked.name(),
+        })
     }
 }

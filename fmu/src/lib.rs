@@ -23,3 +23,4 @@ pub use flight_error::FlightError;
 pub use plant::{Commands, Drive, Observed, QuadrotorPlant, Run, Settings};
 
 fmi::export_fmi2!(ClosedLoop, Controller, QuadrotorPlant);
+fmi::export_fmi3!(ClosedLoop, Controller, QuadrotorPlant);

@@ -87,7 +87,7 @@ impl OwnLoop {
         let start = ForeignMotion {
             body: simulation.plant_state().body,
             acceleration_m_s2: None,
-            rotor_speed_rad_s: None,
+            rotor_speed_rad_s: Some([0.0; 4]),
             thrust_n: None,
         };
         Self { description: description(ForeignRole::ClosedLoop, start), simulation }
@@ -104,7 +104,8 @@ impl ForeignModel for OwnLoop {
         let inputs =
             Inputs { reference: demand.reference, armed: demand.armed, disturbance, ..Inputs::default() };
         self.simulation.advance_to(demand.time_us + demand.duration_us, &inputs)?;
-        Ok(ForeignMotion { body: self.simulation.plant_state().body, ..self.description.start })
+        let PlantState { body, rotor_speed_rad_s, .. } = *self.simulation.plant_state();
+        Ok(ForeignMotion { body, rotor_speed_rad_s: Some(rotor_speed_rad_s), ..self.description.start })
     }
 }
 

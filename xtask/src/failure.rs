@@ -6,6 +6,8 @@ use std::process::ExitStatus;
 
 use thiserror::Error;
 
+use crate::platform::Platform;
+
 /// Why a task failed.
 #[derive(Debug, Error)]
 pub enum Failure {
@@ -65,6 +67,31 @@ pub enum Failure {
         "cannot install the pinned Python packages; see pip's output above (the first run needs a network)"
     )]
     Packages,
+    /// Something is missing on the machine.
+    #[error(
+        "this machine lacks what the platforms need; install it, or run the command as root with --install:{needs}"
+    )]
+    Needs {
+        /// One line each, with the remedy.
+        needs: String,
+    },
+    /// Apple's linker and frameworks are on Macs only.
+    #[error("{platform} is built on a Mac: run this command there, and add its FMU here with --merge")]
+    OnlyOnMac {
+        /// Which.
+        platform: Platform,
+    },
+    /// Nothing on this machine runs the programs of a platform.
+    #[error("programs for {platform} do not run on this machine: leave it out of --platforms")]
+    NoEmulator {
+        /// Which.
+        platform: Platform,
+    },
+    /// FMI has no name for this machine, or nobody has asked for it.
+    #[error(
+        "the FMU is not built on this system and processor: use 64-bit Linux, Windows or macOS on x86 or ARM"
+    )]
+    UnknownPlatform,
     /// A file or folder could not be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     File {

@@ -50,6 +50,15 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     fs::rename(&new, path).map_err(failure("write", path))
 }
 
+/// Copies a file with its permissions over another, and returns how many bytes it has.
+///
+/// # Errors
+///
+/// If one of the files cannot be accessed; the error names the path of the copy.
+pub fn copy(from: &Path, to: &Path) -> Result<u64, Failure> {
+    fs::copy(from, to).map_err(failure("write", to))
+}
+
 /// Creates a folder with its parents.
 ///
 /// # Errors

@@ -3,23 +3,31 @@
 mod book;
 mod demo;
 mod fmu;
-mod library;
 mod optimum;
 mod paper;
+mod paths;
+mod platforms;
+mod product;
 mod program;
 mod progress;
 mod python;
+mod release;
+mod sitl;
 mod test;
 mod threads;
+mod toolchains;
+mod universal;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 
 use program::Beside;
 use progress::Progress;
+use release::Release;
 use xtask::failure::Failure;
+use xtask::platform::Platform;
 use xtask::workspace::Workspace;
 
 /// Builds, demonstrates and tests the quadrotor FMU.
@@ -37,11 +45,25 @@ struct Arguments {
 enum Task {
     /// Writes target/fmu/LmpcQuadrotor.fmu: library, description, documentation, icon and licences.
     ///
-    /// The same sources and toolchain give the same bytes.
+    /// The same sources and toolchain give the same bytes. Without --platforms it is for this machine.
     Fmu {
+        #[command(flatten)]
+        platforms: ForPlatforms,
         /// Adds the binaries of an FMU that was built from the same sources on another platform; can be repeated.
         #[arg(long, value_name = "OTHER.fmu")]
         merge: Vec<PathBuf>,
+    },
+    /// Writes target/sitl/PLATFORM/lmpc-sitl: the MAVLink vehicle, for any machine of some platforms.
+    Sitl {
+        #[command(flatten)]
+        platforms: ForPlatforms,
+    },
+    /// Builds the FMU and the MAVLink vehicle for linux64, win64 and aarch64-linux, and runs them under wine and qemu.
+    ///
+    /// Numbers must be the same on all. Needs Linux on x86.
+    Platforms {
+        #[command(flatten)]
+        platforms: ForPlatforms,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
@@ -71,6 +93,27 @@ enum Task {
     Test,
 }
 
+/// For whom something is built.
+#[derive(Args)]
+struct ForPlatforms {
+    /// Builds for any machine of these platforms, for Linux with glibc 2.17 or newer. Names of FMI 2.0 or tuples of FMI 3.0.
+    #[arg(long, value_name = "PLATFORM,…", value_delimiter = ',')]
+    platforms: Vec<Platform>,
+    /// Installs what is missing for them: standard libraries by rustup, Debian packages by apt-get if this is root.
+    #[arg(long)]
+    install: bool,
+}
+
+impl ForPlatforms {
+    /// Those that are named, each once; else the usual ones.
+    fn or(&self, usual: &[Platform]) -> Vec<Platform> {
+        let mut platforms = if self.platforms.is_empty() { usual.to_vec() } else { self.platforms.clone() };
+        platforms.sort();
+        platforms.dedup();
+        platforms
+    }
+}
+
 fn main() -> ExitCode {
     let task = Arguments::parse().task;
     match run(&task) {
@@ -86,13 +129,41 @@ fn run(task: &Task) -> Result<(), Failure> {
     let workspace = Workspace::find()?;
     let progress = Progress::start();
     match task {
-        Task::Fmu { merge } => fmu::make(&workspace, &progress, merge, Beside::Nothing).map(|_| ()),
+        Task::Fmu { platforms, merge } if platforms.platforms.is_empty() => {
+            fmu::make(&workspace, &progress, merge, Beside::Nothing).map(|_| ())
+        }
+        Task::Fmu { platforms, merge } => {
+            let release = prepared(&workspace, &progress, &platforms.or(&[]), platforms.install)?;
+            fmu::make_for(&workspace, &progress, &release, merge).map(|_| ())
+        }
+        Task::Sitl { platforms } => {
+            let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
+            let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
+            sitl::make(&workspace, &progress, &release).map(|_| ())
+        }
+        Task::Platforms { platforms } => {
+            let [reference, ..] = platforms::CHECKED;
+            let mut checked = platforms.or(&platforms::CHECKED);
+            if !checked.contains(&reference) {
+                checked.insert(0, reference);
+            }
+            platforms::check(&workspace, &progress, &checked, platforms.install)
+        }
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
         Task::Test => test::run_all(&workspace, &progress),
     }
+}
+
+fn prepared(
+    workspace: &Workspace,
+    progress: &Progress,
+    platforms: &[Platform],
+    install: bool,
+) -> Result<Release, Failure> {
+    Release::prepare(workspace, progress, platforms, Vec::new(), install)
 }
 
 #[cfg(test)]

@@ -62,6 +62,13 @@ const OPTIMUM_LAYERS: [Layer; 1] = [Layer {
     made_from: "made-from.txt",
 }];
 
+/// So has the linker for other platforms.
+const ZIG_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing the linker for other platforms (first time; downloads about 95 MB)",
+    lists: &[Pinned { file: "zig.txt", complete: true }],
+    made_from: "made-from.txt",
+}];
+
 /// What an environment is for.
 #[derive(Clone, Copy)]
 pub enum Packages {
@@ -73,6 +80,8 @@ pub enum Packages {
     Book,
     /// The optimal flights of the paper's report.
     Optimum,
+    /// The linker for other platforms.
+    Zig,
 }
 
 impl Packages {
@@ -83,6 +92,7 @@ impl Packages {
             Self::Tests => ("venv", &LAYERS, 2),
             Self::Book => ("venv-book", &BOOK_LAYERS, 1),
             Self::Optimum => ("venv-optimum", &OPTIMUM_LAYERS, 1),
+            Self::Zig => ("venv-zig", &ZIG_LAYERS, 1),
         }
     }
 }
@@ -99,14 +109,19 @@ pub struct Python {
 }
 
 impl Python {
+    /// The folder of the programs that its packages bring.
+    pub fn programs(&self) -> PathBuf {
+        self.folder.join(if cfg!(windows) { "Scripts" } else { "bin" })
+    }
+
+    /// A program of its packages.
+    pub fn program(&self, name: &str) -> PathBuf {
+        self.programs().join(format!("{name}{}", env::consts::EXE_SUFFIX))
+    }
+
     /// A command of this interpreter. It opens no window and keeps compiled files in the environment, away from the sources.
     pub fn command(&self) -> Command {
-        let program = if cfg!(windows) {
-            self.folder.join("Scripts").join("python.exe")
-        } else {
-            self.folder.join("bin").join("python")
-        };
-        let mut command = Command::new(program);
+        let mut command = Command::new(self.program("python"));
         command
             .env("MPLBACKEND", "Agg")
             .env("PYTHONPYCACHEPREFIX", self.folder.join("compiled"))

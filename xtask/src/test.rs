@@ -79,6 +79,7 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     }
     let Count { passed, failed: count_failed, skipped } = count;
     progress.print_summary();
+    println!("note: Windows and Linux on ARM are left to `cargo xtask platforms`");
     println!("total: {passed} passed, {count_failed} failed, {skipped} skipped");
     if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }
 }

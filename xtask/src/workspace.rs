@@ -77,6 +77,16 @@ impl Workspace {
         self.target.join("debug").join("examples")
     }
 
+    /// What is built for any machine of a platform, and what that takes.
+    pub fn platforms(&self) -> PathBuf {
+        self.target.join("platforms")
+    }
+
+    /// The vehicle's programs for other machines, a folder for each platform.
+    pub fn vehicles(&self) -> PathBuf {
+        self.target.join("sitl")
+    }
+
     /// A file or folder below the target folder.
     pub fn target(&self, name: &str) -> PathBuf {
         self.target.join(name)

@@ -6,14 +6,14 @@ use std::ffi::{CStr, c_char, c_int};
 
 use super::guard::call;
 use super::instantiate::{Request, free, instantiate as make};
-use super::lifecycle::Function;
+use super::lifecycle;
 use super::status::{no_status, step_status};
 use super::types::{
     Boolean, Byte, CallbackFunctions, Component, EventInfo, FALSE, FmuState, Integer, LAST_SUCCESSFUL_TIME,
     Real, Status, StatusKind, String, TERMINATED, TRUE, ValueReference,
 };
-use crate::component::SavedState;
-use crate::error::{CallError, SavedStateError};
+use crate::component::{SavedState, write_bytes};
+use crate::error::CallError;
 use crate::library::LibraryModel;
 use crate::pointer::{array, array_mut, keep, reference, reference_mut, release, string};
 use crate::variables::{Type, Value};
@@ -30,7 +30,7 @@ macro_rules! functions {
         pub unsafe fn $name(c: Component, $($argument: $type),*) -> Status {
             // SAFETY: this function's contract is that of `call` and of the pointer conversions in `$body`.
             #[allow(unused_unsafe)]
-            unsafe { call(c, &Function::$function, $body) }
+            unsafe { call(c, &lifecycle::$function, $body) }
         }
     )*};
 }
@@ -186,7 +186,7 @@ functions! {
     /// Writes a saved state to a buffer of exactly its size.
     serialize_state(state: FmuState, bytes: *mut Byte, size: usize), SERIALIZE_STATE => |_| {
         let bytes = array_mut("serializedState", bytes, size)?;
-        copy(&saved(state)?.bytes()?, bytes)
+        write_bytes(saved(state)?, bytes)
     };
 
     /// Reads a saved state from bytes, and checks it.
@@ -326,13 +326,4 @@ unsafe fn saved<'a>(state: FmuState) -> Result<&'a dyn SavedState, CallError> {
 
 fn boolean(value: bool) -> Boolean {
     if value { TRUE } else { FALSE }
-}
-
-fn copy(from: &[u8], to: &mut [u8]) -> Result<(), CallError> {
-    if from.len() != to.len() {
-        let (actual, expected) = (to.len(), from.len());
-        return Err(SavedStateError::Length { actual, expected }.into());
-    }
-    to.copy_from_slice(from);
-    Ok(())
 }

@@ -1,11 +1,11 @@
 //! The guard of the FMI 2.0 functions: from a component to an instance, and from an outcome to a status.
 
-use super::lifecycle::Function;
 use super::types::{Component as Pointer, Status};
 use crate::component::Component;
 use crate::error::{CallError, Severity};
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::guarded;
+use crate::lifecycle::Function;
 use crate::stack::with_room;
 
 /// Calls `body` with the instance.
@@ -46,7 +46,7 @@ mod tests {
     use std::ffi::{CStr, c_void};
 
     use super::checked;
-    use crate::fmi2::lifecycle::Function;
+    use crate::fmi2::lifecycle::RESET;
     use crate::fmi2::logger::sink;
     use crate::fmi2::types::{CallbackLogger, ComponentEnvironment, Status, String as FmiString};
     use crate::instance::Instance;
@@ -87,9 +87,9 @@ mod tests {
     fn panic_becomes_fatal() {
         let mut log = Log::new();
         let mut instance = instance(&mut log);
-        let status = checked(&mut instance, &Function::RESET, |_| panic!("a defect #{}", 1));
+        let status = checked(&mut instance, &RESET, |_| panic!("a defect #{}", 1));
         assert_eq!(status, Status::Fatal);
-        assert_eq!(checked(&mut instance, &Function::RESET, |instance| instance.reset()), Status::Fatal);
+        assert_eq!(checked(&mut instance, &RESET, |instance| instance.reset()), Status::Fatal);
         assert_eq!(log.len(), 2);
         assert_eq!((log[0].0, log[0].1.as_str()), (Status::Fatal, "logStatusFatal"));
         assert_eq!(log[0].2, "fmi2Reset: internal error; the instance can only be freed: a defect ##1");

@@ -10,7 +10,7 @@ use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component a
 use crate::component::Component;
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::message_of;
-use crate::library::LibraryModel;
+use crate::library::{LibraryModel, find};
 use crate::lifecycle::Kind;
 use crate::logger::Logger;
 
@@ -72,15 +72,8 @@ fn choose<'a>(
         return Err(InstantiationError::NoName);
     }
     let given = request.guid.ok_or(InstantiationError::NoGuid)?.to_string_lossy();
-    let model =
-        models.iter().find(|model| model.guid() == given).ok_or_else(|| InstantiationError::OtherGuid {
-            given: given.into_owned(),
-            expected: models
-                .iter()
-                .map(|model| format!("{} ({})", model.guid(), model.name()))
-                .collect::<Vec<_>>()
-                .join(", "),
-        })?;
+    let model = find(models, &given)
+        .map_err(|expected| InstantiationError::OtherGuid { given: given.into_owned(), expected })?;
     match request.fmu_type {
         CO_SIMULATION => Ok((model, Kind::CoSimulation)),
         MODEL_EXCHANGE if model.exchanges() => Ok((model, Kind::ModelExchange)),

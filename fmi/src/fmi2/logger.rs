@@ -3,7 +3,7 @@
 use std::ffi::CString;
 
 use super::types::{CallbackLogger, ComponentEnvironment, Status};
-use crate::logger::{Category, Sink};
+use crate::logger::{Category, Sink, printable};
 
 /// A sink that calls the importer's logger with its own environment and the name of the instance.
 ///
@@ -15,9 +15,7 @@ pub(super) unsafe fn sink(
     instance_name: CString,
 ) -> Sink {
     Box::new(move |category, message| {
-        // "#" begins a reference to a variable; a NUL would end the message.
-        let message = message.replace('#', "##").replace('\0', " ");
-        let message = CString::new(message).unwrap_or_default();
+        let message = printable(message);
         // SAFETY: the caller's promise; the strings are NUL-terminated and outlive the call, and the only
         // variadic argument is what "%s" asks for.
         unsafe {

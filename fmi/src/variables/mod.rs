@@ -2,11 +2,14 @@
 
 mod access;
 mod allowed;
+mod array;
 mod quantity;
 mod value;
 mod variable;
 
 pub use access::{Field, Signal};
+pub use array::Array;
+pub(crate) use array::{arrays, check_arrays, reference_of};
 pub use quantity::{Choice, Quantity, Unit};
 pub use value::{Type, Value};
 pub use variable::{Role, ValueReference, Variable};

@@ -20,16 +20,21 @@ impl Type {
     pub fn of_functions(self) -> Self {
         if self == Self::Enumeration { Self::Integer } else { self }
     }
-}
 
-impl fmt::Display for Type {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
+    /// Its name in FMI 2.0.
+    pub fn name(self) -> &'static str {
+        match self {
             Self::Real => "Real",
             Self::Integer => "Integer",
             Self::Enumeration => "Enumeration",
             Self::Boolean => "Boolean",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Type {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
     }
 }
 

@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Quantity, Variable};
+use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, SimulationState};
 
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
 use crate::quantities;
+use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
 
 /// The quadrotor with its controllers.
@@ -34,6 +35,17 @@ impl Model for ClosedLoop {
         &outputs::ACTIVITY,
         &parameters::TABLE,
         &figures::figures(),
+    ];
+    const ARRAYS: &'static [&'static [Array]] = &[
+        arrays::REFERENCE,
+        arrays::DISTURBANCE,
+        arrays::MOTION,
+        arrays::STEERING,
+        outputs::ARRAYS,
+        arrays::AIRFRAME,
+        arrays::AIRFRAME_OF_PLANT,
+        arrays::INITIAL,
+        arrays::CONTROLLERS,
     ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = Configuration;

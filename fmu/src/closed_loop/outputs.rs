@@ -4,11 +4,12 @@
 
 use std::f64::consts::PI;
 
-use fmi::variables::Variable;
+use fmi::variables::{Array, Variable};
 use quadrotor::Outputs;
 
 use super::ClosedLoop;
 use crate::quantities::{ANGLE, POSITION};
+use crate::tables::arrays::array;
 use crate::tables::rows::{output, within};
 use crate::tables::{motion, steering};
 
@@ -31,3 +32,7 @@ pub(super) const ERRORS: [Variable<ClosedLoop>; 4] = [
 
 /// How the controllers came to their last inputs.
 pub(super) const ACTIVITY: [Variable<ClosedLoop>; 9] = steering::activity();
+
+/// Arrays that only the closed loop has.
+pub(super) const ARRAYS: &[Array] =
+    &[array!("tracking_error", [".x", ".y", ".z"], "Position minus set-point: north, east, down")];

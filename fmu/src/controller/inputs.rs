@@ -1,11 +1,12 @@
 //! The inputs: what is asked for, and what is measured.
 
-use fmi::variables::{Field, Variable};
+use fmi::variables::{Array, Field, Variable};
 use quadrotor::{ControlInputs, Inputs, PositionReference, Target};
 use serde::{Deserialize, Serialize};
 
 use super::{Controller, MeasuredMotion};
 use crate::quantities::{ANGLE, ANGULAR_VELOCITY, NUMBER, POSITION, ROTOR_SPEED, VELOCITY};
+use crate::tables::arrays::array;
 use crate::tables::references::{self, Commanded};
 
 /// What is asked for, and what is measured.
@@ -99,3 +100,14 @@ pub(super) const MEASURED: [Variable<Controller>; 20] = [
 
 /// Whether the rotors turn.
 pub(super) const ARMED: [Variable<Controller>; 1] = references::armed();
+
+/// What is measured, as vectors.
+#[rustfmt::skip]
+pub(super) const ARRAYS: &[Array] = &[
+    array!("measured.position", [".x", ".y", ".z"], "Measured position: north, east, down"),
+    array!("measured.velocity", [".x", ".y", ".z"], "Measured velocity: north, east, down"),
+    array!("measured.attitude.q" as "measured.quaternion", ["0", "1", "2", "3"], "Measured attitude quaternion, scalar part first: body into north-east-down"),
+    array!("measured.attitude", [".phi", ".theta", ".psi"], "Measured ZYX Euler angles: roll, pitch, heading"),
+    array!("measured.body_rate", [".p", ".q", ".r"], "Measured body rates: roll, pitch, yaw"),
+    array!("measured.rotor.speed", ["[1]", "[2]", "[3]", "[4]"], "Measured speeds of the front, right, back and left rotor"),
+];

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Quantity, Variable};
+use fmi::variables::{Array, Quantity, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlLoop, ControlState, Measurement,
@@ -16,6 +16,7 @@ use super::{
     inputs, measurement, outputs, parameters,
 };
 use crate::quantities;
+use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
 
 /// The controllers of a quadrotor, without a vehicle.
@@ -126,6 +127,14 @@ impl Model for Controller {
         &measurement::TABLE,
         &parameters::TABLE,
         &figures::figures(),
+    ];
+    const ARRAYS: &'static [&'static [Array]] = &[
+        arrays::REFERENCE,
+        inputs::ARRAYS,
+        outputs::ARRAYS,
+        arrays::STEERING,
+        arrays::AIRFRAME,
+        arrays::CONTROLLERS,
     ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
     type Parameters = ControllerParameters;

@@ -2,11 +2,12 @@
 //!
 //! Outputs at a communication point do not depend on the inputs set there: these act from then on.
 
-use fmi::variables::Variable;
+use fmi::variables::{Array, Variable};
 use quadrotor::{Activity, PositionReference};
 
 use super::{Controller, ControllerOutputs};
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
+use crate::tables::arrays::array;
 use crate::tables::rows::{at_least, output};
 use crate::tables::steering::{self, Steered};
 
@@ -53,3 +54,10 @@ pub(super) const STEERING: [Variable<Controller>; 12] = steering::set_points();
 
 /// How the controllers came to their last inputs.
 pub(super) const ACTIVITY: [Variable<Controller>; 9] = steering::activity();
+
+/// What is commanded, as vectors.
+#[rustfmt::skip]
+pub(super) const ARRAYS: &[Array] = &[
+    array!("rotor.command", ["[1]", "[2]", "[3]", "[4]"], "Commanded speeds of the front, right, back and left rotor"),
+    array!("command.torque", [".phi", ".theta", ".psi"], "Commanded torque about the forward, right and down axes, after allocation and limits"),
+];

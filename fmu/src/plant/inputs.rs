@@ -1,9 +1,10 @@
 //! The inputs.
 
-use fmi::variables::{Field, Variable};
+use fmi::variables::{Array, Field, Variable};
 
 use super::QuadrotorPlant;
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
+use crate::tables::arrays::array;
 use crate::tables::disturbances;
 
 /// A real input within [minimum, maximum], at a field of [`super::Commands`].
@@ -55,3 +56,11 @@ pub(super) const COMMANDS: [Variable<QuadrotorPlant>; 12] = [
 
 /// What pushes it.
 pub(super) const DISTURBANCE: [Variable<QuadrotorPlant>; 9] = disturbances::disturbance();
+
+/// What drives it, as vectors.
+#[rustfmt::skip]
+pub(super) const ARRAYS: &[Array] = &[
+    array!("rotor.command", ["[1]", "[2]", "[3]", "[4]"], "Commanded speeds of the front, right, back and left rotor; matter with actuation = rotor_speeds"),
+    array!("rotor.failed", ["[1]", "[2]", "[3]", "[4]"], "Whether the motors of the front, right, back and left rotor have no power, so that the rotors come to rest"),
+    array!("command.torque", [".phi", ".theta", ".psi"], "Torque about the forward, right and down axes in place of the rotors'; matters with actuation = wrench"),
+];

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::Variable;
+use fmi::variables::{Array, Variable};
 use fmi::{Continuous, Identity, Model};
 use quadrotor::{PlantInputs, PlantMode, PlantSimulation, PlantSimulationState};
 use serde::{Deserialize, Serialize};
@@ -13,6 +13,7 @@ use super::observed::Observed;
 use super::settings::{Drive, Settings};
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
+use crate::tables::arrays;
 
 /// The quadrotor without its controllers.
 pub struct QuadrotorPlant {
@@ -52,6 +53,15 @@ impl Model for QuadrotorPlant {
         &outputs::DERIVATIVES,
         &parameters::OWN,
         &parameters::TABLE,
+    ];
+    const ARRAYS: &'static [&'static [Array]] = &[
+        inputs::ARRAYS,
+        arrays::DISTURBANCE,
+        arrays::MOTION,
+        outputs::ARRAYS,
+        arrays::AIRFRAME,
+        arrays::AIRFRAME_OF_PLANT,
+        arrays::INITIAL,
     ];
     const CONTINUOUS: Option<&'static dyn Continuous<Self>> = Some(&Equations);
     const OUTPUT_RATES: Option<fn(&Self) -> Observed> = Some(Self::rates);

@@ -1,9 +1,10 @@
 //! The outputs, and the derivatives of those that are states.
 
-use fmi::variables::Variable;
+use fmi::variables::{Array, Variable};
 
 use super::{Observed, QuadrotorPlant};
 use crate::quantities::{ACCELERATION, ANGULAR_ACCELERATION, NUMBER, RATE, ROTOR_ACCELERATION, VELOCITY};
+use crate::tables::arrays::array;
 use crate::tables::motion;
 use crate::tables::rows::{output, within};
 
@@ -85,4 +86,14 @@ pub(super) const DERIVATIVES: [Variable<QuadrotorPlant>; 18] = [
     derivative!("rotor.speed[3]", ROTOR_ACCELERATION, ROTORS, |state| state.rotor_speed_rad_s[2], "Time derivative of rotor.speed[3]"),
     derivative!("rotor.speed[4]", ROTOR_ACCELERATION, ROTORS, |state| state.rotor_speed_rad_s[3], "Time derivative of rotor.speed[4]"),
     derivative!("battery.discharge", RATE, CHARGE, |state| state.discharge, "Time derivative of battery.discharge"),
+];
+
+/// Derivatives as vectors.
+#[rustfmt::skip]
+pub(super) const ARRAYS: &[Array] = &[
+    array!("der(position" as "der(position)", [".x)", ".y)", ".z)"], "Time derivative of the position: north, east, down"),
+    array!("der(velocity" as "der(velocity)", [".x)", ".y)", ".z)"], "Time derivative of the velocity: north, east, down"),
+    array!("der(attitude.q" as "der(quaternion)", ["0)", "1)", "2)", "3)"], "Time derivative of the attitude quaternion, scalar part first"),
+    array!("der(body_rate" as "der(body_rate)", [".p)", ".q)", ".r)"], "Time derivative of the body rates: roll, pitch, yaw"),
+    array!("der(rotor.speed" as "der(rotor.speed)", ["[1])", "[2])", "[3])", "[4])"], "Time derivatives of the speeds of the front, right, back and left rotor"),
 ];

@@ -24,6 +24,6 @@ pub(crate) const PROJECT: Identity = Identity {
         run: "flight",
         retuned: "parameters changed, controllers redesigned",
         events: "Initialization, redesign of the controllers, reset",
-        errors: "Rejected calls and failed flights; always logged",
+        errors: "Rejected calls and failed flights",
     },
 };

@@ -3,6 +3,7 @@
 //! A row is generic over its model: what it reads and writes is reached through a small trait that the model's parameters,
 //! inputs or outputs implement.
 
+pub(crate) mod arrays;
 pub(crate) mod disturbances;
 pub(crate) mod figures;
 pub(crate) mod identity;

@@ -24,19 +24,25 @@ pub fn replace(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> 
     prefix.push(".");
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".new");
-    #[cfg(unix)]
-    let mode = {
-        use std::os::unix::fs::PermissionsExt;
-        // The user's mask comes on top.
-        std::fs::Permissions::from_mode(if readers == Readers::Owner { 0o600 } else { 0o666 })
-    };
-    #[cfg(unix)]
-    builder.permissions(mode);
+    limit(&mut builder, readers);
     let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
     file.write_all(content)?;
     file.persist(&path).map_err(|error| error.error)?;
     Ok(())
 }
+
+/// Lets the file's readers read it, and nobody else.
+#[cfg(unix)]
+fn limit(builder: &mut tempfile::Builder, readers: Readers) {
+    use std::os::unix::fs::PermissionsExt;
+    // The user's mask comes on top.
+    let mode = if readers == Readers::Owner { 0o600 } else { 0o666 };
+    builder.permissions(std::fs::Permissions::from_mode(mode));
+}
+
+/// Elsewhere a file has the rights of its folder.
+#[cfg(not(unix))]
+fn limit(_builder: &mut tempfile::Builder, _readers: Readers) {}
 
 /// The file itself where a path is a link to one.
 pub(super) fn resolved(path: &Path) -> PathBuf {

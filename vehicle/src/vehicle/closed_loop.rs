@@ -89,12 +89,9 @@ impl ClosedLoop {
         }
     }
 
-    /// Speeds that the rotors are commanded to turn with, rad/s; of a closed loop from elsewhere those that they turn with.
-    pub fn rotor_command_rad_s(&self) -> [f64; 4] {
-        if self.rests() {
-            return self.simulation.plant_state().rotor_speed_rad_s;
-        }
-        self.simulation.rotor_command_rad_s()
+    /// Speeds that our controllers command the rotors to turn with, rad/s, if they fly.
+    pub fn rotor_command_rad_s(&self) -> Option<[f64; 4]> {
+        (!self.rests()).then(|| self.simulation.rotor_command_rad_s())
     }
 
     /// What is worth a warning about our controllers, if they fly.

@@ -57,14 +57,14 @@ impl RotorWatch {
     /// Looks at the rotors' speeds after a tick of `dt_s`.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal, dt_s: f64) {
         let measured = situation.truth.rotor_speed_rad_s;
-        if !situation.armed {
+        let Some(command_rad_s) = situation.rotor_command_rad_s.filter(|_| situation.armed) else {
             *self = Self::new(measured);
             return;
-        }
+        };
         let airframe = &situation.configuration.airframe;
         // A weak battery slows all rotors.
         let share = airframe.battery.speed_share(situation.truth.battery.voltage_v);
-        let reachable = situation.rotor_command_rad_s.map(|command| command * share);
+        let reachable = command_rad_s.map(|command| command * share);
         let lost = self.monitor.update(airframe, &reachable, &measured, dt_s);
         if let (Some(rotor), None) = (lost, self.loss) {
             self.lose(rotor, situation, proposal);

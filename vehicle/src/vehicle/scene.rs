@@ -142,7 +142,7 @@ impl Scene {
             },
             estimates: true,
             fix_velocity_down_m_s: None,
-            rotor_command_rad_s: self.rotor_command_rad_s,
+            rotor_command_rad_s: Some(self.rotor_command_rad_s),
             wind_m_s: self.wind_m_s,
             battery_remaining: 1.0,
             armed: self.armed,

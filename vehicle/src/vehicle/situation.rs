@@ -50,8 +50,8 @@ pub struct Situation<'a> {
     pub estimates: bool,
     /// Down, m/s, by the latest fix of the receiver, if it flies by instruments and has one.
     pub fix_velocity_down_m_s: Option<f64>,
-    /// Rotor speeds that the mixer commands, rad/s.
-    pub rotor_command_rad_s: [f64; 4],
+    /// Rotor speeds that the mixer commands, rad/s; `None` while a closed loop from elsewhere flies.
+    pub rotor_command_rad_s: Option<[f64; 4]>,
     /// Velocity of the air, NED, m/s.
     pub wind_m_s: Vector3<f64>,
     /// Remaining share of the battery, as the gauge has it.

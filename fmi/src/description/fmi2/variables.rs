@@ -2,9 +2,10 @@
 
 use std::io;
 
-use super::Xml;
+use crate::description::document::{Xml, empty};
+use crate::description::numbers::{initial, nominal, real, text};
 use crate::model::Model;
-use crate::variables::{Role, Value, ValueReference, Variable, variables};
+use crate::variables::{Role, ValueReference, Variable, variables};
 
 pub(super) fn write<M: Model>(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -32,15 +33,6 @@ fn scalar_variable<M: Model>(
     Ok(())
 }
 
-/// Attribute `initial`; inputs must not have one.
-fn initial<M: Model>(variable: &Variable<M>) -> Option<&'static str> {
-    match variable.causality() {
-        "parameter" => Some("exact"),
-        "output" | "local" | "calculatedParameter" => Some("calculated"),
-        _ => None,
-    }
-}
-
 fn value_element<M: Model>(xml: &mut Xml, variable: &Variable<M>) -> io::Result<()> {
     let mut attributes = Vec::new();
     if let Some(quantity) = variable.quantity() {
@@ -57,37 +49,7 @@ fn value_element<M: Model>(xml: &mut Xml, variable: &Variable<M>) -> io::Result<
     let (minimum, maximum) = variable.range();
     attributes.extend(minimum.map(|value| ("min", text(value))));
     attributes.extend(maximum.map(|value| ("max", text(value))));
-    attributes.extend(nominal(variable).map(|nominal| ("nominal", nominal)));
+    attributes.extend(nominal(variable).map(|nominal| ("nominal", real(nominal))));
     attributes.extend(variable.start().map(|value| ("start", text(value))));
-    xml.create_element(variable.value_type().to_string())
-        .with_attributes(attributes.iter().map(|(name, value)| (*name, value.as_str())))
-        .write_empty()?;
-    Ok(())
-}
-
-/// Attribute `nominal`: the start value's magnitude of parameters that have one, else the quantity's.
-fn nominal<M: Model>(variable: &Variable<M>) -> Option<String> {
-    let usual = variable.quantity()?.nominal;
-    match (variable.causality(), variable.start()) {
-        ("parameter", Some(Value::Real(start))) if start != 0.0 => Some(real(start.abs())),
-        _ => Some(real(usual)),
-    }
-}
-
-fn text(value: Value) -> String {
-    match value {
-        Value::Real(value) => real(value),
-        Value::Integer(value) => value.to_string(),
-        Value::Boolean(value) => value.to_string(),
-    }
-}
-
-/// The shortest text that reads back as the same number.
-pub(super) fn real(value: f64) -> String {
-    let magnitude = value.abs();
-    if magnitude == 0.0 || (1e-4..1e7).contains(&magnitude) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
+    empty(xml, variable.value_type().name(), &attributes)
 }

@@ -1,0 +1,43 @@
+//! The guard of the FMI 3.0 functions: from a pointer to an instance, and from an outcome to a status.
+
+use super::types::{Instance as Pointer, Status};
+use crate::component::Component;
+use crate::error::{CallError, Severity};
+use crate::floating_point::DefaultEnvironment;
+use crate::guard::guarded;
+use crate::layout::Layout;
+use crate::lifecycle::Function;
+use crate::stack::with_room;
+
+/// What an importer's pointer leads to.
+pub(super) struct Instance {
+    /// The instance, whatever its model.
+    pub component: Box<dyn Component>,
+    /// Its variables.
+    pub layout: Layout,
+}
+
+/// Calls `body` with the instance if the table of legal calls allows it.
+///
+/// # Safety
+/// `pointer` must be NULL or come from [`instantiate`](super::instantiate::instantiate), not be freed, and not be in use by another call.
+pub(super) unsafe fn call(
+    pointer: Pointer,
+    function: &Function,
+    body: impl FnOnce(&mut dyn Component, &Layout) -> Result<(), CallError>,
+) -> Status {
+    let _environment = DefaultEnvironment::enter();
+    // SAFETY: the caller's promise.
+    let Some(Instance { component, layout }) = (unsafe { pointer.cast::<Instance>().as_mut() }) else {
+        return Status::Error;
+    };
+    with_room(|| {
+        let is_allowed = function.is_allowed_in(component.phase());
+        match guarded(&mut **component, function.name, is_allowed, |component| body(component, layout)) {
+            Ok(()) => Status::Ok,
+            Err(Severity::Discard) => Status::Discard,
+            Err(Severity::Error) => Status::Error,
+            Err(Severity::Fatal) => Status::Fatal,
+        }
+    })
+}

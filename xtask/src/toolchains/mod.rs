@@ -1,0 +1,21 @@
+//! What builds for a platform, and what runs its programs: how each part is found, and installed.
+//!
+//! ```text
+//! Toolchain ─┬─ compiler    this project's, or another on the machine that knows the platform
+//!            ├─ linker      the system's, mingw, zig
+//!            └─ emulator    wine, qemu
+//! need ◄──── what of these is missing ────► install: rustup, apt
+//! ```
+
+mod compiler;
+mod debian;
+mod emulator;
+mod linker;
+mod machine;
+mod need;
+mod toolchain;
+
+pub use emulator::Emulator;
+pub use linker::zig_environment;
+pub use need::{Need, provide};
+pub use toolchain::Toolchain;
