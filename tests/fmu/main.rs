@@ -20,6 +20,13 @@ macro_rules! for_each_model {
                 super::$check(crate::lag());
             })*
         }
+
+        mod plant {
+            $(#[test]
+            fn $check() {
+                super::$check(crate::plant());
+            })*
+        }
     };
 }
 
@@ -34,6 +41,7 @@ mod logging;
 mod misuse;
 mod model_exchange;
 mod parameters;
+mod plant_exchange;
 mod stack;
 mod state;
 mod stepping;
@@ -55,4 +63,10 @@ fn closed_loop() -> &'static Subject {
 fn lag() -> &'static Subject {
     static SUBJECT: OnceLock<Subject> = OnceLock::new();
     SUBJECT.get_or_init(Subject::lag)
+}
+
+/// The quadrotor without its controllers, from the same library.
+fn plant() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(Subject::plant)
 }
