@@ -34,6 +34,9 @@ pub enum Failure {
     /// The model's own description is not XML.
     #[error("modelDescription.xml cannot be read: {0}")]
     Description(#[from] roxmltree::Error),
+    /// A document of the system could not be written.
+    #[error("the documents of the SSP archive: {0}")]
+    Document(std::io::Error),
     /// The flight of the documentation's picture could not be configured.
     #[error("the documentation's flight: {0}")]
     Configuration(#[from] ConfigurationError),

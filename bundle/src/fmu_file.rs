@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use fmi::description::TERMINALS_AND_ICONS;
+
 use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
 use crate::product::{PRODUCTS, Product, Version};
@@ -64,6 +66,9 @@ impl Parts<'_> {
         let page = documentation::page(self.workspace, product, version)?;
         archive.add("documentation/index.html", page.into_bytes());
         archive.add(icon_path(version), self.icon.clone());
+        if let Some(terminals) = product.terminals(version) {
+            archive.add(TERMINALS_AND_ICONS, terminals.into_bytes());
+        }
         for (name, text) in &self.licences {
             archive.add(&format!("{}/{name}", licences_folder(version)), text.clone().into_bytes());
         }

@@ -6,7 +6,9 @@
 //! model.png                   fmu/assets
 //! binaries/linux64/….so       platform, merge
 //! documentation/index.html    documentation ◄─ variables, enumerations, picture
+//! terminalsAndIcons/          fmi::description
 //! licenses/                   licenses
+//! LmpcQuadrotor.ssp           ssp: two of the FMUs, wired
 //! ```
 
 mod archive;
@@ -21,6 +23,7 @@ mod merge;
 mod picture;
 mod platform;
 mod product;
+mod ssp;
 mod variables;
 
 use std::path::PathBuf;
@@ -76,7 +79,10 @@ fn main() -> ExitCode {
 fn run(task: &Task) -> Result<(), Failure> {
     let workspace = Workspace::find()?;
     match task {
-        Task::Fmu { library, merge } => fmu_file::write_all(&workspace, library, merge),
+        Task::Fmu { library, merge } => {
+            fmu_file::write_all(&workspace, library, merge)?;
+            ssp::write(&workspace)
+        }
         Task::ModelDescription => {
             let path = workspace.model_description();
             files::write(&path, product::CLOSED_LOOP.description(Version::Two).as_bytes())?;

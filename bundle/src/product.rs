@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use fmi::description::{model_description, model_description3};
+use fmi::description::{model_description, model_description3, terminals_and_icons, terminals_and_icons3};
 use fmi::{Experiment, Model};
 use fmu::{ClosedLoop, Controller, QuadrotorPlant};
 use xtask::workspace::Workspace;
@@ -21,6 +21,7 @@ pub struct Product {
     /// Name of the file and of the library in it, without extensions.
     pub identifier: &'static str,
     descriptions: [fn() -> String; 2],
+    terminals: [fn() -> Option<String>; 2],
     /// Its part of the documentation, in `fmu/assets`.
     pub page: &'static str,
     /// Outputs that its default experiment is about.
@@ -61,6 +62,7 @@ impl Product {
         Self {
             identifier: M::IDENTITY.model_identifier,
             descriptions: [model_description::<M>, model_description3::<M>],
+            terminals: [terminals_and_icons::<M>, terminals_and_icons3::<M>],
             page,
             shown,
             default_experiment: M::IDENTITY.default_experiment,
@@ -70,6 +72,11 @@ impl Product {
     /// The text of its `modelDescription.xml`.
     pub fn description(&self, version: Version) -> String {
         self.descriptions[version as usize]()
+    }
+
+    /// The text of its `terminalsAndIcons.xml`, if it has terminals.
+    pub fn terminals(&self, version: Version) -> Option<String> {
+        self.terminals[version as usize]()
     }
 
     /// Where it is written: FMUs of FMI 3.0 have a folder of their own.

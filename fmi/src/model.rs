@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::continuous::Continuous;
-use crate::variables::{Array, Quantity, Variable};
+use crate::variables::{Array, Quantity, Terminal, Variable};
 
 /// Plain data that can be copied, compared, saved and read again.
 pub trait Data: Clone + Debug + PartialEq + Serialize + DeserializeOwned {}
@@ -37,6 +37,9 @@ pub trait Model: Sized + 'static {
     /// Time derivatives of the outputs at the present, under inputs that stay as they are; `None` if they are not available.
     /// Reading a variable from the result must give its derivative, as for [`Continuous::tangent`].
     const OUTPUT_RATES: Option<fn(&Self) -> Self::Outputs> = None;
+
+    /// Groups of inputs and outputs that plug into those of other models.
+    const TERMINALS: &'static [Terminal] = &[];
 
     /// Parameters: set before the run; tunable ones also during the run. The default has the start values.
     type Parameters: Data + Default;

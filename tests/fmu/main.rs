@@ -53,6 +53,7 @@ mod stack;
 mod state;
 mod stepping;
 mod symbols;
+mod terminals;
 mod threads;
 mod values;
 

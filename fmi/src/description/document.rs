@@ -16,14 +16,13 @@ pub(super) type Attributes<'a> = Vec<(&'a str, String)>;
 
 /// A whole document: its root with attributes, and what is in it.
 pub(super) fn document(
+    root: &str,
     attributes: &[(&str, &str)],
     content: impl FnOnce(&mut Xml) -> io::Result<()>,
 ) -> io::Result<String> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    xml.create_element("fmiModelDescription")
-        .with_attributes(attributes.iter().copied())
-        .write_inner_content(content)?;
+    xml.create_element(root).with_attributes(attributes.iter().copied()).write_inner_content(content)?;
     let mut bytes = xml.into_inner();
     bytes.push(b'\n');
     String::from_utf8(bytes).map_err(io::Error::other)

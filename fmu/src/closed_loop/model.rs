@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Array, Quantity, Variable};
+use fmi::variables::{Array, Quantity, Terminal, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, SimulationState};
 
@@ -11,6 +11,7 @@ use crate::flight_error::FlightError;
 use crate::quantities;
 use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
+use crate::tables::terminals;
 
 /// The quadrotor with its controllers.
 pub struct ClosedLoop(Simulation);
@@ -48,6 +49,7 @@ impl Model for ClosedLoop {
         arrays::CONTROLLERS,
     ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
+    const TERMINALS: &'static [Terminal] = &[terminals::REFERENCE, terminals::DISTURBANCE, terminals::MOTION];
     type Parameters = Configuration;
     type Inputs = Inputs;
     type State = SimulationState;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Array, Quantity, Variable};
+use fmi::variables::{Array, Quantity, Terminal, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlLoop, ControlState, Measurement,
@@ -18,6 +18,7 @@ use super::{
 use crate::quantities;
 use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
+use crate::tables::terminals;
 
 /// The controllers of a quadrotor, without a vehicle.
 ///
@@ -137,6 +138,8 @@ impl Model for Controller {
         arrays::CONTROLLERS,
     ];
     const QUANTITIES: &'static [&'static Quantity] = quantities::ALL;
+    const TERMINALS: &'static [Terminal] =
+        &[terminals::REFERENCE, terminals::MEASURED_MOTION, terminals::ACTUATION];
     type Parameters = ControllerParameters;
     type Inputs = ControllerInputs;
     type State = ControllerState;

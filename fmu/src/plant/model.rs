@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use fmi::variables::{Array, Variable};
+use fmi::variables::{Array, Terminal, Variable};
 use fmi::{Continuous, Identity, Model};
 use quadrotor::{PlantInputs, PlantMode, PlantSimulation, PlantSimulationState};
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,7 @@ use super::settings::{Drive, Settings};
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
 use crate::tables::arrays;
+use crate::tables::terminals;
 
 /// The quadrotor without its controllers.
 pub struct QuadrotorPlant {
@@ -65,6 +66,7 @@ impl Model for QuadrotorPlant {
     ];
     const CONTINUOUS: Option<&'static dyn Continuous<Self>> = Some(&Equations);
     const OUTPUT_RATES: Option<fn(&Self) -> Observed> = Some(Self::rates);
+    const TERMINALS: &'static [Terminal] = &[terminals::ACTUATION, terminals::DISTURBANCE, terminals::MOTION];
     type Parameters = Settings;
     type Inputs = Commands;
     type State = Run;

@@ -12,3 +12,4 @@ pub(crate) mod parameters;
 pub(crate) mod references;
 pub(crate) mod rows;
 pub(crate) mod steering;
+pub(crate) mod terminals;

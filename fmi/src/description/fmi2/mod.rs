@@ -37,7 +37,7 @@ fn written<M: Model>() -> io::Result<String> {
         ("variableNamingConvention", "structured"),
     ];
     attributes.extend(event_indicators.as_deref().map(|count| ("numberOfEventIndicators", count)));
-    document(&attributes, |xml| {
+    document("fmiModelDescription", &attributes, |xml| {
         if M::CONTINUOUS.is_some() {
             model_exchange::<M>(xml)?;
         }

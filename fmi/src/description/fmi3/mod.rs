@@ -4,6 +4,8 @@ mod structure;
 mod types;
 mod variables;
 
+pub(super) use variables::elements;
+
 use std::io;
 
 use super::document::{Xml, default_experiment, document, empty, log_categories, truth};
@@ -40,7 +42,7 @@ fn written<M: Model>() -> io::Result<String> {
         ("variableNamingConvention", "structured"),
     ];
     let layout = Layout::of::<M>();
-    document(&attributes, |xml| {
+    document("fmiModelDescription", &attributes, |xml| {
         if M::CONTINUOUS.is_some() {
             model_exchange::<M>(xml)?;
         }

@@ -21,7 +21,7 @@ pub(super) fn write<M: Model>(xml: &mut Xml, layout: &Layout) -> io::Result<()> 
 }
 
 /// The variables of the table that an entry stands for.
-pub(super) fn elements<M: Model>(entry: &Entry) -> Vec<&'static Variable<M>> {
+pub(in crate::description) fn elements<M: Model>(entry: &Entry) -> Vec<&'static Variable<M>> {
     let elements = entry.numbers().filter_map(|number| match number {
         Number::Variable(reference) => variable::<M>(reference).ok(),
         Number::Time | Number::EventIndicator(_) => None,
