@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use super::description::Description;
 use super::library::{Callbacks, Component, EventInfo, Library, OK, Reference, State, Status};
-use super::subject::Subject;
+use super::subject::{Breaking, Subject};
 
 /// One message that the library logged.
 #[derive(Clone, Debug, PartialEq)]
@@ -143,6 +143,15 @@ impl<'l> Instance<'l> {
         assert_eq!(self.enter_initialization_mode(), OK);
         assert_eq!(self.exit_initialization_mode(), OK, "{:?}", self.log.take());
         self.log.take();
+    }
+
+    /// Goes through initialization mode with values that a run breaks with.
+    pub fn initialize_to_break(&mut self, subject: &Subject) {
+        let Breaking { integers, start, in_the_run } = &subject.sample.breaking;
+        assert_eq!(self.set_integer(integers), OK);
+        assert_eq!(self.set_real(start), OK);
+        self.initialize();
+        assert_eq!(self.set_real(in_the_run), OK);
     }
 
     pub fn setup(&mut self, start: f64, stop: Option<f64>) -> Status {

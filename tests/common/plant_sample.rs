@@ -1,6 +1,6 @@
 //! What the checks need to know of the plant.
 
-use super::subject::{Eventful, Sample};
+use super::subject::{Breaking, Eventful, Sample};
 
 pub const PLANT: Sample = Sample {
     library: "fmu",
@@ -15,7 +15,7 @@ pub const PLANT: Sample = Sample {
     initial: ("initial.position.x", 2.0, "position.x"),
     contradiction: ("airframe.inertia.xy", 50.0, 0.001),
     // A torque that no body of this size survives.
-    breaking: [&[("disturbance.torque.z", 1e3)], &[]],
+    breaking: Breaking { integers: &[], start: &[("disturbance.torque.z", 1e3)], in_the_run: &[] },
     longest_step: 3600.0,
     good: &[
         ("rotor.command[1]", 255.0),

@@ -40,8 +40,8 @@ pub struct Sample {
     pub initial: (&'static str, f64, &'static str),
     /// A tunable parameter, a value in its range that does not fit to the others, and one that does.
     pub contradiction: (&'static str, f64, f64),
-    /// Values before and during a run with which it breaks within 5 s.
-    pub breaking: [Reals; 2],
+    /// Values with which a run breaks within 5 s.
+    pub breaking: Breaking,
     /// The longest communication step, s.
     pub longest_step: f64,
     /// What may be set together in a run.
@@ -60,6 +60,13 @@ pub struct Sample {
     pub state_numbers: usize,
     /// At least so many variables have a start value that is a number.
     pub numbers: usize,
+}
+
+/// Start values, and values that are set in the run.
+pub struct Breaking {
+    pub integers: &'static [(&'static str, i32)],
+    pub start: Reals,
+    pub in_the_run: Reals,
 }
 
 /// Start values, and values and a derivative that are set on the way.
@@ -118,7 +125,7 @@ const CLOSED_LOOP: Sample = Sample {
     initial: ("initial.position.x", 2.0, "position.x"),
     contradiction: ("limits.acceleration.horizontal", 15.0, 2.0),
     // A torque that no body of this size survives.
-    breaking: [&[("disturbance.torque.z", 1e3)], &[]],
+    breaking: Breaking { integers: &[], start: &[("disturbance.torque.z", 1e3)], in_the_run: &[] },
     longest_step: 3600.0,
     good: &[
         ("reference.position.x", 1.0),
@@ -182,7 +189,11 @@ const CONTROLLER: Sample = Sample {
     initial: ("airframe.mass", 0.8, "airframe.mass"),
     contradiction: ("limits.acceleration.horizontal", 15.0, 2.0),
     // No attitude.
-    breaking: [&[], &[("measured.attitude.q0", 0.0)]],
+    breaking: Breaking {
+        integers: &[("measurement.attitude", 1)],
+        start: &[],
+        in_the_run: &[("measured.attitude.q0", 0.0)],
+    },
     longest_step: 3600.0,
     good: &[
         ("reference.position.x", 1.0),
@@ -202,12 +213,12 @@ const CONTROLLER: Sample = Sample {
         reals: &[
             ("measured.position.x", 0.1),
             ("measured.velocity.y", 0.2),
-            ("measured.attitude.q1", 0.02),
+            ("measured.attitude.phi", 0.02),
             ("airframe.drag.x", 0.1),
             ("sensor.position_noise", 0.02),
             ("sensor.attitude_noise", 0.005),
         ],
-        integers: &[("controller.kind", 2), ("measurement.rotor_speeds", 2)],
+        integers: &[("controller.kind", 2), ("measurement.rotor_speeds", 1)],
         booleans: &[("sensor.output_feedback", true), ("reference.shaping", false)],
         on_the_way: &[("reference.position.y", 1.0), ("limits.tilt", 0.45)],
         derivative: ("measured.position.y", 1, 0.5),
@@ -220,10 +231,8 @@ const CONTROLLER: Sample = Sample {
             &[
                 ("measured.position.z", -0.1),
                 ("measured.velocity.x", 2.0),
-                ("measured.attitude.q0", 0.9),
-                ("measured.attitude.q1", 0.2),
-                ("measured.attitude.q2", 0.1),
-                ("measured.attitude.q3", -0.3),
+                ("measured.attitude.phi", 0.4),
+                ("measured.attitude.psi", -1.0),
                 ("measured.body_rate.p", 0.2),
                 ("measured.rotor.speed[1]", 260.0),
                 ("measured.rotor.speed[2]", 240.0),
@@ -249,7 +258,7 @@ const LAG: Sample = Sample {
     fixed: ("limit", 40.0),
     initial: ("limit", 20.0, "limit"),
     contradiction: ("gain", 60.0, 3.0),
-    breaking: [&[("u", 10.0), ("gain", 50.0)], &[]],
+    breaking: Breaking { integers: &[], start: &[("u", 10.0), ("gain", 50.0)], in_the_run: &[] },
     longest_step: 1800.0,
     good: &[("u", 3.0), ("gain", 1.5), ("time_constant", 0.7)],
     bad: &[("u", f64::NAN), ("gain", 1e3), ("limit", 20.0), ("y", 1.0)],

@@ -147,10 +147,7 @@ fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'stat
     let fresh = flown(&mut Instance::new(subject));
     let mut instance = Instance::new(subject);
     for _ in 0..2 {
-        let [before, during] = subject.sample.breaking;
-        assert_eq!(instance.set_real(before), OK);
-        instance.initialize();
-        assert_eq!(instance.set_real(during), OK);
+        instance.initialize_to_break(subject);
         let mut time = 0.0;
         while instance.do_step(time, 0.1) == OK {
             time += 0.1;
@@ -176,10 +173,7 @@ fn after_a_failed_step_values_can_be_read_and_reset_starts_again(subject: &'stat
         assert_eq!(instance.terminate(), OK);
         assert_eq!(instance.reset(), OK);
     }
-    let [before, during] = subject.sample.breaking;
-    assert_eq!(instance.set_real(before), OK);
-    instance.initialize();
-    assert_eq!(instance.set_real(during), OK);
+    instance.initialize_to_break(subject);
     assert_eq!(instance.do_step(0.0, 10.0), ERROR);
     // And now it is freed.
 }

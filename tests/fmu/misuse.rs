@@ -86,10 +86,7 @@ impl State {
 
 /// Runs until the model breaks.
 fn diverge(subject: &Subject, instance: &mut Instance) {
-    let [before, during] = subject.sample.breaking;
-    assert_eq!(instance.set_real(before), OK);
-    instance.initialize();
-    assert_eq!(instance.set_real(during), OK);
+    instance.initialize_to_break(subject);
     assert_eq!(instance.do_step(0.0, 5.0), ERROR);
     let message = instance.log.last();
     assert!(

@@ -1,4 +1,4 @@
-//! `LmpcQuadrotor.ssv`: the reference, the vehicle that both sides know, and what is measured.
+//! `LmpcQuadrotor.ssv`: the reference, and the vehicle as both sides know it.
 
 use std::io;
 
@@ -24,9 +24,6 @@ const VEHICLE_OF_BOTH: [&str; 11] = [
     "airframe.drag.z",
 ];
 
-/// Enumerations by the numbers of their items, which every importer can set: Euler angles are measured, and rotor speeds are predicted.
-const MEASURED: [(&str, &str); 2] = [("measurement.attitude", "2"), ("measurement.rotor_speeds", "2")];
-
 /// The parameter set, with the start values of the FMUs.
 pub fn text(controller: &Ports, plant: &Ports) -> io::Result<String> {
     let attributes = [
@@ -36,9 +33,6 @@ pub fn text(controller: &Ports, plant: &Ports) -> io::Result<String> {
     ];
     document("ssv:ParameterSet", &attributes, |xml| {
         xml.create_element("ssv:Parameters").write_inner_content(|xml| {
-            for (name, value) in MEASURED {
-                parameter(xml, CONTROLLERS, name, |xml| empty(xml, "ssv:Integer", &[("value", value)]))?;
-            }
             let parts = [
                 (CONTROLLERS, controller, &REFERENCE[..]),
                 (CONTROLLERS, controller, &VEHICLE_OF_BOTH),
@@ -46,7 +40,7 @@ pub fn text(controller: &Ports, plant: &Ports) -> io::Result<String> {
             ];
             for (element, ports, names) in parts {
                 for port in names.iter().filter_map(|name| ports.find(name)) {
-                    parameter(xml, element, &port.name, |xml| value(xml, port))?;
+                    parameter(xml, element, port)?;
                 }
             }
             Ok(())
@@ -55,19 +49,11 @@ pub fn text(controller: &Ports, plant: &Ports) -> io::Result<String> {
     })
 }
 
-fn parameter(
-    xml: &mut Xml,
-    element: &str,
-    name: &str,
-    value: impl FnOnce(&mut Xml) -> io::Result<()>,
-) -> io::Result<()> {
-    xml.create_element("ssv:Parameter")
-        .with_attribute(("name", format!("{element}.{name}").as_str()))
-        .write_inner_content(value)?;
-    Ok(())
-}
-
 /// Its start value. Units are those of the FMU.
-fn value(xml: &mut Xml, port: &Port) -> io::Result<()> {
-    empty(xml, "ssv:Real", &[("value", port.start.as_deref().unwrap_or("0"))])
+fn parameter(xml: &mut Xml, element: &str, port: &Port) -> io::Result<()> {
+    let name = format!("{element}.{}", port.name);
+    xml.create_element("ssv:Parameter").with_attribute(("name", name.as_str())).write_inner_content(
+        |xml| empty(xml, "ssv:Real", &[("value", port.start.as_deref().unwrap_or("0"))]),
+    )?;
+    Ok(())
 }

@@ -38,7 +38,6 @@ pub fn text(wiring: &Wiring) -> io::Result<String> {
 
 fn system(xml: &mut Xml, wiring: &Wiring) -> io::Result<()> {
     xml.create_element("ssd:System").with_attribute(("name", NAME)).write_inner_content(|xml| {
-        connectors(xml, wiring, None)?;
         xml.create_element("ssd:ParameterBindings")
             .write_inner_content(|xml| empty(xml, "ssd:ParameterBinding", &[("source", PARAMETER_SET)]))?;
         // Importers that step one after the other do it in this order: the controllers first, so that the plant gets the command of its step.
@@ -60,26 +59,22 @@ fn component(xml: &mut Xml, wiring: &Wiring, name: &'static str, identifier: &st
     ];
     xml.create_element("ssd:Component")
         .with_attributes(attributes)
-        .write_inner_content(|xml| connectors(xml, wiring, Some(name)))?;
+        .write_inner_content(|xml| connectors(xml, wiring, name))?;
     Ok(())
 }
 
-/// Those of an element, or the system's own, that are connected: FMPy sets all others to 0.
-fn connectors(xml: &mut Xml, wiring: &Wiring, element: Option<&str>) -> io::Result<()> {
-    let mut written: Vec<&str> = Vec::new();
+/// Those that are connected, and outputs: FMPy sets unconnected inputs that are listed here to 0.
+fn connectors(xml: &mut Xml, wiring: &Wiring, element: &str) -> io::Result<()> {
     xml.create_element("ssd:Connectors").write_inner_content(|xml| {
         for connection in &wiring.connections {
-            for (end, is_start) in [(&connection.start, true), (&connection.end, false)] {
-                let name = end.port.name.as_str();
-                if end.element == element && !written.contains(&name) {
-                    // From inside the system, what comes from outside is where a connection starts.
-                    let kind = if is_start == element.is_some() { "output" } else { "input" };
+            for (end, kind) in [(&connection.start, "output"), (&connection.end, "input")] {
+                if end.element == element {
                     connector(xml, end, kind)?;
-                    written.push(name);
                 }
             }
         }
-        Ok(())
+        let mut shown = wiring.shown.iter().filter(|end| end.element == element);
+        shown.try_for_each(|end| connector(xml, end, "output"))
     })?;
     Ok(())
 }
@@ -96,11 +91,12 @@ fn connector(xml: &mut Xml, end: &End, kind: &str) -> io::Result<()> {
 fn connections(xml: &mut Xml, wiring: &Wiring) -> io::Result<()> {
     xml.create_element("ssd:Connections").write_inner_content(|xml| {
         for connection in &wiring.connections {
-            let mut attributes = Vec::new();
-            attributes.extend(connection.start.element.map(|element| ("startElement", element)));
-            attributes.push(("startConnector", connection.start.port.name.as_str()));
-            attributes.extend(connection.end.element.map(|element| ("endElement", element)));
-            attributes.push(("endConnector", connection.end.port.name.as_str()));
+            let attributes = [
+                ("startElement", connection.start.element),
+                ("startConnector", &connection.start.port.name),
+                ("endElement", connection.end.element),
+                ("endConnector", &connection.end.port.name),
+            ];
             empty(xml, "ssd:Connection", &attributes)?;
         }
         Ok(())

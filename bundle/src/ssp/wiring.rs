@@ -7,31 +7,16 @@ use fmu::{Controller, QuadrotorPlant};
 use super::ports::{Port, Ports, Unit};
 use super::{CONTROLLERS, VEHICLE};
 
-/// What is measured or commanded in two ways. Importers that begin with zeros, as FMPy does, give a quaternion without direction, and rotors at rest
-/// in flight: attitudes are Euler angles, and rotor speeds are predicted.
+/// What is measured or commanded in two ways, in the way that is not the default.
 const OTHER_WAY: [&str; 3] = ["measured.attitude.q", "measured.rotor.", "command."];
 
-/// What can be seen of the system from outside.
-const SHOWN: [&str; 10] = [
-    "position.x",
-    "position.y",
-    "position.z",
-    "altitude",
-    "velocity.x",
-    "velocity.y",
-    "velocity.z",
-    "attitude.phi",
-    "attitude.theta",
-    "attitude.psi",
-];
+/// What else can be seen of the plant.
+const SHOWN: [&str; 2] = ["altitude", "thrust"];
 
-/// What acts from outside.
-const ACTING: &str = "disturbance";
-
-/// An end of a connection; without an element it is the system's own.
+/// An end of a connection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End<'a> {
-    pub element: Option<&'static str>,
+    pub element: &'static str,
     pub port: &'a Port,
 }
 
@@ -42,42 +27,37 @@ pub struct Connection<'a> {
     pub end: End<'a>,
 }
 
-/// All connections, and the units of what they carry.
+/// All connections, outputs beside them, and the units of all that. The system has no connectors of its own: libcosim knows none.
 pub struct Wiring<'a> {
     pub connections: Vec<Connection<'a>>,
+    pub shown: Vec<End<'a>>,
     pub units: Vec<&'a Unit>,
 }
 
 impl<'a> Wiring<'a> {
-    /// Members of the same name of terminals of the same name; disturbances from outside, and the motion to there.
+    /// Members of the same name of terminals of the same name.
     pub fn new(controller: &'a Ports, plant: &'a Ports) -> Self {
-        let mut connections = Vec::new();
-        for port in &controller.ports {
-            let partner = partner(&port.name).and_then(|name| plant.find(&name));
-            let (ours, Some(other)) = (of(CONTROLLERS, port), partner.map(|port| of(VEHICLE, port))) else {
-                continue;
-            };
-            connections.push(match port.causality.as_str() {
-                "output" => Connection { start: ours, end: other },
-                _ => Connection { start: other, end: ours },
-            });
-        }
-        let acting = terminal(QuadrotorPlant::TERMINALS, ACTING);
-        for port in &plant.ports {
-            if port.causality == "input"
-                && acting.is_some_and(|terminal| terminal.member(&port.name).is_some())
-            {
-                connections.push(Connection { start: outside(port), end: of(VEHICLE, port) });
-            }
-        }
-        for port in SHOWN.iter().filter_map(|name| plant.find(name)) {
-            connections.push(Connection { start: of(VEHICLE, port), end: outside(port) });
-        }
+        let connections: Vec<Connection> = controller
+            .ports
+            .iter()
+            .filter_map(|port| {
+                let partner = plant.find(&partner(&port.name)?)?;
+                let (ours, other) =
+                    (End { element: CONTROLLERS, port }, End { element: VEHICLE, port: partner });
+                Some(match port.causality.as_str() {
+                    "output" => Connection { start: ours, end: other },
+                    _ => Connection { start: other, end: ours },
+                })
+            })
+            .collect();
+        let shown: Vec<End> =
+            SHOWN.iter().filter_map(|name| Some(End { element: VEHICLE, port: plant.find(name)? })).collect();
         let carried = |unit: &&Unit| {
-            connections.iter().any(|connection| connection.start.port.unit.as_ref() == Some(&unit.symbol))
+            let starts = connections.iter().map(|connection| &connection.start);
+            starts.chain(&shown).any(|end| end.port.unit.as_ref() == Some(&unit.symbol))
         };
         let units = plant.units.iter().filter(carried).collect();
-        Self { connections, units }
+        Self { connections, shown, units }
     }
 }
 
@@ -94,12 +74,4 @@ fn partner(variable: &str) -> Option<String> {
 
 fn terminal(terminals: &'static [Terminal], name: &str) -> Option<&'static Terminal> {
     terminals.iter().find(|terminal| terminal.name == name)
-}
-
-fn of<'a>(element: &'static str, port: &'a Port) -> End<'a> {
-    End { element: Some(element), port }
-}
-
-fn outside(port: &Port) -> End<'_> {
-    End { element: None, port }
 }

@@ -9,9 +9,9 @@ use super::{Controller, ControllerParameters};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum AttitudeMeasurement {
     /// As a quaternion.
-    #[default]
     Quaternion,
-    /// As Euler angles.
+    /// As Euler angles: zeros, with which some importers begin, are an attitude.
+    #[default]
     EulerAngles,
 }
 
@@ -19,9 +19,9 @@ pub enum AttitudeMeasurement {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum RotorSpeedMeasurement {
     /// They are measured.
-    #[default]
     Measured,
-    /// They follow from the commands and the rotors' lag.
+    /// They follow from the commands and the rotors' lag: what a plant without rotors, or an importer that begins with zeros, needs.
+    #[default]
     Predicted,
 }
 

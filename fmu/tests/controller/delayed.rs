@@ -17,9 +17,8 @@
 //! |δ_x|, |δ_y| ≤ h (K_ω max|ω̇| + K_v tan(tilt) max|a|)
 //! ```
 
-use crate::master::{Order, Pair};
+use crate::master::{Order, Pair, exact};
 use fmi::Model;
-use fmu::ControllerParameters;
 use nalgebra::Vector3;
 use quadrotor::{Configuration, GRAVITY_M_S2, Inputs, PlantState, PositionReference, Simulation};
 
@@ -32,7 +31,7 @@ const RECOVERED_US: u64 = 6_000_000;
 
 fn pair(inputs: &Inputs) -> Pair {
     let configuration = Configuration::default();
-    let parameters = ControllerParameters { configuration, ..ControllerParameters::default() };
+    let parameters = exact(configuration);
     Pair::new(&parameters, inputs, Order::Jacobi)
 }
 

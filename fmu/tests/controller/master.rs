@@ -1,8 +1,20 @@
 //! Controllers and plant under a master of two steps: one after the other, or both at once.
 
 use fmi::Model;
-use fmu::{Controller, ControllerInputs, ControllerParameters, MeasuredMotion};
+use fmu::{
+    AttitudeMeasurement, Controller, ControllerInputs, ControllerParameters, MeasuredMotion, Measurements,
+    RotorSpeedMeasurement,
+};
 use quadrotor::{Configuration, Inputs, Plant, PlantInputs, PlantState};
+
+/// What makes a flight the closed loop's, bit for bit.
+pub const EXACT: Measurements =
+    Measurements { attitude: AttitudeMeasurement::Quaternion, rotor_speeds: RotorSpeedMeasurement::Measured };
+
+/// Parameters with these measurements.
+pub fn exact(configuration: Configuration) -> ControllerParameters {
+    ControllerParameters { configuration, measurements: EXACT }
+}
 
 /// Step of the plant's integration, µs.
 pub const GRID_US: u64 = 1_000;

@@ -11,11 +11,7 @@ use quadrotor::{
     Simulation, Target,
 };
 
-use crate::master::{Order, Pair, measured, with_measured};
-
-fn of(configuration: Configuration) -> ControllerParameters {
-    ControllerParameters { configuration, ..ControllerParameters::default() }
-}
+use crate::master::{EXACT, Order, Pair, exact, measured, with_measured};
 
 /// Both in the same state, bit for bit.
 fn assert_same(pair: &Pair, flight: &Simulation) {
@@ -44,7 +40,7 @@ fn controllers_before_their_plant_are_the_closed_loop() {
     let (configuration, inputs) = (Configuration::default(), Inputs::default());
     for (step_us, end_us) in [(1_000, 20_000_000), (5_000, 6_000_000), (10_000, 20_000_000)] {
         let mut flight = Simulation::new(&configuration, &inputs).unwrap();
-        let mut pair = Pair::new(&of(configuration), &inputs, Order::GaussSeidel);
+        let mut pair = Pair::new(&exact(configuration), &inputs, Order::GaussSeidel);
         assert_same(&pair, &flight);
         for time_us in (step_us..=end_us).step_by(usize::try_from(step_us).unwrap()) {
             pair.step(step_us, &inputs);
@@ -84,13 +80,13 @@ fn so_they_are_in_wind_and_while_they_are_tuned() {
             inputs
         };
         let mut flight = Simulation::new(&configuration, &at(0)).unwrap();
-        let mut pair = Pair::new(&of(configuration), &at(0), Order::GaussSeidel);
+        let mut pair = Pair::new(&exact(configuration), &at(0), Order::GaussSeidel);
         for begin_us in (0..6_000_000).step_by(1_000) {
             if begin_us == 1_503_000 {
                 configuration.limits.tilt_rad = 0.4;
                 configuration.limits.jerk_horizontal_m_s3 = 3.0;
                 configuration.controllers.position.scale = 0.5;
-                pair.controller.retune(&of(configuration)).unwrap();
+                pair.controller.retune(&exact(configuration)).unwrap();
                 flight.reconfigure(&configuration).unwrap();
             }
             pair.step(1_000, &at(begin_us));
@@ -141,7 +137,7 @@ fn commands_of_loop(end_us: u64, inputs: impl Fn(u64) -> ControllerInputs) -> [f
 fn samples_are_exact_whatever_the_communication_step() {
     const END_US: u64 = 3_000_000;
     for step_us in [1_000, 3_000, 7_500, 25_000] {
-        let mut model = Controller::new(&ControllerParameters::default(), &swaying_inputs(0)).unwrap();
+        let mut model = Controller::new(&exact(Configuration::default()), &swaying_inputs(0)).unwrap();
         for begin_us in (0..END_US).step_by(usize::try_from(step_us).unwrap()) {
             model.advance_to(begin_us + step_us, &|_| swaying_inputs(begin_us)).unwrap();
         }
@@ -150,7 +146,7 @@ fn samples_are_exact_whatever_the_communication_step() {
         let exact = commands_of_loop(END_US, swaying_inputs);
         assert_eq!(held == exact, 10_000 % step_us == 0, "{step_us} us");
 
-        let mut model = Controller::new(&ControllerParameters::default(), &swaying_inputs(0)).unwrap();
+        let mut model = Controller::new(&exact(Configuration::default()), &swaying_inputs(0)).unwrap();
         for begin_us in (0..END_US).step_by(usize::try_from(step_us).unwrap()) {
             model.advance_to(begin_us + step_us, &swaying_inputs).unwrap();
         }
@@ -161,8 +157,8 @@ fn samples_are_exact_whatever_the_communication_step() {
 #[test]
 fn a_saved_state_continues_in_this_run_and_in_another() {
     for rotor_speeds in [RotorSpeedMeasurement::Measured, RotorSpeedMeasurement::Predicted] {
-        let measurements = Measurements { rotor_speeds, ..Measurements::default() };
-        let parameters = ControllerParameters { measurements, ..ControllerParameters::default() };
+        let measurements = Measurements { rotor_speeds, ..EXACT };
+        let parameters = ControllerParameters { measurements, ..exact(Configuration::default()) };
         // Armed again after the state was saved, so that predicted speeds are needed.
         let at = |time_us: u64| ControllerInputs {
             armed: !(1_230_000..1_240_000).contains(&time_us),
@@ -187,7 +183,7 @@ fn a_saved_state_continues_in_this_run_and_in_another() {
 /// What initialization knows of the vehicle does not matter: it is taken over where it is at the first step.
 #[test]
 fn the_vehicle_is_taken_over_at_the_first_step() {
-    let parameters = ControllerParameters::default();
+    let parameters = exact(Configuration::default());
     let mut told = Controller::new(&parameters, &swaying_inputs(0)).unwrap();
     let mut untold = Controller::new(&parameters, &ControllerInputs::default()).unwrap();
     assert_ne!(told.outputs().setpoint, untold.outputs().setpoint);
@@ -211,11 +207,9 @@ fn other_measurements_make_the_same_flight() {
         }
         pair.state
     };
-    let measured = flown(Measurements::default());
-    let predicted =
-        flown(Measurements { rotor_speeds: RotorSpeedMeasurement::Predicted, ..Measurements::default() });
-    let angles =
-        flown(Measurements { attitude: AttitudeMeasurement::EulerAngles, ..Measurements::default() });
+    let measured = flown(EXACT);
+    let predicted = flown(Measurements { rotor_speeds: RotorSpeedMeasurement::Predicted, ..EXACT });
+    let angles = flown(Measurements { attitude: AttitudeMeasurement::EulerAngles, ..EXACT });
     for (name, other) in [("predicted", predicted), ("angles", angles)] {
         let apart_m = (measured.body.position_m - other.body.position_m).norm();
         assert!(apart_m < 1e-6, "{name}: {apart_m} m");
@@ -224,8 +218,8 @@ fn other_measurements_make_the_same_flight() {
 
 #[test]
 fn what_cannot_be_measured_is_named() {
-    let parameters = ControllerParameters::default();
-    let angles = Measurements { attitude: AttitudeMeasurement::EulerAngles, ..Measurements::default() };
+    let parameters = exact(Configuration::default());
+    let angles = Measurements { attitude: AttitudeMeasurement::EulerAngles, ..EXACT };
     let by_angles = ControllerParameters { measurements: angles, ..parameters };
     let with = |change: &dyn Fn(&mut MeasuredMotion)| {
         let mut inputs = ControllerInputs::default();
@@ -265,7 +259,7 @@ fn only_a_plant_knows_what_is_left_out() {
     let names: Vec<&str> =
         Controller::VARIABLES.iter().copied().flatten().map(|variable| variable.name).collect();
     let flown = |configuration: &Configuration| {
-        let mut model = Controller::new(&of(*configuration), &swaying_inputs(0)).unwrap();
+        let mut model = Controller::new(&exact(*configuration), &swaying_inputs(0)).unwrap();
         model.advance_to(1_000_000, &swaying_inputs).unwrap();
         (model.outputs(), model.warnings())
     };
@@ -296,7 +290,7 @@ fn only_a_plant_knows_what_is_left_out() {
 
 #[test]
 fn a_state_of_no_run_is_refused() {
-    let parameters = ControllerParameters::default();
+    let parameters = exact(Configuration::default());
     let mut model = Controller::new(&parameters, &swaying_inputs(0)).unwrap();
     model.advance_to(1_234_567, &swaying_inputs).unwrap();
     let good = serde_json::to_value(model.state()).unwrap();
@@ -316,7 +310,7 @@ fn a_state_of_no_run_is_refused() {
 /// Ground is where the plant says; learning does not look at a vehicle on it.
 #[test]
 fn a_run_over_ground_begins_anywhere() {
-    let mut parameters = ControllerParameters::default();
+    let mut parameters = exact(Configuration::default());
     parameters.configuration.environment.ground_plane = true;
     let mut model = Controller::new(&parameters, &ControllerInputs::default()).unwrap();
     model.advance_to(100_000, &|_| ControllerInputs::default()).unwrap();

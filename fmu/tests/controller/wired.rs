@@ -2,10 +2,10 @@
 
 use fmi::Model;
 use fmi::variables::{Field, Role, Signal, Variable};
-use fmu::{
-    ClosedLoop, Commands, Controller, ControllerInputs, ControllerParameters, QuadrotorPlant, Settings,
-};
+use fmu::{ClosedLoop, Commands, Controller, ControllerInputs, QuadrotorPlant, Settings};
 use quadrotor::{Configuration, Inputs};
+
+use crate::master::exact;
 
 /// A real output by its name.
 fn output<M: Model>(outputs: &M::Outputs, name: &str) -> f64 {
@@ -28,8 +28,8 @@ fn connect<M: Model>(inputs: &mut M::Inputs, source: impl Fn(&str) -> Option<f64
 /// As by a master that steps the controllers first.
 #[test]
 fn wired_by_their_variables_they_are_the_closed_loop() {
-    let configuration = Configuration { ..Configuration::default() };
-    let parameters = ControllerParameters { configuration, ..ControllerParameters::default() };
+    let configuration = Configuration::default();
+    let parameters = exact(configuration);
     let settings = Settings { configuration, ..Settings::default() };
     let inputs = Inputs::default();
     let mut closed = ClosedLoop::new(&configuration, &inputs).unwrap();
