@@ -19,7 +19,7 @@ pub struct Outputs {
     pub body_velocity_m_s: Vector3<f64>,
     /// φ, θ, ψ (ZYX), rad; φ and ψ within ±π, θ within ±π/2.
     pub attitude_rad: Vector3<f64>,
-    /// Hamilton quaternion q₀ … q₃, scalar first, FRD into NED.
+    /// Hamilton quaternion q₀ … q₃, scalar first, FRD into NED, as it was integrated: unit but for rounding.
     pub quaternion: [f64; 4],
     /// p, q, r in FRD, rad/s.
     pub body_rate_rad_s: Vector3<f64>,

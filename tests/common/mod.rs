@@ -7,4 +7,5 @@
 pub mod description;
 pub mod instance;
 pub mod library;
+mod plant_sample;
 pub mod subject;

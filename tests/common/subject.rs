@@ -2,6 +2,7 @@
 
 use super::description::Description;
 use super::library::Library;
+use super::plant_sample::PLANT;
 
 #[path = "../lag/src/model.rs"]
 mod lag_model;
@@ -95,6 +96,12 @@ impl Subject {
     pub fn lag() -> Self {
         let text = fmi::description::model_description::<lag_model::Lag>();
         Self { library: Library::load(LAG.library), description: Description::parse(text), sample: LAG }
+    }
+
+    /// The plant alone.
+    pub fn plant() -> Self {
+        let text = fmi::description::model_description::<fmu::QuadrotorPlant>();
+        Self { library: Library::load(PLANT.library), description: Description::parse(text), sample: PLANT }
     }
 }
 

@@ -27,6 +27,13 @@ macro_rules! for_each_model {
                 super::$check(crate::lag());
             })*
         }
+
+        mod plant {
+            $(#[test]
+            fn $check() {
+                super::$check(crate::plant());
+            })*
+        }
     };
 }
 
@@ -41,6 +48,7 @@ mod logging;
 mod misuse;
 mod model_exchange;
 mod parameters;
+mod plant_exchange;
 mod stack;
 mod state;
 mod stepping;
@@ -68,4 +76,10 @@ fn controller() -> &'static Subject {
 fn lag() -> &'static Subject {
     static SUBJECT: OnceLock<Subject> = OnceLock::new();
     SUBJECT.get_or_init(Subject::lag)
+}
+
+/// The quadrotor without its controllers, from the same library.
+fn plant() -> &'static Subject {
+    static SUBJECT: OnceLock<Subject> = OnceLock::new();
+    SUBJECT.get_or_init(Subject::plant)
 }

@@ -194,7 +194,8 @@ fn every_function_in_every_state(subject: &'static Subject) {
     let exchanges = subject.description.derivatives.len() == 1;
     for state in STATES.into_iter().filter(|state| exchanges || !state.is_of_exchange()) {
         for (name, legal, answer, call) in TABLE {
-            let differentiates = exchanges || name != "fmi2GetDirectionalDerivative";
+            let differentiates =
+                !subject.description.derivatives.is_empty() || name != "fmi2GetDirectionalDerivative";
             let legal = if differentiates { legal } else { mark::NEVER };
             let mut instance = state.reached(subject);
             let saved = instance.get_state();
@@ -258,7 +259,7 @@ fn null_pointers_are_refused(subject: &'static Subject) {
             (l.set_input_derivatives)(c, ptr::null(), 1, &1, &0.0),
             (l.set_input_derivatives)(c, &1, 1, ptr::null(), &0.0),
             (l.set_input_derivatives)(c, &1, 1, &1, ptr::null()),
-            (l.get_output_derivatives)(c, &30, 1, &1, &mut 0.0),
+            (l.get_output_derivatives)(c, &9_999, 1, &1, &mut 0.0),
             (l.set_debug_logging)(c, 1, 1, ptr::null()),
             (l.set_debug_logging)(c, 1, 1, &n),
             (l.get_status)(c, 0, ptr::null_mut()),

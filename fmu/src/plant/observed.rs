@@ -8,8 +8,6 @@ use crate::tables::motion::Moving;
 /// All outputs, and the time derivatives of the states; with [`Dual`] numbers, the derivatives of all that.
 pub struct Observed<T: Real = f64> {
     pub(super) outputs: PlantOutputs<T>,
-    /// q₀ … q₃ as integrated: unit but for the errors of an importer's solver.
-    quaternion: [T; 4],
     /// Drawn share of the battery's charge.
     pub(super) discharge: T,
     /// ẋ = f(x, u)
@@ -17,31 +15,28 @@ pub struct Observed<T: Real = f64> {
 }
 
 impl<T: Real> Observed<T> {
-    /// In a mode, with the attitude as it was integrated.
+    /// In a mode.
     pub(super) fn in_mode(
         plant: &Plant,
         mode: PlantMode,
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
     ) -> Self {
-        let [i, j, k, w] = state.body.attitude.coords.into();
         Self {
             outputs: plant.outputs_in(mode, state, inputs),
-            quaternion: [w, i, j, k],
             discharge: state.discharge,
             derivative: plant.derivative_in(mode, state, inputs),
         }
     }
 
-    /// In the mode that the state is in, with a unit quaternion.
+    /// In the mode that the state is in.
     pub(super) fn by_steps(
         plant: &Plant,
         mode: PlantMode,
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
     ) -> Self {
-        let outputs = plant.outputs(state, inputs);
-        Self { quaternion: outputs.quaternion, outputs, ..Self::in_mode(plant, mode, state, inputs) }
+        Self { outputs: plant.outputs(state, inputs), ..Self::in_mode(plant, mode, state, inputs) }
     }
 }
 
@@ -50,7 +45,6 @@ impl Observed<Dual> {
     pub(super) fn tangent(&self) -> Observed {
         Observed {
             outputs: self.outputs.tangent(),
-            quaternion: self.quaternion.map(|number| number.tangent),
             discharge: self.discharge.tangent,
             derivative: self.derivative.tangent(),
         }
@@ -79,7 +73,7 @@ impl Moving for Observed {
     }
 
     fn quaternion(&self) -> [f64; 4] {
-        self.quaternion
+        self.outputs.quaternion
     }
 
     fn body_rate_rad_s(&self) -> Vector3<f64> {

@@ -20,7 +20,8 @@ pub struct PlantOutputs<T = f64> {
     pub body_velocity_m_s: Vector3<T>,
     /// φ, θ, ψ (ZYX), rad; φ and ψ within ±π, θ within ±π/2. Their derivatives have no bound where θ approaches ±π/2.
     pub attitude_rad: Vector3<T>,
-    /// Hamilton quaternion q₀ … q₃, scalar first, FRD into NED, unit.
+    /// Hamilton quaternion q₀ … q₃, scalar first, FRD into NED, as it was integrated: unit but for rounding after a step. It is not normalized
+    /// once more, so that controllers which measure it go by the doubles of the state.
     pub quaternion: [T; 4],
     /// p, q, r in FRD, rad/s.
     pub body_rate_rad_s: Vector3<T>,
@@ -76,7 +77,7 @@ impl Plant {
             (acceleration_m_s2.x, acceleration_m_s2.y) = (T::zero(), T::zero());
         }
         let orientation = body.orientation();
-        let [i, j, k, w] = orientation.quaternion().coords.into();
+        let [i, j, k, w] = body.attitude.coords.into();
         let power_w = airframe.electric_power_w(&state.rotor_speed_rad_s);
         PlantOutputs {
             position_m: body.position_m,

@@ -69,10 +69,19 @@ impl Pair {
         let held = with_measured(inputs, measured(&self.state));
         self.controller.advance_to(begin_us + step_us, &|_| held).unwrap();
         let outputs = if self.order == Order::Jacobi { before } else { self.controller.outputs() };
-        let acting = PlantInputs {
-            disturbance: inputs.disturbance,
-            ..PlantInputs::rotor_speeds(outputs.rotor_command_rad_s)
-        };
+        self.drive(begin_us, step_us, inputs, outputs.rotor_command_rad_s);
+    }
+
+    /// A first step in which the plant has no command yet.
+    pub fn step_without_command(&mut self, step_us: u64, inputs: &Inputs) {
+        let held = with_measured(inputs, measured(&self.state));
+        self.controller.advance_to(step_us, &|_| held).unwrap();
+        self.drive(0, step_us, inputs, [0.0; 4]);
+    }
+
+    fn drive(&mut self, begin_us: u64, step_us: u64, inputs: &Inputs, command_rad_s: [f64; 4]) {
+        let acting =
+            PlantInputs { disturbance: inputs.disturbance, ..PlantInputs::rotor_speeds(command_rad_s) };
         // The grid of the closed loop, and the rest of a step that ends between two of its points.
         let (mut now_us, end_us) = (begin_us, begin_us + step_us);
         while now_us < end_us {

@@ -11,8 +11,7 @@ use quadrotor::{
     Simulation, Target,
 };
 
-mod common;
-use common::{Order, Pair, measured, with_measured};
+use crate::master::{Order, Pair, measured, with_measured};
 
 fn of(configuration: Configuration) -> ControllerParameters {
     ControllerParameters { configuration, ..ControllerParameters::default() }
@@ -29,7 +28,7 @@ fn assert_same(pair: &Pair, flight: &Simulation) {
         "{time_us} us"
     );
     assert_eq!(closed.body_rate_rad_s, body.body_rate_rad_s, "{time_us} us");
-    let q = body.rotation();
+    let q = &body.attitude;
     assert_eq!(closed.quaternion, [q.w, q.i, q.j, q.k], "{time_us} us");
     assert_eq!(closed.rotor_speed_rad_s, pair.state.rotor_speed_rad_s, "{time_us} us");
     assert_eq!(flight.rotor_command_rad_s(), commands.rotor_command_rad_s, "{time_us} us");
@@ -124,7 +123,7 @@ fn commands_of_loop(end_us: u64, inputs: impl Fn(u64) -> ControllerInputs) -> [f
     let control_inputs = |time_us: u64| ControlInputs::armed(Target::Reference(inputs(time_us).reference));
     let mut read = |time_us: u64| {
         let motion = inputs(time_us).measured;
-        let (mut pair, body) = (common::plant_of(&Configuration::default(), true).1, motion);
+        let (mut pair, body) = (crate::master::plant_of(&Configuration::default(), true).1, motion);
         let [w, i, j, k] = body.quaternion;
         pair.body.position_m = body.position_m.into();
         pair.body.velocity_m_s = body.velocity_m_s.into();
@@ -326,6 +325,6 @@ fn a_run_over_ground_begins_anywhere() {
 
 #[test]
 fn measured_states_are_what_a_plant_has() {
-    let (_, state) = common::plant_of(&Configuration::default(), true);
+    let (_, state) = crate::master::plant_of(&Configuration::default(), true);
     assert_eq!(measured(&state), MeasuredMotion::default());
 }
