@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::product::Product;
-use crate::{enumerations, picture, variables};
+use crate::{enumerations, variables};
 use xtask::files;
 use xtask::workspace::Workspace;
 
@@ -12,13 +12,15 @@ pub fn page(workspace: &Workspace, product: &Product, description: &str) -> Resu
     let experiment = product.default_experiment;
     Ok(asset("page.html")?
         .replace("{{model}}", &asset(product.page)?)
+        .replace("{{frames}}", &asset("frames.html")?)
+        .replace("{{vehicle}}", &asset("vehicle.html")?)
         .replace("{{import}}", &asset("import.html")?)
         .replace("{{identifier}}", product.identifier)
         .replace("{{shown}}", product.shown)
         .replace("{{stop}}", &experiment.stop_time_s.to_string())
         .replace("{{step}}", &experiment.step_size_s.to_string())
         .replace("{{version}}", env!("CARGO_PKG_VERSION"))
-        .replace("{{flight}}", &picture::of_default_flight(experiment.stop_time_s)?)
+        .replace("{{flight}}", &(product.picture)(experiment.stop_time_s)?)
         .replace("{{enumerations}}", &enumerations::tables(description)?)
         .replace("{{variables}}", &variables::tables(description)?))
 }

@@ -2,7 +2,10 @@
 
 use fmi::description::model_description;
 use fmi::{Experiment, Model};
-use fmu::ClosedLoop;
+use fmu::{ClosedLoop, QuadrotorPlant};
+
+use crate::failure::Failure;
+use crate::picture;
 
 /// An FMU.
 pub struct Product {
@@ -12,6 +15,8 @@ pub struct Product {
     pub description: fn() -> String,
     /// Its part of the documentation, in `fmu/assets`.
     pub page: &'static str,
+    /// The picture of its default experiment over this time, s, as SVG.
+    pub picture: fn(f64) -> Result<String, Failure>,
     /// Outputs that its default experiment is about.
     pub shown: &'static str,
     /// Its default experiment.
@@ -19,18 +24,33 @@ pub struct Product {
 }
 
 /// Flies with nothing but a reference: `modelDescription.xml` at the root of the repository is its.
-pub const CLOSED_LOOP: Product =
-    Product::of::<ClosedLoop>("closed_loop.html", "position.x position.y position.z");
+pub const CLOSED_LOOP: Product = Product::of::<ClosedLoop>(
+    "closed_loop.html",
+    picture::of_default_flight,
+    "position.x position.y position.z",
+);
+
+/// Driven by rotor speeds or thrust and torques.
+pub const PLANT: Product = Product::of::<QuadrotorPlant>(
+    "plant.html",
+    picture::of_default_climb,
+    "altitude velocity.z rotor.speed[1]",
+);
 
 /// All of them.
-pub const PRODUCTS: [Product; 1] = [CLOSED_LOOP];
+pub const PRODUCTS: [Product; 2] = [CLOSED_LOOP, PLANT];
 
 impl Product {
-    const fn of<M: Model>(page: &'static str, shown: &'static str) -> Self {
+    const fn of<M: Model>(
+        page: &'static str,
+        picture: fn(f64) -> Result<String, Failure>,
+        shown: &'static str,
+    ) -> Self {
         Self {
             identifier: M::IDENTITY.model_identifier,
             description: model_description::<M>,
             page,
+            picture,
             shown,
             default_experiment: M::IDENTITY.default_experiment,
         }
