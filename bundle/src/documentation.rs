@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::product::{Product, Version};
-use crate::{enumerations, picture, variables};
+use crate::{enumerations, variables};
 use xtask::files;
 use xtask::workspace::Workspace;
 
@@ -14,6 +14,8 @@ pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Resul
     let experiment = product.default_experiment;
     Ok(asset("page.html")?
         .replace("{{model}}", &asset(product.page)?)
+        .replace("{{frames}}", &asset("frames.html")?)
+        .replace("{{vehicle}}", &asset("vehicle.html")?)
         .replace("{{import}}", &asset("import.html")?)
         .replace("{{interface}}", version.name())
         .replace("{{file}}", &format!("{}.fmu", product.identifier))
@@ -22,7 +24,7 @@ pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Resul
         .replace("{{stop}}", &experiment.stop_time_s.to_string())
         .replace("{{step}}", &experiment.step_size_s.to_string())
         .replace("{{version}}", env!("CARGO_PKG_VERSION"))
-        .replace("{{flight}}", &picture::of_default_flight(experiment.stop_time_s)?)
+        .replace("{{flight}}", &(product.picture)(experiment.stop_time_s)?)
         .replace("{{enumerations}}", &enumerations::tables(&description)?)
         .replace("{{variables}}", &variables::tables(&description)?))
 }
