@@ -5,6 +5,8 @@
 #![allow(dead_code)]
 
 pub mod description;
+pub mod fmi3;
 pub mod instance;
 pub mod library;
+pub mod loading;
 pub mod subject;

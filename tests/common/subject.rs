@@ -4,7 +4,7 @@ use super::description::Description;
 use super::library::Library;
 
 #[path = "../lag/src/model.rs"]
-mod lag_model;
+pub(super) mod lag_model;
 
 /// A built library with its description, and names and values for the checks.
 pub struct Subject {
