@@ -32,6 +32,11 @@ impl Archive {
         self.entries.insert(path.to_owned(), Entry { bytes, executable: true });
     }
 
+    /// Paths, contents, and whether they are libraries.
+    pub fn entries(&self) -> impl Iterator<Item = (&str, &[u8], bool)> {
+        self.entries.iter().map(|(path, entry)| (path.as_str(), entry.bytes.as_slice(), entry.executable))
+    }
+
     /// Whether there is an entry below this folder.
     pub fn has_folder(&self, folder: &str) -> bool {
         let below = format!("{folder}/");

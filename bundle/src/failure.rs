@@ -39,6 +39,12 @@ pub enum Failure {
         /// Processor.
         architecture: &'static str,
     },
+    /// A library of an FMU is for a platform that FMI 3.0 has no name for here.
+    #[error("{path} is not a library of a known platform: Linux, Windows or macOS on x86, x86-64 or ARM64")]
+    UnknownLibrary {
+        /// Its place in the FMU.
+        path: String,
+    },
     /// The model's own description is not XML.
     #[error("modelDescription.xml cannot be read: {0}")]
     Description(#[from] roxmltree::Error),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::archive::{Archive, MODEL_DESCRIPTION};
 use crate::failure::Failure;
 use crate::product::{PRODUCTS, Product};
-use crate::{documentation, licenses, merge, platform};
+use crate::{documentation, fmi3_file, licenses, merge, platform};
 use xtask::files;
 use xtask::workspace::Workspace;
 
@@ -35,8 +35,8 @@ fn write<'a>(
     let description = (product.description)();
     let mut archive = Archive::default();
     archive.add_binary(&platform::entry(product.identifier)?, files::read(library)?);
-    let page = documentation::page(workspace, product, &description)?;
-    archive.add("documentation/index.html", page.into_bytes());
+    let page = documentation::page(workspace, product, "2.0", &description)?;
+    archive.add(documentation::PAGE, page.into_bytes());
     archive.add("model.png", files::read(&workspace.fmu_assets().join("model.png"))?);
     for (name, text) in licences {
         archive.add(&format!("licenses/{name}"), text.clone().into_bytes());
@@ -46,7 +46,13 @@ fn write<'a>(
     }
     archive.add(MODEL_DESCRIPTION, description.into_bytes());
 
-    let path = workspace.fmus().join(format!("{}.fmu", product.identifier));
+    let third = fmi3_file::from_version_2(workspace, product, &archive)?;
+    let name = format!("{}.fmu", product.identifier);
+    save(workspace, archive, workspace.fmus().join(&name))?;
+    save(workspace, third, workspace.fmus3().join(&name))
+}
+
+fn save(workspace: &Workspace, archive: Archive, path: PathBuf) -> Result<(), Failure> {
     let bytes = archive.into_bytes().map_err(|source| Failure::Archive { path: path.clone(), source })?;
     files::write(&path, &bytes)?;
     println!("{} ({:.0} kB)", workspace.shown(&path), bytes.len() as f64 / 1000.0);

@@ -2,9 +2,9 @@
 //! starts without waiting for the engine to compile.
 //!
 //! ```text
-//! modelDescription.xml        fmi::description of a model of fmu: product
+//! modelDescription.xml        fmi::description of a model of fmu: product; of FMI 3.0: fmi3_file
 //! model.png                   fmu/assets
-//! binaries/linux64/….so       platform, merge
+//! binaries/linux64/….so       platform, merge; platform_tuple in FMI 3.0
 //! documentation/index.html    documentation ◄─ variables, enumerations, picture
 //! licenses/                   licenses
 //! ```
@@ -14,12 +14,14 @@ mod chart;
 mod documentation;
 mod enumerations;
 mod failure;
+mod fmi3_file;
 mod fmu_file;
 mod html;
 mod licenses;
 mod merge;
 mod picture;
 mod platform;
+mod platform_tuple;
 mod product;
 mod variables;
 
@@ -42,7 +44,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Writes the FMUs into target/fmu.
+    /// Writes the FMUs into target/fmu, those of FMI 3.0 into target/fmu/fmi3.
     Fmu {
         /// The built library.
         #[arg(long, value_name = "FILE")]

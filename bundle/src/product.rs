@@ -1,6 +1,6 @@
 //! The FMUs that are written, each of one model of the library.
 
-use fmi::description::model_description;
+use fmi::description::{model_description, model_description3};
 use fmi::{Experiment, Model};
 use fmu::ClosedLoop;
 
@@ -10,6 +10,8 @@ pub struct Product {
     pub identifier: &'static str,
     /// The text of its `modelDescription.xml`.
     pub description: fn() -> String,
+    /// That of its FMI 3.0 version.
+    pub description3: fn() -> String,
     /// Its part of the documentation, in `fmu/assets`.
     pub page: &'static str,
     /// Outputs that its default experiment is about.
@@ -30,6 +32,7 @@ impl Product {
         Self {
             identifier: M::IDENTITY.model_identifier,
             description: model_description::<M>,
+            description3: model_description3::<M>,
             page,
             shown,
             default_experiment: M::IDENTITY.default_experiment,

@@ -52,6 +52,11 @@ impl Workspace {
         self.target.join("fmu")
     }
 
+    /// The folder of the FMUs of FMI 3.0, which have the same names.
+    pub fn fmus3(&self) -> PathBuf {
+        self.fmus().join("fmi3")
+    }
+
     /// The FMU of the closed loop.
     pub fn fmu(&self) -> PathBuf {
         self.fmus().join("LmpcQuadrotor.fmu")
