@@ -9,8 +9,7 @@ use xtask::workspace::Workspace;
 /// The page.
 pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Result<String, Failure> {
     let asset = |name: &str| files::read_text(&workspace.fmu_assets().join(name));
-    // The tables are those of FMI 2.0 in both versions: they have every name.
-    let description = product.description(Version::Two);
+    let description = product.description(version);
     let experiment = product.default_experiment;
     Ok(asset("page.html")?
         .replace("{{model}}", &asset(product.page)?)
@@ -39,13 +38,15 @@ mod tests {
     fn every_place_holder_is_filled() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
         for product in &PRODUCTS {
-            let page = page(&workspace, product, Version::Three).expect("the page is made");
-            assert!(!page.contains("{{") && !page.contains("}}"));
-            // Telephones and narrow windows.
-            assert!(page.contains("name=\"viewport\""));
-            // Well-formed, so that every browser shows the equations.
-            let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");
-            roxmltree::Document::parse(&body).expect("is well-formed");
+            for version in Version::ALL {
+                let page = page(&workspace, product, version).expect("the page is made");
+                assert!(!page.contains("{{") && !page.contains("}}"));
+                // Telephones and narrow windows.
+                assert!(page.contains("name=\"viewport\""));
+                // Well-formed, so that every browser shows the equations.
+                let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");
+                roxmltree::Document::parse(&body).expect("is well-formed");
+            }
         }
     }
 }
