@@ -2,6 +2,8 @@
 
 import shutil
 import subprocess
+import sys
+import sysconfig
 import zipfile
 from pathlib import Path
 
@@ -90,3 +92,20 @@ def in_c(folder: Path, fault: str | None = None, platform: str = "linux64", **ch
         archive.write(folder / "Body.so", f"binaries/{platform}/Body.so")
     (folder / "map.toml").write_text(MAP)
     return file, folder / "map.toml"
+
+
+def interpreter_library() -> Path | None:
+    """The library of this interpreter, if it has one: FMUs of PythonFMU need it."""
+    names = [sysconfig.get_config_var(name) for name in ("LIBDIR", "INSTSONAME")]
+    path = Path(*names) if all(names) else None
+    return path if path is not None and path.is_file() and ".so" in path.name else None
+
+
+def in_python(folder: Path) -> tuple[Path, Path]:
+    """Builds the body in Python. Returns the FMU and a map that names the interpreter's library."""
+    folder.mkdir(parents=True, exist_ok=True)
+    source = Path(__file__).parent / "fmu" / "python_body.py"
+    subprocess.run([sys.executable, "-m", "pythonfmu", "build", "-f", source, "-d", folder], check=True, capture_output=True)
+    map_file = folder / "map.toml"
+    map_file.write_text(f'preload = ["{interpreter_library()}"]\n')
+    return folder / "PythonBody.fmu", map_file
