@@ -28,27 +28,9 @@ UNITS = """
     <Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
     <Unit name="N.m"><BaseUnit kg="1" m="2" s="-2"/></Unit>"""
 
-MAP = """
-# A rigid body that somebody else has written.
-role = "plant"
-
-[frame]
-world = "ENU"
-body = "FLU"
-
-[variables]
-position = { x = "east", y = "north", z = "up" }
-velocity = { x = "v.east", y = "v.north", z = "v.up" }
-attitude = { phi = "roll", theta = "pitch", psi = "yaw" }
-body_rate = { p = "p", q = "q", r = "r" }
-thrust = "F"
-torque = { x = "t.x", y = "t.y", z = "t.z" }
-airframe.mass = "m"
-airframe.inertia = { x = "J.x", y = "J.y", z = "J.z" }
-initial.position.x = "start.east"
-initial.position.y = "start.north"
-initial.attitude.psi = "start.yaw"
-"""
+# The map is the book's example: what it shows flies.
+PAGE = Path(__file__).resolve().parents[3] / "book" / "src" / "vehicle" / "fmu.md"
+MAP = PAGE.read_text().split("```toml\n")[1].split("```")[0]
 
 
 def description(model: str, guid: str, unit_of=lambda name, unit: unit) -> str:
