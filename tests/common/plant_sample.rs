@@ -15,7 +15,7 @@ pub const PLANT: Sample = Sample {
     initial: ("initial.position.x", 2.0, "position.x"),
     contradiction: ("airframe.inertia.xy", 50.0, 0.001),
     // A torque that no body of this size survives.
-    breaking: &[("disturbance.torque.z", 1e3)],
+    breaking: [&[("disturbance.torque.z", 1e3)], &[]],
     longest_step: 3600.0,
     good: &[
         ("rotor.command[1]", 255.0),
