@@ -47,7 +47,7 @@ fn a_thousand_cycles(library: &str, load: fn() -> Subject) {
 /// Whether anything of the library is in this process; `false` where that is not known.
 fn is_mapped(library: &str) -> bool {
     let Ok(maps) = std::fs::read_to_string("/proc/self/maps") else { return false };
-    let path = common::library::path(library);
+    let path = common::loading::path(library);
     let name = path.file_name().expect("a file").to_string_lossy().into_owned();
     maps.lines().any(|line| line.ends_with(&name))
 }

@@ -2,18 +2,19 @@
 
 use crate::failure::Failure;
 use crate::product::{Product, Version};
-use crate::{enumerations, picture, variables};
+use crate::{enumerations, variables};
 use xtask::files;
 use xtask::workspace::Workspace;
 
 /// The page.
 pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Result<String, Failure> {
     let asset = |name: &str| files::read_text(&workspace.fmu_assets().join(name));
-    // The tables are those of FMI 2.0 in both versions: they have every name.
-    let description = product.description(Version::Two);
+    let description = product.description(version);
     let experiment = product.default_experiment;
     Ok(asset("page.html")?
         .replace("{{model}}", &asset(product.page)?)
+        .replace("{{frames}}", &asset("frames.html")?)
+        .replace("{{vehicle}}", &asset("vehicle.html")?)
         .replace("{{import}}", &asset("import.html")?)
         .replace("{{interface}}", version.name())
         .replace("{{file}}", &format!("{}.fmu", product.identifier))
@@ -22,7 +23,7 @@ pub fn page(workspace: &Workspace, product: &Product, version: Version) -> Resul
         .replace("{{stop}}", &experiment.stop_time_s.to_string())
         .replace("{{step}}", &experiment.step_size_s.to_string())
         .replace("{{version}}", env!("CARGO_PKG_VERSION"))
-        .replace("{{flight}}", &picture::of_default_flight(experiment.stop_time_s)?)
+        .replace("{{flight}}", &(product.picture)(experiment.stop_time_s)?)
         .replace("{{enumerations}}", &enumerations::tables(&description)?)
         .replace("{{variables}}", &variables::tables(&description)?))
 }
@@ -37,13 +38,15 @@ mod tests {
     fn every_place_holder_is_filled() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
         for product in &PRODUCTS {
-            let page = page(&workspace, product, Version::Three).expect("the page is made");
-            assert!(!page.contains("{{") && !page.contains("}}"));
-            // Telephones and narrow windows.
-            assert!(page.contains("name=\"viewport\""));
-            // Well-formed, so that every browser shows the equations.
-            let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");
-            roxmltree::Document::parse(&body).expect("is well-formed");
+            for version in Version::ALL {
+                let page = page(&workspace, product, version).expect("the page is made");
+                assert!(!page.contains("{{") && !page.contains("}}"));
+                // Telephones and narrow windows.
+                assert!(page.contains("name=\"viewport\""));
+                // Well-formed, so that every browser shows the equations.
+                let body = page.split_once("<html").map(|(_, rest)| format!("<html{rest}")).expect("is HTML");
+                roxmltree::Document::parse(&body).expect("is well-formed");
+            }
         }
     }
 }

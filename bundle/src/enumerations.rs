@@ -12,7 +12,10 @@ pub fn tables(description: &str) -> Result<String, Failure> {
     let document = Document::parse(description)?;
     let mut html = String::new();
     let is_enumeration = |node: &Node| {
-        node.has_tag_name("SimpleType") && node.children().any(|child| child.has_tag_name("Enumeration"))
+        // FMI 3.0, FMI 2.0
+        node.has_tag_name("EnumerationType")
+            || node.has_tag_name("SimpleType")
+                && node.children().any(|child| child.has_tag_name("Enumeration"))
     };
     for enumeration in document.descendants().filter(is_enumeration) {
         let attribute = |name| enumeration.attribute(name).unwrap_or("");
@@ -24,7 +27,7 @@ pub fn tables(description: &str) -> Result<String, Failure> {
         let variables: Vec<String> = document
             .descendants()
             .filter(has_it)
-            .filter_map(|node| node.parent_element()?.attribute("name"))
+            .filter_map(|node| node.attribute("name").or_else(|| node.parent_element()?.attribute("name")))
             .map(|name| format!("<code>{}</code>", escaped(name)))
             .collect();
         // Writing to a String cannot fail.
@@ -52,10 +55,12 @@ mod tests {
 
     #[test]
     fn explains_every_status() {
-        let html = tables(&CLOSED_LOOP.description(Version::Two)).expect("the description is XML");
-        for status in ["optimal", "relaxed", "iteration_limit", "held"] {
-            assert!(html.contains(&format!("<td><code>{status}</code></td>")), "{status}");
+        for description in Version::ALL.map(|version| CLOSED_LOOP.description(version)) {
+            let html = tables(&description).expect("the description is XML");
+            for status in ["optimal", "relaxed", "iteration_limit", "held"] {
+                assert!(html.contains(&format!("<td><code>{status}</code></td>")), "{status}");
+            }
+            assert!(html.contains("<code>controller.position.status</code>"), "{html}");
         }
-        assert!(html.contains("<code>controller.position.status</code>"), "{html}");
     }
 }

@@ -4,7 +4,7 @@
 //! ```text
 //! modelDescription.xml        fmi::description of a model of fmu: product
 //! model.png                   fmu/assets
-//! binaries/linux64/….so       platform, merge
+//! binaries/linux64/….so       platform, merge; platform_tuple in FMI 3.0
 //! documentation/index.html    documentation ◄─ variables, enumerations, picture
 //! terminalsAndIcons/          fmi::description
 //! licenses/                   licenses
@@ -47,7 +47,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Writes the FMUs into target/fmu.
+    /// Writes the FMUs into target/fmu, those of FMI 3.0 into target/fmu/fmi3.
     Fmu {
         /// A built library with the platform that it is for; may be repeated.
         #[arg(long, required = true, value_name = "PLATFORM=FILE", value_parser = library)]

@@ -1,6 +1,7 @@
-//! A picture of the default flight, flown by the engine when the FMU is built.
+//! Pictures of the default flights, flown by the engine when the FMUs are built.
 
-use quadrotor::{Configuration, Inputs, Outputs, Simulation};
+use fmu::Commands;
+use quadrotor::{Configuration, Inputs, Outputs, PlantInputs, PlantSimulation, PlantState, Simulation};
 
 use crate::chart::{Chart, Line, Svg};
 use crate::failure::Failure;
@@ -53,6 +54,36 @@ pub fn of_default_flight(duration_s: f64) -> Result<String, Failure> {
         x_title: "time, s",
         y_title: "rotor speed, rad/s",
         lines: rotors.collect(),
+    });
+    Ok(svg.finish())
+}
+
+/// The climb of the plant as SVG: altitude and rate of climb.
+pub fn of_default_climb(duration_s: f64) -> Result<String, Failure> {
+    let configuration = Configuration::default();
+    let start = PlantState::hovering(&configuration.initial, &configuration.airframe);
+    let inputs = PlantInputs::rotor_speeds(Commands::default().rotor_rad_s);
+    let mut plant = PlantSimulation::new(&configuration, &start, &inputs)?;
+    let (mut altitude, mut climb) = (Vec::new(), Vec::new());
+    for point in 0..=(duration_s * 1e6) as u64 / INTERVAL_US {
+        plant.advance_to(point * INTERVAL_US, &|_| inputs)?;
+        let (time_s, outputs) = ((point * INTERVAL_US) as f64 * 1e-6, plant.outputs());
+        altitude.push((time_s, -outputs.position_m.z));
+        climb.push((time_s, -outputs.velocity_m_s.z));
+    }
+    let mut svg = Svg::new(640.0, 260.0);
+    svg.draw(&Chart {
+        place: (62.0, 20.0, 430.0, 190.0),
+        x_range: (0.0, duration_s),
+        y_range: (0.0, 35.0),
+        x_step: 2.0,
+        y_step: 5.0,
+        x_title: "time, s",
+        y_title: "m, m/s",
+        lines: vec![
+            Line::new(altitude, UP, 2.0, "none", "altitude (−z)"),
+            Line::new(climb, EAST, 2.0, "9 4", "rate of climb"),
+        ],
     });
     Ok(svg.finish())
 }

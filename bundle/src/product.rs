@@ -7,6 +7,9 @@ use fmi::{Experiment, Model};
 use fmu::{ClosedLoop, Controller, QuadrotorPlant};
 use xtask::workspace::Workspace;
 
+use crate::failure::Failure;
+use crate::picture;
+
 /// A version of FMI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Version {
@@ -24,6 +27,8 @@ pub struct Product {
     terminals: [fn() -> Option<String>; 2],
     /// Its part of the documentation, in `fmu/assets`.
     pub page: &'static str,
+    /// The picture of its default experiment over this time, s, as SVG.
+    pub picture: fn(f64) -> Result<String, Failure>,
     /// Outputs that its default experiment is about.
     pub shown: &'static str,
     /// Its default experiment.
@@ -31,15 +36,25 @@ pub struct Product {
 }
 
 /// Flies with nothing but a reference: `modelDescription.xml` at the root of the repository is its.
-pub const CLOSED_LOOP: Product =
-    Product::of::<ClosedLoop>("closed_loop.html", "position.x position.y position.z");
+pub const CLOSED_LOOP: Product = Product::of::<ClosedLoop>(
+    "closed_loop.html",
+    picture::of_default_flight,
+    "position.x position.y position.z",
+);
+
+/// Driven by rotor speeds or thrust and torques.
+pub const PLANT: Product = Product::of::<QuadrotorPlant>(
+    "plant.html",
+    picture::of_default_climb,
+    "altitude velocity.z rotor.speed[1]",
+);
 
 /// The controllers without a vehicle.
-pub const CONTROLLER: Product =
-    Product::of::<Controller>("controller.html", "setpoint.position.z rotor.command[1]");
-
-/// The vehicle without controllers.
-pub const PLANT: Product = Product::of::<QuadrotorPlant>("plant.html", "position.z velocity.z");
+pub const CONTROLLER: Product = Product::of::<Controller>(
+    "controller.html",
+    picture::of_default_flight,
+    "setpoint.position.z rotor.command[1]",
+);
 
 /// All of them.
 pub const PRODUCTS: [Product; 3] = [CLOSED_LOOP, CONTROLLER, PLANT];
@@ -58,12 +73,17 @@ impl Version {
 }
 
 impl Product {
-    const fn of<M: Model>(page: &'static str, shown: &'static str) -> Self {
+    const fn of<M: Model>(
+        page: &'static str,
+        picture: fn(f64) -> Result<String, Failure>,
+        shown: &'static str,
+    ) -> Self {
         Self {
             identifier: M::IDENTITY.model_identifier,
             descriptions: [model_description::<M>, model_description3::<M>],
             terminals: [terminals_and_icons::<M>, terminals_and_icons3::<M>],
             page,
+            picture,
             shown,
             default_experiment: M::IDENTITY.default_experiment,
         }

@@ -11,7 +11,7 @@ use crate::html::escaped;
 const GROUPS: [(&str, &str); 5] = [
     ("Inputs", "input"),
     ("Outputs", "output"),
-    ("Derivatives of states", "local"),
+    ("Derivatives of states, event indicators", "local"),
     ("Parameters", "parameter"),
     ("Calculated parameters", "calculatedParameter"),
 ];
@@ -23,9 +23,9 @@ pub fn tables(description: &str) -> Result<String, Failure> {
     for (title, causality) in GROUPS {
         let rows: String = document
             .descendants()
-            .filter(|node| {
-                node.has_tag_name("ScalarVariable") && node.attribute("causality") == Some(causality)
-            })
+            .filter(|node| node.has_tag_name("ModelVariables"))
+            .flat_map(|list| list.children())
+            .filter(|node| node.attribute("causality") == Some(causality))
             .map(row)
             .collect();
         if !rows.is_empty() {
@@ -41,21 +41,27 @@ pub fn tables(description: &str) -> Result<String, Failure> {
 }
 
 fn row(variable: Node) -> String {
-    let kind = variable.children().find(Node::is_element);
+    // FMI 3.0 has no element for the type in that of the variable: it is that of the type.
+    let (kind, dimension) = match variable.children().find(Node::is_element) {
+        Some(child) if variable.has_tag_name("ScalarVariable") => (Some(child), None),
+        child => (Some(variable), child.and_then(|dimension| dimension.attribute("start"))),
+    };
+    let name = variable.attribute("name").unwrap_or("");
+    let name = dimension.map_or_else(|| name.to_owned(), |size| format!("{name}[{size}]"));
     let attribute = |name| kind.and_then(|node| node.attribute(name)).unwrap_or("");
     let range = match (attribute("min"), attribute("max")) {
         ("", "") => String::new(),
         (minimum, maximum) => format!("{} … {}", short(minimum), short(maximum)),
     };
     let unit = match kind.map(|node| node.tag_name().name()) {
-        Some("Real") | None => declared_unit(variable, kind),
+        Some("Real" | "Float64") | None => declared_unit(variable, kind),
         Some(other) => other.to_owned(),
     };
     let tunable = if variable.attribute("variability") == Some("tunable") { " (tunable)" } else { "" };
     format!(
         "<tr><td><code>{}</code></td><td>{}</td><td data-label=\"start\">{}</td><td data-label=\"range\">{}</td>\
          <td>{}{tunable}</td></tr>\n",
-        escaped(variable.attribute("name").unwrap_or("")),
+        escaped(&name),
         escaped(&unit),
         escaped(&short(attribute("start"))),
         escaped(&range),

@@ -86,7 +86,7 @@ impl<M: Model> Instance<M> {
 fn differentiable<M: Model>() -> Result<&'static dyn Continuous<M>, CallError> {
     equations::<M>().map_err(|_| {
         CallError::NotOffered(
-            "derivatives are not available: the model description does not say that it provides them",
+            "derivatives are not available (providesDirectionalDerivative = false, and so are those of FMI 3.0)",
         )
     })
 }

@@ -124,6 +124,7 @@ impl<M: Model> Instance<M> {
     }
 }
 
-fn same_count(argument: &'static str, given: usize, expected: usize) -> Result<(), CallError> {
+/// The number of elements that an importer passes must be that of the model.
+pub(crate) fn same_count(argument: &'static str, given: usize, expected: usize) -> Result<(), CallError> {
     if given == expected { Ok(()) } else { Err(CallError::Count { argument, given, expected }) }
 }

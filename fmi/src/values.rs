@@ -1,5 +1,6 @@
 //! Getting and setting the values of variables.
 
+use crate::continuous::states;
 use crate::error::CallError;
 use crate::finite_values::finite;
 use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
@@ -36,9 +37,21 @@ impl<M: Model> Instance<M> {
         value: impl Fn(usize) -> Value,
     ) -> Result<(), CallError> {
         let mut settings = self.settings.clone();
+        // The continuous states, once one of them is set.
+        let mut states: Option<Vec<f64>> = None;
         for (place, &reference) in references.iter().enumerate() {
             let variable = typed::<M>(reference, value_type)?;
             let (name, value) = (variable.name, value(place));
+            // A solver may try states beyond the range that they have in a flight.
+            if let (Some(place), Value::Real(value)) = (self.settable_state(reference), value) {
+                if !value.is_finite() {
+                    return Err(CallError::StateNotFinite { name, value });
+                }
+                let mut present = states.map_or_else(|| self.all_states(), Ok)?;
+                present[place] = value;
+                states = Some(present);
+                continue;
+            }
             variable.check_range(value)?;
             let continuous = matches!(variable.role, Role::Input(Field::Real { .. }));
             if self.phase() == Phase::ContinuousTimeMode && !continuous {
@@ -57,7 +70,21 @@ impl<M: Model> Instance<M> {
                 }
             }
         }
-        self.commit(settings)
+        self.commit(settings)?;
+        states.map_or(Ok(()), |states| self.set_continuous_states(&states))
+    }
+
+    /// The place of a variable among the continuous states, if it is one and the importer's solver has them: some importers set states
+    /// by their value references.
+    fn settable_state(&self, reference: ValueReference) -> Option<usize> {
+        let solved = matches!(self.phase(), Phase::EventMode | Phase::ContinuousTimeMode);
+        solved.then(|| states::<M>().position(|state| state.reference == reference)).flatten()
+    }
+
+    fn all_states(&mut self) -> Result<Vec<f64>, CallError> {
+        let mut present = vec![0.0; states::<M>().count()];
+        self.continuous_states(&mut present)?;
+        Ok(present)
     }
 
     /// There are no String variables, so only an empty list of references is good.

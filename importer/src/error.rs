@@ -8,7 +8,7 @@ use crate::fmi2::{Call, Status};
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The file, or the folder that it is unpacked into.
-    #[error("cannot be unpacked: {0}")]
+    #[error("cannot be read or unpacked: {0}")]
     File(#[from] io::Error),
     /// It is not a readable archive.
     #[error("is not an FMU: {0}; an FMU is a zip archive with modelDescription.xml in it")]

@@ -1,8 +1,8 @@
-//! A freshly built library and its functions.
+//! The FMI 2.0 functions of a library.
 
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::ffi::{c_char, c_double, c_int, c_uint, c_void};
-use std::path::PathBuf;
+
+use super::loading::library;
 
 /// `fmi2Component`
 pub type Component = *mut c_void;
@@ -37,35 +37,6 @@ pub struct EventInfo {
     pub values_of_continuous_states_changed: c_int,
     pub next_event_time_defined: c_int,
     pub next_event_time: c_double,
-}
-
-macro_rules! library {
-    ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
-        /// The library with its functions.
-        #[allow(clippy::type_complexity)]
-        pub struct Library {
-            $(pub $field: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
-            // Last: the functions are gone when it is dropped.
-            _handle: libloading::Library,
-        }
-
-        /// The names of the functions, in the order of the specification.
-        pub const SYMBOLS: &[&str] = &[$($symbol),*];
-
-        impl Library {
-            /// Loads the library of this name that was built together with this test.
-            pub fn load(name: &str) -> Self {
-                let path = path(name);
-                // SAFETY: the library's initialisers are those of a Rust cdylib.
-                let handle = unsafe { libloading::Library::new(&path) }
-                    .unwrap_or_else(|error| panic!("{} cannot be loaded: {error}", path.display()));
-                // SAFETY: the types are those of fmi2FunctionTypes.h.
-                $(let $field = *unsafe { handle.get($symbol.as_bytes()) }
-                    .unwrap_or_else(|error| panic!("{} is missing: {error}", $symbol));)*
-                Self { $($field,)* _handle: handle }
-            }
-        }
-    };
 }
 
 library! {
@@ -113,11 +84,4 @@ library! {
     get_integer_status = "fmi2GetIntegerStatus": fn(Component, c_int, *mut c_int) -> Status;
     get_boolean_status = "fmi2GetBooleanStatus": fn(Component, c_int, *mut c_int) -> Status;
     get_string_status = "fmi2GetStringStatus": fn(Component, c_int, *mut *const c_char) -> Status;
-}
-
-/// Where Cargo puts a library that belongs to this test: beside the test itself. The copy one folder up
-/// may be missing or old.
-pub fn path(name: &str) -> PathBuf {
-    let test = std::env::current_exe().expect("a test knows where it is");
-    test.with_file_name(format!("{DLL_PREFIX}{name}{DLL_SUFFIX}"))
 }

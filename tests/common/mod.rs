@@ -5,7 +5,9 @@
 #![allow(dead_code)]
 
 pub mod description;
+pub mod fmi3;
 pub mod instance;
 pub mod library;
+pub mod loading;
 mod plant_sample;
 pub mod subject;

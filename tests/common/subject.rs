@@ -5,7 +5,7 @@ use super::library::Library;
 use super::plant_sample::PLANT;
 
 #[path = "../lag/src/model.rs"]
-mod lag_model;
+pub(super) mod lag_model;
 
 /// A built library with its description, and names and values for the checks.
 pub struct Subject {

@@ -41,6 +41,7 @@ mod derivatives;
 mod description;
 mod flight;
 mod floating_point;
+mod fmi3;
 mod forged;
 mod input_derivatives;
 mod lifecycle;

@@ -99,6 +99,19 @@ fn impossible_states_and_counts_are_refused() {
     assert_eq!(instance.continuous_states(), [0.0]);
 }
 
+/// CasADi sets states by their value references.
+#[test]
+fn states_can_be_set_as_variables() {
+    let mut instance = begun();
+    assert_eq!(instance.set_real(&[("y", 1.5), ("u", 2.0)]), OK);
+    assert_eq!((instance.continuous_states(), instance.derivatives()), (vec![1.5], vec![18.0]));
+    // All of them or none.
+    assert_eq!(instance.set_real(&[("y", 0.5), ("u", 1e6)]), ERROR);
+    assert_eq!(instance.set_real(&[("u", 1.0), ("y", f64::NAN)]), ERROR);
+    assert_eq!((instance.continuous_states(), instance.derivatives()), (vec![1.5], vec![18.0]));
+    assert_eq!(instance.set_real(&[("der(y)", 0.0)]), ERROR);
+}
+
 /// A state of model exchange continues in another instance, and is not one of co-simulation.
 #[test]
 fn saved_states_continue() {

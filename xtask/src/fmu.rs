@@ -5,7 +5,7 @@ use std::process::Command;
 use std::thread;
 
 use crate::paths::Paths;
-use crate::product::{self, Product};
+use crate::product::{self, Product, Profile};
 use crate::program::{self, BUNDLE, Beside};
 use crate::progress::Progress;
 use crate::release::Release;
@@ -31,7 +31,8 @@ pub fn make(
         progress.timed("Building the FMU's library", || {
             let toolchain = Toolchain::of_this_machine()?;
             let paths = Paths::find(workspace)?;
-            let library = product::build(workspace, &toolchain, None, &paths, Product::Library)?;
+            let library =
+                product::build(workspace, &toolchain, None, &paths, Product::Library, Profile::Release)?;
             Ok(vec![(toolchain.platform(), library)])
         })
     };
@@ -46,7 +47,7 @@ pub fn make_for(
     others: &[PathBuf],
 ) -> Result<PathBuf, Failure> {
     let libraries = || {
-        let libraries = release.build(workspace, progress, Product::Library)?;
+        let libraries = release.build(workspace, progress, Product::Library, Profile::Release)?;
         universal::on_macs(workspace, libraries)
     };
     bundle_beside(workspace, progress, libraries, others, Beside::Nothing)

@@ -139,7 +139,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Sitl { platforms } => {
             let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
             let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
-            sitl::make(&workspace, &progress, &release).map(|_| ())
+            sitl::make(&workspace, &progress, &release)
         }
         Task::Platforms { platforms } => {
             let [reference, ..] = platforms::CHECKED;

@@ -4,11 +4,12 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
+use crate::fmu;
+use crate::product::{Product, Profile};
 use crate::progress::Progress;
 use crate::python::{self, Packages};
 use crate::release::Release;
 use crate::toolchains::Emulator;
-use crate::{fmu, sitl};
 use xtask::failure::Failure;
 use xtask::platform::Platform;
 use xtask::process;
@@ -40,7 +41,7 @@ pub fn check(
         None => &crate::toolchains::zig_environment(workspace, progress)?,
     };
     let fmu = fmu::make_for(workspace, progress, &release, &[])?;
-    let programs = sitl::make(workspace, progress, &release)?;
+    let programs = release.build(workspace, progress, Product::Vehicle, Profile::Trial)?;
     let python = python::environment(workspace, progress, &interpreter, Packages::Tests)?;
 
     let mut tests = python.command();

@@ -45,6 +45,25 @@ struct Target {
     name: String,
 }
 
+/// How it is compiled. The numbers are the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Profile {
+    /// As it is shipped.
+    Release,
+    /// To be tried and thrown away.
+    Trial,
+}
+
+impl Profile {
+    /// What cargo calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Release => "release",
+            Self::Trial => "trial",
+        }
+    }
+}
+
 impl Product {
     /// What cargo is asked for.
     fn selection(self) -> &'static [&'static str] {
@@ -95,11 +114,12 @@ pub fn build(
     zig: Option<&Python>,
     paths: &Paths,
     product: Product,
+    profile: Profile,
 ) -> Result<PathBuf, Failure> {
     let platform = toolchain.platform();
     let mut build = toolchain.build(workspace, zig);
     build
-        .args(["--quiet", "--release"])
+        .args(["--quiet", "--profile", profile.name()])
         .args(product.selection())
         .arg("--message-format=json-render-diagnostics")
         .env_remove("RUSTFLAGS")

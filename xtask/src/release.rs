@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::thread;
 
 use crate::paths::Paths;
-use crate::product::{self, Product};
+use crate::product::{self, Product, Profile};
 use crate::progress::Progress;
 use crate::python::Python;
 use crate::threads;
@@ -61,11 +61,15 @@ impl Release {
         workspace: &Workspace,
         progress: &Progress,
         product: Product,
+        profile: Profile,
     ) -> Result<Vec<(Platform, PathBuf)>, Failure> {
         let build = |toolchain: &Toolchain| {
             let platform = toolchain.platform();
             progress.timed(&format!("Building {product} for {platform}"), || {
-                Ok((platform, product::build(workspace, toolchain, self.zig(), &self.paths, product)?))
+                Ok((
+                    platform,
+                    product::build(workspace, toolchain, self.zig(), &self.paths, product, profile)?,
+                ))
             })
         };
         thread::scope(|scope| {

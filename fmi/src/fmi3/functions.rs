@@ -9,8 +9,9 @@ use super::instantiate::{Request, Wanted, free, instantiate};
 use super::lifecycle;
 use super::types::*;
 use super::values;
-use crate::component::{SavedState, write_bytes};
+use crate::component::{Component, SavedState, write_bytes};
 use crate::error::CallError;
+use crate::exchange::same_count;
 use crate::library::LibraryModel;
 use crate::pointer::{array, array_mut, keep, reference, reference_mut, release, string};
 
@@ -399,23 +400,38 @@ functions! {
 
     /// Model exchange: sets the states.
     set_continuous_states(states: *const Float64, count: usize), SET_CONTINUOUS_STATES =>
-        |instance, _| instance.set_continuous_states(array("continuousStates", states, count)?);
+        |instance, _| {
+            check_states(instance, count)?;
+            instance.set_continuous_states(array("continuousStates", states, count)?)
+        };
 
     /// Model exchange: the derivatives of the states.
     get_continuous_state_derivatives(derivatives: *mut Float64, count: usize), GET_DERIVATIVES =>
-        |instance, _| instance.derivatives(array_mut("derivatives", derivatives, count)?);
+        |instance, _| {
+            check_states(instance, count)?;
+            instance.derivatives(array_mut("derivatives", derivatives, count)?)
+        };
 
     /// Model exchange: the event indicators.
     get_event_indicators(indicators: *mut Float64, count: usize), GET_EVENT_INDICATORS =>
-        |instance, _| instance.event_indicators(array_mut("eventIndicators", indicators, count)?);
+        |instance, _| {
+            check_indicators(instance, count)?;
+            instance.event_indicators(array_mut("eventIndicators", indicators, count)?)
+        };
 
     /// Model exchange: the states.
     get_continuous_states(states: *mut Float64, count: usize), GET_CONTINUOUS_STATES =>
-        |instance, _| instance.continuous_states(array_mut("continuousStates", states, count)?);
+        |instance, _| {
+            check_states(instance, count)?;
+            instance.continuous_states(array_mut("continuousStates", states, count)?)
+        };
 
     /// Model exchange: typical magnitudes of the states.
     get_nominals_of_continuous_states(nominals: *mut Float64, count: usize), GET_NOMINALS =>
-        |instance, _| instance.nominals_of_continuous_states(array_mut("nominals", nominals, count)?);
+        |instance, _| {
+            check_states(instance, count)?;
+            instance.nominals_of_continuous_states(array_mut("nominals", nominals, count)?)
+        };
 
     /// Model exchange: number of event indicators.
     get_number_of_event_indicators(count: *mut usize), GET_NUMBER_OF_EVENT_INDICATORS => |instance, _| {
@@ -465,6 +481,14 @@ functions! {
     activate_model_partition(_clock: ValueReference, _time: Float64), ACTIVATE_MODEL_PARTITION => |_, _| {
         Err(CallError::NotOffered("scheduled execution is not supported"))
     };
+}
+
+fn check_states(instance: &dyn Component, count: usize) -> Result<(), CallError> {
+    same_count("nContinuousStates", count, instance.number_of_continuous_states()?)
+}
+
+fn check_indicators(instance: &dyn Component, count: usize) -> Result<(), CallError> {
+    same_count("nEventIndicators", count, instance.number_of_event_indicators()?)
 }
 
 /// A saved state that the importer passes.

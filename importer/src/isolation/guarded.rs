@@ -146,7 +146,10 @@ impl Guarded {
     /// [`GuestError`] of the end.
     pub fn finish(&mut self) -> Result<(), GuestError> {
         match self.ask(&Request::Finish, self.longest_step)? {
-            Response::Finished => Ok(()),
+            Response::Finished => {
+                self.listener.wait_for_mark(PARTING);
+                Ok(())
+            }
             Response::Failed(what) => Err(self.error(Cause::Failed(what))),
             Response::Values(_) => Err(self.error(Cause::Babbled("values".to_owned()))),
         }

@@ -71,7 +71,7 @@ fn serve(mut streams: Streams) -> io::Result<()> {
             }
             (Request::Start(_) | Request::Step { .. }, _) => Response::Failed("out of order".to_owned()),
         };
-        if matches!(response, Response::Failed(_)) {
+        if !matches!(response, Response::Values(_)) {
             let _gone = io::stderr().write_all(MARK.as_bytes());
         }
         frame::write(&mut streams.responses, &response)?;

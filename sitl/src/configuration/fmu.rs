@@ -57,6 +57,28 @@ pub(super) fn check(
     Ok(notes)
 }
 
+/// The same for the plant of an external autopilot.
+///
+/// # Errors
+/// [`Failure`] that names what it cannot do.
+pub(super) fn check_plant(
+    arguments: &Arguments,
+    choice: &FmuChoice,
+    vehicle: &VehicleSettings,
+) -> Result<Vec<Notice>, Failure> {
+    let notes = check(arguments, choice, vehicle)?;
+    let (_, mapping) = choice.open(&vehicle.flown_configuration())?;
+    if mapping.role == ForeignRole::ClosedLoop {
+        let reason = format!(
+            "the FMU {} is a closed loop; an external autopilot needs a plant, with rotor.command.1 to .4, or thrust and torques, \
+             as its inputs",
+            mapping.model_name
+        );
+        return Err(Failure::Value { name: "--fmu".to_owned(), reason });
+    }
+    Ok(notes)
+}
+
 fn refuse(arguments: &Arguments, vehicle: &VehicleSettings, mapping: &Mapping) -> Result<(), Failure> {
     let name = &mapping.model_name;
     let wrong = |flag: &str, reason: String| Err(Failure::Value { name: flag.to_owned(), reason });

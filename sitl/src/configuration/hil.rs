@@ -2,8 +2,8 @@
 
 use vehicle::parameters::Speed;
 
-use super::Arguments;
 use super::settings::{end_us, first_system_id, vehicle};
+use super::{Arguments, fmu};
 use crate::failure::Failure;
 use crate::hil::HilSettings;
 use crate::link::{Endpoint, LinkSpecification};
@@ -51,7 +51,13 @@ impl HilSettings {
             return Err(wrong("hil", format!("invalid address `{address}`; use [HOST:]PORT")));
         };
         let (vehicle, notes) = vehicle(arguments, 0, 1, arguments.parameters.as_deref())?;
+        let fmu = fmu::choice(arguments)?;
+        let about_fmu = match &fmu {
+            Some(choice) => fmu::check_plant(arguments, choice, &vehicle)?,
+            None => Vec::new(),
+        };
         Ok(Self {
+            fmu,
             host,
             port,
             mount: arguments.hil_mount.unwrap_or_default(),
@@ -60,7 +66,7 @@ impl HilSettings {
             speed,
             ready_file: arguments.ready_file.clone(),
             end_us: end_us(arguments),
-            notes,
+            notes: notes.into_iter().chain(about_fmu).collect(),
         })
     }
 }

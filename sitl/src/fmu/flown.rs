@@ -114,7 +114,14 @@ impl Drop for FlownFmu {
 
 /// The end of a flight by its FMU.
 fn failed(error: &GuestError, time_us: u64) -> FlightError {
-    FlightError::Foreign { time_us, reason: error.to_string() }
+    let mut reason = error.to_string();
+    if reason.contains("undefined symbol") {
+        // An FMU of an interpreter counts on the program that loads it being one.
+        reason.push_str(
+            "; name the library that has it, such as libpython3.12.so.1.0, in `preload` of a --map",
+        );
+    }
+    FlightError::Foreign { time_us, reason }
 }
 
 /// What an FMU is told before the flight.

@@ -11,6 +11,8 @@
 
 mod axes;
 mod choice;
+#[cfg(test)]
+mod documented;
 mod flown;
 mod listing;
 mod map;

@@ -62,12 +62,20 @@ impl Mapping {
             preload: map.preload.clone(),
             longest_step: Duration::from_secs_f64(map.step_timeout_s),
         };
-        mapping.choose_outputs(description)?;
+        mapping.choose_outputs(map, description)?;
         Ok(mapping)
     }
 
     /// Refuses what lacks a motion, and drops what says the same twice.
-    fn choose_outputs(&mut self, description: &ModelDescription) -> Result<(), String> {
+    fn choose_outputs(&mut self, map: &Map, description: &ModelDescription) -> Result<(), String> {
+        if self.takes(input::THRUST) {
+            // The rotors are ours: what has our names for theirs does not turn.
+            for group in [output::ROTOR_SPEED, output::ROTOR_THRUST] {
+                if !is_mapped(map, &OUTPUTS, group) {
+                    self.outputs.retain(|channel| channel.group != group);
+                }
+            }
+        }
         for (first, second) in
             [(output::VELOCITY, output::BODY_VELOCITY), (output::QUATERNION, output::ATTITUDE)]
         {
@@ -75,7 +83,7 @@ impl Mapping {
                 self.outputs.retain(|channel| channel.group != second);
                 self.constants.retain(|(group, _, _)| *group != second);
             } else if !self.shows(second) {
-                return Err(missing(&OUTPUTS, second, "output", description));
+                return Err(missing(&OUTPUTS, first, "output", description));
             }
         }
         for group in [output::POSITION, output::BODY_RATE] {
@@ -128,11 +136,7 @@ fn check_explicit(map: &Map, role: ForeignRole) -> Result<(), String> {
 
 /// Keeps the groups that the role has; of a plant rotor speeds, or thrust and torques if those are mapped or all there is.
 fn choose_inputs(map: &Map, role: ForeignRole, inputs: &mut [Vec<Channel>]) -> Result<(), String> {
-    let explicit = |group: usize| {
-        INPUTS.get(group).is_some_and(|group| {
-            group.signals().any(|name| matches!(map.entries.get(&name), Some(Entry::Variable { .. })))
-        })
-    };
+    let explicit = |group: usize| is_mapped(map, &INPUTS, group);
     let has = |group: usize| inputs.get(group).is_some_and(|channels| !channels.is_empty());
     let wrench = explicit(input::THRUST) || explicit(input::TORQUE);
     let rotors = has(input::ROTOR_COMMAND) && (explicit(input::ROTOR_COMMAND) || !wrench);
@@ -153,6 +157,12 @@ fn choose_inputs(map: &Map, role: ForeignRole, inputs: &mut [Vec<Channel>]) -> R
         }
     }
     Ok(())
+}
+
+/// Whether a map names variables of a group.
+fn is_mapped(map: &Map, groups: &[Group], group: usize) -> bool {
+    let is_variable = |name: &String| matches!(map.entries.get(name), Some(Entry::Variable { .. }));
+    groups.get(group).is_some_and(|group| group.signals().any(|name| is_variable(&name)))
 }
 
 /// The Boolean input.

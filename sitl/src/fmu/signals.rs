@@ -62,8 +62,8 @@ pub const INPUTS: [Group; 9] = [
     group("reference.yaw", &[], RADIAN, &[("reference.yaw", ALONE)], "heading about the world's z axis; it goes on over a whole turn"),
     group("reference.yaw_rate", &[], RADIAN_PER_SECOND, &[("reference.yaw_rate", ALONE)], "rate of the heading"),
     group("rotor.command", FOUR, RADIAN_PER_SECOND, &[("rotor.command", INDEXED), ("rotor.command", NUMBERED), ("rotor.speed_command", INDEXED)], "speeds that the rotors are to turn with, in the order of the airframe's layout"),
-    group("thrust", &[], NEWTON, &[("thrust", ALONE)], "thrust of all rotors, along the body's z axis away from the ground"),
-    group("torque", XYZ, NEWTON_METRE, &[("torque", DOTTED), ("torque", [".phi", ".theta", ".psi", ""])], "torques of all rotors about the body's axes"),
+    group("thrust", &[], NEWTON, &[("thrust", ALONE), ("command.thrust", ALONE)], "thrust of all rotors, along the body's z axis away from the ground"),
+    group("torque", XYZ, NEWTON_METRE, &[("torque", DOTTED), ("torque", [".phi", ".theta", ".psi", ""]), ("command.torque", [".phi", ".theta", ".psi", ""])], "torques of all rotors about the body's axes"),
     group("wind.velocity", XYZ, METRE_PER_SECOND, &[("wind.velocity", DOTTED)], "velocity of the air, along the world's axes"),
 ];
 

@@ -7,8 +7,9 @@ use quadrotor::{
     SimulationError,
 };
 use vehicle::estimation::TrueMotion;
+use vehicle::foreign::{ForeignModel, drive};
 use vehicle::world::{LocalFrame, Wind};
-use vehicle::{TICK_US, VehicleSettings};
+use vehicle::{FlightError, TICK_US, VehicleSettings};
 
 use super::actuator_controls::ActuatorControls;
 use super::instruments::Instruments;
@@ -27,7 +28,7 @@ const TRUTH_US: u64 = 20_000;
 const SIGNAL_LOSS_US: u64 = 200_000;
 
 /// A vehicle on the ground, its rotors at rest.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Rig {
     mounting: Mounting,
     frame: LocalFrame,
@@ -35,6 +36,8 @@ pub struct Rig {
     instruments: Instruments,
     plant: Plant,
     state: PlantState,
+    /// What moves in place of our plant, if anything does, and its acceleration, m/s².
+    foreign: Option<(Box<dyn ForeignModel>, Vector3<f64>)>,
     time_us: u64,
     command_rad_s: [f64; 4],
     controlled_us: Option<u64>,
@@ -48,10 +51,9 @@ impl Rig {
     /// # Errors
     /// [`ConfigurationError`] if the vehicle cannot fly, or its rotors do not turn as the autopilot's motors.
     pub fn new(settings: &VehicleSettings, mount: Mount) -> Result<Self, ConfigurationError> {
-        let mut configuration = settings.configuration;
-        let mounting = Mounting::new(mount, &configuration.airframe.layout)?;
-        configuration.environment.ground_plane = true;
-        configuration.initial.attitude_rad = [0.0, 0.0, settings.heading_rad - mounting.yaw_rad];
+        let placed = Self::placed(settings, mount)?;
+        let mounting = Mounting::new(mount, &placed.configuration.airframe.layout)?;
+        let configuration = placed.flown_configuration();
         // Its checks are those of the airframe, too.
         CascadeDesign::new(&configuration)?;
         Ok(Self {
@@ -61,12 +63,31 @@ impl Rig {
             instruments: Instruments::new(settings.wind.seed),
             plant: Plant::new(&configuration.airframe, &configuration.environment),
             state: PlantState::at_rest(&configuration.initial),
+            foreign: None,
             time_us: 0,
             command_rad_s: [0.0; 4],
             controlled_us: None,
             truth_us: Some(TRUTH_US),
             digest: Digest::default(),
         })
+    }
+
+    /// The vehicle as it stands in the world: the autopilot's nose has the heading of the settings.
+    ///
+    /// # Errors
+    /// [`ConfigurationError`] if its rotors do not turn as the autopilot's motors.
+    pub fn placed(settings: &VehicleSettings, mount: Mount) -> Result<VehicleSettings, ConfigurationError> {
+        let mounting = Mounting::new(mount, &settings.configuration.airframe.layout)?;
+        Ok(VehicleSettings { heading_rad: settings.heading_rad - mounting.yaw_rad, ..settings.clone() })
+    }
+
+    /// The same rig with a plant from elsewhere, where that starts.
+    pub fn flown_by(mut self, model: Box<dyn ForeignModel>) -> Self {
+        let start = model.description().start;
+        self.state.body = start.body;
+        self.state.rotor_speed_rad_s = start.rotor_speed_rad_s.unwrap_or_default();
+        self.foreign = Some((model, start.acceleration_m_s2.unwrap_or_default()));
+        self
     }
 
     /// Simulation time, µs.
@@ -104,8 +125,8 @@ impl Rig {
     /// Flies one step on. What the autopilot is told after it.
     ///
     /// # Errors
-    /// [`SimulationError::Diverged`]
-    pub fn step(&mut self) -> Result<Vec<MavMessage>, SimulationError> {
+    /// [`FlightError`]
+    pub fn step(&mut self) -> Result<Vec<MavMessage>, FlightError> {
         let signal = self.controlled_us.is_some_and(|since_us| self.time_us < since_us + SIGNAL_LOSS_US);
         if !signal {
             self.command_rad_s = [0.0; 4];
@@ -116,17 +137,27 @@ impl Rig {
         while self.time_us < goal_us {
             let height_m = -self.state.body.position_m.z;
             wind_m_s = self.wind.velocity_m_s(self.time_us, height_m);
-            let h_s = TICK_US as f64 / 1e6;
-            self.state = self.plant.step(&self.state, &self.inputs(wind_m_s), h_s);
+            self.state = self.moved(&self.inputs(wind_m_s))?;
             self.time_us += TICK_US;
             if self.state.has_diverged() {
-                return Err(SimulationError::Diverged { time_us: self.time_us, overload: None });
+                return Err(SimulationError::Diverged { time_us: self.time_us, overload: None }.into());
             }
             self.digest.update_with(self.time_us, &self.state);
             motion = self.motion(&wind_m_s);
             self.instruments.sample(&motion, &self.frame);
         }
         Ok(self.report(&motion, &wind_m_s))
+    }
+
+    /// The state after a tick.
+    fn moved(&mut self, inputs: &PlantInputs) -> Result<PlantState, FlightError> {
+        let Some((model, acceleration_m_s2)) = &mut self.foreign else {
+            return Ok(self.plant.step(&self.state, inputs, TICK_US as f64 / 1e6));
+        };
+        let span = (self.time_us, TICK_US);
+        let driven = drive(model.as_mut(), &self.plant, &self.state, inputs, span)?;
+        *acceleration_m_s2 = driven.acceleration_m_s2;
+        Ok(driven.state)
     }
 
     /// What acts on the plant.
@@ -153,7 +184,10 @@ impl Rig {
     /// What happens to the autopilot's instruments, in its axes.
     fn motion(&self, wind_m_s: &Vector3<f64>) -> TrueMotion {
         let body = &self.state.body;
-        let acceleration = self.plant.acceleration_m_s2(&self.state, &self.inputs(*wind_m_s));
+        let acceleration = match &self.foreign {
+            Some((_, acceleration_m_s2)) => *acceleration_m_s2,
+            None => self.plant.acceleration_m_s2(&self.state, &self.inputs(*wind_m_s)),
+        };
         let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
         let mount = self.mounting.rotation();
         let attitude = body.rotation() * mount;

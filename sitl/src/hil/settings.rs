@@ -6,6 +6,7 @@ use vehicle::parameters::Speed;
 use vehicle::{Notice, VehicleSettings};
 
 use super::Mount;
+use crate::fmu::FmuChoice;
 
 /// Settings of the simulator of an external autopilot.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct HilSettings {
     pub port: u16,
     /// How the autopilot sits on the airframe.
     pub mount: Mount,
+    /// What moves in place of our plant.
+    pub fmu: Option<FmuChoice>,
     /// Airframe, start and wind.
     pub vehicle: VehicleSettings,
     /// MAVLink system id of the simulator.

@@ -14,6 +14,7 @@ use super::messages;
 use super::rig::{Rig, STEP_US};
 use super::settings::HilSettings;
 use crate::failure::Failure;
+use crate::fmu::FlownFmu;
 use crate::link::{LinkError, resolve};
 use crate::pace::Pace;
 use crate::summary::{Flight, Summary};
@@ -56,7 +57,7 @@ impl Simulator {
     /// [`Failure::Link`]
     pub fn open(settings: HilSettings) -> Result<Self, Failure> {
         // A vehicle that cannot fly is found before anybody connects.
-        Rig::new(&settings.vehicle, settings.mount)?;
+        rig(&settings)?;
         let link = format!("--hil {}:{}", settings.host, settings.port);
         let failed = |source| LinkError::Socket {
             what: format!("TCP port {}:{}", settings.host, settings.port),
@@ -104,7 +105,7 @@ impl Simulator {
         stop: &Arc<AtomicBool>,
         status: &mut StatusLine,
     ) -> Result<Flight, Failure> {
-        let rig = Rig::new(&self.settings.vehicle, self.settings.mount)?;
+        let rig = rig(&self.settings)?;
         let system_id = self.settings.system_id;
         let Ok(client) = Client::new(stream, system_id) else {
             return Ok(Flight { system_id, time_us: 0, digest: rig.digest().value() });
@@ -132,6 +133,14 @@ impl Simulator {
         );
         Ok(Flight { system_id, time_us, digest: flown.rig.digest().value() })
     }
+}
+
+/// A vehicle on the ground: ours, or that of an FMU.
+fn rig(settings: &HilSettings) -> Result<Rig, Failure> {
+    let rig = Rig::new(&settings.vehicle, settings.mount)?;
+    let Some(choice) = &settings.fmu else { return Ok(rig) };
+    let placed = Rig::placed(&settings.vehicle, settings.mount)?;
+    Ok(rig.flown_by(Box::new(FlownFmu::start(choice, "plant", &placed)?)))
 }
 
 impl Flown<'_> {

@@ -33,7 +33,8 @@ def digests(built, mission):
     found = {}
     for name, platform in built.items():
         result = platform.run(platform.vehicle, *EVENTFUL, "--mission", mission)
-        assert result.returncode == 0, result
+        said = result.stdout + result.stderr
+        assert result.returncode == 0 and "Mission complete" in said and "landing" in said, said
         found[name] = re.search(r"digest (\w+)", result.stdout)[1]
     return found
 

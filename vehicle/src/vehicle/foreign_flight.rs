@@ -1,15 +1,13 @@
 //! Flying a closed loop or a plant from elsewhere.
 
 use nalgebra::Vector3;
-use quadrotor::{
-    Actuation, EasedLimits, GRAVITY_M_S2, Inputs, Outputs, PlantInputs, PlantState, Simulation, Wrench,
-};
+use quadrotor::{EasedLimits, GRAVITY_M_S2, Inputs, Outputs, PlantState, Simulation, Wrench};
 
 use super::change_error::ChangeError;
 use super::motion::{at_rest, wrapped};
 use super::reference_guide::ReferenceGuide;
 use crate::FlightError;
-use crate::foreign::{Demand, ForeignDescription, ForeignModel, ForeignMotion, ForeignRole};
+use crate::foreign::{Demand, ForeignDescription, ForeignModel, ForeignMotion, ForeignRole, drive};
 
 /// The model, and what its motion is completed by.
 ///
@@ -74,52 +72,41 @@ impl ForeignFlight {
         limits: &EasedLimits,
         duration_us: u64,
     ) -> Result<(), FlightError> {
-        let (time_us, h_s) = (simulation.time_us(), duration_us as f64 / 1e6);
-        let before = *simulation.plant_state();
-        let (demand, rotors) = match self.description().role {
-            ForeignRole::Plant => self.plant_demand(simulation, inputs, duration_us)?,
-            ForeignRole::ClosedLoop => (self.loop_demand(inputs, time_us, duration_us), before),
-        };
-        let motion = self.model.advance(&demand)?;
-        self.motion = motion;
-        self.guide.step(&limits.largest(), h_s, time_us + duration_us);
-        self.acceleration_m_s2 = motion
-            .acceleration_m_s2
-            .unwrap_or_else(|| (motion.body.velocity_m_s - before.body.velocity_m_s) / h_s);
-        let rotor_speed_rad_s = match (motion.rotor_speed_rad_s, self.description().role) {
-            (Some(speeds), _) => speeds,
-            (None, ForeignRole::Plant) => rotors.rotor_speed_rad_s,
-            (None, ForeignRole::ClosedLoop) => self.carrying_speeds(simulation, &motion, demand.armed),
-        };
-        self.thrust_n = motion.thrust_n;
-        let state = PlantState { body: motion.body, rotor_speed_rad_s, discharge: rotors.discharge };
-        Ok(simulation.place(time_us + duration_us, state)?)
-    }
-
-    /// What our control loop asks of a plant, and how its rotors would follow.
-    fn plant_demand(
-        &self,
-        simulation: &mut Simulation,
-        inputs: &Inputs,
-        duration_us: u64,
-    ) -> Result<(Demand, PlantState), FlightError> {
+        if self.is_closed_loop() {
+            return self.follow(simulation, inputs, limits, duration_us);
+        }
+        let time_us = simulation.time_us();
         let commanded = simulation.command(inputs)?;
         let (plant, before) = (simulation.plant(), simulation.plant_state());
-        let after = plant.step(before, &commanded, duration_us as f64 / 1e6);
-        let rotor_command_rad_s = match commanded.actuation {
-            Actuation::RotorSpeeds(command_rad_s) => command_rad_s,
-            Actuation::Wrench(_) => [0.0; 4],
-        };
-        let demand = Demand {
-            time_us: simulation.time_us(),
-            duration_us,
-            reference: *self.guide.now(),
-            armed: inputs.armed,
-            rotor_command_rad_s,
-            wrench: mean_wrench(simulation, &commanded, &after),
-            wind_m_s: inputs.disturbance.wind_m_s,
-        };
-        Ok((demand, after))
+        let driven = drive(self.model.as_mut(), plant, before, &commanded, (time_us, duration_us))?;
+        self.motion = driven.motion;
+        self.acceleration_m_s2 = driven.acceleration_m_s2;
+        self.thrust_n = driven.motion.thrust_n;
+        Ok(simulation.place(time_us + duration_us, driven.state)?)
+    }
+
+    /// Lets a closed loop follow its reference for `duration_us`.
+    fn follow(
+        &mut self,
+        simulation: &mut Simulation,
+        inputs: &Inputs,
+        limits: &EasedLimits,
+        duration_us: u64,
+    ) -> Result<(), FlightError> {
+        let (time_us, h_s) = (simulation.time_us(), duration_us as f64 / 1e6);
+        let demand = self.loop_demand(inputs, time_us, duration_us);
+        let motion = self.model.advance(&demand)?;
+        self.guide.step(&limits.largest(), h_s, time_us + duration_us);
+        let before = *simulation.plant_state();
+        let change = || (motion.body.velocity_m_s - before.body.velocity_m_s) / h_s;
+        self.motion = motion;
+        self.acceleration_m_s2 = motion.acceleration_m_s2.unwrap_or_else(change);
+        let speeds = motion.rotor_speed_rad_s;
+        let rotor_speed_rad_s =
+            speeds.unwrap_or_else(|| self.carrying_speeds(simulation, &motion, demand.armed));
+        self.thrust_n = motion.thrust_n;
+        let state = PlantState { body: motion.body, rotor_speed_rad_s, ..before };
+        Ok(simulation.place(time_us + duration_us, state)?)
     }
 
     /// What a closed loop is told. On the ground its rotors rest where ours would idle: it knows no attitude target.
@@ -186,16 +173,5 @@ impl ForeignFlight {
         };
         let ForeignDescription { name, role, .. } = self.description().clone();
         Err(ChangeError::Foreign { model: name, role, part })
-    }
-}
-
-/// The mean of thrust and torques at the beginning and the end of a step in which the rotors follow their commands.
-fn mean_wrench(simulation: &Simulation, inputs: &PlantInputs, after: &PlantState) -> Wrench {
-    let (plant, before) = (simulation.plant(), simulation.plant_state());
-    let end = PlantState { body: before.body, ..*after };
-    let (begin, end) = (plant.wrench(before, inputs), plant.wrench(&end, inputs));
-    Wrench {
-        thrust_n: (begin.thrust_n + end.thrust_n) / 2.0,
-        torque_n_m: (begin.torque_n_m + end.torque_n_m) / 2.0,
     }
 }

@@ -3,7 +3,7 @@ use importer::description::ModelDescription;
 use quadrotor::{AirframePreset, Configuration};
 use vehicle::foreign::ForeignRole;
 
-use super::{Map, Mapping};
+use super::{Map, Mapping, input, output};
 use crate::fmu::listing;
 
 /// A variable: name, causality and type with unit.
@@ -62,6 +62,26 @@ fn our_names_are_found_with_their_units() {
     assert!(text.contains("flies as the plant") && text.contains("degree"), "{text}");
 }
 
+/// A plant that takes both is driven by rotor speeds, unless the map names thrust and torques; rotors that it shows then are none.
+#[test]
+fn rotors_go_before_thrust_and_torques_unless_the_map_names_those() {
+    let rotors = ["rotor.command[1]", "rotor.command[2]", "rotor.command[3]", "rotor.command[4]"];
+    let speeds = ["rotor.speed[1]", "rotor.speed[2]", "rotor.speed[3]", "rotor.speed[4]"];
+    let rows: Vec<Row<'_>> = plant()
+        .into_iter()
+        .chain(rotors.map(|name| (name, "input", PLAIN)))
+        .chain(speeds.map(|name| (name, "output", PLAIN)))
+        .collect();
+    let by_rotors = resolve("", &rows).expect("a mapping");
+    assert!(by_rotors.takes(input::ROTOR_COMMAND) && !by_rotors.takes(input::THRUST));
+    assert!(by_rotors.shows(output::ROTOR_SPEED));
+    let by_wrench = resolve("[variables]\nthrust = \"thrust\"\n", &rows).expect("a mapping");
+    assert!(!by_wrench.takes(input::ROTOR_COMMAND) && by_wrench.takes(input::TORQUE));
+    assert!(!by_wrench.shows(output::ROTOR_SPEED));
+    let both = "[variables]\nthrust = \"thrust\"\nrotor.command.1 = \"rotor.command[1]\"\n";
+    assert!(resolve(both, &rows).expect_err("both").contains("driven by one of both"));
+}
+
 #[test]
 fn other_names_units_and_constants_come_from_the_map() {
     let rows = plant();
@@ -95,8 +115,16 @@ fn mistakes_are_named_with_their_remedy() {
     let with = |row: Row<'static>| plant().into_iter().chain([row]).collect::<Vec<_>>();
     for (map, rows, expected) in [
         ("", without("position"), "no output for position.x, position.y, position.z (place of the vehicle"),
-        ("", without("attitude"), "no output for attitude.phi, attitude.theta, attitude.psi"),
-        ("", without("velocity"), "no output for body_velocity.u"),
+        (
+            "",
+            without("attitude"),
+            "no output for quaternion.w, quaternion.x, quaternion.y, quaternion.z (attitude: body into world",
+        ),
+        (
+            "",
+            without("velocity"),
+            "no output for velocity.x, velocity.y, velocity.z (velocity along the world's axes; or body_velocity",
+        ),
         ("", without("thrust"), "no inputs to fly it by: a closed loop has reference.position.x to .z"),
         ("role = \"closed-loop\"", plant(), "a closed loop needs the inputs reference.position.x to .z"),
         (
