@@ -1,5 +1,6 @@
 //! Getting and setting the values of variables.
 
+use crate::continuous::states;
 use crate::error::CallError;
 use crate::finite_values::finite;
 use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
@@ -28,7 +29,7 @@ impl<M: Model> Instance<M> {
     }
 
     /// Sets variables of one type to the values that `value` has for their places: all of them or, on an
-    /// error, none.
+    /// error, none. In model exchange the states are among what can be set.
     pub fn set(
         &mut self,
         value_type: Type,
@@ -36,9 +37,14 @@ impl<M: Model> Instance<M> {
         value: impl Fn(usize) -> Value,
     ) -> Result<(), CallError> {
         let mut settings = self.settings.clone();
+        let mut states = Vec::new();
         for (place, &reference) in references.iter().enumerate() {
             let variable = typed::<M>(reference, value_type)?;
             let (name, value) = (variable.name, value(place));
+            if let (Some(state), Value::Real(value)) = (self.exchanged_state(reference), value) {
+                states.push((state, value));
+                continue;
+            }
             variable.check_range(value)?;
             let continuous = matches!(variable.role, Role::Input(Field::Real { .. }));
             if self.phase() == Phase::ContinuousTimeMode && !continuous {
@@ -57,7 +63,31 @@ impl<M: Model> Instance<M> {
                 }
             }
         }
-        self.commit(settings)
+        check_states::<M>(&states)?;
+        self.commit(settings)?;
+        self.move_states(&states)
+    }
+
+    /// Place among the states of a variable that is one, once the importer's solver integrates them.
+    fn exchanged_state(&self, reference: ValueReference) -> Option<usize> {
+        let integrated = matches!(self.phase(), Phase::EventMode | Phase::ContinuousTimeMode);
+        let is_output = matches!(variable::<M>(reference).ok()?.role, Role::Output { .. });
+        (integrated && is_output)
+            .then(|| states::<M>().position(|state| state.reference == reference))
+            .flatten()
+    }
+
+    /// Sets some of the states, which are named by their places.
+    fn move_states(&mut self, moved: &[(usize, f64)]) -> Result<(), CallError> {
+        if moved.is_empty() {
+            return Ok(());
+        }
+        let mut all = vec![0.0; states::<M>().count()];
+        self.continuous_states(&mut all)?;
+        for &(place, value) in moved {
+            all[place] = value;
+        }
+        self.set_continuous_states(&all)
     }
 
     /// There are no String variables, so only an empty list of references is good.
@@ -100,6 +130,13 @@ impl<M: Model> Instance<M> {
             Role::Derivative { get, .. } => finite(variable, Value::Real(get(self.outputs()?)))?,
         })
     }
+}
+
+/// Rejects a state that is not finite, by its name.
+fn check_states<M: Model>(moved: &[(usize, f64)]) -> Result<(), CallError> {
+    let Some(&(place, value)) = moved.iter().find(|(_, value)| !value.is_finite()) else { return Ok(()) };
+    let name = states::<M>().nth(place).map_or("a state", |state| state.name);
+    Err(CallError::StateNotFinite { name, value })
 }
 
 fn check_derivative<M: Model>(derivative: &InputDerivative) -> Result<(), CallError> {
