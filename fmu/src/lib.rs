@@ -1,4 +1,4 @@
-//! The closed-loop quadrotor as an FMI 2.0 co-simulation library.
+//! The closed-loop quadrotor as a library of FMI 2.0 and 3.0.
 //!
 //! `closed_loop` is the model with its one table of names, value references, units, ranges and start values;
 //! `quantities` and `units` are what its variables measure. Everything that has to do with the interface is
