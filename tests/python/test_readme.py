@@ -14,6 +14,7 @@ def test_python_code_with_the_fmu(fmu, tmp_path, block):
     # The blocks that fly the MAVLink vehicle: sitl/test_readme_flights.py.
     shutil.copy(fmu, tmp_path / "LmpcQuadrotor.fmu")
     shutil.copy(fmu.with_name("QuadrotorPlant.fmu"), tmp_path)
+    shutil.copytree(fmu.parent / "fmi3", tmp_path / "fmi3")
     done = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True, timeout=120,
                           env=os.environ | {"MPLBACKEND": "Agg"})
     assert done.returncode == 0, done.stderr

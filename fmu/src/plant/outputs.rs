@@ -1,10 +1,10 @@
 //! The outputs, and the derivatives of those that are states.
 
+use fmi::array;
 use fmi::variables::{Array, Variable};
 
 use super::{Observed, QuadrotorPlant};
 use crate::quantities::{ACCELERATION, ANGULAR_ACCELERATION, NUMBER, RATE, ROTOR_ACCELERATION, VELOCITY};
-use crate::tables::arrays::array;
 use crate::tables::motion;
 use crate::tables::rows::{at_least, output};
 
