@@ -258,3 +258,35 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// However it comes down, and however it is pushed there, events are few, and a coarse solver ends where a fine one does.
+    #[test]
+    fn any_landing_ends(
+        lean in prop::array::uniform3(-1.0..1.0), velocity in prop::array::uniform3(-2.0..2.0),
+        rate in prop::array::uniform3(-3.0..3.0), force in prop::array::uniform3(-3.0..3.0),
+        speed in 0.0..200.0, plain in any::<bool>(),
+    ) {
+        let airframe = if plain { Airframe::default() } else { all_physics() };
+        let plant = over_ground(&airframe);
+        let start = PlantState {
+            rotor_speed_rad_s: [speed; 4],
+            ..PlantState::at_rest(&InitialState {
+                position_m: [0.0, 0.0, -0.4],
+                velocity_m_s: velocity,
+                attitude_rad: [0.6 * lean[0], 0.6 * lean[1], 3.0 * lean[2]],
+                body_rate_rad_s: rate,
+                ..InitialState::default()
+            })
+        };
+        let phases = vec![(1.5, pushed(PlantInputs::rotor_speeds([speed; 4]), force))];
+        let coarse = flown(&plant, &start, &phases, 1e-4);
+        let fine = flown(&plant, &start, &phases, 1e-8);
+        prop_assert!(coarse.events < 200 && fine.events < 200, "{} events, {}", coarse.events, fine.events);
+        // A landing on feet spreads what a solver leaves open.
+        let spread = difference(&plant, &coarse.state, &fine.state);
+        prop_assert!(spread < 0.05, "{}", spread);
+    }
+}
