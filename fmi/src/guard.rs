@@ -11,7 +11,7 @@ pub(crate) fn guarded(
     instance: &mut dyn Component,
     function: &str,
     is_allowed: bool,
-    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
+    body: &mut dyn FnMut(&mut dyn Component) -> Result<(), CallError>,
 ) -> Result<(), Severity> {
     let outcome = if is_allowed {
         // Unwind safety: after a panic the instance is given up, nobody sees it half changed.

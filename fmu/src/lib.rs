@@ -1,4 +1,4 @@
-//! The closed-loop quadrotor, its controllers alone and its plant alone as FMI 2.0 models of one library.
+//! The closed-loop quadrotor, its controllers alone and its plant alone as models of one library, for FMI 2.0 and 3.0.
 //!
 //! `closed_loop`, `controller` and `plant` are the models, each with its one table of names, value references, units, ranges and
 //! start values; `tables` has what several models share, `quantities` and `units` are what its variables measure. Everything that has to do

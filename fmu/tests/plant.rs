@@ -18,8 +18,10 @@ fn rows<M: Model>() -> impl Iterator<Item = &'static Variable<M>> {
     M::VARIABLES.iter().copied().flatten()
 }
 
+type Reader<M> = fn(&<M as Model>::Outputs) -> f64;
+
 /// Real outputs and derivatives: name and reader.
-fn unknowns<M: Model>() -> Vec<(&'static str, fn(&M::Outputs) -> f64)> {
+fn unknowns<M: Model>() -> Vec<(&'static str, Reader<M>)> {
     let reader = |row: &'static Variable<M>| match row.role {
         Role::Output { signal: Signal::Real { get, .. }, .. } | Role::Derivative { get, .. } => {
             Some((row.name, get))

@@ -1,7 +1,7 @@
 //! The plant under an importer's own solver and events, through the C interface, against co-simulation.
 
 use crate::common::instance::Instance;
-use crate::common::library::OK;
+use crate::common::library::{ERROR, OK};
 use crate::plant;
 
 /// Dropped from 30 cm with rotors at rest, it slides and comes to rest.
@@ -95,4 +95,29 @@ fn derivatives_are_those_found_by_hand() {
     close(along("attitude.phi", "attitude.q1"), 2.0);
     close(along("altitude", "position.z"), -1.0);
     close(along("position.x", "rotor.command[1]"), 0.0);
+}
+
+/// CasADi sets states as variables. Nothing is set when one of them cannot be.
+#[test]
+fn states_are_variables_that_can_be_set() {
+    let mut instance = Instance::for_model_exchange(plant());
+    assert_eq!(instance.set_real(&[("position.x", 1.0)]), ERROR);
+    instance.initialize();
+    instance.new_discrete_states();
+    assert_eq!(instance.enter_continuous_time_mode(), OK);
+    assert_eq!(
+        instance.set_real(&[("velocity.x", 3.0), ("disturbance.force.x", 0.7), ("position.y", -2.0)]),
+        OK
+    );
+    let read = instance.reals(["velocity.x", "der(position.x)", "acceleration.x", "position.y"]);
+    assert!((read[2] - 1.0).abs() < 1e-12);
+    assert_eq!([read[0], read[1], read[3]], [3.0, 3.0, -2.0]);
+    assert_eq!(instance.continuous_states()[..4], [0.0, -2.0, 0.0, 3.0]);
+    for (name, value) in [("velocity.y", f64::NAN), ("altitude", 1.0), ("airframe.mass", 0.8)] {
+        assert_eq!(instance.set_real(&[("velocity.x", 9.0), (name, value)]), ERROR, "{name}");
+        assert!(instance.log.last().text.contains(name));
+        assert_eq!(instance.real("velocity.x"), 3.0);
+    }
+    let mut stepped = Instance::initialized(plant(), &[], &[]);
+    assert_eq!(stepped.set_real(&[("velocity.x", 3.0)]), ERROR);
 }

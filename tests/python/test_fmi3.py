@@ -25,6 +25,13 @@ def fmu3(fmu) -> Path:
 
 
 @pytest.fixture(scope="module")
+def pairs(fmu3) -> list[tuple[Path, Path]]:
+    """Every FMU in version 2.0 and 3.0."""
+    third = sorted(fmu3.parent.glob("*.fmu"))
+    return [(path.parents[1] / path.name, path) for path in third]
+
+
+@pytest.fixture(scope="module")
 def description3(fmu3):
     return read_model_description(str(fmu3))
 
@@ -40,14 +47,15 @@ def library3(unzipped3) -> Path:
     return library
 
 
-def test_fmpy_finds_no_problem(fmu3):
-    assert validate_fmu(str(fmu3)) == []
+def test_fmpy_finds_no_problem(pairs):
+    assert {str(third): validate_fmu(str(third)) for _, third in pairs} == {str(third): [] for _, third in pairs}
 
 
-def test_the_description_obeys_the_schema_of_the_standard(fmu3):
+def test_the_descriptions_obey_the_schema_of_the_standard(pairs):
     schema = etree.XMLSchema(etree.parse(str(files("fmpy") / "schema" / "fmi3" / "fmi3ModelDescription.xsd")))
-    with zipfile.ZipFile(fmu3) as archive:
-        schema.assertValid(etree.fromstring(archive.read("modelDescription.xml")))
+    for _, third in pairs:
+        with zipfile.ZipFile(third) as archive:
+            schema.assertValid(etree.fromstring(archive.read("modelDescription.xml")))
 
 
 def test_it_is_the_library_of_version_2(fmu, fmu3):
@@ -73,26 +81,34 @@ def test_all_functions_of_the_header_are_exported(library3):
     assert [name for name in names if not hasattr(library, name)] == []
 
 
-def test_the_default_experiment_is_the_same_bit_for_bit(unzipped, model_description, unzipped3, description3):
-    """All outputs, at all communication points."""
-    outputs = [v for v in description3.modelVariables if v.causality == "output"]
-    second = simulate_fmu(
-        unzipped,
-        model_description=model_description,
-        output=[v.name for v in model_description.modelVariables if v.causality == "output"],
-    )
-    third = simulate_fmu(unzipped3, model_description=description3, output=[v.name for v in outputs])
-    assert len(third) == len(second) == 801
-    np.testing.assert_array_equal(third["time"], second["time"])
-    by_reference = {v.valueReference: v.name for v in model_description.modelVariables}
-    compared = 0
-    for variable in outputs:
-        values = third[variable.name].reshape(len(third), -1)
-        for element in range(values.shape[1]):
-            name = by_reference[variable.valueReference + element]
-            np.testing.assert_array_equal(values[:, element], second[name], err_msg=name)
-            compared += 1
-    assert compared == len(second.dtype.names) - 1
+def outputs(description) -> list:
+    return [v for v in description.modelVariables if v.causality == "output"]
+
+
+def test_default_experiments_are_the_same_bit_for_bit(pairs):
+    """All outputs, at all communication points; in model exchange with the simplest solver."""
+    for paths in pairs:
+        second, third = (read_model_description(str(path)) for path in paths)
+        by_reference = {v.valueReference: v.name for v in second.modelVariables}
+        kinds = ["CoSimulation"] + (["ModelExchange"] if third.modelExchange else [])
+        assert bool(second.modelExchange) == bool(third.modelExchange)
+        for kind in kinds:
+            results = [
+                simulate_fmu(
+                    str(path), fmi_type=kind, solver="Euler", output=[v.name for v in outputs(description)]
+                )
+                for path, description in zip(paths, (second, third))
+            ]
+            assert len(results[0]) == len(results[1]) > 100
+            np.testing.assert_array_equal(results[0]["time"], results[1]["time"])
+            compared = 0
+            for variable in outputs(third):
+                values = results[1][variable.name].reshape(len(results[1]), -1)
+                for element in range(values.shape[1]):
+                    name = by_reference[variable.valueReference + element]
+                    np.testing.assert_array_equal(values[:, element], results[0][name], err_msg=f"{paths[1].name} {name}")
+                    compared += 1
+            assert compared == len(results[0].dtype.names) - 1
 
 
 def test_arrays_and_enumerations_are_set_in_fmpy(unzipped3, description3):

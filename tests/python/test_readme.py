@@ -15,6 +15,7 @@ def test_python_code_with_the_fmu(fmu, tmp_path, block):
     for file in [*fmu.parent.glob("*.fmu"), *fmu.parent.glob("*.ssp")]:
         shutil.copy(file, tmp_path)
     shutil.copy(fmu, tmp_path / "LmpcQuadrotor.fmu")
+    shutil.copytree(fmu.parent / "fmi3", tmp_path / "fmi3")
     done = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True, timeout=120,
                           env=os.environ | {"MPLBACKEND": "Agg"})
     assert done.returncode == 0, done.stderr

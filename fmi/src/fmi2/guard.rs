@@ -8,6 +8,9 @@ use crate::guard::guarded;
 use crate::lifecycle::Function;
 use crate::stack::with_room;
 
+/// What a function does with an instance.
+type Body<'a> = &'a mut dyn FnMut(&mut dyn Component) -> Result<(), CallError>;
+
 /// Calls `body` with the instance.
 ///
 /// # Safety
@@ -15,8 +18,17 @@ use crate::stack::with_room;
 pub(super) unsafe fn call(
     component: Pointer,
     function: &Function,
-    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
+    mut body: impl FnMut(&mut dyn Component) -> Result<(), CallError>,
 ) -> Status {
+    // SAFETY: the caller's promise.
+    unsafe { found(component, function, &mut body) }
+}
+
+/// [`call`], compiled once for all functions: there are many.
+///
+/// # Safety
+/// As for [`call`].
+unsafe fn found(component: Pointer, function: &Function, body: Body<'_>) -> Status {
     let _environment = DefaultEnvironment::enter();
     // SAFETY: the caller's promise.
     match unsafe { component.cast::<Box<dyn Component>>().as_mut() } {
@@ -26,11 +38,7 @@ pub(super) unsafe fn call(
 }
 
 /// Calls `body` if the table of legal calls allows it.
-fn checked(
-    instance: &mut dyn Component,
-    function: &Function,
-    body: impl FnOnce(&mut dyn Component) -> Result<(), CallError>,
-) -> Status {
+fn checked(instance: &mut dyn Component, function: &Function, body: Body<'_>) -> Status {
     let is_allowed = function.is_allowed_in(instance.phase());
     match guarded(instance, function.name, is_allowed, body) {
         Ok(()) => Status::Ok,
@@ -87,9 +95,9 @@ mod tests {
     fn panic_becomes_fatal() {
         let mut log = Log::new();
         let mut instance = instance(&mut log);
-        let status = checked(&mut instance, &RESET, |_| panic!("a defect #{}", 1));
+        let status = checked(&mut instance, &RESET, &mut |_| panic!("a defect #{}", 1));
         assert_eq!(status, Status::Fatal);
-        assert_eq!(checked(&mut instance, &RESET, |instance| instance.reset()), Status::Fatal);
+        assert_eq!(checked(&mut instance, &RESET, &mut |instance| instance.reset()), Status::Fatal);
         assert_eq!(log.len(), 2);
         assert_eq!((log[0].0, log[0].1.as_str()), (Status::Fatal, "logStatusFatal"));
         assert_eq!(log[0].2, "fmi2Reset: internal error; the instance can only be freed: a defect ##1");

@@ -102,7 +102,7 @@ macro_rules! export_fmi3 {
             ) -> fmi3_types::Instance {
                 // SAFETY: the importer keeps the contract of the specification.
                 unsafe {
-                    $crate::fmi3::functions::instantiate_model_exchange(
+                    $crate::fmi3::instantiate::model_exchange(
                         MODELS,
                         instance_name,
                         instantiation_token,
@@ -132,7 +132,7 @@ macro_rules! export_fmi3 {
             ) -> fmi3_types::Instance {
                 // SAFETY: the importer keeps the contract of the specification.
                 unsafe {
-                    $crate::fmi3::functions::instantiate_co_simulation(
+                    $crate::fmi3::instantiate::co_simulation(
                         MODELS,
                         instance_name,
                         instantiation_token,
@@ -165,7 +165,7 @@ macro_rules! export_fmi3 {
             ) -> fmi3_types::Instance {
                 // SAFETY: the importer keeps the contract of the specification.
                 unsafe {
-                    $crate::fmi3::functions::instantiate_scheduled_execution(
+                    $crate::fmi3::instantiate::scheduled_execution(
                         MODELS,
                         instance_name,
                         instantiation_token,

@@ -5,14 +5,13 @@
 use std::ffi::{CStr, c_char};
 
 use super::guard::call;
-use super::instantiate::{Request, Wanted, free, instantiate};
+use super::instantiate::free;
 use super::lifecycle;
 use super::types::*;
 use super::values;
 use crate::component::{Component, SavedState, write_bytes};
 use crate::error::CallError;
 use crate::exchange::same_count;
-use crate::library::LibraryModel;
 use crate::pointer::{array, array_mut, keep, reference, reference_mut, release, string};
 
 const NO_CLOCKS: &str = "Clock";
@@ -85,96 +84,6 @@ macro_rules! clocks {
 /// Version of the interface.
 pub fn get_version() -> *const c_char {
     c"3.0".as_ptr()
-}
-
-/// Makes an instance of one of the `models` for model exchange; NULL if it cannot.
-///
-/// # Safety
-/// As in the FMI 3.0 specification: strings are NULL or end with NUL, the logger and its environment stay valid as long as the
-/// instance.
-#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
-pub unsafe fn instantiate_model_exchange(
-    models: &[LibraryModel],
-    name: String,
-    token: String,
-    _resource_path: String,
-    _visible: Boolean,
-    logging_on: Boolean,
-    environment: InstanceEnvironment,
-    callback: Option<LogMessageCallback>,
-) -> Instance {
-    let (function, wanted) = ("fmi3InstantiateModelExchange", Wanted::ModelExchange);
-    // SAFETY: this function's contract.
-    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
-}
-
-/// Makes an instance of one of the `models` for co-simulation; NULL if it cannot.
-///
-/// # Safety
-/// As for [`instantiate_model_exchange`].
-#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
-pub unsafe fn instantiate_co_simulation(
-    models: &[LibraryModel],
-    name: String,
-    token: String,
-    _resource_path: String,
-    _visible: Boolean,
-    logging_on: Boolean,
-    event_mode_used: Boolean,
-    _early_return_allowed: Boolean,
-    _required_intermediate_variables: *const ValueReference,
-    intermediate_variables: usize,
-    environment: InstanceEnvironment,
-    callback: Option<LogMessageCallback>,
-    _intermediate_update: Option<IntermediateUpdateCallback>,
-) -> Instance {
-    let function = "fmi3InstantiateCoSimulation";
-    let wanted = Wanted::CoSimulation { event_mode: event_mode_used != FALSE, intermediate_variables };
-    // SAFETY: this function's contract.
-    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
-}
-
-/// Refuses to make an instance for scheduled execution, which is not offered.
-///
-/// # Safety
-/// As for [`instantiate_model_exchange`].
-#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
-pub unsafe fn instantiate_scheduled_execution(
-    models: &[LibraryModel],
-    name: String,
-    token: String,
-    _resource_path: String,
-    _visible: Boolean,
-    logging_on: Boolean,
-    environment: InstanceEnvironment,
-    callback: Option<LogMessageCallback>,
-    _clock_update: Option<ClockUpdateCallback>,
-    _lock_preemption: Option<PreemptionCallback>,
-    _unlock_preemption: Option<PreemptionCallback>,
-) -> Instance {
-    let (function, wanted) = ("fmi3InstantiateScheduledExecution", Wanted::ScheduledExecution);
-    // SAFETY: this function's contract.
-    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
-}
-
-/// # Safety
-/// As for [`instantiate_model_exchange`].
-unsafe fn made(
-    models: &[LibraryModel],
-    function: &'static str,
-    wanted: Wanted,
-    texts: [String; 2],
-    logging_on: Boolean,
-    environment: InstanceEnvironment,
-    callback: Option<LogMessageCallback>,
-) -> Instance {
-    // SAFETY: this function's contract.
-    let text = |text: String| (!text.is_null()).then(|| unsafe { CStr::from_ptr(text) });
-    let ([name, token], logging_on) = (texts.map(text), logging_on != FALSE);
-    // SAFETY: this function's contract.
-    unsafe {
-        instantiate(models, &Request { function, wanted, name, token, logging_on, environment, callback })
-    }
 }
 
 /// Frees an instance.

@@ -17,6 +17,9 @@ pub(super) struct Instance {
     pub layout: Layout,
 }
 
+/// What a function does with an instance.
+type Body<'a> = &'a mut dyn FnMut(&mut dyn Component, &Layout) -> Result<(), CallError>;
+
 /// Calls `body` with the instance if the table of legal calls allows it.
 ///
 /// # Safety
@@ -24,8 +27,17 @@ pub(super) struct Instance {
 pub(super) unsafe fn call(
     pointer: Pointer,
     function: &Function,
-    body: impl FnOnce(&mut dyn Component, &Layout) -> Result<(), CallError>,
+    mut body: impl FnMut(&mut dyn Component, &Layout) -> Result<(), CallError>,
 ) -> Status {
+    // SAFETY: the caller's promise.
+    unsafe { checked(pointer, function, &mut body) }
+}
+
+/// [`call`], compiled once for all functions: there are many.
+///
+/// # Safety
+/// As for [`call`].
+unsafe fn checked(pointer: Pointer, function: &Function, body: Body<'_>) -> Status {
     let _environment = DefaultEnvironment::enter();
     // SAFETY: the caller's promise.
     let Some(Instance { component, layout }) = (unsafe { pointer.cast::<Instance>().as_mut() }) else {
@@ -33,7 +45,7 @@ pub(super) unsafe fn call(
     };
     with_room(|| {
         let is_allowed = function.is_allowed_in(component.phase());
-        match guarded(&mut **component, function.name, is_allowed, |component| body(component, layout)) {
+        match guarded(&mut **component, function.name, is_allowed, &mut |component| body(component, layout)) {
             Ok(()) => Status::Ok,
             Err(Severity::Discard) => Status::Discard,
             Err(Severity::Error) => Status::Error,

@@ -7,7 +7,10 @@ use thiserror::Error;
 
 use super::guard::Instance;
 use super::logger::sink;
-use super::types::{Instance as Pointer, InstanceEnvironment, LogMessageCallback};
+use super::types::{
+    Boolean, ClockUpdateCallback, FALSE, Instance as Pointer, InstanceEnvironment,
+    IntermediateUpdateCallback, LogMessageCallback, PreemptionCallback, String as Text, ValueReference,
+};
 use crate::floating_point::DefaultEnvironment;
 use crate::guard::message_of;
 use crate::library::{LibraryModel, find};
@@ -60,6 +63,96 @@ pub(super) struct Request<'a> {
     pub logging_on: bool,
     pub environment: InstanceEnvironment,
     pub callback: Option<LogMessageCallback>,
+}
+
+/// Makes an instance of one of the `models` for model exchange; NULL if it cannot.
+///
+/// # Safety
+/// As in the FMI 3.0 specification: strings are NULL or end with NUL, the logger and its environment stay valid as long as the
+/// instance.
+#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
+pub unsafe fn model_exchange(
+    models: &[LibraryModel],
+    name: Text,
+    token: Text,
+    _resource_path: Text,
+    _visible: Boolean,
+    logging_on: Boolean,
+    environment: InstanceEnvironment,
+    callback: Option<LogMessageCallback>,
+) -> Pointer {
+    let (function, wanted) = ("fmi3InstantiateModelExchange", Wanted::ModelExchange);
+    // SAFETY: this function's contract.
+    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
+}
+
+/// Makes an instance of one of the `models` for co-simulation; NULL if it cannot.
+///
+/// # Safety
+/// As for [`model_exchange`].
+#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
+pub unsafe fn co_simulation(
+    models: &[LibraryModel],
+    name: Text,
+    token: Text,
+    _resource_path: Text,
+    _visible: Boolean,
+    logging_on: Boolean,
+    event_mode_used: Boolean,
+    _early_return_allowed: Boolean,
+    _required_intermediate_variables: *const ValueReference,
+    intermediate_variables: usize,
+    environment: InstanceEnvironment,
+    callback: Option<LogMessageCallback>,
+    _intermediate_update: Option<IntermediateUpdateCallback>,
+) -> Pointer {
+    let function = "fmi3InstantiateCoSimulation";
+    let wanted = Wanted::CoSimulation { event_mode: event_mode_used != FALSE, intermediate_variables };
+    // SAFETY: this function's contract.
+    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
+}
+
+/// Refuses to make an instance for scheduled execution, which is not offered.
+///
+/// # Safety
+/// As for [`model_exchange`].
+#[expect(clippy::too_many_arguments, reason = "those of the standard, and the models")]
+pub unsafe fn scheduled_execution(
+    models: &[LibraryModel],
+    name: Text,
+    token: Text,
+    _resource_path: Text,
+    _visible: Boolean,
+    logging_on: Boolean,
+    environment: InstanceEnvironment,
+    callback: Option<LogMessageCallback>,
+    _clock_update: Option<ClockUpdateCallback>,
+    _lock_preemption: Option<PreemptionCallback>,
+    _unlock_preemption: Option<PreemptionCallback>,
+) -> Pointer {
+    let (function, wanted) = ("fmi3InstantiateScheduledExecution", Wanted::ScheduledExecution);
+    // SAFETY: this function's contract.
+    unsafe { made(models, function, wanted, [name, token], logging_on, environment, callback) }
+}
+
+/// # Safety
+/// As for [`model_exchange`].
+unsafe fn made(
+    models: &[LibraryModel],
+    function: &'static str,
+    wanted: Wanted,
+    texts: [Text; 2],
+    logging_on: Boolean,
+    environment: InstanceEnvironment,
+    callback: Option<LogMessageCallback>,
+) -> Pointer {
+    // SAFETY: this function's contract.
+    let text = |text: Text| (!text.is_null()).then(|| unsafe { CStr::from_ptr(text) });
+    let ([name, token], logging_on) = (texts.map(text), logging_on != FALSE);
+    // SAFETY: this function's contract.
+    unsafe {
+        instantiate(models, &Request { function, wanted, name, token, logging_on, environment, callback })
+    }
 }
 
 /// A new instance of one of the `models`; NULL, and a message, if the request is refused.

@@ -27,6 +27,25 @@ impl Array {
     }
 }
 
+/// An [`Array`] whose elements have the names of a stem and their endings. It is called as the stem unless another name is given.
+///
+/// ```
+/// let position = fmi::array!("position", [".x", ".y", ".z"], "Position: north, east, down");
+/// assert_eq!(position.name, "position");
+/// assert_eq!(position.components, ["position.x", "position.y", "position.z"]);
+/// let quaternion = fmi::array!("attitude.q" as "quaternion", ["0", "1", "2", "3"], "Attitude quaternion");
+/// assert_eq!((quaternion.name, quaternion.components[0]), ("quaternion", "attitude.q0"));
+/// ```
+#[macro_export]
+macro_rules! array {
+    ($stem:literal, [$($ending:literal),+], $description:literal) => {
+        $crate::array!($stem as $stem, [$($ending),+], $description)
+    };
+    ($stem:literal as $name:literal, [$($ending:literal),+], $description:literal) => {
+        $crate::variables::Array::new($name, $description, &[$(concat!($stem, $ending)),+])
+    };
+}
+
 /// Fails to compile if the elements of an array are not neighbours in the table.
 pub(crate) const fn check_arrays<M: Model>() {
     let mut group = 0;

@@ -4,12 +4,12 @@
 
 use std::f64::consts::PI;
 
+use fmi::array;
 use fmi::variables::{Array, Variable};
 use quadrotor::Outputs;
 
 use super::ClosedLoop;
 use crate::quantities::{ANGLE, POSITION};
-use crate::tables::arrays::array;
 use crate::tables::rows::{output, within};
 use crate::tables::{motion, steering};
 

@@ -1,12 +1,12 @@
 //! The inputs: what is asked for, and what is measured.
 
+use fmi::array;
 use fmi::variables::{Array, Field, Variable};
 use quadrotor::{ControlInputs, Inputs, PositionReference, Target};
 use serde::{Deserialize, Serialize};
 
 use super::{Controller, MeasuredMotion};
 use crate::quantities::{ANGLE, ANGULAR_VELOCITY, NUMBER, POSITION, ROTOR_SPEED, VELOCITY};
-use crate::tables::arrays::array;
 use crate::tables::references::{self, Commanded};
 
 /// What is asked for, and what is measured.

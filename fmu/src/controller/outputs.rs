@@ -2,12 +2,12 @@
 //!
 //! Outputs at a communication point do not depend on the inputs set there: these act from then on.
 
+use fmi::array;
 use fmi::variables::{Array, Variable};
 use quadrotor::{Activity, PositionReference};
 
 use super::{Controller, ControllerOutputs};
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
-use crate::tables::arrays::array;
 use crate::tables::rows::{at_least, output};
 use crate::tables::steering::{self, Steered};
 

@@ -1,10 +1,10 @@
 //! The inputs.
 
+use fmi::array;
 use fmi::variables::{Array, Field, Variable};
 
 use super::QuadrotorPlant;
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
-use crate::tables::arrays::array;
 use crate::tables::disturbances;
 
 /// A real input within [minimum, maximum], at a field of [`super::Commands`].

@@ -1,27 +1,26 @@
 //! The outputs, and the derivatives of those that are states.
 
+use fmi::array;
 use fmi::variables::{Array, Variable};
 
 use super::{Observed, QuadrotorPlant};
 use crate::quantities::{ACCELERATION, ANGULAR_ACCELERATION, NUMBER, RATE, ROTOR_ACCELERATION, VELOCITY};
-use crate::tables::arrays::array;
 use crate::tables::motion;
-use crate::tables::rows::{output, within};
+use crate::tables::rows::{at_least, output};
 
 /// The motion of the vehicle, its rotors and its battery, as the closed loop shows it.
 pub(super) const MOTION: [Variable<QuadrotorPlant>; 34] = motion::motion();
 
 /// A state that the closed loop does not show.
-pub(super) const DISCHARGE: [Variable<QuadrotorPlant>; 1] = [within(
+pub(super) const DISCHARGE: [Variable<QuadrotorPlant>; 1] = [at_least(
     output(
         "battery.discharge",
         &NUMBER,
         &["initial.discharge"],
         |observed: &Observed| observed.discharge,
-        "Drawn share of the battery's charge: 0 is full; constant without airframe.battery.sag",
+        "Drawn share of the battery's charge: 0 is full, beyond 1 it is empty; constant without airframe.battery.sag",
     ),
     0.0,
-    2.0,
 )];
 
 // The initial values of derivatives depend on inputs and parameters whose names begin so.

@@ -1,17 +1,7 @@
 //! The arrays of FMI 3.0: vectors whose components are neighbours in the table of variables.
 
+use fmi::array;
 use fmi::variables::Array;
-
-/// An array whose components have the names of the stem and their endings; it is called as the stem unless another name is given.
-macro_rules! array {
-    ($stem:literal, [$($ending:literal),+], $description:literal) => {
-        array!($stem as $stem, [$($ending),+], $description)
-    };
-    ($stem:literal as $name:literal, [$($ending:literal),+], $description:literal) => {
-        fmi::variables::Array::new($name, $description, &[$(concat!($stem, $ending)),+])
-    };
-}
-pub(crate) use array;
 
 /// What is asked for.
 #[rustfmt::skip]

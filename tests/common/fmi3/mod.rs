@@ -3,4 +3,5 @@
 pub mod description;
 pub mod instance;
 pub mod library;
+pub mod log;
 pub mod subject;

@@ -4,8 +4,9 @@ use std::ffi::{CString, c_char};
 use std::ptr;
 
 use super::{all, closed_loop, lag, oscillator};
-use crate::common::fmi3::instance::{Instance, Log, Step, record};
+use crate::common::fmi3::instance::{Instance, Step};
 use crate::common::fmi3::library::{ERROR, Instance as Pointer, LogMessage, OK};
+use crate::common::fmi3::log::{Log, record};
 use crate::common::fmi3::subject::Subject;
 
 /// What a call of `fmi3InstantiateCoSimulation` may differ in.
