@@ -12,8 +12,9 @@ import pytest
 @pytest.mark.parametrize("block", documents.of("python", "fmpy"), ids=str)
 def test_python_code_with_the_fmu(fmu, tmp_path, block):
     # The blocks that fly the MAVLink vehicle: sitl/test_readme_flights.py.
+    for file in [*fmu.parent.glob("*.fmu"), *fmu.parent.glob("*.ssp")]:
+        shutil.copy(file, tmp_path)
     shutil.copy(fmu, tmp_path / "LmpcQuadrotor.fmu")
-    shutil.copy(fmu.with_name("QuadrotorPlant.fmu"), tmp_path)
     shutil.copytree(fmu.parent / "fmi3", tmp_path / "fmi3")
     done = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True, timeout=120,
                           env=os.environ | {"MPLBACKEND": "Agg"})
