@@ -80,15 +80,22 @@ def test_the_body_flies_as_the_vehicle_does(program, body, tmp_path):
     plan.write_text("QGC WPL 110\n" + "\n".join(rows) + "\n")
     fmu, map_file = body
 
-    def fly(name, *options):
-        result = run(program, "--mission", plan, "--autostart", "--speed", "max", "--duration", 50, "--home", "47,8,400", "--link", "udpin:0",
+    def fly(*options):
+        speed = [] if "--speed" in options else ["--speed", "max"]
+        result = run(program, "--mission", plan, "--autostart", *speed, "--duration", 50, "--home", "47,8,400", "--link", "udpin:0",
                      *options)
         assert result.returncode == 0, result.stderr
         line = next(line for line in result.stderr.splitlines() if "Landing detected" in line)
-        return float(re.search(r"(\d+\.\d+)s ", line)[1])
+        return float(re.search(r"(\d+\.\d+)s ", line)[1]), re.search(r"flight digest (\w+)", result.stdout)[1]
 
-    own, foreign_s = fly("own"), fly("body", "--fmu", fmu, "--map", map_file)
-    assert abs(own - foreign_s) < 0.5, (own, foreign_s)
+    own, (landed_s, digest) = fly(), fly("--fmu", fmu, "--map", map_file)
+    assert abs(own[0] - landed_s) < 0.5, (own, landed_s)
+    # At another pace it is the same flight.
+    assert fly("--fmu", fmu, "--map", map_file, "--speed", "100") == (landed_s, digest)
+    # A record that is full replays up to its end.
+    fly("--fmu", fmu, "--map", map_file, "--record", tmp_path / "record", "--record-size", "2")
+    replayed = run(program, "--replay", tmp_path / "record")
+    assert replayed.returncode == 0 and "the record ends at its size limit" in replayed.stdout, replayed
 
 
 @pytest.mark.parametrize("fault, words", [
