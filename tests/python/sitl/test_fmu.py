@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import common as mavlink
 import foreign
 import records
 import test_hil
+import test_lockstep
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -217,6 +218,16 @@ def test_what_describes_the_fmu_cannot_change_in_flight(start, connect, body, cl
     client.mav.set_attitude_target_send(0, *client.target, 0, [1, 0, 0, 0], 0, 0, 0, 0.5)
     text = client.wait("STATUSTEXT", lambda text: "Set-point" in text.text)
     assert "LmpcQuadrotor follows" in text.text
+
+
+def test_lockstep_waits_for_set_points(start, connect, body):
+    """The same set-points are the same flight, whatever the pace."""
+    fmu, map_file = body
+    flights = []
+    for speed in ("max", "20"):
+        vehicle = start("--fmu", str(fmu), "--map", str(map_file), "--lockstep", "always", "--speed", speed)
+        flights.append((test_lockstep.steer(connect(vehicle), 100), test_lockstep.digest(vehicle)))
+    assert flights[0] == flights[1] and flights[0][0][-1][3] < -0.3, flights[0][0][-1]
 
 
 def test_an_autopilot_flies_a_foreign_plant(start, body):
