@@ -107,9 +107,7 @@ impl Guarded {
             requests,
             responses,
             listener: Listener::new(said),
-            watchdog: Watchdog::new(move || {
-                let _gone = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();
-            }),
+            watchdog: Watchdog::new(move || end(&mut watched.lock().unwrap_or_else(PoisonError::into_inner))),
             slip,
             longest_step: setup.longest_step,
             last_words: VecDeque::new(),
@@ -235,7 +233,7 @@ impl Guarded {
 impl Drop for Guarded {
     fn drop(&mut self) {
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
-        let _gone = child.kill();
+        end(&mut child);
         let _status = child.wait();
     }
 }
@@ -264,7 +262,17 @@ fn wait(child: &Mutex<Child>, longest: Duration) -> Option<std::process::ExitSta
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    let _gone = child.kill();
+    end(&mut child);
     let _status = child.wait();
     None
+}
+
+/// Ends a process, and those that it has started.
+fn end(child: &mut Child) {
+    #[cfg(unix)]
+    if let (Ok(None), Ok(group)) = (child.try_wait(), i32::try_from(child.id())) {
+        // SAFETY: the child still has its number, which is that of its group, too.
+        unsafe { libc::kill(-group, libc::SIGKILL) };
+    }
+    let _gone = child.kill();
 }

@@ -43,11 +43,18 @@ pub(super) fn check(
     choice: &FmuChoice,
     vehicle: &VehicleSettings,
 ) -> Result<Vec<Notice>, Failure> {
-    let (_, mapping) = choice.open(&vehicle.flown_configuration())?;
+    let (fmu, mapping) = choice.open(&vehicle.flown_configuration())?;
     refuse(arguments, vehicle, &mapping)?;
     let note = |severity, text| Notice { severity, text };
     let name = &mapping.model_name;
     let mut notes = vec![note(Severity::Info, format!("the FMU {name} flies as the {}", mapping.role))];
+    if fmu.description().needs_execution_tool {
+        let tool = fmu.description().generation_tool.as_deref().unwrap_or("it does not say which");
+        notes.push(note(
+            Severity::Info,
+            format!("the FMU {name} says that it needs the tool that made it: {tool}"),
+        ));
+    }
     if mapping.role == ForeignRole::ClosedLoop && mapping.armed.is_none() {
         let text = format!(
             "the FMU {name} has no input `armed`: disarming does not stop its rotors, it holds its reference"

@@ -14,6 +14,7 @@ from pymavlink.dialects.v20 import common as mavlink
 import foreign
 import records
 import test_hil
+import test_lockstep
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -80,15 +81,22 @@ def test_the_body_flies_as_the_vehicle_does(program, body, tmp_path):
     plan.write_text("QGC WPL 110\n" + "\n".join(rows) + "\n")
     fmu, map_file = body
 
-    def fly(name, *options):
-        result = run(program, "--mission", plan, "--autostart", "--speed", "max", "--duration", 50, "--home", "47,8,400", "--link", "udpin:0",
+    def fly(*options):
+        speed = [] if "--speed" in options else ["--speed", "max"]
+        result = run(program, "--mission", plan, "--autostart", *speed, "--duration", 50, "--home", "47,8,400", "--link", "udpin:0",
                      *options)
         assert result.returncode == 0, result.stderr
         line = next(line for line in result.stderr.splitlines() if "Landing detected" in line)
-        return float(re.search(r"(\d+\.\d+)s ", line)[1])
+        return float(re.search(r"(\d+\.\d+)s ", line)[1]), re.search(r"flight digest (\w+)", result.stdout)[1]
 
-    own, foreign_s = fly("own"), fly("body", "--fmu", fmu, "--map", map_file)
-    assert abs(own - foreign_s) < 0.5, (own, foreign_s)
+    own, (landed_s, digest) = fly(), fly("--fmu", fmu, "--map", map_file)
+    assert abs(own[0] - landed_s) < 0.5, (own, landed_s)
+    # At another pace it is the same flight.
+    assert fly("--fmu", fmu, "--map", map_file, "--speed", "100") == (landed_s, digest)
+    # A record that is full replays up to its end.
+    fly("--fmu", fmu, "--map", map_file, "--record", tmp_path / "record", "--record-size", "2")
+    replayed = run(program, "--replay", tmp_path / "record")
+    assert replayed.returncode == 0 and "the record ends at its size limit" in replayed.stdout, replayed
 
 
 @pytest.mark.parametrize("fault, words", [
@@ -210,6 +218,16 @@ def test_what_describes_the_fmu_cannot_change_in_flight(start, connect, body, cl
     client.mav.set_attitude_target_send(0, *client.target, 0, [1, 0, 0, 0], 0, 0, 0, 0.5)
     text = client.wait("STATUSTEXT", lambda text: "Set-point" in text.text)
     assert "LmpcQuadrotor follows" in text.text
+
+
+def test_lockstep_waits_for_set_points(start, connect, body):
+    """The same set-points are the same flight, whatever the pace."""
+    fmu, map_file = body
+    flights = []
+    for speed in ("max", "20"):
+        vehicle = start("--fmu", str(fmu), "--map", str(map_file), "--lockstep", "always", "--speed", speed)
+        flights.append((test_lockstep.steer(connect(vehicle), 100), test_lockstep.digest(vehicle)))
+    assert flights[0] == flights[1] and flights[0][0][-1][3] < -0.3, flights[0][0][-1]
 
 
 def test_an_autopilot_flies_a_foreign_plant(start, body):
