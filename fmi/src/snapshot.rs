@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::choice_number::{ChosenNumber, are_consistent};
 use crate::clock::Clock;
 use crate::error::{CallError, SavedStateError};
 use crate::finite::is_finite;
@@ -17,6 +18,8 @@ pub(crate) struct Settings<P, I> {
     pub parameters: P,
     /// Inputs.
     pub inputs: I,
+    /// Enumerations among the parameters that were chosen by number.
+    pub numbers: Vec<ChosenNumber>,
 }
 
 /// The settings of a model.
@@ -52,6 +55,9 @@ impl<M: Model> Snapshot<M> {
             return inconsistent("invalid times");
         }
         self.check_settings()?;
+        if !are_consistent::<M>(&self.settings) {
+            return inconsistent("invalid numbers of enumerations");
+        }
         for derivative in &self.derivatives {
             let is_continuous = continuous::<M>(derivative.reference).is_some();
             if !(1..=MAXIMUM_ORDER).contains(&derivative.order) || !is_continuous {
@@ -94,7 +100,10 @@ impl<M: Model> Snapshot<M> {
                 Role::Parameter { field, .. } => {
                     variable.check_range(field.get(&self.settings.parameters))?;
                 }
-                Role::Output { .. } | Role::Derivative { .. } | Role::CalculatedParameter { .. } => {}
+                Role::Output { .. }
+                | Role::Number { .. }
+                | Role::Derivative { .. }
+                | Role::CalculatedParameter { .. } => {}
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! Getting and setting the values of variables.
 
+use crate::choice_number::{number, set_number, set_parameter};
 use crate::continuous::states;
 use crate::error::CallError;
 use crate::finite_values::finite;
@@ -22,7 +23,7 @@ impl<M: Model> Instance<M> {
             typed::<M>(reference, value_type)?;
         }
         for (place, &reference) in references.iter().enumerate() {
-            let value = self.value(typed::<M>(reference, value_type)?)?;
+            let value = self.value(reference, typed::<M>(reference, value_type)?)?;
             put(place, value);
         }
         Ok(())
@@ -62,7 +63,15 @@ impl<M: Model> Instance<M> {
                 Role::Parameter { tunable: false, .. } if self.phase().is_running() => {
                     return Err(CallError::Fixed { name });
                 }
-                Role::Parameter { field, .. } => field.set(&mut settings.parameters, value),
+                Role::Parameter { field, .. } => set_parameter::<M>(&mut settings, variable, field, value),
+                Role::Number { .. } if self.phase().is_running() && variable.variability() == "fixed" => {
+                    return Err(CallError::Fixed { name });
+                }
+                Role::Number { of } => {
+                    if let Value::Integer(number) = value {
+                        set_number::<M>(&mut settings, reference, of, number);
+                    }
+                }
                 Role::Output { .. } => return Err(CallError::ReadOnly { name, kind: "an output" }),
                 Role::Derivative { .. } => return Err(CallError::ReadOnly { name, kind: "a derivative" }),
                 Role::CalculatedParameter { .. } => {
@@ -118,10 +127,11 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    fn value(&mut self, variable: &Variable<M>) -> Result<Value, CallError> {
+    fn value(&mut self, reference: ValueReference, variable: &Variable<M>) -> Result<Value, CallError> {
         Ok(match &variable.role {
             Role::Input(field) => field.get(&self.settings.inputs),
             Role::Parameter { field, .. } => field.get(&M::as_read(&self.settings.parameters)),
+            Role::Number { .. } => Value::Integer(number::<M>(&self.settings, reference)),
             Role::CalculatedParameter { get, .. } => finite(variable, Value::Real(get(self.model()?)))?,
             Role::Output { signal, .. } => finite(variable, signal.get(self.outputs()?))?,
             Role::Derivative { get, .. } => finite(variable, Value::Real(get(self.outputs()?)))?,

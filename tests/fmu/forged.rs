@@ -20,7 +20,7 @@ type Payload = (
     u32,
     u32,
     (f64, Option<f64>, f64),
-    (Configuration, Inputs),
+    (Configuration, Inputs, Vec<(u32, i32, i32)>),
     Vec<(u32, i32, f64)>,
     Option<SimulationState>,
 );
@@ -50,17 +50,25 @@ fn absurd_content_with_a_good_checksum_is_refused() {
     let mut instance = Instance::new(closed_loop());
     let payload: Payload = decoded(&good);
     assert_eq!(encoded(&good, &payload), good);
+    // Numbers of enumerations: of no enumeration, twice, not the item that flies, of no item.
+    let kind = closed_loop().description.reference("controller.kind_number");
+    for numbers in [vec![(0, 2, 1)], vec![(kind, 2, 1); 2], vec![(kind, 1, 1)], vec![(kind, 2, 9)]] {
+        let mut payload = payload.clone();
+        payload.3.2 = numbers;
+        assert_eq!(instance.deserialize(&encoded(&good, &payload)), Err(ERROR), "{payload:?}");
+        instance.log.last();
+    }
     let mut refused = |change: fn(&mut Payload)| {
         let mut payload = payload.clone();
         change(&mut payload);
         assert_eq!(instance.deserialize(&encoded(&good, &payload)), Err(ERROR), "{payload:?}");
         instance.log.last();
     };
-    refused(|(_, _, _, (_, inputs), ..)| inputs.reference.position_m.x = f64::NAN);
-    refused(|(_, _, _, (_, inputs), ..)| inputs.reference.position_m.x = 1e7);
-    refused(|(_, _, _, (configuration, _), ..)| configuration.airframe.mass_kg = 0.0);
-    refused(|(_, _, _, (configuration, _), ..)| configuration.controllers.altitude.terms = 1_000_000);
-    refused(|(_, _, _, (configuration, _), ..)| configuration.limits.thrust_min = 20.0);
+    refused(|(_, _, _, (_, inputs, _), ..)| inputs.reference.position_m.x = f64::NAN);
+    refused(|(_, _, _, (_, inputs, _), ..)| inputs.reference.position_m.x = 1e7);
+    refused(|(_, _, _, (configuration, ..), ..)| configuration.airframe.mass_kg = 0.0);
+    refused(|(_, _, _, (configuration, ..), ..)| configuration.controllers.altitude.terms = 1_000_000);
+    refused(|(_, _, _, (configuration, ..), ..)| configuration.limits.thrust_min = 20.0);
     refused(|(_, _, clock, ..)| *clock = (0.0, None, 0.0));
     refused(|(.., run)| *run = None);
     // The sixth place in the life: lost.

@@ -20,6 +20,11 @@ fn settings(subject: &'static Subject, instance: &mut Instance) -> Vec<u64> {
         .collect()
 }
 
+/// A value of an integer; of the number of an enumeration the one that the enumeration gets, too.
+fn whole(variable: &Variable) -> i32 {
+    if variable.number("max") < Some(17.0) { 2 } else { 17 }
+}
+
 fn what_is_set_is_read_back(subject: &'static Subject) {
     let mut instance = Instance::new(subject);
     for variable in settable(subject) {
@@ -31,7 +36,7 @@ fn what_is_set_is_read_back(subject: &'static Subject) {
                     assert_eq!(instance.set_real(&[(name, value)]), OK);
                 }
             }
-            "Integer" => assert_eq!(instance.set_integer(&[(name, 17)]), OK),
+            "Integer" => assert_eq!(instance.set_integer(&[(name, whole(variable))]), OK),
             "Enumeration" => assert_eq!(instance.set_integer(&[(name, 2)]), OK),
             _ => assert_eq!(instance.set_boolean(&[(name, false)]), OK),
         }
@@ -46,7 +51,7 @@ fn what_is_set_is_read_back(subject: &'static Subject) {
                 // Sample times are kept in microseconds.
                 assert!((got - expected).abs() <= 1e-12 * expected.abs(), "{name}: {got}");
             }
-            "Integer" => assert_eq!(instance.integer(name), 17, "{name}"),
+            "Integer" => assert_eq!(instance.integer(name), whole(variable), "{name}"),
             "Enumeration" => assert_eq!(instance.integer(name), 2, "{name}"),
             _ => assert!(!instance.boolean(name), "{name}"),
         }
@@ -219,6 +224,42 @@ fn what_is_not_settable_stays(subject: &'static Subject) {
         assert_eq!(status, ERROR, "{name} is fixed");
         assert!(instance.log.last().text.contains(name));
     }
+}
+
+/// An enumeration can be chosen by an integer of its own, which wins until it is 0 again, whatever is set first.
+#[test]
+fn enumerations_can_be_chosen_by_number() {
+    let subject = crate::lag();
+    let settled = |values: &[(&str, i32)]| {
+        let mut instance = Instance::new(subject);
+        for value in values {
+            assert_eq!(instance.set_integer(&[*value]), OK, "{:?}", instance.log.take());
+        }
+        instance.initialize();
+        assert_eq!(instance.do_step(0.0, 1.0), OK);
+        (instance.integer("sign"), instance.integer("sign_number"), instance.real("y") > 0.0)
+    };
+    assert_eq!(settled(&[]), (1, 0, true));
+    assert_eq!(settled(&[("sign_number", 2)]), (2, 2, false));
+    // An importer that writes all start values, in both orders.
+    assert_eq!(settled(&[("sign_number", 2), ("sign", 1)]), (2, 2, false));
+    assert_eq!(settled(&[("sign", 2), ("sign_number", 0)]), (2, 0, false));
+    assert_eq!(settled(&[("sign_number", 1), ("sign", 2), ("sign_number", 0)]), (2, 0, false));
+    let mut instance = Instance::new(subject);
+    assert_eq!(instance.set_integer(&[("sign_number", 3)]), ERROR);
+    assert!(instance.log.last().text.contains("sign_number = 3; allowed 0 to 2"));
+    // It is saved, and not changed in a run.
+    assert_eq!(instance.set_integer(&[("sign_number", 2)]), OK);
+    instance.initialize();
+    let saved = instance.get_state();
+    let bytes = instance.serialize(saved);
+    assert_eq!(instance.set_integer(&[("sign_number", 0)]), ERROR);
+    let mut other = Instance::new(subject);
+    let state = other.deserialize(&bytes).expect("our own bytes");
+    assert_eq!(other.set_state(state), OK);
+    assert_eq!((other.integer("sign"), other.integer("sign_number")), (2, 2));
+    other.free_state(state);
+    instance.free_state(saved);
 }
 
 /// C has no Booleans; anything but 0 is true.

@@ -15,7 +15,9 @@ pub(super) fn feed_through<M: Model>(unknown: &Variable<M>) -> Vec<ValueReferenc
 /// The inputs and parameters that the initial value of an unknown depends on; `None` if it is not an unknown.
 pub(super) fn initial<M: Model>(unknown: &Variable<M>) -> Option<Vec<ValueReference>> {
     let names = unknown.initially_depends_on()?;
-    Some(references::<M>(names, |variable| matches!(variable.role, Role::Input(_) | Role::Parameter { .. })))
+    Some(references::<M>(names, |variable| {
+        matches!(variable.role, Role::Input(_) | Role::Parameter { .. } | Role::Number { .. })
+    }))
 }
 
 /// The variables of a kind whose names begin so.

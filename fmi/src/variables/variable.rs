@@ -37,6 +37,12 @@ pub enum Role<M: Model> {
         /// Type, range and place.
         field: Field<M::Parameters>,
     },
+    /// A parameter that is an enumeration, as an integer: 0 leaves it to the enumeration, a number of an item wins over it. For importers
+    /// that know no enumerations.
+    Number {
+        /// Name of the enumeration.
+        of: &'static str,
+    },
     /// The time derivative of an output that is a state of [`Continuous`](crate::Continuous).
     Derivative {
         /// Name of the state.
@@ -115,6 +121,11 @@ impl<M: Model> Variable<M> {
         Self { name, description, role: Role::Parameter { tunable: true, field } }
     }
 
+    /// The number of the item of the parameter `of`, which is an enumeration; 0 leaves the choice to that parameter.
+    pub const fn number(name: &'static str, description: &'static str, of: &'static str) -> Self {
+        Self { name, description, role: Role::Number { of } }
+    }
+
     /// A number that is computed from parameters, with their names, or beginnings of names.
     pub const fn calculated(
         name: &'static str,
@@ -132,6 +143,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.value_type(),
             Role::Output { signal, .. } => signal.value_type(),
             Role::Parameter { field, .. } => field.value_type(),
+            Role::Number { .. } => Type::Integer,
             Role::Derivative { .. } | Role::CalculatedParameter { .. } => Type::Real,
         }
     }
@@ -142,6 +154,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.quantity(),
             Role::Output { signal, .. } => signal.quantity(),
             Role::Parameter { field, .. } => field.quantity(),
+            Role::Number { .. } => None,
             Role::Derivative { quantity, .. } | Role::CalculatedParameter { quantity, .. } => Some(quantity),
         }
     }
@@ -152,6 +165,7 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.choice(),
             Role::Output { signal, .. } => signal.choice(),
             Role::Parameter { field, .. } => field.choice(),
+            Role::Number { .. } => None,
             Role::Derivative { .. } | Role::CalculatedParameter { .. } => None,
         }
     }
@@ -161,7 +175,7 @@ impl<M: Model> Variable<M> {
         match self.role {
             Role::Input(_) => "input",
             Role::Output { .. } => "output",
-            Role::Parameter { .. } => "parameter",
+            Role::Parameter { .. } | Role::Number { .. } => "parameter",
             Role::Derivative { .. } => "local",
             Role::CalculatedParameter { .. } => "calculatedParameter",
         }
@@ -174,6 +188,7 @@ impl<M: Model> Variable<M> {
             Role::Derivative { .. } => "continuous",
             Role::Input(_) | Role::Output { .. } => "discrete",
             Role::Parameter { tunable: false, .. } => "fixed",
+            Role::Number { of } => named::<M>(of).map_or("fixed", |(_, other)| other.variability()),
             // They may follow from tunable parameters.
             Role::Parameter { tunable: true, .. } | Role::CalculatedParameter { .. } => "tunable",
         }
@@ -185,6 +200,10 @@ impl<M: Model> Variable<M> {
             Role::Input(field) => field.range(),
             Role::Output { signal, .. } => signal.range(),
             Role::Parameter { field, .. } => field.range(),
+            Role::Number { of } => {
+                let items = named::<M>(of).and_then(|(_, other)| other.range().1);
+                (Some(Value::Integer(0)), items)
+            }
             Role::Derivative { .. } | Role::CalculatedParameter { .. } => (None, None),
         }
     }
@@ -194,6 +213,7 @@ impl<M: Model> Variable<M> {
         match &self.role {
             Role::Input(field) => Some(field.get(&M::Inputs::default())),
             Role::Parameter { field, .. } => Some(field.get(&M::Parameters::default())),
+            Role::Number { .. } => Some(Value::Integer(0)),
             Role::Output { .. } | Role::Derivative { .. } | Role::CalculatedParameter { .. } => None,
         }
     }
@@ -205,7 +225,7 @@ impl<M: Model> Variable<M> {
                 Some(initially_depends_on)
             }
             Role::CalculatedParameter { depends_on, .. } => Some(depends_on),
-            Role::Input(_) | Role::Parameter { .. } => None,
+            Role::Input(_) | Role::Parameter { .. } | Role::Number { .. } => None,
         }
     }
 
@@ -225,6 +245,11 @@ impl<M: Model> Variable<M> {
             _ => Ok(()),
         }
     }
+}
+
+/// The variable with this name.
+fn named<M: Model>(name: &str) -> Option<(ValueReference, &'static Variable<M>)> {
+    variables::<M>().find(|(_, variable)| variable.name == name)
 }
 
 /// All variables of a model with their value references.

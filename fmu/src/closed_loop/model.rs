@@ -9,9 +9,9 @@ use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, Simul
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
 use crate::quantities;
-use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
+use crate::tables::{arrays, numbers};
 
 /// The quadrotor with its controllers.
 pub struct ClosedLoop(Simulation);
@@ -35,6 +35,8 @@ impl Model for ClosedLoop {
         &outputs::ERRORS,
         &outputs::ACTIVITY,
         &parameters::TABLE,
+        &numbers::airframe(),
+        &numbers::controllers(),
         &figures::figures(),
     ];
     const ARRAYS: &'static [&'static [Array]] = &[

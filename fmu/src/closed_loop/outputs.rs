@@ -31,7 +31,7 @@ pub(super) const ERRORS: [Variable<ClosedLoop>; 4] = [
 ];
 
 /// How the controllers came to their last inputs.
-pub(super) const ACTIVITY: [Variable<ClosedLoop>; 9] = steering::activity();
+pub(super) const ACTIVITY: [Variable<ClosedLoop>; 12] = steering::activity();
 
 /// Arrays that only the closed loop has.
 pub(super) const ARRAYS: &[Array] =

@@ -94,3 +94,17 @@ pub(super) const TABLE: [Variable<Controller>; 2] = [
         },
     ),
 ];
+
+/// The same as integers.
+pub(super) const NUMBERS: [Variable<Controller>; 2] = [
+    Variable::number(
+        "measurement.attitude_number",
+        "measurement.attitude by its number, which wins over the name; 0: as measurement.attitude says",
+        "measurement.attitude",
+    ),
+    Variable::number(
+        "measurement.rotor_speeds_number",
+        "measurement.rotor_speeds by its number, which wins over the name; 0: as measurement.rotor_speeds says",
+        "measurement.rotor_speeds",
+    ),
+];

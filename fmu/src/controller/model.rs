@@ -16,9 +16,9 @@ use super::{
     inputs, measurement, outputs, parameters,
 };
 use crate::quantities;
-use crate::tables::arrays;
 use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
+use crate::tables::{arrays, numbers};
 
 /// The controllers of a quadrotor, without a vehicle.
 ///
@@ -127,6 +127,9 @@ impl Model for Controller {
         &outputs::ACTIVITY,
         &measurement::TABLE,
         &parameters::TABLE,
+        &numbers::airframe(),
+        &numbers::controllers(),
+        &measurement::NUMBERS,
         &figures::figures(),
     ];
     const ARRAYS: &'static [&'static [Array]] = &[

@@ -53,7 +53,7 @@ pub(super) const COMMANDS: [Variable<Controller>; 8] = [
 pub(super) const STEERING: [Variable<Controller>; 12] = steering::set_points();
 
 /// How the controllers came to their last inputs.
-pub(super) const ACTIVITY: [Variable<Controller>; 9] = steering::activity();
+pub(super) const ACTIVITY: [Variable<Controller>; 12] = steering::activity();
 
 /// What is commanded, as vectors.
 #[rustfmt::skip]

@@ -13,8 +13,8 @@ use super::observed::Observed;
 use super::settings::{Drive, Settings};
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
-use crate::tables::arrays;
 use crate::tables::terminals;
+use crate::tables::{arrays, numbers};
 
 /// The quadrotor without its controllers.
 pub struct QuadrotorPlant {
@@ -54,6 +54,8 @@ impl Model for QuadrotorPlant {
         &outputs::DERIVATIVES,
         &parameters::OWN,
         &parameters::TABLE,
+        &numbers::airframe(),
+        &parameters::NUMBERS,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         inputs::ARRAYS,

@@ -45,3 +45,10 @@ const IN_FLIGHT: Selection = Selection { of: &["airframe."], without: &["airfram
 
 /// Those of the configuration.
 pub(super) const TABLE: [Variable<QuadrotorPlant>; COUNT] = tunable(table(PLANT), IN_FLIGHT);
+
+/// The enumeration of its own, as an integer.
+pub(super) const NUMBERS: [Variable<QuadrotorPlant>; 1] = [Variable::number(
+    "actuation_number",
+    "actuation by its number, which wins over the name; 0: as actuation says",
+    "actuation",
+)];

@@ -8,6 +8,7 @@ pub(crate) mod disturbances;
 pub(crate) mod figures;
 pub(crate) mod identity;
 pub(crate) mod motion;
+pub(crate) mod numbers;
 pub(crate) mod parameters;
 pub(crate) mod references;
 pub(crate) mod rows;

@@ -84,7 +84,7 @@ pub(crate) const fn set_points<M: Model<Outputs: Steered>>() -> [Variable<M>; 12
 
 /// Status, active constraints and iterations of the three controllers.
 #[rustfmt::skip]
-pub(crate) const fn activity<M: Model<Outputs: Steered>>() -> [Variable<M>; 9] {
+pub(crate) const fn activity<M: Model<Outputs: Steered>>() -> [Variable<M>; 12] {
     [
         status("controller.altitude.status", |outputs: &M::Outputs| number(&outputs.activity().altitude), "Status of the altitude controller's last step"),
         count("controller.altitude.active_constraints", |outputs: &M::Outputs| outputs.activity().altitude.active, "Number of limits that were active in the altitude controller's last step, or clipped its input"),
@@ -95,5 +95,8 @@ pub(crate) const fn activity<M: Model<Outputs: Steered>>() -> [Variable<M>; 9] {
         status("controller.attitude.status", |outputs: &M::Outputs| number(&outputs.activity().attitude), "Status of the attitude controller's last step"),
         count("controller.attitude.active_constraints", |outputs: &M::Outputs| outputs.activity().attitude.active, "Number of limits that were active in the attitude controller's last step, or clipped its input"),
         count("controller.attitude.iterations", |outputs: &M::Outputs| outputs.activity().attitude.iterations, "Solver iterations in the attitude controller's last step"),
+        count("controller.altitude.status_number", |outputs: &M::Outputs| number(&outputs.activity().altitude) as u32, "controller.altitude.status as an integer, for importers without enumerations"),
+        count("controller.position.status_number", |outputs: &M::Outputs| number(&outputs.activity().position) as u32, "controller.position.status as an integer, for importers without enumerations"),
+        count("controller.attitude.status_number", |outputs: &M::Outputs| number(&outputs.activity().attitude) as u32, "controller.attitude.status as an integer, for importers without enumerations"),
     ]
 }

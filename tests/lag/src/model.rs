@@ -247,7 +247,7 @@ macro_rules! real {
 
 type Row = Variable<Lag>;
 
-const VARIABLES: [Row; 13] = [
+const VARIABLES: [Row; 14] = [
     Row::input("u", "Input", real!(Inputs, NUMBER, -10.0..=10.0, u)),
     Row::input(
         "hold",
@@ -293,6 +293,7 @@ const VARIABLES: [Row; 13] = [
         "Divisor of the gain",
         Field::Integer { minimum: 1, maximum: 100, get: |p| p.divisor, set: |p, value| p.divisor = value },
     ),
+    Row::number("sign_number", "Sign of the gain as an integer", "sign"),
     Row::calculated("corner", "Corner frequency", &["time_constant"], &NUMBER, |lag| {
         lag.parameters.time_constant_s.recip()
     }),
