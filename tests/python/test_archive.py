@@ -77,8 +77,9 @@ def test_every_variable_is_described_and_starts_within_its_range(model_descripti
 
 
 def test_the_archive_is_complete_and_small(fmu):
-    # 1.09 MB, of which the library is 1.04: programs of several fixed sizes for each of the three controllers.
-    assert fmu.stat().st_size < 1_150_000
+    # A platform has 1.5 MB. It is 1.2 MB, of which the library is 1.13: three models for both versions of FMI, and programs of several
+    # fixed sizes for each of the three controllers.
+    assert fmu.stat().st_size < 1_500_000
     with zipfile.ZipFile(fmu) as archive:
         names = archive.namelist()
         assert archive.testzip() is None

@@ -12,8 +12,8 @@ EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 # busy, and the later the faster the vehicle's time.
 LOCKSTEP = ("--speed", "max", "--lockstep", "always")
 FIVE = ("--vehicles", "5", "--ports", "shared", "--formation", "circle,6")
-# Those that fly one vehicle; "flight" is what they share.
-SINGLE = sorted(file.stem for file in EXAMPLES.glob("*.py") if file.stem not in ("flight", "five_vehicles"))
+# Those that fly one vehicle; "flight" is what they share, and "sweep" flies the FMU.
+SINGLE = sorted(file.stem for file in EXAMPLES.glob("*.py") if file.stem not in ("flight", "five_vehicles", "sweep"))
 
 
 def run(name, vehicle, folder, *arguments):
