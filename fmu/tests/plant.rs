@@ -170,7 +170,7 @@ fn a_saved_state_continues() {
 #[test]
 fn parameters_are_those_that_concern_the_plant() {
     let mut tunable = 0;
-    for row in rows::<QuadrotorPlant>().filter(|row| row.causality() == "parameter") {
+    for row in rows::<QuadrotorPlant>().filter(|row| matches!(row.role, Role::Parameter { .. })) {
         let known = rows::<ClosedLoop>().any(|other| other.name == row.name);
         assert!(known || ["actuation", "initial.hovering"].contains(&row.name), "{}", row.name);
         let of_plant = ["airframe.", "environment.", "initial.", "actuation"];

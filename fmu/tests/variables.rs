@@ -17,7 +17,8 @@ fn variable(name: &str) -> &'static Variable<ClosedLoop> {
 
 #[test]
 fn every_parameter_of_the_engine_is_a_variable_of_its_name_type_range_and_place() {
-    let parameters: Vec<_> = variables().filter(|variable| variable.causality() == "parameter").collect();
+    let parameters: Vec<_> =
+        variables().filter(|variable| matches!(variable.role, Role::Parameter { .. })).collect();
     let names =
         |variables: &[&Variable<ClosedLoop>]| -> Vec<_> { variables.iter().map(|v| v.name).collect() };
     assert_eq!(names(&parameters), PARAMETERS.iter().map(|parameter| parameter.name).collect::<Vec<_>>());

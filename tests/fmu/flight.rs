@@ -1,6 +1,8 @@
 //! Flights: the default one, and that it is the engine's, bit for bit.
 
-use quadrotor::{Configuration, ControllerKind, ControllerStatus, Inputs, Outputs, Sensors, Simulation};
+use quadrotor::{
+    Configuration, ControllerActivity, ControllerKind, ControllerStatus, Inputs, Outputs, Sensors, Simulation,
+};
 
 use crate::closed_loop;
 use crate::common::instance::Instance;
@@ -42,17 +44,17 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
         }
     }
     let activity = &o.activity;
-    for (controller, activity) in
-        [("altitude", activity.altitude), ("position", activity.position), ("attitude", activity.attitude)]
-    {
-        let status = match activity.status {
-            ControllerStatus::Optimal => 1,
-            ControllerStatus::Relaxed => 2,
-            ControllerStatus::IterationLimit => 3,
-            ControllerStatus::Held => 4,
-        };
+    let activities =
+        [("altitude", activity.altitude), ("position", activity.position), ("attitude", activity.attitude)];
+    let status = |activity: &ControllerActivity| match activity.status {
+        ControllerStatus::Optimal => 1,
+        ControllerStatus::Relaxed => 2,
+        ControllerStatus::IterationLimit => 3,
+        ControllerStatus::Held => 4,
+    };
+    for (controller, activity) in activities {
         let figures = [
-            ("status", status),
+            ("status", status(&activity)),
             ("active_constraints", activity.active.into()),
             ("iterations", activity.iterations.into()),
         ];
@@ -60,6 +62,10 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
             assert_eq!(names.next(), Some(format!("controller.{controller}.{figure}").as_str()));
             bits.push(value);
         }
+    }
+    for (controller, activity) in activities {
+        assert_eq!(names.next(), Some(format!("controller.{controller}.status_number").as_str()));
+        bits.push(status(&activity));
     }
     assert_eq!(names.next(), None);
     bits
