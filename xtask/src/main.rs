@@ -64,6 +64,9 @@ enum Task {
     Platforms {
         #[command(flatten)]
         platforms: ForPlatforms,
+        /// Leaves the MAVLink vehicle out.
+        #[arg(long)]
+        fmu_only: bool,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
@@ -141,13 +144,13 @@ fn run(task: &Task) -> Result<(), Failure> {
             let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
             sitl::make(&workspace, &progress, &release)
         }
-        Task::Platforms { platforms } => {
+        Task::Platforms { platforms, fmu_only } => {
             let [reference, ..] = platforms::CHECKED;
             let mut checked = platforms.or(&platforms::CHECKED);
             if !checked.contains(&reference) {
                 checked.insert(0, reference);
             }
-            platforms::check(&workspace, &progress, &checked, platforms.install)
+            platforms::check(&workspace, &progress, &checked, platforms.install, *fmu_only)
         }
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),

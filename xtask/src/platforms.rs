@@ -18,12 +18,13 @@ use xtask::workspace::Workspace;
 /// Platforms whose programs a Linux machine on x86 can build and run. The first of them is what the others are compared with.
 pub const CHECKED: [Platform; 3] = [Platform::X86_64Linux, Platform::Aarch64Linux, Platform::X86_64Windows];
 
-/// Builds for the platforms and runs the tests of tests/python/platforms. A machine that cannot is an error, never a silent gap.
+/// Builds for the platforms and runs the tests of tests/python/platforms, or only those of the FMU. A machine that cannot is an error, never a silent gap.
 pub fn check(
     workspace: &Workspace,
     progress: &Progress,
     platforms: &[Platform],
     install: bool,
+    fmu_only: bool,
 ) -> Result<(), Failure> {
     let interpreter = python::interpreter()?;
     let needs = platforms.iter().flat_map(|platform| Emulator::needs(*platform)).collect();
@@ -41,7 +42,11 @@ pub fn check(
         None => &crate::toolchains::zig_environment(workspace, progress)?,
     };
     let fmu = fmu::make_for(workspace, progress, &release, &[])?;
-    let programs = release.build(workspace, progress, Product::Vehicle, Profile::Trial)?;
+    let programs = if fmu_only {
+        Vec::new()
+    } else {
+        release.build(workspace, progress, Product::Vehicle, Profile::Trial)?
+    };
     let python = python::environment(workspace, progress, &interpreter, Packages::Tests)?;
 
     let mut tests = python.command();
@@ -55,6 +60,9 @@ pub fn check(
         .env("LMPC_QUADROTOR_PLATFORMS", names(platforms));
     for (platform, emulator) in &emulators {
         emulated(&mut tests, *platform, emulator);
+    }
+    if fmu_only {
+        tests.args(["-k", "not vehicle"]);
     }
     for (platform, program) in programs {
         tests.env(variable("LMPC_SITL", platform), program);

@@ -32,8 +32,12 @@ def pytest_configure():
         pytest.exit(f"cannot check {unknown or 'no platform'}: run `cargo xtask platforms`", returncode=2)
 
 
-def of(variable: str, platform: str) -> str:
-    return os.environ[f"{variable}_{platform.replace('-', '_').upper()}"]
+def variable(what: str, platform: str) -> str:
+    return f"{what}_{platform.replace('-', '_').upper()}"
+
+
+def of(what: str, platform: str) -> str:
+    return os.environ[variable(what, platform)]
 
 
 def compile_c(platform: str, source: Path, output: Path, *options: str):
@@ -50,7 +54,8 @@ class Built:
     library: Path
     #: Its size in the archive.
     compressed: int
-    vehicle: Path
+    #: Absent with `--fmu-only`.
+    vehicle: Path | None
     #: The program that loads a library.
     host: Path
     emulator: list[str] = field(default_factory=list)
@@ -105,10 +110,12 @@ def built(fmu, tmp_path_factory) -> dict[str, Built]:
         windows = platform == "win64"
         host = folder / ("host.exe" if windows else "host")
         compile_c(platform, HERE / "host.c", host, *([] if windows else ["-ldl"]))
-        vehicle = Path(of("LMPC_SITL", platform))
+        program = os.environ.get(variable("LMPC_SITL", platform))
+        vehicle = Path(program) if program else None
         if windows:
             # Wine looks for libraries beside the program. What is shipped stays as it is, so the vehicle gets a folder here.
             compile_c(platform, HERE / "prng.c", folder / "bcryptprimitives.dll", "-shared", "-ladvapi32")
+        if windows and vehicle:
             copy = folder / vehicle.name
             copy.write_bytes(vehicle.read_bytes())
             vehicle = copy
