@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
 use crate::snapshot::SettingsOf;
-use crate::variables::{Field, Role, Value, ValueReference, Variable, variables};
+use crate::variables::{Field, Role, Value, ValueReference, Variable, named, variable};
 
 /// An enumeration that an importer has chosen by a number instead. While it is there, what is set by name waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,14 +17,20 @@ pub(crate) struct ChosenNumber {
     pub otherwise: i32,
 }
 
-/// The enumeration that a variable is the number of: its place in the parameters.
-pub(crate) fn enumeration<M: Model>(of: &str) -> Option<(ValueReference, &'static Field<M::Parameters>)> {
-    variables::<M>().find(|(_, variable)| variable.name == of).and_then(|(reference, variable)| {
-        match &variable.role {
-            Role::Parameter { field, .. } => Some((reference, field)),
-            _ => None,
-        }
-    })
+/// The enumeration with this name: its place in the parameters.
+fn enumeration<M: Model>(name: &str) -> Option<&'static Field<M::Parameters>> {
+    match &named::<M>(name)?.1.role {
+        Role::Parameter { field, .. } => Some(field),
+        _ => None,
+    }
+}
+
+/// Name of the enumeration that the variable with this reference is the number of.
+fn enumeration_of<M: Model>(number: ValueReference) -> Option<&'static str> {
+    match variable::<M>(number).ok()?.role {
+        Role::Number { of } => Some(of),
+        _ => None,
+    }
 }
 
 /// Sets the number of an enumeration; 0 gives it back to its name.
@@ -34,7 +40,7 @@ pub(crate) fn set_number<M: Model>(
     of: &str,
     number: i32,
 ) {
-    let Some((_, field)) = enumeration::<M>(of) else { return };
+    let Some(field) = enumeration::<M>(of) else { return };
     let there = settings.numbers.iter().position(|chosen| chosen.reference == reference);
     let otherwise = match (there, field.get(&settings.parameters)) {
         (Some(place), _) => settings.numbers.remove(place).otherwise,
@@ -56,10 +62,7 @@ pub(crate) fn set_parameter<M: Model>(
     field: &Field<M::Parameters>,
     value: Value,
 ) {
-    let of_this = |chosen: &&mut ChosenNumber| {
-        let known = variables::<M>().find(|(reference, _)| *reference == chosen.reference);
-        known.is_some_and(|(_, number)| matches!(number.role, Role::Number { of } if of == variable.name))
-    };
+    let of_this = |chosen: &&mut ChosenNumber| enumeration_of::<M>(chosen.reference) == Some(variable.name);
     match (settings.numbers.iter_mut().find(of_this), value) {
         (Some(chosen), Value::Integer(item)) => chosen.otherwise = item,
         _ => field.set(&mut settings.parameters, value),
@@ -75,9 +78,8 @@ pub(crate) fn number<M: Model>(settings: &SettingsOf<M>, reference: ValueReferen
 /// Whether an instance can have these numbers: each belongs to an enumeration, once, and is what that has.
 pub(crate) fn are_consistent<M: Model>(settings: &SettingsOf<M>) -> bool {
     settings.numbers.iter().enumerate().all(|(place, chosen)| {
-        let known = variables::<M>().find(|(reference, _)| *reference == chosen.reference);
-        let Some((_, Variable { role: Role::Number { of }, .. })) = known else { return false };
-        let Some((_, field)) = enumeration::<M>(of) else { return false };
+        let Some(of) = enumeration_of::<M>(chosen.reference) else { return false };
+        let Some(field) = enumeration::<M>(of) else { return false };
         let items = field.choice().map_or(0, |choice| choice.items.len());
         let is_item = |item: i32| usize::try_from(item).is_ok_and(|item| (1..=items).contains(&item));
         let once = settings.numbers[..place].iter().all(|other| other.reference != chosen.reference);

@@ -2,7 +2,7 @@
 
 use crate::error::CallError;
 use crate::model::Model;
-use crate::variables::{Role, Signal, ValueReference, Variable, variables};
+use crate::variables::{Role, Signal, Variable, variables};
 
 /// A model as ordinary differential equations with events: ẋ = f(x, u), y = g(x, u).
 ///
@@ -53,22 +53,31 @@ pub struct Seed<M: Model> {
     pub inputs: M::Inputs,
 }
 
-/// A state: its value reference and name, and the variable that is its derivative.
-pub(crate) struct State<M: Model> {
-    pub reference: ValueReference,
+/// A state of a model.
+pub(crate) struct State {
+    /// Its name: that of an output.
     pub name: &'static str,
-    pub nominal: f64,
-    pub derivative: (ValueReference, &'static Variable<M>),
+    /// The name of its derivative.
+    pub derivative: &'static str,
 }
 
 /// The states of a model in their order.
-pub(crate) fn states<M: Model>() -> impl Iterator<Item = State<M>> {
-    variables::<M>().filter_map(|(reference, variable)| {
-        let Role::Derivative { of, .. } = variable.role else { return None };
-        let (state, found) = variables::<M>().find(|(_, other)| other.name == of)?;
-        let nominal = found.quantity().map_or(1.0, |quantity| quantity.nominal);
-        Some(State { reference: state, name: of, nominal, derivative: (reference, variable) })
+pub(crate) fn states<M: Model>() -> impl Iterator<Item = State> {
+    variables::<M>().filter_map(|(_, variable)| match variable.role {
+        Role::Derivative { of, .. } => Some(State { name: of, derivative: variable.name }),
+        _ => None,
     })
+}
+
+/// Number of the states of a model.
+pub(crate) fn state_count<M: Model>() -> usize {
+    states::<M>().count()
+}
+
+/// Place of a variable among the states, if it is one.
+pub(crate) fn state_place<M: Model>(variable: &Variable<M>) -> Option<usize> {
+    let is_output = matches!(variable.role, Role::Output { .. });
+    is_output.then(|| states::<M>().position(|state| state.name == variable.name)).flatten()
 }
 
 /// The equations of a model, if it has them.

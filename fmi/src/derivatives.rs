@@ -1,6 +1,6 @@
 //! Directional derivatives, and time derivatives of outputs.
 
-use crate::continuous::{Continuous, Seed, equations, real_signal, states};
+use crate::continuous::{Continuous, Seed, equations, real_signal, state_count, state_place};
 use crate::error::CallError;
 use crate::instance::Instance;
 use crate::model::Model;
@@ -120,7 +120,7 @@ fn seed<M: Model>(
     knowns: &[ValueReference],
     direction: &[f64],
 ) -> Result<Seed<M>, CallError> {
-    let mut seed = Seed::<M> { states: vec![0.0; states::<M>().count()], inputs: inputs.clone() };
+    let mut seed = Seed::<M> { states: vec![0.0; state_count::<M>()], inputs: inputs.clone() };
     for (_, variable) in variables::<M>() {
         if let Role::Input(Field::Real { set, .. }) = variable.role {
             set(&mut seed.inputs, 0.0);
@@ -135,8 +135,8 @@ fn seed<M: Model>(
         if let Role::Input(Field::Real { get, set, .. }) = variable.role {
             let moved = get(&seed.inputs) + value;
             set(&mut seed.inputs, moved);
-        } else if let Some(state) = states::<M>().position(|state| state.reference == known) {
-            seed.states[state] += value;
+        } else if let Some(place) = state_place(variable) {
+            seed.states[place] += value;
         } else {
             return Err(CallError::NotAKnown { name });
         }

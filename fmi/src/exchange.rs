@@ -1,10 +1,11 @@
 //! Model exchange: the importer's solver integrates the states.
 
-use crate::continuous::{Continuous, equations, states};
+use crate::continuous::{Continuous, State, equations, state_count, states};
 use crate::error::CallError;
 use crate::instance::Instance;
 use crate::lifecycle::{Kind, Phase};
 use crate::model::Model;
+use crate::variables::named;
 
 /// What follows from an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +16,7 @@ pub(crate) struct Event {
 
 impl<M: Model> Instance<M> {
     pub fn enter_event_mode(&mut self) -> Result<(), CallError> {
+        self.exchanged()?;
         self.set_phase(Phase::EventMode);
         Ok(())
     }
@@ -42,9 +44,8 @@ impl<M: Model> Instance<M> {
 
     /// Sets the states, one number each; none on an error.
     pub fn set_continuous_states(&mut self, given: &[f64]) -> Result<(), CallError> {
-        let equations = self.exchanged()?;
-        same_count("nx", given.len(), states::<M>().count())?;
-        if let Some((state, &value)) = states::<M>().zip(given).find(|(_, value)| !value.is_finite()) {
+        let equations = self.exchanged_states(given.len())?;
+        if let Some((state, value)) = not_finite::<M>(given) {
             return Err(CallError::StateNotFinite { name: state.name, value });
         }
         let (model, _) = self.run()?;
@@ -55,8 +56,7 @@ impl<M: Model> Instance<M> {
 
     /// The states.
     pub fn continuous_states(&mut self, into: &mut [f64]) -> Result<(), CallError> {
-        let equations = self.exchanged()?;
-        same_count("nx", into.len(), states::<M>().count())?;
+        let equations = self.exchanged_states(into.len())?;
         let (model, _) = self.run()?;
         equations.states(model, into);
         Ok(())
@@ -64,20 +64,21 @@ impl<M: Model> Instance<M> {
 
     /// Typical magnitudes of the states.
     pub fn nominals_of_continuous_states(&self, into: &mut [f64]) -> Result<(), CallError> {
-        self.exchanged()?;
-        same_count("nx", into.len(), states::<M>().count())?;
-        into.iter_mut().zip(states::<M>()).for_each(|(nominal, state)| *nominal = state.nominal);
+        self.exchanged_states(into.len())?;
+        for (nominal, state) in into.iter_mut().zip(states::<M>()) {
+            let quantity = named::<M>(state.name).and_then(|(_, variable)| variable.quantity());
+            *nominal = quantity.map_or(1.0, |quantity| quantity.nominal);
+        }
         Ok(())
     }
 
     /// The derivatives of the states. If one is not finite, the solver may try a shorter step.
     pub fn derivatives(&mut self, into: &mut [f64]) -> Result<(), CallError> {
-        let equations = self.exchanged()?;
-        same_count("nx", into.len(), states::<M>().count())?;
+        let equations = self.exchanged_states(into.len())?;
         let (model, inputs) = self.run()?;
         equations.derivatives(model, inputs, into);
-        match states::<M>().zip(into.iter()).find(|(_, value)| !value.is_finite()) {
-            Some((state, &value)) => Err(CallError::NoDerivative { name: state.derivative.1.name, value }),
+        match not_finite::<M>(into) {
+            Some((state, value)) => Err(CallError::NoDerivative { name: state.derivative, value }),
             None => Ok(()),
         }
     }
@@ -97,7 +98,7 @@ impl<M: Model> Instance<M> {
     /// Number of states.
     pub fn number_of_continuous_states(&self) -> Result<usize, CallError> {
         self.exchanged()?;
-        Ok(states::<M>().count())
+        Ok(state_count::<M>())
     }
 
     /// Number of event indicators.
@@ -122,6 +123,19 @@ impl<M: Model> Instance<M> {
             )),
         }
     }
+
+    /// The same, if the importer passes as many numbers as there are states.
+    fn exchanged_states(&self, count: usize) -> Result<&'static dyn Continuous<M>, CallError> {
+        let equations = self.exchanged()?;
+        same_count("nx", count, state_count::<M>())?;
+        Ok(equations)
+    }
+}
+
+/// The first of the states whose number is not finite.
+fn not_finite<M: Model>(numbers: &[f64]) -> Option<(State, f64)> {
+    let place = numbers.iter().position(|number| !number.is_finite())?;
+    states::<M>().nth(place).map(|state| (state, numbers[place]))
 }
 
 /// The number of elements that an importer passes must be that of the model.

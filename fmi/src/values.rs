@@ -1,7 +1,7 @@
 //! Getting and setting the values of variables.
 
 use crate::choice_number::{number, set_number, set_parameter};
-use crate::continuous::states;
+use crate::continuous::{state_count, state_place};
 use crate::error::CallError;
 use crate::finite_values::finite;
 use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
@@ -44,7 +44,7 @@ impl<M: Model> Instance<M> {
             let variable = typed::<M>(reference, value_type)?;
             let (name, value) = (variable.name, value(place));
             // A solver may try states beyond the range that they have in a flight.
-            if let (Some(place), Value::Real(value)) = (self.settable_state(reference), value) {
+            if let (Some(place), Value::Real(value)) = (self.settable_state(variable), value) {
                 if !value.is_finite() {
                     return Err(CallError::StateNotFinite { name, value });
                 }
@@ -85,13 +85,13 @@ impl<M: Model> Instance<M> {
 
     /// The place of a variable among the continuous states, if it is one and the importer's solver has them: some importers set states
     /// by their value references.
-    fn settable_state(&self, reference: ValueReference) -> Option<usize> {
+    fn settable_state(&self, variable: &Variable<M>) -> Option<usize> {
         let solved = matches!(self.phase(), Phase::EventMode | Phase::ContinuousTimeMode);
-        solved.then(|| states::<M>().position(|state| state.reference == reference)).flatten()
+        solved.then(|| state_place(variable)).flatten()
     }
 
     fn all_states(&mut self) -> Result<Vec<f64>, CallError> {
-        let mut present = vec![0.0; states::<M>().count()];
+        let mut present = vec![0.0; state_count::<M>()];
         self.continuous_states(&mut present)?;
         Ok(present)
     }

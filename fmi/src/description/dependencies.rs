@@ -1,6 +1,6 @@
 //! What outputs and derivatives depend on.
 
-use crate::continuous::states;
+use crate::continuous::state_place;
 use crate::model::Model;
 use crate::variables::{Role, ValueReference, Variable, variables};
 
@@ -8,8 +8,9 @@ use crate::variables::{Role, ValueReference, Variable, variables};
 /// communication point on, so that no output there depends on them.
 pub(super) fn feed_through<M: Model>(unknown: &Variable<M>) -> Vec<ValueReference> {
     let names = M::CONTINUOUS.map_or(&[][..], |equations| equations.dependencies(unknown.name));
-    let is_state = |variable: &Variable<M>| states::<M>().any(|state| state.name == variable.name);
-    references(names, |variable| matches!(variable.role, Role::Input(_)) || is_state(variable))
+    references::<M>(names, |variable| {
+        matches!(variable.role, Role::Input(_)) || state_place(variable).is_some()
+    })
 }
 
 /// The inputs and parameters that the initial value of an unknown depends on; `None` if it is not an unknown.

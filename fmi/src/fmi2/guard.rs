@@ -3,10 +3,8 @@
 use super::types::{Component as Pointer, Status};
 use crate::component::Component;
 use crate::error::{CallError, Severity};
-use crate::floating_point::DefaultEnvironment;
-use crate::guard::guarded;
+use crate::guard::{entered, guarded};
 use crate::lifecycle::Function;
-use crate::stack::with_room;
 
 /// What a function does with an instance.
 type Body<'a> = &'a mut dyn FnMut(&mut dyn Component) -> Result<(), CallError>;
@@ -29,12 +27,9 @@ pub(super) unsafe fn call(
 /// # Safety
 /// As for [`call`].
 unsafe fn found(component: Pointer, function: &Function, body: Body<'_>) -> Status {
-    let _environment = DefaultEnvironment::enter();
+    let checked = |instance: &mut Box<dyn Component>| checked(&mut **instance, function, body);
     // SAFETY: the caller's promise.
-    match unsafe { component.cast::<Box<dyn Component>>().as_mut() } {
-        Some(instance) => with_room(|| checked(&mut **instance, function, body)),
-        None => Status::Error,
-    }
+    unsafe { entered(component, checked) }.unwrap_or(Status::Error)
 }
 
 /// Calls `body` if the table of legal calls allows it.

@@ -9,7 +9,7 @@ use super::logger::sink;
 use super::types::{CO_SIMULATION, CallbackFunctions, CallbackLogger, Component as Pointer, MODEL_EXCHANGE};
 use crate::component::Component;
 use crate::floating_point::DefaultEnvironment;
-use crate::guard::message_of;
+use crate::guard::{self, message_of};
 use crate::library::{LibraryModel, find};
 use crate::lifecycle::Kind;
 use crate::logger::Logger;
@@ -94,13 +94,6 @@ fn choose<'a>(
 /// # Safety
 /// `component` must be NULL or come from [`instantiate`], and not be used again.
 pub(super) unsafe fn free(component: Pointer) {
-    let _environment = DefaultEnvironment::enter();
-    let instance = component.cast::<Box<dyn Component>>();
-    if !instance.is_null() {
-        // SAFETY: it came from Box::into_raw in `instantiate`; the rest is the caller's promise.
-        let instance = unsafe { Box::from_raw(instance) };
-        // Also a lost instance can be dropped: Rust's values are whole after a panic. Should that panic
-        // again, there is nobody left to tell.
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(instance)));
-    }
+    // SAFETY: it came from Box::into_raw in `instantiate`; the rest is the caller's promise.
+    unsafe { guard::free::<Box<dyn Component>>(component) }
 }

@@ -118,11 +118,7 @@ functions! {
     exit_initialization_mode(), EXIT_INITIALIZATION_MODE => |instance, _| instance.exit_initialization_mode();
 
     /// Model exchange: begins an event.
-    enter_event_mode(), ENTER_EVENT_MODE => |instance, _| {
-        // An error unless this is model exchange.
-        instance.number_of_event_indicators()?;
-        instance.enter_event_mode()
-    };
+    enter_event_mode(), ENTER_EVENT_MODE => |instance, _| instance.enter_event_mode();
 
     /// Ends the run.
     terminate(), TERMINATE => |instance, _| instance.terminate();

@@ -3,11 +3,9 @@
 use super::types::{Instance as Pointer, Status};
 use crate::component::Component;
 use crate::error::{CallError, Severity};
-use crate::floating_point::DefaultEnvironment;
-use crate::guard::guarded;
+use crate::guard::{entered, guarded};
 use crate::layout::Layout;
 use crate::lifecycle::Function;
-use crate::stack::with_room;
 
 /// What an importer's pointer leads to.
 pub(super) struct Instance {
@@ -38,12 +36,7 @@ pub(super) unsafe fn call(
 /// # Safety
 /// As for [`call`].
 unsafe fn checked(pointer: Pointer, function: &Function, body: Body<'_>) -> Status {
-    let _environment = DefaultEnvironment::enter();
-    // SAFETY: the caller's promise.
-    let Some(Instance { component, layout }) = (unsafe { pointer.cast::<Instance>().as_mut() }) else {
-        return Status::Error;
-    };
-    with_room(|| {
+    let checked = |Instance { component, layout }: &mut Instance| {
         let is_allowed = function.is_allowed_in(component.phase());
         match guarded(&mut **component, function.name, is_allowed, &mut |component| body(component, layout)) {
             Ok(()) => Status::Ok,
@@ -51,5 +44,7 @@ unsafe fn checked(pointer: Pointer, function: &Function, body: Body<'_>) -> Stat
             Err(Severity::Error) => Status::Error,
             Err(Severity::Fatal) => Status::Fatal,
         }
-    })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { entered(pointer, checked) }.unwrap_or(Status::Error)
 }

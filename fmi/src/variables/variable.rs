@@ -248,7 +248,7 @@ impl<M: Model> Variable<M> {
 }
 
 /// The variable with this name.
-fn named<M: Model>(name: &str) -> Option<(ValueReference, &'static Variable<M>)> {
+pub(crate) fn named<M: Model>(name: &str) -> Option<(ValueReference, &'static Variable<M>)> {
     variables::<M>().find(|(_, variable)| variable.name == name)
 }
 

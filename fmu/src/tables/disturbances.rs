@@ -4,6 +4,7 @@ use fmi::Model;
 use fmi::variables::{Field, Variable};
 use quadrotor::{Disturbance, Inputs};
 
+use super::rows::symmetric_input;
 use crate::quantities::{FORCE, TORQUE, VELOCITY};
 
 /// Inputs with a disturbance among them.
@@ -26,19 +27,7 @@ impl Disturbed for Inputs {
 
 /// A real input within ±limit, at a field of the disturbance.
 macro_rules! real {
-    ($name:literal, $quantity:ident, $limit:literal, $($field:ident).+, $description:literal) => {
-        Variable::input(
-            $name,
-            $description,
-            Field::Real {
-                quantity: &$quantity,
-                minimum: -$limit,
-                maximum: $limit,
-                get: |inputs: &M::Inputs| inputs.disturbance().$($field).+,
-                set: |inputs: &mut M::Inputs, value| inputs.disturbance_mut().$($field).+ = value,
-            },
-        )
-    };
+    ($($row:tt)+) => { symmetric_input!(disturbance, disturbance_mut, $($row)+) };
 }
 
 /// Force, torque and wind.

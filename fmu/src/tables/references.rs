@@ -4,6 +4,7 @@ use fmi::Model;
 use fmi::variables::{Field, Variable};
 use quadrotor::{Inputs, PositionReference};
 
+use super::rows::symmetric_input;
 use crate::quantities::{ACCELERATION, ANGLE, ANGULAR_VELOCITY, POSITION, VELOCITY};
 
 /// Inputs that say where a vehicle has to be, and whether its rotors turn.
@@ -38,19 +39,7 @@ impl Commanded for Inputs {
 
 /// A real input within ±limit, at a field of the reference.
 macro_rules! real {
-    ($name:literal, $quantity:ident, $limit:literal, $($field:ident).+, $description:literal) => {
-        Variable::input(
-            $name,
-            $description,
-            Field::Real {
-                quantity: &$quantity,
-                minimum: -$limit,
-                maximum: $limit,
-                get: |inputs: &M::Inputs| inputs.reference().$($field).+,
-                set: |inputs: &mut M::Inputs, value| inputs.reference_mut().$($field).+ = value,
-            },
-        )
-    };
+    ($($row:tt)+) => { symmetric_input!(reference, reference_mut, $($row)+) };
 }
 
 /// The reference.

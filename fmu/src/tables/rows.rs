@@ -58,3 +58,21 @@ pub(crate) const fn at_least<M: Model>(mut output: Variable<M>, minimum: f64) ->
     }
     output
 }
+
+/// A real input within ±limit of a model `M`, at a field of a part of its inputs that two methods of theirs lead to.
+macro_rules! symmetric_input {
+    ($part:ident, $part_mut:ident, $name:literal, $quantity:ident, $limit:literal, $($field:ident).+, $description:literal) => {
+        Variable::input(
+            $name,
+            $description,
+            Field::Real {
+                quantity: &$quantity,
+                minimum: -$limit,
+                maximum: $limit,
+                get: |inputs: &M::Inputs| inputs.$part().$($field).+,
+                set: |inputs: &mut M::Inputs, value| inputs.$part_mut().$($field).+ = value,
+            },
+        )
+    };
+}
+pub(super) use symmetric_input;

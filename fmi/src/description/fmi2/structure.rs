@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::continuous::states;
+use crate::continuous::state_count;
 use crate::description::dependencies::{feed_through, initial};
 use crate::description::document::{Xml, empty};
 use crate::model::Model;
@@ -15,7 +15,7 @@ pub(super) fn write<M: Model>(xml: &mut Xml) -> io::Result<()> {
                 variables::<M>().filter(|(_, variable)| matches!(variable.role, Role::Output { .. }));
             outputs.try_for_each(|(reference, variable)| unknown(xml, reference, &feed_through(variable)))
         })?;
-        if states::<M>().next().is_some() {
+        if state_count::<M>() > 0 {
             xml.create_element("Derivatives").write_inner_content(|xml| {
                 let mut derivatives =
                     variables::<M>().filter(|(_, variable)| matches!(variable.role, Role::Derivative { .. }));

@@ -5,7 +5,7 @@ use std::io;
 use crate::description::document::{Xml, empty};
 use crate::description::numbers::{initial, nominal, real, text};
 use crate::model::Model;
-use crate::variables::{Role, ValueReference, Variable, variables};
+use crate::variables::{Role, ValueReference, Variable, named, variables};
 
 pub(super) fn write<M: Model>(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -42,8 +42,8 @@ fn value_element<M: Model>(xml: &mut Xml, variable: &Variable<M>) -> io::Result<
         attributes.extend(quantity.display_unit.map(|unit| ("displayUnit", unit.to_owned())));
     }
     if let Role::Derivative { of, .. } = variable.role {
-        let index = variables::<M>().position(|(_, state)| state.name == of).map(|place| place + 1);
-        attributes.extend(index.map(|index| ("derivative", index.to_string())));
+        // Indices in the description count from 1.
+        attributes.extend(named::<M>(of).map(|(state, _)| ("derivative", (state + 1).to_string())));
     }
     attributes.extend(variable.choice().map(|choice| ("declaredType", choice.name.to_owned())));
     let (minimum, maximum) = variable.range();

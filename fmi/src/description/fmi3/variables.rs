@@ -7,7 +7,7 @@ use crate::description::document::{Attributes, Xml, empty};
 use crate::description::numbers::{initial, nominal, real, text};
 use crate::layout::{Content, Entry, Layout, Number};
 use crate::model::Model;
-use crate::variables::{Role, Type, Value, Variable, arrays, variable, variables};
+use crate::variables::{Role, Type, Value, Variable, arrays, named, variable};
 
 pub(super) fn write<M: Model>(xml: &mut Xml, layout: &Layout) -> io::Result<()> {
     xml.create_element("ModelVariables").write_inner_content(|xml| {
@@ -34,7 +34,7 @@ fn tabled<M: Model>(xml: &mut Xml, entry: &Entry, value_type: Type) -> io::Resul
     let elements = elements::<M>(entry);
     let Some(first) = elements.first() else { return Ok(()) };
     let array = arrays::<M>().find(|array| entry.is_array && array.name == entry.name);
-    let mut attributes = named(entry, array.map_or(first.description, |array| array.description));
+    let mut attributes = head(entry, array.map_or(first.description, |array| array.description));
     attributes.push(("causality", first.causality().to_owned()));
     attributes.push(("variability", first.variability().to_owned()));
     attributes.extend(initial(first).map(|initial| ("initial", initial.to_owned())));
@@ -52,8 +52,7 @@ fn tabled<M: Model>(xml: &mut Xml, entry: &Entry, value_type: Type) -> io::Resul
     attributes.extend(nominal.map(|nominal| ("nominal", real(nominal))));
     if let Role::Derivative { of, .. } = first.role {
         // An array of derivatives belongs to the array of its states: both begin at their first elements.
-        let state = variables::<M>().find(|(_, state)| state.name == of);
-        attributes.extend(state.map(|(reference, _)| ("derivative", reference.to_string())));
+        attributes.extend(named::<M>(of).map(|(reference, _)| ("derivative", reference.to_string())));
     }
     let start: Option<Vec<String>> = elements.iter().map(|element| element.start().map(text)).collect();
     attributes.extend(start.map(|start| ("start", start.join(" "))));
@@ -62,7 +61,7 @@ fn tabled<M: Model>(xml: &mut Xml, entry: &Entry, value_type: Type) -> io::Resul
 
 /// Time, which 3.0 wants as a variable.
 fn time(xml: &mut Xml, entry: &Entry) -> io::Result<()> {
-    let mut attributes = named(entry, "Time");
+    let mut attributes = head(entry, "Time");
     attributes.push(("causality", "independent".to_owned()));
     attributes.push(("variability", "continuous".to_owned()));
     attributes.push(("unit", SECOND.name.to_owned()));
@@ -71,14 +70,14 @@ fn time(xml: &mut Xml, entry: &Entry) -> io::Result<()> {
 
 /// The event indicators, which 3.0 wants as variables.
 fn event_indicators(xml: &mut Xml, entry: &Entry) -> io::Result<()> {
-    let mut attributes = named(entry, "Event indicators: an event is where one of them changes its sign");
+    let mut attributes = head(entry, "Event indicators: an event is where one of them changes its sign");
     attributes.push(("causality", "local".to_owned()));
     attributes.push(("variability", "continuous".to_owned()));
     attributes.push(("initial", "calculated".to_owned()));
     element(xml, type_name(Type::Real), entry, &attributes)
 }
 
-fn named(entry: &Entry, description: &str) -> Attributes<'static> {
+fn head(entry: &Entry, description: &str) -> Attributes<'static> {
     vec![
         ("name", entry.name.to_owned()),
         ("valueReference", entry.reference.to_string()),
