@@ -1,6 +1,6 @@
 //! What a service works with.
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::identity::Identity;
 use vehicle::plan::PlanFault;
 use vehicle::{Severity, Vehicle};

@@ -56,7 +56,7 @@ impl Outbox {
 
 #[cfg(test)]
 mod tests {
-    use mavlink::dialects::common::{MavMessage, SYSTEM_TIME_DATA};
+    use mavlink::dialects::ardupilotmega::{MavMessage, SYSTEM_TIME_DATA};
     use vehicle::Severity;
 
     use super::{Destination, Outbox};

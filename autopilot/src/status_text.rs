@@ -1,6 +1,6 @@
 //! STATUSTEXT: lines for the pilot.
 
-use mavlink::dialects::common::{MavMessage, MavSeverity, STATUSTEXT_DATA};
+use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity, STATUSTEXT_DATA};
 use vehicle::Severity;
 
 use crate::codec::ascii::ascii;

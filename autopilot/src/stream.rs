@@ -1,6 +1,6 @@
 //! The table of messages that are sent regularly or asked for.
 
-use mavlink::dialects::common::{MavMessage, MavProtocolCapability};
+use mavlink::dialects::ardupilotmega::{MavMessage, MavProtocolCapability};
 use vehicle::Vehicle;
 
 use crate::envelope::LinkProfile;

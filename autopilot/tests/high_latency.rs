@@ -3,7 +3,7 @@
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
 use autopilot::envelope::{Destination, LinkProfile, Origin, PeerId};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     COMMAND_LONG_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavAutopilot, MavCmd, MavMessage, MavResult,
     MavType,
 };

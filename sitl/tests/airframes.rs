@@ -4,7 +4,7 @@ mod common;
 
 use clap::Parser;
 use common::Bench;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MavCmd, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use quadrotor::{AirframePreset, Configuration};
@@ -26,7 +26,9 @@ fn goal(position_m: [f32; 3]) -> MavMessage {
         x,
         y,
         z,
-        type_mask: mavlink::dialects::common::PositionTargetTypemask::from_bits_truncate(0b1001_1111_1000),
+        type_mask: mavlink::dialects::ardupilotmega::PositionTargetTypemask::from_bits_truncate(
+            0b1001_1111_1000,
+        ),
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
         target_system: 1,
         target_component: 1,

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Bench, settings};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use vehicle::estimation::{SensorModel, SensorSettings};

@@ -4,7 +4,7 @@ mod common;
 
 use common::recording::{Record, Recording};
 use common::{Bench, settings};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     HEARTBEAT_DATA, MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use quadrotor::{Inputs, PositionReference, Simulation};

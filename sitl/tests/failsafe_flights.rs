@@ -4,7 +4,7 @@ mod common;
 
 use common::failsafe_bench::*;
 use common::{Bench, settings};
-use mavlink::dialects::common::*;
+use mavlink::dialects::ardupilotmega::*;
 use vehicle::estimation::SensorModel;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};

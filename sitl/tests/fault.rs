@@ -5,7 +5,7 @@ mod common;
 use autopilot::codec::Message;
 use common::recording::Recording;
 use common::{Bench, settings};
-use mavlink::dialects::common::{MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use vehicle::estimation::SensorModel;
 use vehicle::fault::{Fault, ScheduledFault, Sensor, SensorFault};
 use vehicle::identity::Identity;

@@ -5,7 +5,7 @@ mod common;
 use autopilot::codec::Message;
 use common::plan_client::{result, upload};
 use common::{Bench, settings};
-use mavlink::dialects::common::*;
+use mavlink::dialects::ardupilotmega::*;
 use nalgebra::Vector3;
 use vehicle::fence::Breach;
 use vehicle::identity::Identity;

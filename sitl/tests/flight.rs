@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Bench, settings};
-use mavlink::dialects::common::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
+use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
 use vehicle::identity::Identity;
 use vehicle::{LandedState, Mode};
 

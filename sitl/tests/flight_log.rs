@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use common::Bench;
-use mavlink::dialects::common::{FailureUnit, MavCmd};
+use mavlink::dialects::ardupilotmega::{FailureUnit, MavCmd};
 use sitl::files::LogFolder;
 use sitl::flight_log::{FlightLog, LogSettings, LogSource, LogStart, Row, TOPICS};
 use sitl::record::Digest;

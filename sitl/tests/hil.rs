@@ -3,7 +3,9 @@
 mod common;
 
 use common::settings;
-use mavlink::dialects::common::{HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{
+    HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, MavMessage,
+};
 use sitl::hil::{ActuatorControls, Mount, Rig, STEP_US};
 use vehicle::identity::Identity;
 use vehicle::world::earth_field_ned;

@@ -7,7 +7,7 @@ use autopilot::file_work::Immediate;
 use common::Bench;
 use common::channel::Lossy;
 use common::ftp_client::{Client, PROTECTED, REMOVE, noise};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     LOG_DATA_DATA, LOG_ENTRY_DATA, LOG_ERASE_DATA, LOG_REQUEST_DATA_DATA, LOG_REQUEST_LIST_DATA, MavMessage,
 };
 use sitl::files::{Disk, LogFolder};
@@ -154,7 +154,8 @@ fn a_download_waits_for_room_and_ends_when_told() {
     let first = sent(&mut bench, 3, Some(true));
     assert_eq!(first.iter().map(|piece| piece.ofs).collect::<Vec<_>>(), [0, 90, 180]);
     assert_eq!(first[1].data, contents[0][90..180]);
-    let end = mavlink::dialects::common::LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 };
+    let end =
+        mavlink::dialects::ardupilotmega::LOG_REQUEST_END_DATA { target_system: 1, target_component: 1 };
     bench.send(MavMessage::LOG_REQUEST_END(end));
     assert!(sent(&mut bench, 10, Some(true)).is_empty());
     // The end of a file of whole pieces is an empty one, and so is what is not there.

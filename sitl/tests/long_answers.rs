@@ -13,7 +13,7 @@ use autopilot::file_store::{Access, FileError, FileStore, Listed, OpenFile};
 use autopilot::file_work::{FileJob, FileWorker, Immediate, JobStep, QueueFull};
 use common::ftp_client::*;
 use common::{Bench, command_long};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     LOG_REQUEST_LIST_DATA, MavCmd, MavMessage, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA,
 };
 use sitl::files::Disk;

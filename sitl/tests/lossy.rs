@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use common::Bench;
 use common::channel::Lossy;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MavCmd, MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
 };
 use vehicle::identity::Identity;

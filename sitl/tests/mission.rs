@@ -8,7 +8,7 @@ use autopilot::codec::Message;
 use common::Bench;
 use common::mission_flight::{Flight, NAN, SQUARE, at, simple, takeoff, waypoint};
 use common::plan_client::{result, upload};
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use nalgebra::Vector3;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, PlanKind, command, frame};

@@ -9,7 +9,9 @@ use common::Bench;
 use common::mission_flight::{Flight, SQUARE, at, simple, takeoff, waypoint};
 use common::plan_client::{count_message, item_message, result, upload};
 use common::recording::Recording;
-use mavlink::dialects::common::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::{
+    MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA,
+};
 use vehicle::identity::Identity;
 use vehicle::parameters::FileFormat;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command};

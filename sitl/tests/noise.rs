@@ -4,7 +4,7 @@ mod common;
 
 use autopilot::codec::Message;
 use common::Bench;
-use mavlink::dialects::common::{MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use nalgebra::Vector3;
 use sitl::configuration::{Arguments, Settings};
 use sitl::record::Digest;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::ftp_client::{CREATE, Client, ERRNO, FAIL, PROTECTED, REMOVE, TERMINATE, WRITE};
-use mavlink::dialects::common::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionType};
+use mavlink::dialects::ardupilotmega::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionType};
 use mavlink::{MavlinkVersion, MessageData};
 use sitl::files::Disk;
 use vehicle::plan::PlanKind;

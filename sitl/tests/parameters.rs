@@ -9,7 +9,7 @@ use autopilot::Autopilot;
 use autopilot::codec::Message;
 use clap::Parser;
 use common::Bench;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
     PARAM_VALUE_DATA,
 };

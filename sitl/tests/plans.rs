@@ -9,7 +9,7 @@ use autopilot::envelope::{Origin, PeerId};
 use common::channel::Lossy;
 use common::plan_client::{ack_of, count_message, item_message, mission_type, request_of, result};
 use common::{Bench, GROUND_STATION};
-use mavlink::dialects::common::*;
+use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, PlanKind, command, frame};
 

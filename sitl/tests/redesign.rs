@@ -4,7 +4,7 @@ mod common;
 
 use common::recording::Recording;
 use common::{Bench, command_long, settings};
-use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
 use quadrotor::{Mutability, PARAMETERS};
 use vehicle::identity::Identity;
 use vehicle::parameters::{Description, Value};

@@ -6,7 +6,7 @@ mod common;
 
 use common::mission_flight::{Flight, at, takeoff};
 use common::{Bench, settings};
-use mavlink::dialects::common::{COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage};
+use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage};
 use nalgebra::Vector3;
 use vehicle::Mode;
 use vehicle::identity::Identity;

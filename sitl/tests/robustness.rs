@@ -6,7 +6,7 @@ mod common;
 use autopilot::codec::{Frame, FrameDecoder, Version, target_of};
 use common::{Bench, command_long};
 use mavlink::Message as _;
-use mavlink::dialects::common::{MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use proptest::prelude::*;
 use vehicle::identity::Identity;
 

@@ -5,7 +5,7 @@ mod common;
 use autopilot::codec::Message;
 use common::recording::Recording;
 use common::{Bench, settings};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     EstimatorStatusFlags, GpsFixType, MavCmd, MavFrame, MavMessage, MavSysStatusSensor,
     PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Bench, settings};
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
     SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
@@ -55,7 +55,7 @@ fn offboard(bench: &mut Bench, target: &SET_POSITION_TARGET_LOCAL_NED_DATA, seco
 fn turned_bench(identity: Identity) -> Bench {
     let mut bench = Bench::hovering(identity);
     let turn = [90.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    assert_eq!(bench.command(mavlink::dialects::common::MavCmd::MAV_CMD_CONDITION_YAW, turn), 0);
+    assert_eq!(bench.command(mavlink::dialects::ardupilotmega::MavCmd::MAV_CMD_CONDITION_YAW, turn), 0);
     bench.fly(12.0);
     bench
 }

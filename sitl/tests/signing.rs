@@ -1,7 +1,7 @@
 //! Signing: pymavlink's signatures are ours, and what has come before, late, forged or unsigned is refused.
 
 use autopilot::codec::{Frame, Message, Version};
-use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA};
 use proptest::prelude::*;
 use sitl::signing::{Kept, Refusal, SecretKey, Signing, timestamp};
 

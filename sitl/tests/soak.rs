@@ -46,7 +46,10 @@ fn what_goes_wrong_is_found() {
     gusty.configuration.airframe.drag_n_s_m = [0.15; 3];
     let mut bench = common::Bench::of(&gusty);
     bench.arm();
-    assert_eq!(bench.command(mavlink::dialects::common::MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
+    assert_eq!(
+        bench.command(mavlink::dialects::ardupilotmega::MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]),
+        0
+    );
     let mut watch = run::Watch::default();
     for _ in 0..800 {
         bench.fly(0.05);

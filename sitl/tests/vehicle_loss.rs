@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 use autopilot::codec::{Frame, id};
 use clap::Parser;
 use mavlink::MessageData;
-use mavlink::dialects::common::{MavState, STATUSTEXT_DATA};
+use mavlink::dialects::ardupilotmega::{MavState, STATUSTEXT_DATA};
 use quadrotor::SimulationError;
 use seal::sealed;
 use sitl::configuration::{Arguments, Settings};

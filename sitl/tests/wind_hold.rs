@@ -5,7 +5,7 @@ mod common;
 
 use clap::Parser;
 use common::{Bench, settings};
-use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
 use quadrotor::{Configuration, ControllerKind, side_force_limit_n};
 use sitl::configuration::{Arguments, Settings};
 use sitl::hil::HilSettings;

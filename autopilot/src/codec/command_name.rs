@@ -1,6 +1,6 @@
 //! Names of commands.
 
-use mavlink::dialects::common::MavCmd;
+use mavlink::dialects::ardupilotmega::MavCmd;
 use num_traits::FromPrimitive;
 
 /// Prefix that all names have in the dialect.

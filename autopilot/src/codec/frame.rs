@@ -1,6 +1,6 @@
 //! One MAVLink frame, version 1 or 2.
 
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message as _, calculate_crc};
 
 use super::Payload;

@@ -1,14 +1,14 @@
 //! Identifiers of the messages that the codec and its users read.
 
 use mavlink::MessageData;
-use mavlink::dialects::common;
+use mavlink::dialects::ardupilotmega;
 
 /// A constant for each message, from the dialect.
 macro_rules! identifiers {
     ($($name:ident: $data:ident,)*) => {
         $(
             #[doc = stringify!($name)]
-            pub const $name: u32 = <common::$data as MessageData>::ID;
+            pub const $name: u32 = <ardupilotmega::$data as MessageData>::ID;
         )*
     };
 }

@@ -1,6 +1,6 @@
 //! What the vehicle sends.
 
-use mavlink::dialects::common::{COMMAND_ACK_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{COMMAND_ACK_DATA, MavMessage};
 use mavlink::{MavlinkVersion, Message as _, MessageData as _};
 
 use super::MissionItemMessage;

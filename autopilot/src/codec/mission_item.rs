@@ -115,7 +115,9 @@ impl MissionItemMessage {
 
 #[cfg(test)]
 mod tests {
-    use mavlink::dialects::common::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage, MavMissionType};
+    use mavlink::dialects::ardupilotmega::{
+        MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage, MavMissionType,
+    };
 
     use super::{MissionItemMessage, Target};
     use crate::codec::{Frame, Message, Version};

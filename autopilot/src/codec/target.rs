@@ -1,7 +1,7 @@
 //! Who a received message is for.
 
 use mavlink::Message as _;
-use mavlink::dialects::common::{MavComponent, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavComponent, MavMessage};
 
 use super::{Frame, id};
 

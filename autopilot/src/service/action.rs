@@ -1,6 +1,6 @@
 //! Commands that make the vehicle do something at once.
 
-use mavlink::dialects::common::{MavCmd, MavProtocolCapability};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavProtocolCapability};
 use vehicle::fault::Fault;
 use vehicle::identity::Identity;
 use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile};

@@ -1,7 +1,7 @@
 //! MAV_CMD_PREFLIGHT_CALIBRATION: the vehicle has to stand still for a while. It takes time, so it is answered "in progress" until it
 //! is over, and can be cancelled.
 
-use mavlink::dialects::common::{MavCmd, MavResult};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
 use vehicle::{Refusal, Severity, Vehicle};
 
 use super::command::{acknowledge, acknowledge_outcome};

@@ -1,7 +1,7 @@
 //! Component metadata: what a ground station needs to show parameters that it does not know.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{COMPONENT_METADATA_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{COMPONENT_METADATA_DATA, MavMessage};
 
 use super::Service;
 use crate::codec::boot_ms;

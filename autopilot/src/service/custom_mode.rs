@@ -1,6 +1,6 @@
 //! Modes by their numbers in HEARTBEAT: SET_MODE, and the commands that replaced it.
 
-use mavlink::dialects::common::MavCmd;
+use mavlink::dialects::ardupilotmega::MavCmd;
 use vehicle::{Mode, Refusal, Vehicle};
 
 use super::command::{acknowledge_outcome, explain};

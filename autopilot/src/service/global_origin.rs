@@ -1,7 +1,7 @@
 //! The origin of the local frame: it is where the flight began, and can be asked for but not set.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{GPS_GLOBAL_ORIGIN_DATA, MavMessage, SET_GPS_GLOBAL_ORIGIN_DATA};
+use mavlink::dialects::ardupilotmega::{GPS_GLOBAL_ORIGIN_DATA, MavMessage, SET_GPS_GLOBAL_ORIGIN_DATA};
 use vehicle::{Severity, Vehicle};
 
 use super::Service;

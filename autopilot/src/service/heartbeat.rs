@@ -1,7 +1,9 @@
 //! HEARTBEAT: once a second, and at once when mode or arming change.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType};
+use mavlink::dialects::ardupilotmega::{
+    HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
+};
 use vehicle::identity::Identity;
 use vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
 

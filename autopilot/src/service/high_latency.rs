@@ -4,7 +4,9 @@
 //! who wants nothing else there stops them by MAV_CMD_SET_MESSAGE_INTERVAL. Everyone can ask for the message at any time.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{HEARTBEAT_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{
+    HEARTBEAT_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavCmd, MavMessage,
+};
 use vehicle::world::{atmospheric_temperature_degc, heading_deg};
 use vehicle::{Cause, MissionState, Mode, Refusal, Severity, Vehicle};
 

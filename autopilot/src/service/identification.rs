@@ -1,7 +1,7 @@
 //! AUTOPILOT_VERSION and PROTOCOL_VERSION: what this is and what it can do.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     AUTOPILOT_VERSION_DATA, MavMessage, MavProtocolCapability, PROTOCOL_VERSION_DATA,
 };
 use vehicle::Vehicle;

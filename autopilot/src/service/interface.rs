@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::Refusal;
 use vehicle::identity::Identity;
 

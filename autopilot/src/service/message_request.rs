@@ -1,7 +1,9 @@
 //! Messages that are sent once, because somebody asks for them.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{AUTOPILOT_VERSION_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA};
+use mavlink::dialects::ardupilotmega::{
+    AUTOPILOT_VERSION_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA,
+};
 use vehicle::Refusal;
 
 use super::{CommandEntry, Outcome, Progress, Service};

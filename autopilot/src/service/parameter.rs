@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use mavlink::dialects::common::{MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA};
+use mavlink::dialects::ardupilotmega::{
+    MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA,
+};
 use quadrotor::StabilityWarning;
 use vehicle::identity::Identity;
 use vehicle::parameters::Value;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::identity::Identity;
 
 use super::command::CommandProtocol;

@@ -10,7 +10,7 @@
 //! | other frames, FORCE_SET, nothing but yaw | refused | stop |
 //! | NaN | the axis is ignored | stop |
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
 use vehicle::identity::Identity;
 use vehicle::plan::{frame, is_global};

@@ -1,7 +1,7 @@
 //! Standard modes: AVAILABLE_MODES, CURRENT_MODE and DO_SET_STANDARD_MODE.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     AVAILABLE_MODES_DATA, CURRENT_MODE_DATA, MavCmd, MavMessage, MavModeProperty, MavStandardMode,
 };
 use vehicle::{Mode, Refusal, Vehicle};

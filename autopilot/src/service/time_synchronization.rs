@@ -1,7 +1,7 @@
 //! TIMESYNC and PING: answers in simulation time.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{MavMessage, PING_DATA, TIMESYNC_DATA};
+use mavlink::dialects::ardupilotmega::{MavMessage, PING_DATA, TIMESYNC_DATA};
 use vehicle::Vehicle;
 
 use super::Service;

@@ -191,7 +191,7 @@ mod tests {
 
     use autopilot::codec::{Frame, Version, id};
     use autopilot::envelope::{Origin, PeerId};
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA};
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage, SET_POSITION_TARGET_LOCAL_NED_DATA};
 
     use super::{Circumstances, Lockstep, LockstepPhase, LockstepSettings, Step};
     use crate::link::Received;

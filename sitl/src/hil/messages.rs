@@ -1,7 +1,7 @@
 //! Messages to the autopilot.
 
 use autopilot::codec::floats;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     HEARTBEAT_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, HilSensorUpdatedFlags,
     MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
 };

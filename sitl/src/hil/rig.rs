@@ -1,6 +1,6 @@
 //! Plant, instruments and their time, without a socket and without a clock.
 
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use nalgebra::Vector3;
 use quadrotor::{
     CascadeDesign, ConfigurationError, Disturbance, GRAVITY_M_S2, Plant, PlantInputs, PlantState,

@@ -63,7 +63,7 @@ fn is_lately(when: Instant, now: Instant) -> bool {
 mod tests {
     use std::time::Instant;
 
-    use mavlink::dialects::common::{MavMessage, SYSTEM_TIME_DATA};
+    use mavlink::dialects::ardupilotmega::{MavMessage, SYSTEM_TIME_DATA};
 
     use super::{Echoes, LATEST, MOST};
     use autopilot::codec::{Frame, Version};

@@ -116,7 +116,7 @@ mod tests {
     use std::time::Instant;
 
     use autopilot::codec::{Frame, FrameDecoder, Version};
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage, SYSTEM_TIME_DATA};
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage, SYSTEM_TIME_DATA};
     use proptest::prelude::*;
 
     use super::{CAPACITY, Inbox, PIECE, SILENCE};

@@ -387,7 +387,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
     use std::time::{Duration, Instant};
 
-    use mavlink::dialects::common::{
+    use mavlink::dialects::ardupilotmega::{
         ATTITUDE_DATA, HEARTBEAT_DATA, MavMessage, RADIO_STATUS_DATA, SETUP_SIGNING_DATA, SYSTEM_TIME_DATA,
     };
 

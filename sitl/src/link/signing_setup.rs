@@ -97,7 +97,7 @@ impl std::fmt::Display for SigningSetup {
 #[cfg(test)]
 mod tests {
     use autopilot::codec::{Frame, Version};
-    use mavlink::dialects::common::{MavMessage, SETUP_SIGNING_DATA};
+    use mavlink::dialects::ardupilotmega::{MavMessage, SETUP_SIGNING_DATA};
 
     use super::{SetupRefusal, SetupRules, SigningSetup};
     use crate::signing::{Kept, MOST_AHEAD, SecretKey, Signing};

@@ -116,7 +116,7 @@ fn bytes(hex: &str) -> Option<Vec<u8>> {
 mod tests {
     use super::{Entry, Event, Frame, Origin, PeerId};
     use autopilot::codec::Version;
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
 
     #[test]
     fn motions_keep_every_bit() {

@@ -96,7 +96,7 @@ impl TrafficLog {
 
 #[cfg(test)]
 mod tests {
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
 
     use super::TrafficLog;
     use autopilot::codec::{Frame, Version};

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use autopilot::codec::{Frame, Message};
-use mavlink::dialects::common::{MavCmd, MavMessage, PARAM_VALUE_DATA};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, PARAM_VALUE_DATA};
 use vehicle::identity::Identity;
 
 use super::{Bench, command_long};

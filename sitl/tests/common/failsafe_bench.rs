@@ -1,7 +1,7 @@
 //! Making things go wrong, and what the vehicle tells then.
 
 use autopilot::codec::Message;
-use mavlink::dialects::common::*;
+use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
 use vehicle::{Action, Cause, Conduct, Mode};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use autopilot::codec::Message;
 use autopilot::file_work::Immediate;
-use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
 use sitl::files::Disk;
 use vehicle::identity::Identity;
 

@@ -1,7 +1,7 @@
 //! Missions that are flown, and what is seen of the flight.
 
 use autopilot::codec::Message;
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use nalgebra::Vector3;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, PlanKind, command, frame};

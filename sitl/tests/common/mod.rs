@@ -13,7 +13,7 @@ pub mod seal;
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
-use mavlink::dialects::common::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
+use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::{Mode, VehicleSettings};

@@ -3,7 +3,7 @@
 #![allow(deprecated)] // Clients still use what the dialect calls deprecated.
 
 use autopilot::codec::{Message, MissionItemMessage, Target};
-use mavlink::dialects::common::{MISSION_ACK_DATA, MISSION_COUNT_DATA, MavMessage, MavMissionType};
+use mavlink::dialects::ardupilotmega::{MISSION_ACK_DATA, MISSION_COUNT_DATA, MavMessage, MavMissionType};
 use vehicle::plan::{MissionItem, PlanKind};
 
 use super::Bench;

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use autopilot::codec::{Frame, FrameDecoder};
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -124,7 +124,7 @@ fn parameters(format: FileFormat) -> String {
 
 /// A short record.
 fn recorded(path: &Path) {
-    use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
+    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
     let settings = Settings::resolve(&Arguments::default()).expect("defaults");
     let mut recorder =
         Recorder::create(path, &Header::new(Speed::Max, settings.participants()), u64::MAX).expect("a file");

@@ -1,7 +1,7 @@
 //! Signed frames that somebody without the key has changed, heard before, or made.
 
 use autopilot::codec::{Frame, FrameDecoder, Message, Version};
-use mavlink::dialects::common::{HEARTBEAT_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
 use sitl::signing::{Kept, SecretKey, Signing};
 
 use super::bytes::Bytes;

@@ -1,6 +1,6 @@
 //! COMMAND_ACK.
 
-use mavlink::dialects::common::MavResult;
+use mavlink::dialects::ardupilotmega::MavResult;
 use vehicle::Refusal;
 
 use crate::codec::{CommandAck, Message};

@@ -1,6 +1,6 @@
 //! How a command becomes an answer: its service carries it out, unless it is a retry of what was carried out already.
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::Severity;
 
 use super::acknowledgement::{acknowledge, acknowledge_outcome, result_of};

@@ -1,6 +1,6 @@
 //! Commands that were carried out lately: a repeated one is answered again, not carried out again.
 
-use mavlink::dialects::common::MavResult;
+use mavlink::dialects::ardupilotmega::MavResult;
 
 use crate::codec::{Command, CommandKind};
 use crate::envelope::Origin;

@@ -1,6 +1,6 @@
 //! FILE_TRANSFER_PROTOCOL: a header of 12 bytes, then data.
 
-use mavlink::dialects::common::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{FILE_TRANSFER_PROTOCOL_DATA, MavMessage};
 
 use crate::codec::{Frame, Payload};
 use crate::envelope::Origin;

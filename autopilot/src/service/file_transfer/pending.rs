@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::message::{Client, Reply, Request};
 use crate::envelope::{Origin, PeerId};

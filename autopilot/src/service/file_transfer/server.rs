@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
-use mavlink::dialects::common::MavProtocolCapability;
+use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::identity::Identity;
 
 use super::desk::{Desk, Subject, Task};

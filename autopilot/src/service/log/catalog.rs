@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use mavlink::dialects::common::LOG_ENTRY_DATA;
+use mavlink::dialects::ardupilotmega::LOG_ENTRY_DATA;
 
 use crate::envelope::PeerId;
 use crate::file_store::Listed;

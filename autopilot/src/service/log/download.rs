@@ -1,6 +1,6 @@
 //! Downloads of logs: pieces of what has been read ahead.
 
-use mavlink::dialects::common::LOG_DATA_DATA;
+use mavlink::dialects::ardupilotmega::LOG_DATA_DATA;
 
 use super::job::{AHEAD, Ahead};
 use crate::envelope::PeerId;

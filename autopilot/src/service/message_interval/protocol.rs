@@ -1,6 +1,6 @@
 //! Requests for messages that a link gets regularly.
 
-use mavlink::dialects::common::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
 use vehicle::Refusal;
 
 use super::schedule::Schedule;

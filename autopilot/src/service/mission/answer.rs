@@ -1,6 +1,6 @@
 //! MISSION_ACK, and lines for the pilot.
 
-use mavlink::dialects::common::{MISSION_ACK_DATA, MavMessage, MavMissionResult, MavMissionType};
+use mavlink::dialects::ardupilotmega::{MISSION_ACK_DATA, MavMessage, MavMissionResult, MavMissionType};
 use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 
 use crate::context::Context;

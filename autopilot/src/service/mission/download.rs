@@ -1,6 +1,6 @@
 //! Downloads: the count, then item by item whatever is asked for.
 
-use mavlink::dialects::common::{MISSION_COUNT_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{MISSION_COUNT_DATA, MavMessage};
 use vehicle::plan::{FaultCode, PlanFault, PlanKind};
 
 use super::answer;

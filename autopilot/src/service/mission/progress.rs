@@ -1,6 +1,6 @@
 //! Starting a mission, its current item, and how far it has come.
 
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MISSION_CURRENT_DATA, MISSION_ITEM_REACHED_DATA, MavMessage, MissionState as MavMissionState,
 };
 use vehicle::plan::PlanKind;

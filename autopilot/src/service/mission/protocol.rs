@@ -1,7 +1,7 @@
 //! Which messages and commands are about missions, fences and rally points.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::{MISSION_CURRENT_DATA, MavCmd, MavProtocolCapability};
+use mavlink::dialects::ardupilotmega::{MISSION_CURRENT_DATA, MavCmd, MavProtocolCapability};
 use vehicle::identity::Identity;
 
 use super::download;

@@ -1,6 +1,6 @@
 //! Uploads: one at a time, item by item in order; the vehicle asks for each.
 
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     MISSION_REQUEST_DATA, MISSION_REQUEST_INT_DATA, MavMessage, MavMissionResult,
 };
 use vehicle::Severity;

@@ -1,6 +1,6 @@
 //! ATTITUDE and ATTITUDE_QUATERNION.
 
-use mavlink::dialects::common::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
 use vehicle::Vehicle;
 
 use crate::codec::{boot_ms, floats};

@@ -1,6 +1,6 @@
 //! How good the estimate is.
 
-use mavlink::dialects::common::{ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, MavMessage};
+use mavlink::dialects::ardupilotmega::{ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, MavMessage};
 use vehicle::Vehicle;
 use vehicle::estimation::TestRatios;
 

@@ -1,6 +1,6 @@
 //! How well the vehicle keeps to what it is steered to.
 
-use mavlink::dialects::common::{MavMessage, NAV_CONTROLLER_OUTPUT_DATA};
+use mavlink::dialects::ardupilotmega::{MavMessage, NAV_CONTROLLER_OUTPUT_DATA};
 use vehicle::world::heading_deg;
 use vehicle::{Mode, Vehicle};
 

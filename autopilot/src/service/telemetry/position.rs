@@ -1,6 +1,6 @@
 //! Where the vehicle is, and how it moves.
 
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     ALTITUDE_DATA, GLOBAL_POSITION_INT_DATA, HOME_POSITION_DATA, LOCAL_POSITION_NED_DATA, MavEstimatorType,
     MavFrame, MavMessage, ODOMETRY_DATA, VFR_HUD_DATA,
 };

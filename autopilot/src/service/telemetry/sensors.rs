@@ -1,6 +1,6 @@
 //! What the instruments on board show.
 
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     GPS_RAW_INT_DATA, GpsFixType, HIGHRES_IMU_DATA, HighresImuUpdatedFlags, MavMessage, RAW_IMU_DATA,
     SCALED_IMU_DATA, SCALED_PRESSURE_DATA, VIBRATION_DATA,
 };

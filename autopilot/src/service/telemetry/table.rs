@@ -1,7 +1,7 @@
 //! The table of telemetry: messages, their rates, groups and makers.
 
 use mavlink::MessageData;
-use mavlink::dialects::common::*;
+use mavlink::dialects::ardupilotmega::*;
 
 use super::{attitude, estimate, navigation, position, sensors, status, targets, truth};
 use crate::service::Service;

@@ -1,6 +1,6 @@
 //! What the vehicle is steered to.
 
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, POSITION_TARGET_GLOBAL_INT_DATA,
     POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask,
 };

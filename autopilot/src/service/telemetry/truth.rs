@@ -1,6 +1,6 @@
 //! What a real autopilot could not tell.
 
-use mavlink::dialects::common::{MavMessage, SIM_STATE_DATA};
+use mavlink::dialects::ardupilotmega::{MavMessage, SIM_STATE_DATA};
 use vehicle::Vehicle;
 use vehicle::estimation::TrueMotion;
 

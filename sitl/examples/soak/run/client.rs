@@ -6,7 +6,7 @@ use autopilot::Autopilot;
 use autopilot::codec::{Frame, Version};
 use autopilot::envelope::{Destination, Origin, PeerId};
 use mavlink::Message as _;
-use mavlink::dialects::common::{HEARTBEAT_DATA, MISSION_ITEM_INT_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MISSION_ITEM_INT_DATA, MavMessage};
 use vehicle::LandedState;
 
 use super::chance::Chance;

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use autopilot::Autopilot;
-use mavlink::dialects::common::{
+use mavlink::dialects::ardupilotmega::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
 };
 use nalgebra::Vector3;

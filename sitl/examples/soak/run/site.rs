@@ -3,7 +3,7 @@
 use autopilot::codec::{Frame, Version};
 use autopilot::envelope::{Destination, LinkProfile};
 use autopilot::{Autopilot, COMPONENT};
-use mavlink::dialects::common::MISSION_ITEM_INT_DATA;
+use mavlink::dialects::ardupilotmega::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
 use sitl::flight_log::{LogSource, Row, TOPICS};
 use vehicle::TICK_US;
