@@ -5,6 +5,7 @@ use vehicle::Vehicle;
 
 use crate::envelope::LinkProfile;
 use crate::parameters::Parameters;
+use crate::speaker::Speaker;
 
 /// Groups of REQUEST_DATA_STREAM (MAV_DATA_STREAM).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -71,22 +72,29 @@ pub struct Stream {
     pub group: Option<Group>,
     /// How it is made.
     pub build: Build,
+    /// Who says it.
+    pub speaker: Speaker,
 }
 
 impl Stream {
     /// A message made from the vehicle, with its rates on a ground station's link and on an onboard one, Hz.
     pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
-        Self { id, rates_hz, group: None, build: Build::Vehicle(build) }
+        Self { id, rates_hz, group: None, build: Build::Vehicle(build), speaker: Speaker::Autopilot }
     }
 
     /// A message that is sent only when it is asked for.
     pub const fn on_request(id: u32, build: Build) -> Self {
-        Self { id, rates_hz: [0.0; 2], group: None, build }
+        Self { id, rates_hz: [0.0; 2], group: None, build, speaker: Speaker::Autopilot }
     }
 
     /// Puts it into a group of REQUEST_DATA_STREAM.
     pub const fn of(self, group: Group) -> Self {
         Self { group: Some(group), ..self }
+    }
+
+    /// Lets a component say it.
+    pub const fn from(self, speaker: Speaker) -> Self {
+        Self { speaker, ..self }
     }
 
     /// Interval at the start on a link of this profile, µs; `None` if it is not sent there.

@@ -7,6 +7,7 @@
 //!  fence        areas, and the ways around them
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
+//!  equipment    servos, relays, gripper, camera and gimbal
 //!  estimation   instruments and the estimator
 //!  mode         flight modes
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
@@ -18,6 +19,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod equipment;
 pub mod estimation;
 pub mod fault;
 pub mod fence;

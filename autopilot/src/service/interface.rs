@@ -9,6 +9,7 @@ use vehicle::identity::Identity;
 use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::envelope::{Origin, PeerId};
+use crate::speaker::Speaker;
 use crate::stream::Stream;
 
 /// How a command that arrives twice is taken.
@@ -66,6 +67,11 @@ pub trait Service: Debug + Send {
     /// Commands that it takes. No two services take the same.
     fn commands(&self) -> &'static [CommandEntry] {
         &[]
+    }
+
+    /// Components whose messages and commands it takes.
+    fn speakers(&self) -> &'static [Speaker] {
+        &[Speaker::Autopilot]
     }
 
     /// Messages that clients can get from it, once or regularly. No two services have the same.

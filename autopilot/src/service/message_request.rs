@@ -10,6 +10,7 @@ use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::Command;
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
+use crate::speaker::Speaker;
 
 const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
 const REQUEST_MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
@@ -32,6 +33,10 @@ impl Service for MessageRequests {
         COMMANDS
     }
 
+    fn speakers(&self) -> &'static [Speaker] {
+        &Speaker::ALL
+    }
+
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         let (id, number) = match command.number {
             GET_HOME_POSITION => (HOME_POSITION_DATA::ID, 0),
@@ -42,14 +47,29 @@ impl Service for MessageRequests {
                 (id, command.whole(2).unwrap_or(0))
             }
         };
-        let stream = context.streams.get(id);
-        let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
-        if messages.is_empty() {
-            return Err(Refusal::Unsupported(format!("Message {id} is not available")));
-        }
-        for message in messages {
-            context.outbox.send(Destination::Peer(origin.peer), message);
-        }
+        send(context, origin, Speaker::of(command.component).unwrap_or_default(), id, number)?;
         Ok(Progress::Done)
     }
+}
+
+/// Sends a message of the table to who asks for it. The autopilot answers for camera and gimbal, and each of them for itself.
+pub fn send(
+    context: &mut Context,
+    origin: &Origin,
+    asked: Speaker,
+    id: u32,
+    number: u32,
+) -> Result<(), Refusal> {
+    let stream = context.streams.get(id);
+    let stream = stream.filter(|stream| asked == Speaker::Autopilot || stream.speaker == asked);
+    let Some((stream, messages)) = stream
+        .map(|stream| (stream, stream.messages(&context.component(), number)))
+        .filter(|(_, all)| !all.is_empty())
+    else {
+        return Err(Refusal::Unsupported(format!("Message {id} is not available")));
+    };
+    for message in messages {
+        context.outbox.send_as(stream.speaker, Destination::Peer(origin.peer), message);
+    }
+    Ok(())
 }

@@ -10,6 +10,7 @@ use super::{Repetition, Service};
 use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::envelope::{Origin, PeerId};
+use crate::speaker::Speaker;
 use crate::stream::StreamTable;
 
 /// All services. They are called in this order, which is also the order of what they send in one tick.
@@ -28,6 +29,12 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
         Box::new(super::set_point::SetPoints),
+        Box::new(super::equipment::EquipmentHeartbeats::default()),
+        Box::new(super::equipment::Outputs),
+        Box::new(super::equipment::CameraProtocol::default()),
+        Box::new(super::equipment::GimbalManager::default()),
+        Box::new(super::equipment::TrackedSystem::default()),
+        Box::new(super::mission_jump::MissionJumps),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),
@@ -90,19 +97,27 @@ impl Registry {
         self.each(|service| service.hear(context, origin));
     }
 
-    /// Hands a message or a command to the service that takes it.
-    pub fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+    /// Hands a message or a command for a component to the service that takes it there.
+    pub fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame, asked: Speaker) {
+        context.outbox.answer_as(asked);
+        self.take(context, origin, frame, asked);
+        context.outbox.answer_as(Speaker::Autopilot);
+    }
+
+    fn take(&mut self, context: &mut Context, origin: &Origin, frame: &Frame, asked: Speaker) {
         if let Some(command) = Command::read(frame) {
             let entry = self.commands.get(&command.number).copied();
             let taker = entry.and_then(|(index, repetition)| {
                 let service = self.services.get_mut(index)?;
+                service.speakers().contains(&asked).then_some(())?;
                 Some((repetition, service.as_mut() as &mut dyn Service))
             });
             self.protocol.handle(context, origin, frame, &command, taker);
             return;
         }
         let index = self.messages.get(&frame.message_id()).copied();
-        if let Some(service) = index.and_then(|index| self.services.get_mut(index)) {
+        let service = index.and_then(|index| self.services.get_mut(index));
+        if let Some(service) = service.filter(|service| service.speakers().contains(&asked)) {
             service.receive(context, origin, frame);
         }
     }

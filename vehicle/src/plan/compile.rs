@@ -50,6 +50,20 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
     }
 }
 
+/// What is done at once for a command that is no part of a mission.
+///
+/// # Errors
+/// [`PlanFault`] of what is not done at once.
+pub fn action(item: &MissionItem, site: &Site) -> Result<Do, PlanFault> {
+    // As any item but home.
+    let index = usize::from(site.identity.is_ardupilot());
+    check::item(PlanKind::Mission, index, item, site)?;
+    match step(item, &[], site) {
+        Step::Do(action) => Ok(action),
+        _ => Err(PlanFault::of_item(index, FaultCode::Unsupported, "not supported".to_owned())),
+    }
+}
+
 fn step(item: &MissionItem, items: &[MissionItem], site: &Site) -> Step {
     let source = Source { item, items, site };
     mission_command(item.command).map_or(Step::Pass, |command| (command.step)(&source))

@@ -14,6 +14,7 @@ use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
+use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -46,4 +47,6 @@ pub struct Machines {
     pub mission: Mission,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
+    /// What it carries.
+    pub equipment: Equipment,
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
+use crate::equipment::EquipmentVoice;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
@@ -45,6 +46,9 @@ pub struct VehicleSettings {
     /// What flies in place of our plant or closed loop, if anything does.
     #[serde(default)]
     pub foreign: Option<ForeignDescription>,
+    /// Who speaks for camera and gimbal.
+    #[serde(default)]
+    pub equipment: EquipmentVoice,
 }
 
 impl VehicleSettings {
@@ -63,6 +67,7 @@ impl VehicleSettings {
             plans: Plans::default(),
             autostart: false,
             foreign: None,
+            equipment: EquipmentVoice::default(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod arming;
 mod decision;
+mod equipment;
 mod plan_requests;
 mod plan_start;
 mod queries;
@@ -37,6 +38,7 @@ use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
 use crate::FlightError;
+use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
 use crate::mode::Mode;
@@ -99,6 +101,7 @@ impl Vehicle {
             return_home: Return::default(),
             mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
+            equipment: Equipment::default(),
         };
         let mut vehicle = Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
@@ -145,6 +148,7 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
+        self.step_equipment();
         Ok(())
     }
 

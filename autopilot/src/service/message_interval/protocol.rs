@@ -8,6 +8,7 @@ use crate::codec::{Command, Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
 use crate::service::{CommandEntry, Outcome, Progress, Service};
+use crate::speaker::Speaker;
 use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;
@@ -32,6 +33,10 @@ impl Service for MessageIntervals {
 
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
+    }
+
+    fn speakers(&self) -> &'static [Speaker] {
+        &Speaker::ALL
     }
 
     /// Each link begins with the rates of its profile.
@@ -70,7 +75,7 @@ impl Service for MessageIntervals {
         for (link, schedule) in self.links.iter_mut().enumerate() {
             schedule.due(time_us, |stream| {
                 if let Some(message) = stream.message(&component) {
-                    outbox.send(Destination::Link(link), message);
+                    outbox.send_as(stream.speaker, Destination::Link(link), message);
                 }
             });
         }
