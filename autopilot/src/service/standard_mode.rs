@@ -24,6 +24,10 @@ const STREAMS: &[Stream] = &[
 pub struct StandardModes;
 
 impl Service for StandardModes {
+    fn summary(&self) -> &'static str {
+        "Standard modes"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
