@@ -37,6 +37,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         list_parameters,
         mission,
         autostart,
+        equipment,
         record,
         record_size,
         replay: _,
@@ -85,6 +86,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("list-parameters", list_parameters.is_some()),
         ("mission", mission.is_some()),
         ("autostart", autostart.is_some()),
+        ("equipment", equipment.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
         ("fmu", fmu.is_some()),
@@ -142,6 +144,7 @@ mod tests {
         ("list-parameters", "json"),
         ("log", "warn"),
         ("autostart", "true"),
+        ("equipment", "own"),
         ("lockstep", "always"),
     ];
 

@@ -272,6 +272,7 @@ pub(super) fn vehicle(
         plans: Plans::default(),
         autostart: arguments.autostart.unwrap_or(false),
         foreign: None,
+        equipment: arguments.equipment.unwrap_or_default().into(),
     };
     let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
     let airframe_note = chosen.map(|chosen| {
