@@ -1,8 +1,8 @@
 //! One vehicle and its clients.
 
+use autopilot::Autopilot;
 use autopilot::codec::{Frame, Version};
 use autopilot::envelope::{Destination, LinkProfile};
-use autopilot::Autopilot;
 use mavlink::dialects::ardupilotmega::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
 use sitl::flight_log::{LogSource, Row, TOPICS};

@@ -181,11 +181,13 @@ impl Course {
 
     /// Down with what the gripper holds: on the ground it is released, and without a ground it is taken back.
     fn lower(&mut self, lowering: Lowering, situation: &Situation, proposal: &mut Proposal) -> TaskProgress {
-        let z_m = situation.outputs.position_m.z;
+        let (z_m, sinks_m_s) = (situation.outputs.position_m.z, situation.outputs.velocity_m_s.z.max(0.0));
+        // It is still sinking when it turns: v² / (2 a) with half of the acceleration, for the jerk.
+        let ends_z_m = z_m + sinks_m_s * sinks_m_s / situation.limits().acceleration_vertical_m_s2;
         if situation.landed {
             proposal.say(Severity::Info, "Payload placed");
             proposal.operate(Operation::Grip { grabs: false });
-        } else if z_m >= lowering.lowest_z_m {
+        } else if ends_z_m >= lowering.lowest_z_m {
             proposal.say(Severity::Warning, "Payload not placed: no ground within the descent");
         } else {
             descend(situation, proposal, Some(lowering.above_m));
