@@ -231,7 +231,6 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
             MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y,
             "longitude = 181",
         ),
-        (waypoint(1.0, -3.0), MavMissionResult::MAV_MISSION_INVALID_PARAM7, "3.0 m below the ground"),
         (
             with(177, [9.0, 1.0, 0.0, 0.0]),
             MavMissionResult::MAV_MISSION_INVALID_PARAM1,

@@ -10,6 +10,10 @@ use crate::{Limits, PositionReference};
 
 /// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
 const STRAIGHT: [f64; 2] = [0.98, 0.198];
+/// Shares of a limit of speed when nothing moves across the line, and nothing is to: 0.99995² + 0.01² = 1.
+const ALONG: [f64; 2] = [0.99995, 0.01];
+/// What counts as no motion across, as a share of the limit: what rounding leaves.
+const NO_SHARE: f64 = 1e-5;
 /// Both when the motion is not along that line: the largest square inside the circle.
 const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
 
@@ -69,7 +73,7 @@ impl WayPlan {
             let horizontal = turn * world.xy();
             [horizontal.x, horizontal.y, world.z]
         };
-        // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT and TURNING.
+        // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT, ALONG and TURNING.
         let across = |vector: &Vector3<f64>, limit: f64| local(vector)[1].abs() / limit;
         let straight = across(&from.velocity_m_s, limits.speed_horizontal_m_s) <= STRAIGHT[1]
             && across(&from.acceleration_m_s2, limits.acceleration_horizontal_m_s2) <= STRAIGHT[1];
@@ -77,7 +81,15 @@ impl WayPlan {
         let limit =
             |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
 
-        let max_velocity = limit(limits.speed_horizontal_m_s, limits.speed_down_m_s);
+        let still_across = across(&from.velocity_m_s, limits.speed_horizontal_m_s) <= NO_SHARE
+            && across(&goal.velocity_m_s, limits.speed_horizontal_m_s) <= NO_SHARE
+            && across(&from.acceleration_m_s2, limits.acceleration_horizontal_m_s2) <= NO_SHARE;
+        let speed_shares = if still_across { ALONG } else { shares };
+        let max_velocity = [
+            speed_shares[0] * limits.speed_horizontal_m_s,
+            speed_shares[1] * limits.speed_horizontal_m_s,
+            limits.speed_down_m_s,
+        ];
         let mut min_velocity = max_velocity.map(|speed| -speed);
         min_velocity[2] = -limits.speed_up_m_s;
         let target_velocity = local(&goal.velocity_m_s);

@@ -21,6 +21,25 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
             parts.is_some()
         },
     },
+    ConductParameter {
+        id: "FENCE_OPTIONS",
+        ardupilot: None,
+        integer: true,
+        minimum: 0.0,
+        maximum: 3.0,
+        get: |conduct| {
+            let failsafe = &conduct.failsafe;
+            f64::from(u8::from(failsafe.fence_keeps_mode) * KEEPS_MODE + u8::from(failsafe.fence_union) * UNION)
+        },
+        set: |conduct, value| {
+            let bits = (0..=3_u8).find(|bits| f64::from(*bits) == value);
+            if let Some(bits) = bits {
+                conduct.failsafe.fence_keeps_mode = bits & KEEPS_MODE != 0;
+                conduct.failsafe.fence_union = bits & UNION != 0;
+            }
+            bits.is_some()
+        },
+    },
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low),
@@ -49,6 +68,11 @@ const GROUND_STATION_ACTIONS: &[(Action, i32)] =
 const BATTERY_ACTIONS: &[(Action, i32)] =
     &[(Action::Warn, 0), (Action::Land, 1), (Action::Return, 2), (Action::Terminate, 5), (Action::Hold, 7)];
 
+/// Bits of FENCE_OPTIONS.
+const KEEPS_MODE: u8 = 1;
+const UNION: u8 = 2;
+
+/// Bits of FENCE_TYPE.
 const HEIGHT: u8 = 1;
 const DISTANCE: u8 = 2;
 const ZONES: u8 = 4;

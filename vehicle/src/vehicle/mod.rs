@@ -41,6 +41,7 @@ mod battery;
 mod battery_pack;
 mod change_error;
 mod closed_loop;
+mod commanded_turn;
 mod conduct;
 mod decided;
 mod descent;
@@ -82,6 +83,7 @@ mod sticks;
 mod takeoff;
 mod tick;
 mod trajectory;
+mod turning;
 
 pub use battery::Battery;
 pub use battery_pack::BatteryPack;

@@ -45,7 +45,7 @@ pub fn plan(kind: PlanKind, items: &[MissionItem], site: &Site) -> Result<(), Pl
 /// What is wrong with an item.
 type ItemFault = (FaultCode, String);
 
-/// Checks the place of an item: its frame, latitude and longitude, and that it is not too far away.
+/// Checks the place of an item: its frame, latitude and longitude. How far it is counts when a mission begins.
 fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
     if !Site::knows(item.frame) {
         let reason = format!("frame {} is not supported; allowed 0, 1, 3, 5, 6, 10, 11", item.frame);
@@ -68,18 +68,6 @@ fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
         let reason = format!("{name} = {value}; allowed -{most} to {most} degrees");
         return Err((FaultCode::InvalidParameter(parameter), reason));
     };
-    if let Some([north, east]) = place.horizontal_m {
-        let distance_m = libm::hypot(north, east);
-        if distance_m > FARTHEST_M {
-            let parameter = if north.abs() > east.abs() { 5 } else { 6 };
-            let reason = format!(
-                "the place is {:.0} km away; allowed up to {:.0} km: move it, or start the vehicle nearer to it",
-                distance_m / 1e3,
-                FARTHEST_M / 1e3
-            );
-            return Err((FaultCode::InvalidParameter(parameter), reason));
-        }
-    }
     Ok(place)
 }
 
