@@ -57,6 +57,10 @@ const FORCE_ARMING: f64 = 2989.0;
 pub struct Actions;
 
 impl Service for Actions {
+    fn summary(&self) -> &'static str {
+        "What the vehicle does at once"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         &COMMANDS
     }

@@ -89,7 +89,7 @@ pub use battery::Battery;
 pub use battery_pack::BatteryPack;
 pub use change_error::ChangeError;
 pub use conduct::Conduct;
-pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceParts};
+pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceOptions, FenceParts};
 pub use fence_watch::FenceRecord;
 pub use home::Home;
 pub use landed::LandedState;

@@ -34,12 +34,9 @@ pub struct FailsafeSettings {
     /// What of it (ArduPilot: FENCE_TYPE).
     #[serde(default)]
     pub fence_parts: FenceParts,
-    /// Whether it is enough to be in one of several zones to stay in, and not only where all of them are (ArduPilot: FENCE_OPTIONS).
-    #[serde(default = "yes")]
-    pub fence_union: bool,
-    /// Whether no other mode can be chosen while the vehicle comes back from a breach (ArduPilot: FENCE_OPTIONS).
+    /// How it is taken (ArduPilot: FENCE_OPTIONS).
     #[serde(default)]
-    pub fence_keeps_mode: bool,
+    pub fence_options: FenceOptions,
     /// Farthest from home, m; 0: anywhere (GF_MAX_HOR_DIST).
     pub fence_radius_m: f64,
     /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
@@ -73,6 +70,22 @@ pub struct FenceParts {
 impl Default for FenceParts {
     fn default() -> Self {
         Self { height: true, distance: true, zones: true }
+    }
+}
+
+/// How the fence is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FenceOptions {
+    /// Whether no other mode can be chosen while the vehicle comes back from a breach.
+    pub keeps_mode: bool,
+    /// Whether it is enough to be in one of several zones to stay in; else the vehicle stays where all of them are.
+    pub union: bool,
+}
+
+/// PX4's.
+impl Default for FenceOptions {
+    fn default() -> Self {
+        Self { keeps_mode: false, union: true }
     }
 }
 
@@ -118,8 +131,7 @@ impl Default for FailsafeSettings {
             fence_ahead: true,
             fence_enabled: true,
             fence_parts: FenceParts::default(),
-            fence_union: true,
-            fence_keeps_mode: false,
+            fence_options: FenceOptions::default(),
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
             wind_m_s: -1.0,
@@ -140,8 +152,7 @@ impl FailsafeSettings {
         }
         Self {
             fence: Action::Return,
-            fence_union: false,
-            fence_keeps_mode: true,
+            fence_options: FenceOptions { keeps_mode: true, union: false },
             ground_station_timeout_s: 5.0,
             ..px4
         }
@@ -149,7 +160,7 @@ impl FailsafeSettings {
 
     /// How several zones to stay in combine.
     pub fn fence_inclusions(&self) -> Inclusions {
-        if self.fence_union { Inclusions::Any } else { Inclusions::All }
+        if self.fence_options.union { Inclusions::Any } else { Inclusions::All }
     }
 
     /// What is done for a cause.
