@@ -13,10 +13,11 @@ pub struct CommandedTurn {
 }
 
 impl CommandedTurn {
-    /// Turns from the present heading on.
+    /// Turns from the heading that is asked for now.
     pub fn begin(&mut self, turn: &Turn, situation: &Situation) {
-        let (from_rad, fastest_rad_s) =
-            (situation.outputs.setpoint.yaw_rad, situation.limits().yaw_rate_rad_s);
+        let asked_rad = self.turning.map(|turning| turning.heading().0);
+        let from_rad = asked_rad.unwrap_or(situation.outputs.setpoint.yaw_rad);
+        let fastest_rad_s = situation.limits().yaw_rate_rad_s;
         self.turning = Some(Turning::new(turn, from_rad, fastest_rad_s));
     }
 
