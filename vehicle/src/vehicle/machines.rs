@@ -2,6 +2,7 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
 use super::hold_watch::HoldWatch;
@@ -38,6 +39,8 @@ pub struct Machines {
     pub takeoff: Takeoff,
     /// Sticks.
     pub manual_control: ManualControl,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.
