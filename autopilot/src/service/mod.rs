@@ -32,6 +32,7 @@ mod message_request;
 mod mission;
 mod notice;
 pub(crate) mod parameter;
+mod reboot;
 mod set_point;
 mod standard_mode;
 mod telemetry;

@@ -28,6 +28,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
         Box::new(super::set_point::SetPoints),
+        Box::new(super::reboot::Reboots),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),

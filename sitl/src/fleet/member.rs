@@ -99,7 +99,7 @@ impl Member {
     pub(super) fn circumstances(&self) -> Circumstances {
         let vehicle = self.autopilot.vehicle();
         Circumstances {
-            time_us: vehicle.time_us(),
+            time_us: self.time_us(),
             armed: vehicle.is_armed(),
             offboard: vehicle.mode() == Mode::Offboard,
             paused: self.autopilot.speed() == Speed::Paused,
@@ -116,9 +116,9 @@ impl Member {
         self.hub
     }
 
-    /// Its simulation time, µs.
+    /// Its simulation time, µs: it goes on over reboots.
     pub fn time_us(&self) -> u64 {
-        self.autopilot.vehicle().time_us()
+        self.autopilot.time_us()
     }
 
     /// Digest of its flight so far.
@@ -132,7 +132,12 @@ impl Member {
     /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
     pub(super) fn tick(&mut self, now: Instant) -> Result<(), FlightError> {
         set_simulation_time(self.time_us());
+        let boots = self.autopilot.boots();
         self.autopilot.tick()?;
+        if self.autopilot.boots() != boots {
+            // The vehicle that has booted knows of nobody.
+            self.ground_station = None;
+        }
         self.digest.update(self.autopilot.vehicle());
         if let Some(log) = &mut self.log {
             log.tick(&mut self.autopilot, now);

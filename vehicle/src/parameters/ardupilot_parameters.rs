@@ -22,6 +22,7 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
         },
     },
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence),
+    switch!("FS_CRASH_CHECK", crash.check),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low),
     ConductParameter {
@@ -40,7 +41,17 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
 ];
 
 /// PX4's identifiers whose meaning the ones above have.
-pub const REPLACED: [&str; 3] = ["GF_ACTION", "NAV_DLL_ACT", "COM_LOW_BAT_ACT"];
+pub const REPLACED: [&str; 9] = [
+    "GF_ACTION",
+    "NAV_DLL_ACT",
+    "COM_LOW_BAT_ACT",
+    "FD_FAIL_R",
+    "FD_FAIL_P",
+    "FD_FAIL_R_TTRI",
+    "FD_FAIL_P_TTRI",
+    "COM_LKDOWN_TKO",
+    "CBRK_FLIGHTTERM",
+];
 
 const FENCE_ACTIONS: &[(Action, i32)] =
     &[(Action::Warn, 0), (Action::Return, 1), (Action::Land, 2), (Action::Hold, 4)];

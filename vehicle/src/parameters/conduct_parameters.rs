@@ -25,7 +25,7 @@ macro_rules! real {
     ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+) => {
         real!($id, $ardupilot, $minimum..=$maximum, $($field).+, 1.0)
     };
-    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:literal) => {
+    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:expr) => {
         ConductParameter {
             id: $id,
             ardupilot: $ardupilot,
@@ -121,7 +121,30 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("BAT1_CAPACITY", Some(("BATT_CAPACITY", 1.0)), 10.0..=1e6, battery_capacity_ah, 1000.0),
     real!("COM_ARM_BAT_MIN", None, 0.0..=0.9, battery_to_arm),
     switch!("SYS_FAILURE_EN", failure_injection),
+    real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES),
+    real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES),
+    real!("FD_FAIL_R_TTRI", None, 0.02..=5.0, crash.roll_s),
+    real!("FD_FAIL_P_TTRI", None, 0.02..=5.0, crash.pitch_s),
+    real!("COM_LKDOWN_TKO", None, -1.0..=5.0, crash.lockdown_s),
+    ConductParameter {
+        id: "CBRK_FLIGHTTERM",
+        ardupilot: None,
+        integer: true,
+        minimum: 0.0,
+        maximum: 121_212.0,
+        get: |conduct| f64::from(conduct.crash.circuit_breaker),
+        set: |conduct, value| {
+            let whole = value.fract() == 0.0;
+            if whole {
+                conduct.crash.circuit_breaker = value as u32;
+            }
+            whole
+        },
+    },
 ];
+
+/// Of a radian.
+const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 
 /// PX4's numbers of the actions of each parameter.
 const SET_POINTS_ACTIONS: &[(Action, i32)] = &[

@@ -3,7 +3,7 @@
 use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
 use super::entry::Source;
-use super::{ConductParameter, Entry, NamedValue};
+use super::{ConductParameter, Entry, NamedValue, Statistic};
 use crate::vehicle::Conduct;
 
 /// A parameter in words.
@@ -63,6 +63,13 @@ const CONDUCT: &[(&str, &str, &str)] = &[
     ("FS_GCS_ENABLE", "Action when the ground station is lost", ""),
     ("BATT_FS_LOW_ACT", "Action when the battery is low", ""),
     ("BATT_FS_CRT_ACT", "Action when the battery is critical; when almost empty the vehicle lands at the latest, unless this is 0", ""),
+    ("FD_FAIL_R", "Roll that counts as a failure; 0 disables it", "deg"),
+    ("FD_FAIL_P", "Pitch that counts as a failure; 0 disables it", "deg"),
+    ("FD_FAIL_R_TTRI", "Time that the roll must last to count as a failure", "s"),
+    ("FD_FAIL_P_TTRI", "Time that the pitch must last to count as a failure", "s"),
+    ("COM_LKDOWN_TKO", "Time from arming in which a failure stops the rotors", "s"),
+    ("CBRK_FLIGHTTERM", "Circuit breaker of flight termination; 121212: a failure in flight is only reported", ""),
+    ("FS_CRASH_CHECK", "Disarm a vehicle that has crashed", ""),
     ("COM_ARM_BAT_MIN", "Smallest remaining charge with which the vehicle arms", "norm"),
 ];
 
@@ -71,6 +78,7 @@ const CONDUCT: &[(&str, &str, &str)] = &[
 const NAMES: &[(&str, &[(i32, &str)])] = &[
     ("COM_OBL_RC_ACT", &[(0, "Position mode"), (3, "Return"), (4, "Land"), (5, "Hold"), (6, "Terminate")]),
     ("SYS_FAILURE_EN", &[(0, "Off"), (1, "On")]),
+    ("FS_CRASH_CHECK", &[(0, "Off"), (1, "On")]),
     ("GF_PREDICT", &[(0, "Beyond the fence only"), (1, "Ahead of it")]),
     ("NAV_DLL_ACT", &[(0, "Nothing"), (1, "Hold"), (2, "Return"), (3, "Land"), (5, "Terminate")]),
     ("COM_LOW_BAT_ACT", &[(0, "Warn"), (2, "Land"), (3, "Return, then land")]),
@@ -134,6 +142,15 @@ impl Entry {
                 group: "Airframe",
                 needs_restart: false,
                 read_only: true,
+            },
+            Source::Statistic(statistic) => Description {
+                text: statistic.text().to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: f64::from(i32::MAX), unit: statistic.unit() },
+                whole: true,
+                names: statistic.choices().iter().map(|(value, name)| plain(*value, name)).collect(),
+                group: "Statistics",
+                needs_restart: false,
+                read_only: statistic != Statistic::Reset,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),

@@ -1,8 +1,9 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
-use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
+use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
 
 /// Parameters of the vehicle's behaviour.
@@ -42,6 +43,9 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// When it counts as crashed.
+    #[serde(default)]
+    pub crash: CrashSettings,
 }
 
 /// Records of before there were faults have none.
@@ -80,6 +84,7 @@ impl Conduct {
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
+            crash: CrashSettings::default(),
         }
     }
 }

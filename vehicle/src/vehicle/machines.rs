@@ -2,6 +2,7 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
 use super::hold_watch::HoldWatch;
@@ -32,6 +33,8 @@ pub struct Machines {
     pub rotors: RotorWatch,
     /// Whether the position can be held.
     pub hold: HoldWatch,
+    /// Crashes.
+    pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
     /// Takeoffs.

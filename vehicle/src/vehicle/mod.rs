@@ -42,6 +42,8 @@ mod battery_pack;
 mod change_error;
 mod closed_loop;
 mod conduct;
+mod crash_settings;
+mod crash_watch;
 mod decided;
 mod descent;
 mod failsafe;

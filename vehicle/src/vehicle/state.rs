@@ -5,6 +5,7 @@ mod decision;
 mod plan_requests;
 mod plan_start;
 mod queries;
+mod reboot;
 mod requests;
 
 use nalgebra::Vector3;
@@ -13,6 +14,7 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
@@ -92,6 +94,7 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
             hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
@@ -143,6 +146,7 @@ impl Vehicle {
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
+        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
