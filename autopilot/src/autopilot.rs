@@ -227,6 +227,11 @@ impl Autopilot {
         self.context.parameters.all(&self.context.vehicle)
     }
 
+    /// The values that parameters had at the start, in the order of the table.
+    pub fn initial_parameters(&self) -> &[Value] {
+        self.context.parameters.initial()
+    }
+
     /// The parameters as the text of a file, if one has changed since the last call.
     pub fn take_changed_parameters(&mut self, format: FileFormat) -> Option<String> {
         self.context.parameters.take_changed(format, &self.context.vehicle)

@@ -66,6 +66,11 @@ impl Parameters {
         self.speed = speed;
     }
 
+    /// Their values at the start, in the order of the table.
+    pub fn initial(&self) -> &[Value] {
+        &self.initial
+    }
+
     /// Files that describe them.
     pub fn metadata(&self) -> &ParameterMetadata {
         self.metadata.get_or_init(|| ParameterMetadata::new(&self.table, &self.initial))

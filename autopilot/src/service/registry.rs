@@ -29,6 +29,8 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::action::Actions),
         Box::new(super::set_point::SetPoints),
         Box::new(super::reboot::Reboots),
+        Box::new(super::motor_test::MotorTests),
+        Box::new(super::magnetometer_calibration::MagnetometerCalibrations::default()),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),

@@ -1,7 +1,7 @@
 //! Failsafes and fence by ArduPilot's names and numbers.
 
 use super::ConductParameter;
-use super::conduct_parameters::{choice, switch};
+use super::conduct_parameters::{choice, switch, whole};
 use crate::vehicle::{Action, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
@@ -23,6 +23,9 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     },
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence),
     switch!("FS_CRASH_CHECK", crash.check),
+    whole!("LOG_BITMASK", 0..=16_777_215, log.bits, u32),
+    whole!("LOG_DISARMED", 0..=3, log.disarmed, u8),
+    switch!("LOG_FILE_DSRMROT", log.rotates),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low),
     ConductParameter {

@@ -86,7 +86,28 @@ macro_rules! switch {
     };
 }
 
-pub(super) use {choice, switch};
+/// A whole number.
+macro_rules! whole {
+    ($id:literal, $minimum:literal..=$maximum:literal, $($field:ident).+, $kind:ty) => {
+        ConductParameter {
+            id: $id,
+            ardupilot: None,
+            integer: true,
+            minimum: $minimum as f64,
+            maximum: $maximum as f64,
+            get: |conduct| f64::from(conduct.$($field).+),
+            set: |conduct, value| {
+                let whole = value.fract() == 0.0 && ($minimum as f64..=$maximum as f64).contains(&value);
+                if whole {
+                    conduct.$($field).+ = value as $kind;
+                }
+                whole
+            },
+        }
+    };
+}
+
+pub(super) use {choice, switch, whole};
 
 /// The vehicle's own parameters.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
@@ -126,21 +147,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("FD_FAIL_R_TTRI", None, 0.02..=5.0, crash.roll_s),
     real!("FD_FAIL_P_TTRI", None, 0.02..=5.0, crash.pitch_s),
     real!("COM_LKDOWN_TKO", None, -1.0..=5.0, crash.lockdown_s),
-    ConductParameter {
-        id: "CBRK_FLIGHTTERM",
-        ardupilot: None,
-        integer: true,
-        minimum: 0.0,
-        maximum: 121_212.0,
-        get: |conduct| f64::from(conduct.crash.circuit_breaker),
-        set: |conduct, value| {
-            let whole = value.fract() == 0.0;
-            if whole {
-                conduct.crash.circuit_breaker = value as u32;
-            }
-            whole
-        },
-    },
+    whole!("CBRK_FLIGHTTERM", 0..=121_212, crash.circuit_breaker, u32),
 ];
 
 /// Of a radian.

@@ -69,6 +69,9 @@ const CONDUCT: &[(&str, &str, &str)] = &[
     ("FD_FAIL_P_TTRI", "Time that the pitch must last to count as a failure", "s"),
     ("COM_LKDOWN_TKO", "Time from arming in which a failure stops the rotors", "s"),
     ("CBRK_FLIGHTTERM", "Circuit breaker of flight termination; 121212: a failure in flight is only reported", ""),
+    ("LOG_BITMASK", "What is logged, added up as in ArduCopter: 1 fast attitude, 2 attitude, 4 GPS, 8 performance, 16 height, 32 position, 128 IMU, 512 battery, 1024 motors, 8192 compass, 131072 mixer, 262144 fast IMU", ""),
+    ("LOG_DISARMED", "Log while disarmed, too", ""),
+    ("LOG_FILE_DSRMROT", "Begin a new log with each flight instead of each boot", ""),
     ("FS_CRASH_CHECK", "Disarm a vehicle that has crashed", ""),
     ("COM_ARM_BAT_MIN", "Smallest remaining charge with which the vehicle arms", "norm"),
 ];
@@ -78,6 +81,8 @@ const CONDUCT: &[(&str, &str, &str)] = &[
 const NAMES: &[(&str, &[(i32, &str)])] = &[
     ("COM_OBL_RC_ACT", &[(0, "Position mode"), (3, "Return"), (4, "Land"), (5, "Hold"), (6, "Terminate")]),
     ("SYS_FAILURE_EN", &[(0, "Off"), (1, "On")]),
+    ("LOG_DISARMED", &[(0, "Off"), (1, "On"), (2, "On, discarded on USB power"), (3, "On, discarded unless armed")]),
+    ("LOG_FILE_DSRMROT", &[(0, "Off"), (1, "On")]),
     ("FS_CRASH_CHECK", &[(0, "Off"), (1, "On")]),
     ("GF_PREDICT", &[(0, "Beyond the fence only"), (1, "Ahead of it")]),
     ("NAV_DLL_ACT", &[(0, "Nothing"), (1, "Hold"), (2, "Return"), (3, "Land"), (5, "Terminate")]),

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::battery_pack::BatteryPack;
 use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
+use super::log_conduct::LogConduct;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +47,9 @@ pub struct Conduct {
     /// When it counts as crashed.
     #[serde(default)]
     pub crash: CrashSettings,
+    /// What is logged, in ArduPilot's convention.
+    #[serde(default)]
+    pub log: LogConduct,
 }
 
 /// Records of before there were faults have none.
@@ -85,6 +89,7 @@ impl Conduct {
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
             crash: CrashSettings::default(),
+            log: LogConduct::default(),
         }
     }
 }

@@ -51,15 +51,18 @@ pub struct CrashWatch {
     weak: Lasting,
     /// What has been told already: a lost attitude, a lost thrust.
     told: [bool; 2],
+    /// Whether the last flight has ended in a crash.
+    crashed: bool,
 }
 
 impl CrashWatch {
     /// Looks at the motion after a tick of `dt_s`.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal, dt_s: f64) {
         if !situation.armed {
-            *self = Self::default();
+            *self = Self { crashed: self.crashed, ..Self::default() };
             return;
         }
+        self.crashed &= self.armed_since_us.is_some();
         self.armed_since_us.get_or_insert(situation.time_us);
         let change = situation.outputs.acceleration_m_s2 - self.acceleration_m_s2;
         self.acceleration_m_s2 += change * (dt_s * FILTER_RAD_S).min(1.0);
@@ -77,6 +80,11 @@ impl CrashWatch {
         }
     }
 
+    /// Whether the last flight has ended in a crash.
+    pub fn has_crashed(&self) -> bool {
+        self.crashed
+    }
+
     fn check_crash(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let acceleration = self.acceleration_m_s2.norm();
         let error_rad = attitude_error_rad(situation);
@@ -88,6 +96,7 @@ impl CrashWatch {
             && acceleration < MOST_ACCELERATION_M_S2
             && situation.outputs.velocity_m_s.norm() < MOST_SPEED_M_S;
         if self.crashing.update(lies, situation.time_us, CRASHED_US) {
+            self.crashed = true;
             let (error, least) = (error_rad / DEGREE, LEAST_ERROR_RAD / DEGREE);
             proposal.stop_rotors(format!(
                 "Crash: Disarming: AngErr={error:.0}>{least:.0}, Accel={acceleration:.1}<{MOST_ACCELERATION_M_S2:.1}"

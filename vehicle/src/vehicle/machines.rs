@@ -10,6 +10,7 @@ use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
@@ -37,6 +38,8 @@ pub struct Machines {
     pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// Tests of single rotors.
+    pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
     /// Sticks.

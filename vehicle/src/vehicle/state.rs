@@ -27,6 +27,7 @@ use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::perception::Perception;
 use super::plans::KnownPlans;
@@ -96,6 +97,7 @@ impl Vehicle {
             hold: HoldWatch::default(),
             crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
+            motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
             offboard: Offboard::default(),
@@ -142,6 +144,7 @@ impl Vehicle {
         if self.decided.is_armed() {
             self.fly();
         }
+        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
@@ -208,7 +211,14 @@ impl Vehicle {
             rotor_faults: self.machines.injection.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
+        let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
+        match test {
+            Some((mut steering, rotor_faults)) => {
+                let conditions = Conditions { armed: true, rotor_faults, ..conditions };
+                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+            }
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+        }
     }
 
     /// Perceives the motion after the tick.
