@@ -93,7 +93,7 @@ trait AtStart {
 
 impl AtStart for vehicle::Vehicle {
     fn position_is_start(&self) -> bool {
-        self.truth().position_m.norm() < 1e-6
+        self.truth().position_m.norm() < 0.01
     }
 }
 

@@ -1,7 +1,7 @@
 //! Messages of what has happened since the last look: modes, arming, events, errors, missions, origins.
 
 use vehicle::plan::PlanKind;
-use vehicle::{Cause, LandedState, Mode};
+use vehicle::{Cause, LandedState};
 
 use super::bytes::{ARM, CMD, ERR, EV, MODE, ORGN, numbers};
 use crate::flight_log::LogSource;
@@ -31,7 +31,8 @@ const HOME: f64 = 1.0;
 /// What was so at the last look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Happenings {
-    mode: Option<Mode>,
+    /// Its number: some of our modes are one of ArduCopter's.
+    mode: Option<u32>,
     armed: Option<bool>,
     landed: Option<bool>,
     crashed: bool,
@@ -57,8 +58,9 @@ impl Happenings {
     /// Appends what has happened.
     pub fn look(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>) {
         let (vehicle, time) = (source.vehicle, source.vehicle.time_us() as f64);
-        if self.mode.replace(vehicle.mode()) != Some(vehicle.mode()) {
-            let number = f64::from(vehicle.identity().custom_mode(vehicle.mode()));
+        let mode = vehicle.identity().custom_mode(vehicle.mode());
+        if self.mode.replace(mode) != Some(mode) {
+            let number = f64::from(mode);
             numbers(into, MODE, "QMBB", &[time, number, number, UNKNOWN_REASON]);
         }
         let armed = vehicle.is_armed();
