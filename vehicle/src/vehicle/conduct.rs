@@ -1,9 +1,11 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
-use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
+use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
+use super::log_conduct::LogConduct;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +44,12 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// When it counts as crashed.
+    #[serde(default)]
+    pub crash: CrashSettings,
+    /// What is logged, in ArduPilot's convention.
+    #[serde(default)]
+    pub log: LogConduct,
 }
 
 /// Records of before there were faults have none.
@@ -80,6 +88,8 @@ impl Conduct {
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
+            crash: CrashSettings::default(),
+            log: LogConduct::default(),
         }
     }
 }

@@ -148,6 +148,11 @@ impl Vehicle {
         self.decided.is_terminated()
     }
 
+    /// Whether its last flight has ended in a crash.
+    pub fn has_crashed(&self) -> bool {
+        self.machines.crash.has_crashed()
+    }
+
     /// The mode.
     pub fn mode(&self) -> Mode {
         self.decided.mode()
@@ -219,6 +224,11 @@ impl Vehicle {
     /// Its plans.
     pub fn plans(&self) -> &Plans {
         self.plans.plans()
+    }
+
+    /// A number that changes with each plan that is replaced.
+    pub fn plans_revision(&self) -> u32 {
+        self.plans.revision()
     }
 
     /// What the places of plans refer to.

@@ -7,6 +7,7 @@ use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::motor_test::MotorTest;
 use super::super::notice::{Notice, Refusal, Severity};
 use super::super::proposal::check_distance;
 use super::super::region::RegionOfInterest;
@@ -94,6 +95,22 @@ impl Vehicle {
         }
         self.consult(|parts, _, proposal| parts.injection.inject(fault, proposal));
         Ok(())
+    }
+
+    /// Turns rotors on the ground, one after the other.
+    ///
+    /// # Errors
+    /// [`Refusal`] in the air, while armed, for a rotor that there is not, and while what flies is from elsewhere.
+    pub fn test_motors(&mut self, test: &MotorTest) -> Result<(), Refusal> {
+        if let Some(model) = self.foreign() {
+            return Err(Refusal::Unsupported(format!("Motor Test: the rotors are those of {}", model.name)));
+        }
+        self.consult(|parts, situation, proposal| parts.motor_tests.begin(situation, proposal, test))
+    }
+
+    /// Ends a test of rotors.
+    pub fn end_motor_test(&mut self) {
+        self.consult(|parts, _, proposal| parts.motor_tests.end(proposal));
     }
 
     /// Whether a user may choose a mode now.
