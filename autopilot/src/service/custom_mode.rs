@@ -70,8 +70,7 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
 fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
     let identity = vehicle.identity();
     let Some(mode) = identity.mode(custom_mode) else {
-        let names: Vec<_> =
-            identity.selectable_modes().iter().map(|known| identity.mode_name(*known)).collect();
+        let names: Vec<_> = identity.selectable_modes().map(|known| identity.mode_name(known)).collect();
         // PX4's main and sub-modes are bytes of the number.
         let number =
             if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
