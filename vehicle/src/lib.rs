@@ -35,7 +35,9 @@ pub use flight_error::FlightError;
 pub use mode::{Leader, Mode};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings,
+    HeadingPolicy, Home, LandedState, MissionState, MissionStatus, Notice, OrbitHeading, OrbitRequest,
+    OrbitSettings, OrbitStatus, PositionSetPoint, Refusal, Reposition, ReturnGoal, ReturnSettings, SetPoint,
+    Severity, SteeringKind, Sticks, TICK_US, TargetReport, TrackedAttitude, TrailSettings, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
 };

@@ -108,7 +108,13 @@ impl Circle {
     }
 
     /// Goes on for `dt_s` and changes its speed towards another one, m/s, with at most a braking, m/s². The nose points to the centre.
-    pub fn advance(&mut self, wanted_m_s: f64, braking_m_s2: f64, limits: &Limits, dt_s: f64) -> PositionSetPoint {
+    pub fn advance(
+        &mut self,
+        wanted_m_s: f64,
+        braking_m_s2: f64,
+        limits: &Limits,
+        dt_s: f64,
+    ) -> PositionSetPoint {
         let tangential = Self::tangential_m_s2(limits);
         let change = (wanted_m_s - self.speed_m_s).clamp(-braking_m_s2 * dt_s, tangential * dt_s);
         self.speed_m_s += change;

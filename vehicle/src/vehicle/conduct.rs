@@ -4,6 +4,11 @@ use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
+use super::follow_settings::FollowSettings;
+use super::heading_policy::HeadingPolicy;
+use super::orbit_request::OrbitSettings;
+use super::return_settings::ReturnSettings;
+use super::trail::TrailSettings;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +44,21 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// The way home beside its height.
+    #[serde(default)]
+    pub return_home: ReturnSettings,
+    /// Where the nose points on a way that names no heading.
+    #[serde(default)]
+    pub heading_policy: HeadingPolicy,
+    /// Orbits.
+    #[serde(default)]
+    pub orbit: OrbitSettings,
+    /// How a target is followed.
+    #[serde(default)]
+    pub follow: FollowSettings,
+    /// The trail that leads back.
+    #[serde(default)]
+    pub trail: TrailSettings,
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
@@ -54,6 +74,8 @@ fn yes() -> bool {
 /// | takeoff height | 2.5 m | PX4's |
 /// | set-point timeout | 1 s; ArduPilot 3 s | theirs |
 /// | return height | 30 m (ArduPilot 15 m), near 5 m | theirs |
+/// | way home | PX4: 30 m to wait at, a cone of 45°; ArduPilot: 5 s above home, a cone of slope 3 | theirs |
+/// | heading on the way | to the next place, ArduPilot not on the way home | theirs |
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
@@ -79,6 +101,15 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            return_home: ReturnSettings::new(ardupilot),
+            heading_policy: if ardupilot {
+                HeadingPolicy::NextPlaceExceptReturn
+            } else {
+                HeadingPolicy::NextPlace
+            },
+            orbit: OrbitSettings::default(),
+            follow: FollowSettings::default(),
+            trail: TrailSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
         }
     }

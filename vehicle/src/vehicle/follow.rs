@@ -126,7 +126,12 @@ impl Follow {
     }
 
     /// PX4 climbs or sinks to its height before it travels.
-    fn is_at_height(&mut self, target: &TargetMotion, situation: &Situation, proposal: &mut Proposal) -> bool {
+    fn is_at_height(
+        &mut self,
+        target: &TargetMotion,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> bool {
         let z_m = height_z_m(target, situation);
         if self.way.is_some() || (situation.outputs.position_m.z - z_m).abs() < HEIGHT_M {
             return true;
@@ -201,7 +206,10 @@ impl Follow {
         let heading = match wanted {
             FollowHeading::Hold => None,
             FollowHeading::Target => {
-                let (way, v) = ((target.position_m - now.position_m).xy(), (target.velocity_m_s - now.velocity_m_s).xy());
+                let (way, v) = (
+                    (target.position_m - now.position_m).xy(),
+                    (target.velocity_m_s - now.velocity_m_s).xy(),
+                );
                 let rate_rad_s = (way.x * v.y - way.y * v.x) / way.norm_squared();
                 (way.norm() > TOO_NEAR_M).then(|| (libm::atan2(way.y, way.x), rate_rad_s))
             }
@@ -210,7 +218,8 @@ impl Follow {
             }
             FollowHeading::Travel => (v.norm() > TRAVELS_M_S).then(|| (libm::atan2(v.y, v.x), 0.0)),
         };
-        heading.map_or(YawTarget::Hold, |(heading_rad, rate_rad_s)| YawTarget::Follow(heading_rad, rate_rad_s))
+        heading
+            .map_or(YawTarget::Hold, |(heading_rad, rate_rad_s)| YawTarget::Follow(heading_rad, rate_rad_s))
     }
 }
 
@@ -275,7 +284,10 @@ fn moved_on(now: &PositionReference, place: &[PositionReference; 2], limits: &Li
 /// A target that is faster than the vehicle may be is followed as fast as that is.
 fn keep_speed(next: &mut PositionReference, now: &PositionReference, limits: &Limits) {
     let v = next.velocity_m_s;
-    let kept = v.xy().cap_magnitude(limits.speed_horizontal_m_s).push(v.z.clamp(-limits.speed_up_m_s, limits.speed_down_m_s));
+    let kept = v
+        .xy()
+        .cap_magnitude(limits.speed_horizontal_m_s)
+        .push(v.z.clamp(-limits.speed_up_m_s, limits.speed_down_m_s));
     if kept != v {
         next.velocity_m_s = kept;
         next.position_m = now.position_m + (now.velocity_m_s + kept) * (TICK_S / 2.0);

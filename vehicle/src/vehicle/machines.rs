@@ -4,14 +4,17 @@ use super::autostart::Autostart;
 use super::battery::Battery;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 
@@ -42,6 +45,12 @@ pub struct Machines {
     pub offboard: Offboard,
     /// The way home.
     pub return_home: Return,
+    /// The trail, and the way back on it.
+    pub smart_return: SmartReturn,
+    /// Orbits.
+    pub orbit: Orbit,
+    /// The target that is followed.
+    pub follow: Follow,
     /// The mission.
     pub mission: Mission,
     /// Speeds that hold instead of the parameters'.

@@ -178,8 +178,7 @@ impl Orbit {
 
     fn go_around(&mut self, mut circle: Circle, situation: &Situation, proposal: &mut Proposal) {
         let (Some(asked), limits) = (self.asked, situation.limits()) else { return };
-        let share =
-            if situation.identity.is_ardupilot() { CENTRIPETAL_ARDUPILOT } else { CENTRIPETAL_PX4 };
+        let share = if situation.identity.is_ardupilot() { CENTRIPETAL_ARDUPILOT } else { CENTRIPETAL_PX4 };
         let tangential_m_s2 = Circle::tangential_m_s2(limits);
         let mut wanted_m_s = asked.speed_m_s.abs().min(circle.fastest_m_s(share, limits));
         if let Some(way_rad) = asked.way_rad {

@@ -51,7 +51,9 @@ impl SmartReturn {
     /// Leaves the place of now behind, in every mode but its own.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let settings = &situation.conduct.trail;
-        if situation.knows_its_place() && self.trail.leave(situation.outputs.position_m, settings, situation.time_us) {
+        if situation.knows_its_place()
+            && self.trail.leave(situation.outputs.position_m, settings, situation.time_us)
+        {
             proposal.say(Severity::Critical, "SmartRTL deactivated: buffer full");
         }
     }
@@ -145,8 +147,7 @@ fn back_along(places_m: &[Vector3<f64>]) -> Program {
     let step = |(index, place_m): (usize, &Vector3<f64>)| {
         let is_last = index == last;
         let z_m = if is_last { place_m.z - ABOVE_START_M } else { place_m.z };
-        let place =
-            Place { horizontal_m: Some([place_m.x, place_m.y]), altitude: Some(Altitude::Down(z_m)) };
+        let place = Place { horizontal_m: Some([place_m.x, place_m.y]), altitude: Some(Altitude::Down(z_m)) };
         let waypoint = Waypoint { place, hold_s: 0.0, acceptance_radius_m: None, heading_rad: None };
         ProgramStep { step: Step::Navigate(Navigate::Waypoint(waypoint)), continues: !is_last }
     };

@@ -17,6 +17,7 @@ use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
@@ -26,6 +27,7 @@ use super::machines::Machines;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
 use super::perception::Perception;
 use super::plans::KnownPlans;
 use super::return_home::Return;
@@ -33,6 +35,7 @@ use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
@@ -97,6 +100,9 @@ impl Vehicle {
             manual_control: ManualControl::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
+            smart_return: SmartReturn::default(),
+            orbit: Orbit::default(),
+            follow: Follow::default(),
             mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
         };
@@ -181,13 +187,19 @@ impl Vehicle {
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
             Mode::Position => parts.manual_control.step(situation, proposal),
-            Mode::Offboard => parts.offboard.step(situation, proposal),
+            Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
             Mode::Mission => parts.mission.step(situation, proposal),
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
+            Mode::SmartReturn => parts.smart_return.step(situation, proposal),
+            Mode::Orbit => parts.orbit.step(situation, proposal),
+            Mode::Follow => parts.follow.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
+            if situation.mode != Mode::SmartReturn {
+                parts.smart_return.watch(situation, proposal);
+            }
             if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }

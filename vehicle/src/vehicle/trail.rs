@@ -130,10 +130,8 @@ fn prune(places_m: &mut Vec<Vector3<f64>>, near_m: f64) {
     let mut from = 0;
     while from + 3 < places_m.len() {
         let meets = |to: &usize| {
-            let (one, other) = nearest(
-                [&places_m[from], &places_m[from + 1]],
-                [&places_m[*to], &places_m[*to + 1]],
-            );
+            let (one, other) =
+                nearest([&places_m[from], &places_m[from + 1]], [&places_m[*to], &places_m[*to + 1]]);
             ((one - other).norm() < near_m).then_some((*to, (one + other) / 2.0))
         };
         if let Some((to, meeting_m)) = (from + 2..places_m.len() - 1).rev().find_map(|to| meets(&to)) {

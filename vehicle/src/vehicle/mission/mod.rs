@@ -28,5 +28,9 @@ mod task;
 mod tests;
 mod turning;
 
+pub use course::Course;
+pub use jumps::Jumps;
 pub use machine::Mission;
+pub use route::Route;
 pub use status::{MissionState, MissionStatus};
+pub use task::TaskProgress;

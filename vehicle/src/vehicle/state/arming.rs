@@ -36,7 +36,7 @@ impl Vehicle {
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
-            Mode::Land | Mode::Return => {
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
                 obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
@@ -68,6 +68,7 @@ impl Vehicle {
         self.decided.arm();
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
+            parts.smart_return.arm(situation);
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }

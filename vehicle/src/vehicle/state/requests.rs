@@ -7,13 +7,16 @@ use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::follow::Follow;
 use super::super::notice::{Notice, Refusal, Severity};
+use super::super::orbit_request::OrbitRequest;
 use super::super::proposal::check_distance;
 use super::super::region::RegionOfInterest;
 use super::super::reposition::Reposition;
 use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 use super::super::steering::{Steering, SteeringKind};
 use super::super::sticks::Sticks;
+use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
 use crate::foreign::ForeignRole;
@@ -115,6 +118,8 @@ impl Vehicle {
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
+            Mode::Follow => Follow::may_begin(&situation)?,
+            Mode::SmartReturn => self.machines.smart_return.may_begin()?,
             Mode::Land | Mode::Return if situation.armed && !flying => {
                 return Err(Refusal::later(format!(
                     "{} mode rejected: on the ground",
@@ -215,6 +220,34 @@ impl Vehicle {
         Ok(())
     }
 
+    /// Flies around a centre.
+    ///
+    /// # Errors
+    /// [`Refusal`] on the ground, and for a circle that the fence forbids.
+    pub fn orbit(&mut self, request: &OrbitRequest) -> Result<(), Refusal> {
+        let situation = self.situation();
+        situation.refuse_without_rotor()?;
+        if situation.steering.kind() == SteeringKind::Idle {
+            return Err(Refusal::later("Orbit rejected: not flying"));
+        }
+        self.may_enter(Mode::Orbit)?;
+        if let (Some([x, y]), z) = (request.centre_m, request.down_m.unwrap_or_default()) {
+            check_distance(&Vector3::new(x, y, z))?;
+        }
+        self.machines.orbit.check(&situation, request)?;
+        self.machines.failsafe.release();
+        if self.mode() != Mode::Orbit {
+            self.enter(Mode::Orbit);
+        }
+        self.consult(|parts, situation, proposal| parts.orbit.ask(request, situation, proposal));
+        Ok(())
+    }
+
+    /// Hears from the target of the follow mode.
+    pub fn hear_target(&mut self, report: &TargetReport) {
+        self.consult(|parts, situation, _| parts.follow.hear(report, situation));
+    }
+
     /// Turns to a heading, rad, where it is.
     ///
     /// # Errors
@@ -235,10 +268,16 @@ impl Vehicle {
     pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
         let situation = self.situation();
         if situation.identity.is_ardupilot() {
-            if situation.mode != Mode::Offboard {
-                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
-            }
             let position = matches!(set_point, SetPoint::Position(_));
+            match situation.mode {
+                Mode::Offboard => {}
+                Mode::GuidedAttitude if !position => {}
+                Mode::GuidedAttitude => {
+                    let reason = "Guided NoGPS takes attitudes only; use Guided for places and velocities";
+                    return Err(Refusal::denied(format!("Set-point denied: {reason}")));
+                }
+                _ => return Err(Refusal::later("Set-point ignored: not in Guided mode")),
+            }
             if position && situation.steering.kind() == SteeringKind::Idle {
                 return Err(Refusal::later("Set-point ignored: take off first"));
             }
