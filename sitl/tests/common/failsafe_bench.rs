@@ -3,7 +3,7 @@
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
-use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
+use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS};
 use vehicle::{Action, Cause, Conduct, Mode};
 
 use super::{Bench, settings};
@@ -13,7 +13,7 @@ pub const TEMPORARILY_REJECTED: u8 = 1;
 pub fn set(bench: &mut Bench, id: &str, value: f64) {
     let mut param_id = [0; 16];
     param_id[..id.len()].copy_from_slice(id.as_bytes());
-    let integer = CONDUCT_PARAMETERS.iter().any(|known| known.id == id && known.integer);
+    let integer = known_parameters().any(|known| known.id == id && known.integer);
     let ardupilot = bench.autopilot.identity().is_ardupilot();
     // PX4's integers travel bytewise.
     let (param_value, param_type) = if integer && !ardupilot {
@@ -32,6 +32,11 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
     }));
     let now = bench.parameters().pop().expect("an answer").param_value;
     assert_eq!(now.to_bits(), param_value.to_bits(), "{id}: {:?}", bench.texts());
+}
+
+/// Those of both identities.
+fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
+    CONDUCT_PARAMETERS.iter().chain(PX4_PARAMETERS).chain(ARDUPILOT_PARAMETERS)
 }
 
 /// The parameter of a cause.
@@ -127,8 +132,7 @@ pub fn lose_ground_station(bench: &mut Bench) {
 /// The numbers that a cause's parameter takes, and what it does then.
 pub fn choices(identity: Identity, cause: Cause) -> Vec<(u8, Action)> {
     let name = parameter(identity, cause);
-    let mut known = CONDUCT_PARAMETERS.iter().chain(ARDUPILOT_PARAMETERS);
-    let parameter = known.find(|known| known.id == name).expect("there is one");
+    let parameter = known_parameters().find(|known| known.id == name).expect("there is one");
     let choice = |number: u8| {
         let mut conduct = Conduct::new(identity.is_ardupilot());
         (parameter.set)(&mut conduct, f64::from(number)).then(|| (number, conduct.failsafe.action(cause)))

@@ -29,17 +29,19 @@ pub struct Entry {
     /// Earlier MAVLink name, accepted wherever a name is, and never listed.
     pub former: Option<&'static str>,
     pub(super) source: Source,
+    /// Whether it is a further name of something that is listed before: files hold it once.
+    pub(super) is_other: bool,
 }
 
 impl Entry {
     /// A parameter of the closed loop.
     pub(super) fn of_loop(name: &LoopName, parameter: &'static Parameter) -> Self {
-        Self { id: name.id, former: name.former, source: Source::Loop(parameter) }
+        Self { id: name.id, former: name.former, source: Source::Loop(parameter), is_other: false }
     }
 
     /// A parameter that has always had its name.
     pub(super) fn new(id: &'static str, source: Source) -> Self {
-        Self { id, former: None, source }
+        Self { id, former: None, source, is_other: false }
     }
 
     /// Public name in the closed loop, such as `airframe.mass`; `None` for the vehicle's own parameters.
@@ -52,6 +54,11 @@ impl Entry {
 
     /// Whether parameter files hold it.
     pub fn is_kept(&self) -> bool {
+        !self.is_other && self.is_of_vehicle()
+    }
+
+    /// Whether it belongs to the vehicle, not to the run, and may be in a file.
+    pub(super) fn is_of_vehicle(&self) -> bool {
         matches!(self.source, Source::Loop(_) | Source::Conduct(..))
     }
 

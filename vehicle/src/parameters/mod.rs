@@ -4,6 +4,7 @@
 //! values is its own matter: [`Vehicle::adopt`](crate::Vehicle::adopt).
 
 mod ardupilot_parameters;
+mod conduct_parameter;
 mod conduct_parameters;
 mod description;
 mod entry;
@@ -11,6 +12,7 @@ mod file;
 mod loop_access;
 mod loop_names;
 mod named_value;
+mod px4_parameters;
 mod set_error;
 mod speed;
 mod suggestion;
@@ -20,12 +22,14 @@ mod value_text;
 mod values;
 
 pub use ardupilot_parameters::ARDUPILOT_PARAMETERS;
-pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
+pub use conduct_parameter::ConductParameter;
+pub use conduct_parameters::CONDUCT_PARAMETERS;
 pub use description::Description;
 pub use entry::Entry;
 pub use file::{FileFormat, ParameterFileError, parse, render};
 pub use loop_names::{LOOP_NAMES, LoopName, loop_name};
 pub use named_value::NamedValue;
+pub use px4_parameters::PX4_PARAMETERS;
 pub use set_error::SetError;
 pub use speed::Speed;
 pub use table::{Change, ParameterTable, SPEED_PARAMETER};

@@ -2,10 +2,11 @@
 
 use quadrotor::PARAMETERS;
 
-use super::ardupilot_parameters::{ARDUPILOT_PARAMETERS, REPLACED};
+use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
 use super::loop_access::write;
 use super::loop_names::loop_name;
+use super::px4_parameters::PX4_PARAMETERS;
 use super::suggestion::suggestion;
 use super::value::within;
 use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
@@ -41,11 +42,13 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
-        let replaced = |parameter: &&ConductParameter| !ardupilot || !REPLACED.contains(&parameter.id);
-        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { &[] };
-        let of_conduct = CONDUCT_PARAMETERS.iter().filter(replaced).chain(own).map(|parameter| {
-            let (id, scale) = parameter.ardupilot.filter(|_| ardupilot).unwrap_or((parameter.id, 1.0));
-            Entry::new(id, Source::Conduct(parameter, scale))
+        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
+        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).flat_map(|parameter| {
+            let names = parameter.names_in(identity);
+            names.map(|(id, scale, is_other)| Entry {
+                is_other,
+                ..Entry::new(id, Source::Conduct(parameter, scale))
+            })
         });
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };

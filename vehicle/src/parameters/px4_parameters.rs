@@ -1,0 +1,27 @@
+//! What only PX4 has, or what ArduPilot has with other numbers.
+
+use super::ConductParameter;
+use super::conduct_parameter::choice;
+use super::conduct_parameters::FENCE_ACTIONS;
+use crate::vehicle::{Action, BatteryActions};
+
+/// Parameters that are there unless the vehicle presents itself as ArduPilot.
+#[rustfmt::skip] // One line per parameter reads as the table that it is.
+pub static PX4_PARAMETERS: &[ConductParameter] = &[
+    choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
+    choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery, "Action when the battery is critical; 3 returns, then lands when the battery is almost empty"),
+    choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+];
+
+const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::None, 0, "Nothing"),
+    (Action::Hold, 1, "Hold"),
+    (Action::Return, 2, "Return"),
+    (Action::Land, 3, "Land"),
+    (Action::Terminate, 5, "Terminate"),
+];
+const BATTERY_POLICIES: &[(BatteryActions, i32, &str)] = &[
+    (BatteryActions::WARN, 0, "Warn"),
+    (BatteryActions::LAND, 2, "Land"),
+    (BatteryActions::RETURN_THEN_LAND, 3, "Return, then land"),
+];
