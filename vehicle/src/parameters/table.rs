@@ -6,6 +6,7 @@ use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
 use super::loop_access::write;
 use super::loop_names::loop_name;
+use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::suggestion::suggestion;
 use super::value::within;
@@ -42,8 +43,12 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
-        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
-        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).flat_map(|parameter| {
+        let (own, of_modes) = if ardupilot {
+            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
+        } else {
+            (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
+        };
+        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).chain(of_modes).flat_map(|parameter| {
             let names = parameter.names_in(identity);
             names.map(|(id, scale, is_other)| Entry {
                 is_other,

@@ -185,7 +185,7 @@ impl Follow {
     ) -> PositionReference {
         let settings = &situation.conduct.follow;
         let turned_rad = if settings.offset_turns { target.heading_rad.unwrap_or(0.0) } else { 0.0 };
-        let given_m = Vector3::from(settings.offset_m);
+        let given_m = Vector3::new(settings.offset_x_m, settings.offset_y_m, settings.offset_z_m);
         let offset_m = if given_m == Vector3::zeros() {
             let found = now.position_m - target.position_m;
             let unturned = (Rotation2::new(-turned_rad) * found.xy()).push(found.z);

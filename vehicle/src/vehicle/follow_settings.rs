@@ -52,8 +52,12 @@ pub struct FollowSettings {
     pub farthest_m: f64,
     /// Whether the offset turns with the target.
     pub offset_turns: bool,
-    /// From the target to the vehicle, NED or ahead, right and down of the target, m; zero: as it is when the mode begins.
-    pub offset_m: [f64; 3],
+    /// From the target to the vehicle, m: to the north, or ahead of the target. All three zero: as it is when the mode begins.
+    pub offset_x_m: f64,
+    /// To the east, or to the right of the target, m.
+    pub offset_y_m: f64,
+    /// Down, m.
+    pub offset_z_m: f64,
     /// Where the nose points.
     pub heading: FollowHeading,
     /// Whether heights of targets count from home, not from sea level.
@@ -75,7 +79,9 @@ impl Default for FollowSettings {
             system_id: 0,
             farthest_m: 100.0,
             offset_turns: false,
-            offset_m: [0.0; 3],
+            offset_x_m: 0.0,
+            offset_y_m: 0.0,
+            offset_z_m: 0.0,
             heading: FollowHeading::Target,
             relative_height: true,
         }

@@ -16,7 +16,6 @@ use super::heading_policy::{HeadingPolicy, Purpose};
 use super::motion::wrapped;
 use super::notice::Severity;
 use super::proposal::Proposal;
-use super::return_settings::ReturnGoal;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::speeds::SpeedChange;
@@ -303,7 +302,7 @@ fn safe_points_m(situation: &Situation) -> VecDeque<[f64; 2]> {
         points.sort_by(|one, other| distance_m(situation, *one).total_cmp(&distance_m(situation, *other)));
     };
     let others = core::iter::once([home.x, home.y]).chain(situation.zones.return_m).filter(is_free);
-    if situation.conduct.return_home.goal == ReturnGoal::RallyPoint && !situation.identity.is_ardupilot() {
+    if situation.conduct.return_home.goal.prefers_rally_points() {
         let (mut first, mut then) = (rally, others.collect());
         by_distance(&mut first);
         by_distance(&mut then);
@@ -322,11 +321,12 @@ fn distance_m(situation: &Situation, [x, y]: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Return, ReturnGoal};
+    use super::Return;
     use crate::fence::{Shape, Zone};
     use crate::identity::Identity;
     use crate::plan::Place;
     use crate::vehicle::conduct::Conduct;
+    use crate::vehicle::return_settings::ReturnGoal;
     use crate::vehicle::scene::{Scene, said};
     use crate::vehicle::steering::{Steering, SteeringKind};
 

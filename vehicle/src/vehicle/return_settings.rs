@@ -10,6 +10,18 @@ pub enum ReturnGoal {
     Nearest,
     /// The nearest rally point; home if there is none.
     RallyPoint,
+    /// The nearest of home, a landing of the mission and the rally points: as [`Self::Nearest`], since missions have no landings to
+    /// be joined.
+    NearestOfAll,
+    /// The nearest rally point, whatever else there is; home if there is none.
+    RallyPointOnly,
+}
+
+impl ReturnGoal {
+    /// Whether rally points go before home.
+    pub fn prefers_rally_points(self) -> bool {
+        matches!(self, Self::RallyPoint | Self::RallyPointOnly)
+    }
 }
 
 /// Parameters of the way home beside its height.

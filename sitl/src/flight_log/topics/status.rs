@@ -58,6 +58,11 @@ fn nav_state(mode: Mode) -> u8 {
         Mode::Offboard => 14,
         Mode::Takeoff => 17,
         Mode::Land => 18,
+        Mode::Follow => 19,
+        Mode::Orbit => 21,
+        // PX4 has no such modes; the nearest ones.
+        Mode::SmartReturn => 5,
+        Mode::GuidedAttitude => 14,
     }
 }
 
