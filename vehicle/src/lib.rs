@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -31,6 +32,7 @@ pub mod plan;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode};
 pub use vehicle::{

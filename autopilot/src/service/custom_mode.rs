@@ -75,6 +75,10 @@ fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusa
     let identity = vehicle.identity();
     let Some(mode) = identity.mode(custom_mode) else {
         let names: Vec<_> = identity.selectable_modes().map(|known| identity.mode_name(known)).collect();
+        if let Some(absent) = identity.absent_mode(custom_mode) {
+            let reason = format!("{} mode is not available: {}", absent.name, absent.instead);
+            return Err(Refusal::Unsupported(reason));
+        }
         // PX4's main and sub-modes are bytes of the number.
         let number =
             if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
