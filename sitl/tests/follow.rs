@@ -54,7 +54,7 @@ fn tell(bench: &mut Bench, target: &Moving) {
         lon: (place.longitude_deg * 1e7).round() as i32,
         alt: place.altitude_m as f32,
         vel: target.velocity_m_s.map(|v| v as f32).into(),
-        est_capabilities: 3,
+        est_capabilities: 1,
         ..FOLLOW_TARGET_DATA::default()
     });
     send_as(bench, TARGET, message);

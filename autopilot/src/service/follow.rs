@@ -108,12 +108,18 @@ fn follow_target(payload: &Payload, vehicle: &Vehicle) -> Option<TargetReport> {
         let vector = Vector3::from(payload.reals::<3>(offset));
         Some(vector).filter(|vector| parts(part) && vector.iter().all(|value| value.is_finite()))
     };
+    // PX4 reads a velocity whatever is said to be known: MAVSDK tells one, and claims the place only.
+    let velocity_m_s = if vehicle.identity().is_ardupilot() {
+        vector(VELOCITY, 28)
+    } else {
+        Some(Vector3::from(payload.reals::<3>(28))).filter(|v| v.iter().all(|value| value.is_finite()))
+    };
     let [w, x, y, z] = payload.reals::<4>(52);
     let attitude = Quaternion::new(w, x, y, z);
     let has_attitude = parts(ATTITUDE) && (0.9..=1.1).contains(&attitude.norm());
     Some(TargetReport {
         position_m: place_m(payload, 16, f64::from(payload.f32(24)), frame::GLOBAL, vehicle)?,
-        velocity_m_s: vector(VELOCITY, 28),
+        velocity_m_s,
         acceleration_m_s2: vector(ACCELERATION, 40),
         heading_rad: has_attitude.then(|| UnitQuaternion::new_normalize(attitude).euler_angles().2),
     })

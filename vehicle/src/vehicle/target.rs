@@ -56,6 +56,8 @@ pub struct TargetMotion {
 
 /// Slower than this, m/s, a target has no course of its own: it keeps the last one.
 const COURSE_M_S: f64 = 0.3;
+/// A target that tells no velocity and comes along faster than this, m/s, travels.
+const TRAVELS_M_S: f64 = 0.5;
 /// An acceleration is trusted for so long, s; then the target goes on evenly.
 const ACCELERATION_S: f64 = 1.5;
 /// Reports farther apart than this, s, tell nothing of what was between them.
@@ -94,19 +96,20 @@ impl Target {
         if apart_s <= 0.0 {
             return;
         }
-        let velocity_m_s = match report.velocity_m_s {
+        // Programs that do not know it tell zeros, too: a target that travels is not at rest.
+        let travelled = (report.position_m - self.position_m) / apart_s;
+        let rests = |told: &Vector3<f64>| *told == Vector3::zeros() && travelled.norm() > TRAVELS_M_S;
+        let told = report.velocity_m_s.filter(|told| !rests(told));
+        let velocity_m_s = match told {
             Some(told) => expected.velocity_m_s + (told - expected.velocity_m_s) * trust.velocity,
             // From place to place.
-            None => {
-                let travelled = (report.position_m - self.position_m) / apart_s;
-                self.velocity_m_s + (travelled - self.velocity_m_s) * trust.velocity
-            }
+            None => self.velocity_m_s + (travelled - self.velocity_m_s) * trust.velocity,
         };
         let felt = (velocity_m_s - self.velocity_m_s) / apart_s;
         let share = apart_s / (SMOOTHING_S + apart_s);
         let smoothed = self.acceleration_m_s2 + (felt - self.acceleration_m_s2) * share;
         // Places alone are too coarse to tell an acceleration.
-        let derived = if report.velocity_m_s.is_some() { smoothed } else { Vector3::zeros() };
+        let derived = if told.is_some() { smoothed } else { Vector3::zeros() };
         *self = Self {
             reported_us: time_us,
             position_m: expected.position_m + surprise * trust.position,
@@ -194,19 +197,22 @@ mod tests {
 
     #[test]
     fn without_a_velocity_it_is_found_from_place_to_place() {
-        let report = |second: u64| TargetReport {
-            position_m: Vector3::new(0.0, 3.0 * second as f64, 0.0),
-            velocity_m_s: None,
-            acceleration_m_s2: None,
-            heading_rad: None,
-        };
-        let mut target = Target::new(&report(0), 0);
-        assert_eq!(target.at(0).course_rad, None);
-        for second in 1..10 {
-            target.update(&report(second), &TRUST, second * 1_000_000);
+        // Nor with one of zeros.
+        for velocity_m_s in [None, Some(Vector3::zeros())] {
+            let report = |second: u64| TargetReport {
+                position_m: Vector3::new(0.0, 3.0 * second as f64, 0.0),
+                velocity_m_s,
+                acceleration_m_s2: None,
+                heading_rad: None,
+            };
+            let mut target = Target::new(&report(0), 0);
+            assert_eq!(target.at(0).course_rad, None);
+            for second in 1..10 {
+                target.update(&report(second), &TRUST, second * 1_000_000);
+            }
+            let motion = target.at(9_500_000);
+            assert!((motion.velocity_m_s.y - 3.0).abs() < 0.01 && (motion.position_m.y - 28.5).abs() < 0.1);
+            assert!((motion.course_rad.unwrap() - core::f64::consts::FRAC_PI_2).abs() < 1e-6);
         }
-        let motion = target.at(9_500_000);
-        assert!((motion.velocity_m_s.y - 3.0).abs() < 0.01 && (motion.position_m.y - 28.5).abs() < 0.1);
-        assert!((motion.course_rad.unwrap() - core::f64::consts::FRAC_PI_2).abs() < 1e-6);
     }
 }
