@@ -5,6 +5,7 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
+//!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  estimation   instruments and the estimator
@@ -28,14 +29,15 @@ mod mode;
 mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod radio;
 mod vehicle;
 pub mod world;
 
 pub use flight_error::FlightError;
-pub use mode::{Leader, Mode};
+pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
     Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Notice, Pilot, PositionSetPoint, Pulses, Refusal, Reposition, SetPoint, Severity, SteeringKind,
+    StickSettings, Sticks, TICK_US, TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

@@ -13,6 +13,7 @@ mod loop_access;
 mod loop_names;
 mod named_value;
 mod px4_parameters;
+mod radio_parameters;
 mod set_error;
 mod speed;
 mod suggestion;

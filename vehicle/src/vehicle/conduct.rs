@@ -4,6 +4,8 @@ use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
+use super::stick_settings::StickSettings;
+use crate::radio::RadioSettings;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +44,12 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// How the sticks are flown.
+    #[serde(default)]
+    pub sticks: StickSettings,
+    /// The pilot's radio.
+    #[serde(default)]
+    pub radio: RadioSettings,
 }
 
 /// Records of before there were faults have none.
@@ -57,7 +65,7 @@ fn yes() -> bool {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | PX4's, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
@@ -75,11 +83,13 @@ impl Conduct {
             stick_speed_m_s: 5.0,
             stick_climb_m_s: 2.0,
             stick_sink_m_s: 1.5,
-            stick_timeout_s: 0.5,
+            stick_timeout_s: if ardupilot { 1.0 } else { 0.5 },
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
+            sticks: StickSettings::new(ardupilot),
+            radio: RadioSettings::new(ardupilot),
         }
     }
 }
