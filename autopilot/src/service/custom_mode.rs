@@ -17,6 +17,10 @@ const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
 pub struct CustomModes;
 
 impl Service for CustomModes {
+    fn summary(&self) -> &'static str {
+        "Modes by their numbers in HEARTBEAT"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::SET_MODE]
     }

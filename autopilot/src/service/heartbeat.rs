@@ -24,6 +24,10 @@ pub struct Heartbeat {
 }
 
 impl Service for Heartbeat {
+    fn summary(&self) -> &'static str {
+        "Who it is, its mode and whether it is armed"
+    }
+
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }

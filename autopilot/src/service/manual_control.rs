@@ -23,6 +23,10 @@ const STREAMS: &[Stream] = &[
 pub struct ManualControl;
 
 impl Service for ManualControl {
+    fn summary(&self) -> &'static str {
+        "Sticks"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::MANUAL_CONTROL, id::RC_CHANNELS_OVERRIDE]
     }

@@ -25,6 +25,10 @@ const STREAMS: &[Stream] = &[
 pub struct StandardModes;
 
 impl Service for StandardModes {
+    fn summary(&self) -> &'static str {
+        "Standard modes"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
