@@ -7,7 +7,7 @@ use core::f64::consts::PI;
 use autopilot::codec::Message;
 use common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::{
-    COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage, MavParamType, PARAM_SET_DATA,
+    COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage, MavParamType, PARAM_SET_DATA,
 };
 use nalgebra::Vector3;
 use vehicle::identity::Identity;
@@ -242,4 +242,30 @@ fn absent_modes_name_a_remedy() {
         let texts = bench.texts();
         assert!(texts.iter().any(|text| text.contains(name) && text.contains(instead)), "{texts:?}");
     }
+}
+
+/// The throttle climbs on a circle, and the yaw stick takes the heading of ArduPilot's.
+#[test]
+fn sticks_change_height_and_heading_of_a_circle() {
+    let mut bench = Bench::hovering_with(&circle(OrbitSettings::default()));
+    assert_eq!(bench.set_mode(Mode::Orbit), 0);
+    bench.fly(8.0);
+    let before = bench.position()[2];
+    let sticks = |bench: &mut Bench, z: i16, r: i16| {
+        bench.send(MavMessage::MANUAL_CONTROL(MANUAL_CONTROL_DATA {
+            z,
+            r,
+            target: 1,
+            ..MANUAL_CONTROL_DATA::default()
+        }));
+    };
+    bench.stream(4.0, |bench| sticks(bench, 1000, 0));
+    bench.stream(4.0, |bench| sticks(bench, 500, 0));
+    let z = bench.position()[2];
+    assert!(z < before - 3.0, "{before} {z}");
+    let seen = look(&mut bench, Vector3::new(10.0, 0.0, z), 10.0, 0.0, 0.4);
+    assert!(seen.off_radius_m < 0.2 && seen.off_height_m < 0.2 && seen.off_heading_rad < 0.06, "{seen:?}");
+    bench.stream(2.0, |bench| sticks(bench, 500, 1000));
+    let seen = look(&mut bench, Vector3::new(10.0, 0.0, z), 10.0, 0.0, 0.4);
+    assert!(seen.off_radius_m < 0.2 && seen.off_heading_rad > 0.3, "{seen:?}");
 }

@@ -156,24 +156,3 @@ fn the_nose_points_on_the_way_home_as_the_parameter_says() {
         assert!(!home || heading.abs() < 0.05, "{policy:?}: {heading}");
     }
 }
-
-/// Places and velocities mean nothing without GPS; attitudes are flown.
-#[test]
-fn guided_without_gps_takes_attitudes_only() {
-    let mut bench = Bench::hovering(Identity::ArduPilot);
-    assert_eq!(bench.set_mode(Mode::GuidedAttitude), 0);
-    assert_eq!(bench.autopilot.identity().custom_mode(bench.mode()), 20);
-    bench.heard.clear();
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        x: 20.0,
-        z: -10.0,
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0xdf8),
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
-    bench.fly(3.0);
-    assert!(bench.position()[0].abs() < 0.3, "{:?}", bench.position());
-    assert!(bench.texts().iter().any(|text| text.contains("attitudes only")), "{:?}", bench.texts());
-}

@@ -5,6 +5,16 @@
 pub enum Mode {
     /// Sticks command velocity; without a stick it holds its place.
     Position,
+    /// Sticks lean the vehicle; released ones hold its place (ArduPilot: POSHOLD).
+    PositionHold,
+    /// Sticks lean the vehicle, the throttle commands the climb rate.
+    Altitude,
+    /// Sticks lean the vehicle, the throttle is the thrust.
+    Stabilize,
+    /// The same, as PX4 shows it when it is asked for its manual mode.
+    Manual,
+    /// Sticks command rates about the body's axes, the throttle is the thrust.
+    Acro,
     /// Climbs to the takeoff height, then holds.
     Takeoff,
     /// Holds its place, or flies to one and holds there.
@@ -38,11 +48,27 @@ pub enum Leader {
     Vehicle,
 }
 
+/// What of its motion the vehicle must know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Needs {
+    /// How it leans.
+    Attitude,
+    /// And how high it is.
+    Height,
+    /// And where it is.
+    Place,
+}
+
 impl Mode {
     /// Who leads the vehicle.
     pub fn leader(self) -> Leader {
         match self {
-            Self::Position => Leader::Sticks,
+            Self::Position
+            | Self::PositionHold
+            | Self::Altitude
+            | Self::Stabilize
+            | Self::Manual
+            | Self::Acro => Leader::Sticks,
             Self::Offboard | Self::GuidedAttitude => Leader::SetPoints,
             Self::Takeoff
             | Self::Hold
@@ -52,6 +78,20 @@ impl Mode {
             | Self::Land
             | Self::Orbit
             | Self::Follow => Leader::Vehicle,
+        }
+    }
+
+    /// Whether the throttle is the thrust.
+    pub fn is_flown_by_thrust(self) -> bool {
+        matches!(self, Self::Stabilize | Self::Manual | Self::Acro)
+    }
+
+    /// What of its motion the vehicle must know for it.
+    pub fn needs(self) -> Needs {
+        match self {
+            Self::Stabilize | Self::Manual | Self::Acro => Needs::Attitude,
+            Self::Altitude | Self::GuidedAttitude => Needs::Height,
+            _ => Needs::Place,
         }
     }
 

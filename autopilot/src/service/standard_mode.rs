@@ -51,6 +51,7 @@ impl Service for StandardModes {
 fn standard(mode: Mode) -> MavStandardMode {
     match mode {
         Mode::Position => MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD,
+        Mode::Altitude => MavStandardMode::MAV_STANDARD_MODE_ALTITUDE_HOLD,
         Mode::Return => MavStandardMode::MAV_STANDARD_MODE_SAFE_RECOVERY,
         Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
         Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,

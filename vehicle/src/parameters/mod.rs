@@ -14,6 +14,7 @@ mod loop_names;
 mod mode_parameters;
 mod named_value;
 mod px4_parameters;
+mod radio_parameters;
 mod set_error;
 mod speed;
 mod suggestion;

@@ -80,6 +80,7 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     real!("CIRCLE_RADIUS_M", Some(("CIRCLE_RADIUS", 100.0)), 0.0..=2000.0, orbit.radius_m, "m", "Radius of the circle mode; 0 turns on the spot").also(&[("CIRCLE_RADIUS_M", 1.0)]),
     degrees!("CIRCLE_RATE", -90.0..=90.0, orbit.rate_rad_s, "deg/s", "Rate of the circle mode; negative is counter-clockwise"),
     bitmask!("CIRCLE_OPTIONS", CIRCLE_OPTIONS, orbit.options, u32::from, options, "Options of the circle mode"),
+    bitmask!("GUID_OPTIONS", GUIDED_OPTIONS, guided_options, u32::from, options, "Options of the guided mode"),
     switch!("FOLL_ENABLE", follow.enabled, "Enable the follow mode"),
     whole!("FOLL_SYSID", 0.0..=255.0, follow.system_id, u8, "System id of the target that is followed; 0 is the first one that is heard"),
     real!("FOLL_DIST_MAX", None, 0.0..=1000.0, follow.farthest_m, "m", "Distance beyond which a target is not followed; 0 is any"),
@@ -143,6 +144,17 @@ const CIRCLE_OPTIONS: &[&str] = &[
     "Face along the circle",
     "Start at the centre",
     "Look at the centre with the mount",
+];
+
+const GUIDED_OPTIONS: &[&str] = &[
+    "Allow arming from the transmitter",
+    "Reserved",
+    "Ignore the pilot's yaw",
+    "Thrust of SET_ATTITUDE_TARGET is thrust, not climb rate",
+    "Do not stabilize the position",
+    "Do not stabilize the velocity",
+    "Waypoint navigation",
+    "Allow weathervaning",
 ];
 
 fn options(bits: u32) -> u8 {

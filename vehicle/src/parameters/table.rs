@@ -8,6 +8,7 @@ use super::loop_access::write;
 use super::loop_names::loop_name;
 use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
+use super::radio_parameters::radio_parameters;
 use super::suggestion::suggestion;
 use super::value::within;
 use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
@@ -48,13 +49,16 @@ impl ParameterTable {
         } else {
             (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
         };
-        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).chain(of_modes).flat_map(|parameter| {
-            let names = parameter.names_in(identity);
-            names.map(|(id, scale, is_other)| Entry {
-                is_other,
-                ..Entry::new(id, Source::Conduct(parameter, scale))
-            })
-        });
+        let of_conduct =
+            CONDUCT_PARAMETERS.iter().chain(own).chain(of_modes).chain(radio_parameters(ardupilot)).flat_map(
+                |parameter| {
+                    let names = parameter.names_in(identity);
+                    names.map(|(id, scale, is_other)| Entry {
+                        is_other,
+                        ..Entry::new(id, Source::Conduct(parameter, scale))
+                    })
+                },
+            );
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
         let others = [

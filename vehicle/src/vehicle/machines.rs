@@ -8,14 +8,16 @@ use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
-use super::manual_control::ManualControl;
 use super::mission::Mission;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
+use super::pilot_watch::PilotWatch;
+use super::receiver::Receiver;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
+use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
@@ -39,8 +41,12 @@ pub struct Machines {
     pub landing: Landing,
     /// Takeoffs.
     pub takeoff: Takeoff,
-    /// Sticks.
-    pub manual_control: ManualControl,
+    /// What is received of the pilot.
+    pub receiver: Receiver,
+    /// What the pilot asks for by switches and gestures.
+    pub pilot_watch: PilotWatch,
+    /// Modes that lean as the sticks say.
+    pub stick_flight: StickFlight,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.

@@ -66,6 +66,9 @@ pub struct Orbit {
     asked: Option<Asked>,
     phase: Phase,
     initial_yaw_rad: f64,
+    /// Whether the pilot has changed the height, and the heading.
+    lifted: bool,
+    turned: bool,
 }
 
 impl Orbit {
@@ -101,6 +104,7 @@ impl Orbit {
     /// Flies an orbit that a command asks for, in the mode that has begun.
     pub fn ask(&mut self, request: &OrbitRequest, situation: &Situation, proposal: &mut Proposal) {
         self.initial_yaw_rad = situation.outputs.attitude_rad.z;
+        (self.lifted, self.turned) = (false, false);
         let asked = asked_by(request, self.asked, situation);
         self.approach(asked, situation, proposal);
     }
@@ -198,8 +202,27 @@ impl Orbit {
             OrbitHeading::Initial => YawTarget::Angle(self.initial_yaw_rad),
             OrbitHeading::Free | OrbitHeading::Pilot => YawTarget::Hold,
         };
+        self.heed_sticks(&asked, &mut set_point, situation);
         proposal.follow(situation, &set_point);
         self.phase = Phase::Around(circle);
+    }
+
+    /// The throttle climbs; the yaw stick turns where it may: on ArduPilot's circle always, on PX4's where the pilot has the heading.
+    fn heed_sticks(&mut self, asked: &Asked, set_point: &mut PositionSetPoint, situation: &Situation) {
+        let sticks = situation.pilot.sticks;
+        let wanted =
+            sticks.map(|sticks| sticks.set_point(situation.conduct, 0.0, situation.limits().yaw_rate_rad_s));
+        let climb = wanted.map_or(AxisTarget::HOLD, |wanted| wanted.axes[2]);
+        let yaw = wanted.map_or(YawTarget::Hold, |wanted| wanted.yaw);
+        self.lifted |= climb != AxisTarget::HOLD;
+        self.turned |= yaw != YawTarget::Hold;
+        if self.lifted {
+            set_point.axes[2] = climb;
+        }
+        let may_turn = situation.identity.is_ardupilot() || asked.heading == OrbitHeading::Pilot;
+        if self.turned && may_turn {
+            set_point.yaw = yaw;
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod arming;
 mod decision;
+mod pilot;
 mod plan_requests;
 mod plan_start;
 mod queries;
@@ -24,12 +25,14 @@ use super::injection::Injection;
 use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
-use super::manual_control::ManualControl;
+use super::manual_control::fly_by_velocity;
 use super::mission::Mission;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::perception::Perception;
+use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
+use super::receiver::Receiver;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
@@ -37,6 +40,7 @@ use super::setup::Setup;
 use super::situation::Situation;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
+use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
 use crate::FlightError;
@@ -97,7 +101,9 @@ impl Vehicle {
             hold: HoldWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
             takeoff: Takeoff::default(),
-            manual_control: ManualControl::default(),
+            receiver: Receiver::default(),
+            pilot_watch: PilotWatch::default(),
+            stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
             smart_return: SmartReturn::default(),
@@ -141,6 +147,7 @@ impl Vehicle {
         if self.machines.injection.is_due(self.time_us()) {
             self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
         }
+        self.watch_pilot();
         self.watch();
         if self.decided.is_armed() {
             self.fly();
@@ -186,7 +193,18 @@ impl Vehicle {
             _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
-            Mode::Position => parts.manual_control.step(situation, proposal),
+            Mode::Position => fly_by_velocity(situation, proposal),
+            Mode::PositionHold if situation.pilot.sticks.is_some_and(|sticks| sticks.leans()) => {
+                parts.stick_flight.step_by_height(situation, proposal);
+            }
+            Mode::PositionHold => {
+                parts.stick_flight.forget();
+                fly_by_velocity(situation, proposal);
+            }
+            Mode::Altitude => parts.stick_flight.step_by_height(situation, proposal),
+            Mode::Stabilize | Mode::Manual | Mode::Acro => {
+                parts.stick_flight.step_by_thrust(situation, proposal);
+            }
             Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
             Mode::Mission => parts.mission.step(situation, proposal),
             Mode::Land => descend(situation, proposal, None),
@@ -287,6 +305,7 @@ fn situation<'a>(
         fence_is_ahead: machines.fence.record().is_ahead,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_is_applied: machines.offboard.is_applied(),
+        pilot: *machines.receiver.pilot(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }

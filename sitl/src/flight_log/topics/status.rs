@@ -51,7 +51,11 @@ pub fn vehicle_status(source: &LogSource<'_>, row: &mut Row) {
 /// PX4's `nav_state` of a mode.
 fn nav_state(mode: Mode) -> u8 {
     match mode {
-        Mode::Position => 2,
+        Mode::Stabilize => 15,
+        Mode::Manual => 0,
+        Mode::Altitude => 1,
+        Mode::Acro => 10,
+        Mode::Position | Mode::PositionHold => 2,
         Mode::Mission => 3,
         Mode::Hold => 4,
         Mode::Return => 5,

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mode::Mode;
+use crate::radio::RadioLossAction;
 
 /// Actions, the mildest first: a worse one goes before a milder one, never the other way round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -36,6 +37,20 @@ impl Action {
             Self::Hold => Some(Mode::Hold),
             Self::Return => Some(Mode::Return),
             Self::Land => Some(Mode::Land),
+        }
+    }
+
+    /// What is done without the pilot.
+    pub fn without_pilot(action: RadioLossAction) -> Self {
+        match action {
+            RadioLossAction::None => Self::None,
+            RadioLossAction::Hold | RadioLossAction::BrakeOrLand => Self::Hold,
+            RadioLossAction::Return
+            | RadioLossAction::TraceOrReturn
+            | RadioLossAction::TraceOrLand
+            | RadioLossAction::MissionLandingOrReturn => Self::Return,
+            RadioLossAction::Land => Self::Land,
+            RadioLossAction::Terminate | RadioLossAction::Disarm => Self::Terminate,
         }
     }
 

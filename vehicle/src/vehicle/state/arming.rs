@@ -32,7 +32,8 @@ impl Vehicle {
                 100.0 * needed
             ));
         }
-        obstacles.extend(self.perception.obstacles());
+        obstacles.extend(self.perception.obstacles(situation.mode.needs()));
+        obstacles.extend(self.throttle_obstacle());
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
@@ -66,6 +67,7 @@ impl Vehicle {
             return Err(Refusal::later(format!("Arming denied: {}", obstacles.join("; "))));
         }
         self.decided.arm();
+        self.machines.receiver.arm();
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
             parts.smart_return.arm(situation);

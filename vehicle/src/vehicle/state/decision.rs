@@ -77,8 +77,9 @@ impl Vehicle {
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
         self.machines.offboard.begin();
+        self.machines.stick_flight.forget();
         self.consult(|parts, situation, proposal| match mode {
-            Mode::Hold | Mode::Position => proposal.hold(situation),
+            Mode::Hold | Mode::Position | Mode::PositionHold => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
             Mode::Mission => parts.mission.enter(situation, proposal),
             Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {

@@ -15,12 +15,11 @@ use super::super::region::RegionOfInterest;
 use super::super::reposition::Reposition;
 use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 use super::super::steering::{Steering, SteeringKind};
-use super::super::sticks::Sticks;
 use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
 use crate::foreign::ForeignRole;
-use crate::mode::Mode;
+use crate::mode::{Leader, Mode};
 use crate::plan::{ChangeSpeed, Look};
 
 /// Takeoffs end between these heights above home, m.
@@ -54,12 +53,6 @@ impl Vehicle {
     /// Tells whether a ground station is heard.
     pub fn hear_ground_station(&mut self, heard: bool) {
         self.machines.failsafe.hear_ground_station(heard);
-    }
-
-    /// Takes the pilot's sticks.
-    pub fn move_sticks(&mut self, sticks: Sticks) {
-        let time_us = self.time_us();
-        self.machines.manual_control.take(sticks, time_us);
     }
 
     /// Switches the fence on or off.
@@ -117,6 +110,9 @@ impl Vehicle {
         if mode != Mode::Land {
             situation.refuse_without_rotor()?;
         }
+        if mode.leader() == Leader::Sticks && mode != Mode::Position {
+            self.refuse_leaning(mode)?;
+        }
         match mode {
             Mode::Takeoff => return self.take_off(None),
             Mode::Mission => return self.start_mission(None),
@@ -139,6 +135,26 @@ impl Vehicle {
             self.enter(mode);
         } else if mode == Mode::Hold {
             self.consult(|_, situation, proposal| proposal.hold(situation));
+        }
+        Ok(())
+    }
+
+    /// Refuses a mode in which sticks lean the vehicle, if something else flies it or it would leap off the ground.
+    fn refuse_leaning(&self, mode: Mode) -> Result<(), Refusal> {
+        let situation = self.situation();
+        let name = situation.identity.mode_name(mode);
+        let follows = self.foreign().filter(|model| model.role == ForeignRole::ClosedLoop);
+        if let Some(model) = follows {
+            let reason = format!("{} follows positions, not attitudes or thrust", model.name);
+            return Err(Refusal::denied(format!("{name} mode denied: {reason}")));
+        }
+        let by_thrust = mode.is_flown_by_thrust() && !situation.mode.is_flown_by_thrust();
+        let hover = situation.configuration.airframe.hover_thrust_share();
+        let leaps = situation.pilot.sticks.is_some_and(|sticks| {
+            sticks.thrust(situation.conduct, hover, situation.identity.is_ardupilot()) > hover / 2.0
+        });
+        if situation.armed && situation.landed && by_thrust && leaps {
+            return Err(Refusal::later(format!("{name} mode rejected: throttle too high")));
         }
         Ok(())
     }
