@@ -4,7 +4,7 @@
 use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
-use vehicle::{FlightError, LandedState, Severity, TICK_US, Vehicle, VehicleSettings};
+use vehicle::{FlightError, LandedState, Pulses, Severity, TICK_US, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
 use crate::context::Context;
@@ -132,6 +132,11 @@ impl Autopilot {
     /// Tells whether a ground station is heard: that is judged by the wall clock, which is outside.
     pub fn hear_ground_station(&mut self, heard: bool) {
         self.context.vehicle.hear_ground_station(heard);
+    }
+
+    /// The pilot's radio sends these pulses from now on, µs; 0 where there is no channel.
+    pub fn receive_radio(&mut self, pulses: Pulses) {
+        self.context.vehicle.receive_radio(pulses);
     }
 
     /// A heartbeat beside the regular ones: a link must not look dead while simulation time stands still.

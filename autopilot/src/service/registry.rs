@@ -27,6 +27,8 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::custom_mode::CustomModes),
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
+        Box::new(super::orbit::Orbits::default()),
+        Box::new(super::follow::Follow::default()),
         Box::new(super::set_point::SetPoints),
         Box::new(super::reboot::Reboots),
         Box::new(super::motor_test::MotorTests),

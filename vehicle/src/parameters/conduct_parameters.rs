@@ -23,7 +23,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     choice!("COM_ACT_FAIL_ACT", ROTOR_ACTIONS, failsafe.rotor_failure, "Action when a rotor fails"),
     real!("RTL_RETURN_ALT", Some(("RTL_ALT", 100.0)), 1.0..=1000.0, return_height_m, "m", "Height above home at which the vehicle returns").also(&[("RTL_ALT_M", 1.0)]),
     real!("NAV_ACC_RAD", Some(("WPNAV_RADIUS", 100.0)), 0.1..=1000.0, acceptance_radius_m, "m", "Acceptance radius of waypoints without one of their own"),
-    real!("RTL_MIN_DIST", None, 0.5..=1000.0, return_near_m, "m", "Distance from home within which a return lands without climbing first"),
+    real!("RTL_MIN_DIST", None, 0.5..=1000.0, return_near_m, "m", "Distance from home within which a return climbs within its cone only"),
     real!("MPC_LAND_SPEED", Some(("LAND_SPEED", 100.0)), 0.1..=3.0, land_speed_m_s, "m/s", "Descent rate near the ground"),
     real!("COM_DISARM_LAND", None, -1.0..=600.0, disarm_after_landing_s, "s", "Delay from touch-down to automatic disarming; 0 or less disables it"),
     real!("COM_DISARM_PRFLT", Some(("DISARM_DELAY", 1.0)), -1.0..=600.0, disarm_before_takeoff_s, "s", "Delay from arming without a takeoff to automatic disarming; 0 or less disables it"),
