@@ -15,6 +15,10 @@ const DO_LAND_START: u16 = MavCmd::MAV_CMD_DO_LAND_START as u16;
 pub struct MissionJumps;
 
 impl Service for MissionJumps {
+    fn summary(&self) -> &'static str {
+        "Jumps within a mission"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         const COMMANDS: &[CommandEntry] =
             &[CommandEntry::action(DO_JUMP_TAG), CommandEntry::action(DO_LAND_START)];

@@ -28,6 +28,8 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::custom_mode::CustomModes),
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
+        Box::new(super::orbit::Orbits::default()),
+        Box::new(super::follow::Follow::default()),
         Box::new(super::set_point::SetPoints),
         Box::new(super::equipment::EquipmentHeartbeats::default()),
         Box::new(super::equipment::Outputs),
@@ -35,6 +37,9 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::equipment::GimbalManager::default()),
         Box::new(super::equipment::TrackedSystem::default()),
         Box::new(super::mission_jump::MissionJumps),
+        Box::new(super::reboot::Reboots),
+        Box::new(super::motor_test::MotorTests),
+        Box::new(super::magnetometer_calibration::MagnetometerCalibrations::default()),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),
@@ -52,6 +57,8 @@ pub struct Registry {
     services: Vec<Box<dyn Service>>,
     /// Positions of services by identifiers of messages.
     messages: BTreeMap<u32, usize>,
+    /// Positions of services that listen, by identifiers of messages.
+    listeners: Vec<(u32, usize)>,
     /// Positions of services by numbers of commands.
     commands: BTreeMap<u16, (usize, Repetition)>,
     protocol: CommandProtocol,
@@ -62,12 +69,14 @@ impl Registry {
     pub fn new() -> Self {
         let services = all();
         let (mut messages, mut commands) = (BTreeMap::new(), BTreeMap::new());
+        let mut listeners = Vec::new();
         for (index, service) in services.iter().enumerate() {
             messages.extend(service.messages().iter().map(|id| (*id, index)));
+            listeners.extend(service.listens().iter().map(|id| (*id, index)));
             let entries = service.commands().iter();
             commands.extend(entries.map(|entry| (entry.number, (index, entry.repetition))));
         }
-        Self { services, messages, commands, protocol: CommandProtocol::default() }
+        Self { services, messages, listeners, commands, protocol: CommandProtocol::default() }
     }
 
     /// The services, for what they claim.
@@ -75,9 +84,10 @@ impl Registry {
         self.services.iter().map(|service| service.as_ref())
     }
 
-    /// The table of all messages that the services make.
-    pub fn streams(&self) -> StreamTable {
-        StreamTable::new(self.services.iter().flat_map(|service| service.streams()))
+    /// The table of all messages that the services make in an identity.
+    pub fn streams(&self, identity: Identity) -> StreamTable {
+        let streams = self.services.iter().flat_map(|service| service.streams());
+        StreamTable::new(streams.filter(|stream| !stream.ardupilot_only || identity.is_ardupilot()))
     }
 
     /// What the services can do together.
@@ -124,6 +134,11 @@ impl Registry {
         let service = index.and_then(|index| self.services.get_mut(index));
         if let Some(service) = service.filter(|service| service.speakers().contains(&asked)) {
             service.receive(context, origin, frame);
+        }
+        for (id, index) in &self.listeners {
+            if let (true, Some(service)) = (*id == frame.message_id(), self.services.get_mut(*index)) {
+                service.receive(context, origin, frame);
+            }
         }
     }
 
@@ -196,7 +211,7 @@ mod tests {
         let registry = Registry::new();
         let capabilities = registry.capabilities(settings.identity);
         let component = Component { vehicle: &vehicle, parameters: &parameters, capabilities };
-        for stream in registry.streams().iter() {
+        for stream in registry.streams(Identity::ArduPilot).iter() {
             let messages = stream.messages(&component, 0);
             assert!(!messages.is_empty(), "{}", stream.id);
             assert!(messages.iter().all(|message| message.message_id() == stream.id), "{}", stream.id);

@@ -10,7 +10,7 @@ use vehicle::equipment::{Image, Operation};
 
 use super::camera_messages as messages;
 use super::operate::operate;
-use crate::codec::Command;
+use crate::codec::{Command, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::service::message_request;
@@ -66,12 +66,20 @@ pub struct CameraProtocol {
 }
 
 impl Service for CameraProtocol {
+    fn summary(&self) -> &'static str {
+        "Camera"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
 
     fn speakers(&self) -> &'static [Speaker] {
         &[Speaker::Autopilot, Speaker::Camera]
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::CAMERA_TRIGGER, id::CAMERA_FEEDBACK]
     }
 
     fn streams(&self) -> &'static [Stream] {
@@ -81,7 +89,7 @@ impl Service for CameraProtocol {
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         if let Some((id, number)) = requested(command) {
             let asked = Speaker::of(command.component).unwrap_or_default();
-            message_request::send(context, origin, asked, id, number)?;
+            message_request::send_once(context, origin, asked, id, number)?;
             return Ok(Progress::Done);
         }
         match command.number {

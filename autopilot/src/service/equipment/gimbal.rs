@@ -61,6 +61,10 @@ pub struct GimbalManager {
 }
 
 impl Service for GimbalManager {
+    fn summary(&self) -> &'static str {
+        "Gimbal manager and gimbal"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::GIMBAL_MANAGER_SET_ATTITUDE, id::GIMBAL_MANAGER_SET_PITCHYAW, id::GIMBAL_DEVICE_SET_ATTITUDE]
     }

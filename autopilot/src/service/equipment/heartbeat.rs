@@ -19,6 +19,10 @@ pub struct EquipmentHeartbeats {
 }
 
 impl Service for EquipmentHeartbeats {
+    fn summary(&self) -> &'static str {
+        "Camera and gimbal as components of their own"
+    }
+
     fn announce(&mut self, context: &mut Context) {
         let time_us = context.vehicle.time_us();
         if context.outbox.voice() != EquipmentVoice::Own || time_us < self.due_us {

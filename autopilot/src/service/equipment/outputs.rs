@@ -28,6 +28,10 @@ const STREAMS: &[Stream] = &[Stream::new(RELAY_STATUS_DATA::ID, [0.0, 0.0], rela
 pub struct Outputs;
 
 impl Service for Outputs {
+    fn summary(&self) -> &'static str {
+        "Servos, relays and a gripper"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }

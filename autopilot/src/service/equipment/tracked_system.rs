@@ -11,7 +11,6 @@ use crate::envelope::Origin;
 use crate::service::{CommandEntry, Outcome, Progress, Service};
 
 const DO_SET_ROI_SYSID: u16 = MavCmd::MAV_CMD_DO_SET_ROI_SYSID as u16;
-/// Commands that name another region of interest end it. They have services of their own.
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(DO_SET_ROI_SYSID)];
 
 /// The system that is looked at, and where it was seen.
@@ -22,7 +21,11 @@ pub struct TrackedSystem {
 }
 
 impl Service for TrackedSystem {
-    fn messages(&self) -> &'static [u32] {
+    fn summary(&self) -> &'static str {
+        "Another system as the region of interest"
+    }
+
+    fn listens(&self) -> &'static [u32] {
         &[id::GLOBAL_POSITION_INT]
     }
 

@@ -1,6 +1,6 @@
 //! What is being done for a step.
 
-use super::circle::Circle;
+use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
 use super::spline::Spline;
 
@@ -20,7 +20,9 @@ pub enum Task {
     /// Until a time, µs, or for ever.
     Wait(Option<u64>),
     /// Around a place.
-    Circle(Circle),
+    Circle(CircleTurns),
+    /// Home, which is flown by the machine for that.
+    Return,
     /// Down, above a place if there is one.
     Descend(Option<[f64; 2]>),
     /// To another height, z, m, where it is.
@@ -42,6 +44,17 @@ pub struct Lowering {
     pub back_z_m: f64,
 }
 
+/// Who steers in a tick of the mission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Helm {
+    /// The mission itself.
+    Mission,
+    /// From now on the return.
+    ReturnBegins,
+    /// The return, which is under way.
+    Return,
+}
+
 /// What comes at the end of a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Then {
@@ -50,7 +63,7 @@ pub enum Then {
     /// Nothing.
     Stay,
     /// Turns.
-    Circle(Circle),
+    Circle(CircleTurns),
     /// A landing.
     Land([f64; 2]),
     /// Another height, z, m.
