@@ -282,7 +282,7 @@ fn situation<'a>(
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
-        set_point_is_applied: machines.offboard.is_applied(),
+        set_point_turns: machines.offboard.turns(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }
