@@ -5,6 +5,7 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
+//!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  estimation   instruments and the estimator
@@ -18,6 +19,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -28,14 +30,18 @@ mod mode;
 mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod radio;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
-pub use mode::{Leader, Mode};
+pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings,
+    HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
+    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal,
+    Reposition, ReturnGoal, ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US,
+    TargetReport, TrackedAttitude, TrailSettings, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

@@ -1,7 +1,9 @@
 //! Failsafes and fence by ArduPilot's names and numbers.
 
+use core::convert::identity;
+
 use super::ConductParameter;
-use super::conduct_parameter::{bitmask, choice, switch};
+use super::conduct_parameter::{bitmask, choice, switch, whole};
 use crate::vehicle::{Action, FenceOptions, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
@@ -11,6 +13,10 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
     bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+    switch!("FS_CRASH_CHECK", crash.check, "Disarm a vehicle that has crashed"),
+    bitmask!("LOG_BITMASK", LOGGED, log.bits, identity, identity, "What is logged"),
+    whole!("LOG_DISARMED", 0..=3, log.disarmed, u8, "Log while disarmed, too: 0 off, 1 to 3 on"),
+    switch!("LOG_FILE_DSRMROT", log.rotates, "Begin a new log with each flight instead of each boot"),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {
@@ -53,6 +59,31 @@ const FENCE_OPTIONS: &[&str] =
 const KEEPS_MODE: u32 = 1;
 const UNION: u32 = 2;
 
+/// Bits of LOG_BITMASK, as ArduCopter has them.
+const LOGGED: &[&str] = &[
+    "Fast attitude",
+    "Medium attitude",
+    "GPS",
+    "System performance",
+    "Control tuning",
+    "Navigation tuning",
+    "RC input",
+    "IMU",
+    "Mission commands",
+    "Battery monitor",
+    "RC output",
+    "Optical flow",
+    "PID",
+    "Compass",
+    "(unused)",
+    "Camera",
+    "(unused)",
+    "Motors",
+    "Fast IMU",
+    "Raw IMU",
+    "Video stabilization",
+    "Fast harmonic notch",
+];
 const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones"];
 const HEIGHT: u32 = 1;
 const DISTANCE: u32 = 2;

@@ -18,6 +18,8 @@ pub struct KnownPlans {
     /// Of the fence plan, as they were when it was taken.
     zones: Zones,
     rally_points: Vec<Place>,
+    /// How often one of them has been replaced.
+    revision: u32,
 }
 
 impl KnownPlans {
@@ -25,12 +27,22 @@ impl KnownPlans {
     pub fn new(plans: Plans, site: &Site) -> Self {
         let zones = zones(plans.get(PlanKind::Fence).items(), site).unwrap_or_default();
         let rally_points = compile::rally_points(plans.get(PlanKind::Rally).items(), site);
-        Self { plans, zones, rally_points }
+        Self { plans, zones, rally_points, revision: 0 }
     }
 
     /// As they were uploaded.
     pub fn plans(&self) -> &Plans {
         &self.plans
+    }
+
+    /// A number that changes with each plan that is replaced.
+    pub fn revision(&self) -> u32 {
+        self.revision
+    }
+
+    fn set(&mut self, kind: PlanKind, items: Vec<MissionItem>) {
+        self.plans.set(kind, Plan::new(items));
+        self.revision = self.revision.wrapping_add(1);
     }
 
     /// The zones of the fence.
@@ -49,19 +61,19 @@ impl KnownPlans {
     /// [`PlanFault`]; the old one stays then.
     pub fn take_fence(&mut self, items: Vec<MissionItem>, site: &Site) -> Result<(), PlanFault> {
         self.zones = zones(&items, site)?;
-        self.plans.set(PlanKind::Fence, Plan::new(items));
+        self.set(PlanKind::Fence, items);
         Ok(())
     }
 
     /// Replaces the rally points.
     pub fn take_rally_points(&mut self, items: Vec<MissionItem>, points: Vec<Place>) {
         self.rally_points = points;
-        self.plans.set(PlanKind::Rally, Plan::new(items));
+        self.set(PlanKind::Rally, items);
     }
 
     /// Replaces the items of the mission.
     pub fn take_mission(&mut self, items: Vec<MissionItem>) {
-        self.plans.set(PlanKind::Mission, Plan::new(items));
+        self.set(PlanKind::Mission, items);
     }
 }
 

@@ -10,6 +10,7 @@ use super::super::fence_watch::FenceRecord;
 use super::super::home::Home;
 use super::super::landed::LandedState;
 use super::super::mission::MissionStatus;
+use super::super::orbit_request::OrbitStatus;
 use super::super::speeds::with_speeds;
 use super::super::steering::{SteeringKind, TrackedAttitude};
 use super::Vehicle;
@@ -148,6 +149,11 @@ impl Vehicle {
         self.decided.is_terminated()
     }
 
+    /// Whether its last flight has ended in a crash.
+    pub fn has_crashed(&self) -> bool {
+        self.machines.crash.has_crashed()
+    }
+
     /// The mode.
     pub fn mode(&self) -> Mode {
         self.decided.mode()
@@ -192,6 +198,7 @@ impl Vehicle {
             Mode::Takeoff => LandedState::TakingOff,
             Mode::Land => LandedState::Landing,
             Mode::Return if self.machines.return_home.descends() => LandedState::Landing,
+            Mode::SmartReturn if self.machines.smart_return.descends() => LandedState::Landing,
             _ => LandedState::InAir,
         }
     }
@@ -211,6 +218,11 @@ impl Vehicle {
         self.situation().whole_fence().bounds()
     }
 
+    /// The orbit that is flown.
+    pub fn orbit_status(&self) -> Option<OrbitStatus> {
+        self.machines.orbit.status().filter(|_| self.mode() == Mode::Orbit)
+    }
+
     /// What of the fence forbids a place, NED, m.
     pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
         self.situation().breach_at(place_m)
@@ -219,6 +231,11 @@ impl Vehicle {
     /// Its plans.
     pub fn plans(&self) -> &Plans {
         self.plans.plans()
+    }
+
+    /// A number that changes with each plan that is replaced.
+    pub fn plans_revision(&self) -> u32 {
+        self.plans.revision()
     }
 
     /// What the places of plans refer to.
