@@ -7,6 +7,7 @@
 //!  fence        areas, and the ways around them
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
+//!  surroundings what stands and flies around
 //!  estimation   instruments and the estimator
 //!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
@@ -28,14 +29,16 @@ mod mode;
 mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod surroundings;
 mod vehicle;
 pub mod world;
 
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode};
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Action, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions, BatteryPack, Cause, ChangeError,
+    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState,
+    MissionStatus, Notice, ObstacleWatch, OperatorId, OperatorPlace, PositionSetPoint, Recovery, Refusal,
+    RemoteId, Reposition, SelfId, SetPoint, Severity, SteeringKind, Sticks, SurroundingsSettings, TICK_US,
+    Threat, TrackedAttitude, TrafficSettings, TrafficWatch, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

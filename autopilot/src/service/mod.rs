@@ -32,10 +32,13 @@ mod message_request;
 mod mission;
 mod notice;
 pub(crate) mod parameter;
+mod range;
+mod remote_id;
 mod set_point;
 mod standard_mode;
 mod telemetry;
 mod time_synchronization;
+pub(crate) mod traffic;
 
 pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

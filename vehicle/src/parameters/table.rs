@@ -8,6 +8,7 @@ use super::loop_access::write;
 use super::loop_names::loop_name;
 use super::px4_parameters::PX4_PARAMETERS;
 use super::suggestion::suggestion;
+use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
 use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
 use crate::identity::Identity;
@@ -43,7 +44,8 @@ impl ParameterTable {
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
         let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
-        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).flat_map(|parameter| {
+        let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
+        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).chain(around).flat_map(|parameter| {
             let names = parameter.names_in(identity);
             names.map(|(id, scale, is_other)| Entry {
                 is_other,

@@ -4,6 +4,7 @@ use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
+use super::surroundings_settings::SurroundingsSettings;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,9 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// What it does about obstacles, traffic and remote identification.
+    #[serde(default)]
+    pub surroundings: SurroundingsSettings,
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
@@ -79,6 +83,7 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            surroundings: SurroundingsSettings::new(ardupilot),
             failsafe: FailsafeSettings::new(ardupilot),
         }
     }

@@ -9,11 +9,14 @@ use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
+use super::traffic_watch::TrafficWatch;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -44,6 +47,12 @@ pub struct Machines {
     pub return_home: Return,
     /// The mission.
     pub mission: Mission,
+    /// What stands around.
+    pub obstacles: ObstacleWatch,
+    /// What flies around.
+    pub traffic: TrafficWatch,
+    /// What it tells of itself.
+    pub remote_id: RemoteId,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
 }

@@ -6,6 +6,7 @@ mod plan_requests;
 mod plan_start;
 mod queries;
 mod requests;
+mod surroundings;
 
 use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
@@ -25,9 +26,11 @@ use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::perception::Perception;
 use super::plans::KnownPlans;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
@@ -36,6 +39,7 @@ use super::situation::Situation;
 use super::speeds::Speeds;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
+use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
@@ -98,6 +102,9 @@ impl Vehicle {
             offboard: Offboard::default(),
             return_home: Return::default(),
             mission: Mission::new(program),
+            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
+            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
+            remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
         };
         let mut vehicle = Self {
@@ -141,6 +148,10 @@ impl Vehicle {
         }
         self.advance()?;
         self.perceive();
+        self.consult(|parts, situation, proposal| {
+            parts.obstacles.measure(situation);
+            parts.obstacles.watch_contact(situation, proposal);
+        });
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.discharge();
@@ -150,6 +161,7 @@ impl Vehicle {
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
         let easing = self.closed_loop.simulation().control().state().is_easing();
         if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
@@ -192,6 +204,7 @@ impl Vehicle {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
+            parts.obstacles.keep_distance(situation, proposal);
         });
     }
 

@@ -76,6 +76,18 @@ impl Steering {
         }
     }
 
+    /// What it is asked for by position, axis by axis.
+    pub(super) fn asked(&self) -> Option<PositionSetPoint> {
+        match self {
+            Self::Goal(goal) => Some(PositionSetPoint {
+                axes: goal.position_m.data.0[0].map(AxisTarget::Position),
+                yaw: YawTarget::Angle(goal.yaw_rad),
+            }),
+            Self::Motion(motion) => Some(*motion.asked()),
+            Self::Idle { .. } | Self::Path(_) | Self::Attitude { .. } | Self::Descent { .. } => None,
+        }
+    }
+
     fn lost_rotor(&self) -> Option<usize> {
         match self {
             Self::Descent { lost_rotor, .. } => Some(*lost_rotor),

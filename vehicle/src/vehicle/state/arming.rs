@@ -33,6 +33,9 @@ impl Vehicle {
             ));
         }
         obstacles.extend(self.perception.obstacles());
+        let touched = self.machines.obstacles.touched(&situation);
+        obstacles.extend(touched.map(|obstacle| format!("touches {}", obstacle.name)));
+        obstacles.extend(self.machines.remote_id.obstacle(&situation).map(str::to_owned));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
