@@ -11,7 +11,8 @@ use vehicle::parameters::Speed;
 use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
-    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom,
+    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports,
+    TrafficChoice, WindFrom,
 };
 use super::{Conventions, LogFilter};
 use crate::fleet::LockstepPhase;

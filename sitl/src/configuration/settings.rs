@@ -17,7 +17,8 @@ use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{
-    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, fmu, read_plans, read_world, wind_drag, wind_hold,
+    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, fmu, read_plans, read_world, wind_drag,
+    wind_hold,
 };
 use crate::failure::Failure;
 use crate::fleet::{LockstepPhase, LockstepSettings};
@@ -311,7 +312,9 @@ fn surroundings(arguments: &Arguments) -> Result<Surroundings, Failure> {
     }
     let mut ids: Vec<u32> = aircraft.iter().map(|one| one.id).collect();
     ids.sort_unstable();
-    if let Some(id) = ids.iter().zip(ids.iter().skip(1)).find_map(|(one, other)| (one == other).then_some(one)) {
+    if let Some(id) =
+        ids.iter().zip(ids.iter().skip(1)).find_map(|(one, other)| (one == other).then_some(one))
+    {
         let reason = format!("two aircraft have the address {id}; give each an `icao` of its own");
         return Err(Failure::Value { name: "--traffic".to_owned(), reason });
     }

@@ -53,7 +53,9 @@ impl TrafficChoice {
         }
         let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
         match numbers.as_deref() {
-            Some(&[north, east, height, speed, course_deg]) => straight([north, east, height], speed, course_deg, 0.0),
+            Some(&[north, east, height, speed, course_deg]) => {
+                straight([north, east, height], speed, course_deg, 0.0)
+            }
             Some(&[north, east, height, speed, course_deg, climb]) => {
                 straight([north, east, height], speed, course_deg, climb)
             }
@@ -86,7 +88,11 @@ impl Straight {
         let course_rad = self.course_deg.to_radians();
         Way::Straight {
             from_m: [north, east, -height],
-            velocity_m_s: [self.speed * libm::cos(course_rad), self.speed * libm::sin(course_rad), -self.climb],
+            velocity_m_s: [
+                self.speed * libm::cos(course_rad),
+                self.speed * libm::sin(course_rad),
+                -self.climb,
+            ],
         }
     }
 }
@@ -94,7 +100,9 @@ impl Straight {
 fn straight(from: [f64; 3], speed: f64, course_deg: f64, climb: f64) -> Result<Straight, String> {
     let finite = from.iter().chain([&course_deg]).all(|number| number.is_finite());
     if !finite || !(0.0..=FASTEST_M_S).contains(&speed) || !(-FASTEST_M_S..=FASTEST_M_S).contains(&climb) {
-        return Err(format!("speed {speed} m/s, climb {climb} m/s; allowed 0 to {FASTEST_M_S} m/s, and finite places"));
+        return Err(format!(
+            "speed {speed} m/s, climb {climb} m/s; allowed 0 to {FASTEST_M_S} m/s, and finite places"
+        ));
     }
     Ok(Straight { from, speed, course_deg, climb })
 }
@@ -162,7 +170,9 @@ fn track_of(track: &[[f64; 4]]) -> Result<Way, String> {
     let ordered = track.windows(2).all(|pair| matches!(pair, [[before, ..], [after, ..]] if before < after));
     let finite = track.iter().flatten().all(|number| number.is_finite());
     if track.len() < 2 || !ordered || !finite {
-        return Err("a track needs two or more places [seconds, north, east, height] with rising times".to_owned());
+        return Err(
+            "a track needs two or more places [seconds, north, east, height] with rising times".to_owned()
+        );
     }
     let point = |[time_s, north, east, height]: &[f64; 4]| (*time_s, [*north, *east, -*height]);
     Ok(Way::Track(track.iter().map(point).collect()))

@@ -72,7 +72,11 @@ fn parse(text: &str) -> Result<Vec<Obstacle>, String> {
     let file: WorldFile = toml::from_str(text).map_err(|error| toml_mistake(text, &error))?;
     let boxes = file.boxes.into_iter().zip(1..).map(|(table, number)| Obstacle {
         name: table.name.unwrap_or_else(|| format!("box {number}")),
-        shape: Shape::Box { centre_m: table.center, size_m: table.size, heading_rad: table.heading.to_radians() },
+        shape: Shape::Box {
+            centre_m: table.center,
+            size_m: table.size,
+            heading_rad: table.heading.to_radians(),
+        },
         bottom_m: table.bottom,
         top_m: table.bottom + table.height,
     });
@@ -95,13 +99,19 @@ fn parse(text: &str) -> Result<Vec<Obstacle>, String> {
 fn check(obstacle: &Obstacle) -> Result<(), String> {
     let name = &obstacle.name;
     let (centre_m, sizes) = match obstacle.shape {
-        Shape::Box { centre_m, size_m: [length, width], .. } => (centre_m, vec![("size", length), ("size", width)]),
+        Shape::Box { centre_m, size_m: [length, width], .. } => {
+            (centre_m, vec![("size", length), ("size", width)])
+        }
         Shape::Cylinder { centre_m, radius_m } => (centre_m, vec![("radius", radius_m)]),
     };
     let height = obstacle.top_m - obstacle.bottom_m;
     for (what, size_m) in sizes.into_iter().chain([("height", height)]) {
         if !SIZES_M.contains(&size_m) {
-            return Err(format!("{name}: {what} {size_m} m; allowed {} to {} m", SIZES_M.start(), SIZES_M.end()));
+            return Err(format!(
+                "{name}: {what} {size_m} m; allowed {} to {} m",
+                SIZES_M.start(),
+                SIZES_M.end()
+            ));
         }
     }
     let [north, east] = centre_m;
@@ -134,7 +144,10 @@ mod tests {
     fn mistakes_are_named_with_their_place() {
         for (text, expected) in [
             ("[[box]]\ncenter = [1, 2]\nsize = [1, 1]\nhight = 3\n", "line 4"),
-            ("[[cylinder]]\ncenter = [1, 2]\nradius = -1\nheight = 3\n", "cylinder 1: radius -1 m; allowed 0.01 to"),
+            (
+                "[[cylinder]]\ncenter = [1, 2]\nradius = -1\nheight = 3\n",
+                "cylinder 1: radius -1 m; allowed 0.01 to",
+            ),
             ("[[wall]]\nfrom = [1, 2]\nto = [1, 2]\nheight = 3\n", "wall 1: size 0 m"),
         ] {
             let reason = parse(text).expect_err(text);

@@ -8,7 +8,6 @@ use quadrotor::{
 };
 use vehicle::estimation::TrueMotion;
 use vehicle::foreign::{ForeignModel, drive};
-use vehicle::surroundings::Surroundings;
 use vehicle::world::{LocalFrame, Wind};
 use vehicle::{FlightError, TICK_US, VehicleSettings};
 
@@ -64,7 +63,6 @@ impl Rig {
             instruments: Instruments::new(settings.wind.seed),
             plant: Plant::new(&configuration.airframe, &configuration.environment),
             state: PlantState::at_rest(&configuration.initial),
-            surroundings: Surroundings::default(),
             foreign: None,
             time_us: 0,
             command_rad_s: [0.0; 4],

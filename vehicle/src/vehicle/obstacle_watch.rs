@@ -15,7 +15,9 @@ const TURN_US: u64 = 100_000;
 /// A scan older than this, µs, counts as none.
 const OLD_US: u64 = 500_000;
 /// So near to the distance that is kept, m, the vehicle does not set out towards an obstacle.
-const SLACK_M: f64 = 0.2;
+const SLACK_M: f64 = 0.6;
+/// A vehicle that was stopped sets out again when it has so much more room than it needs to brake, m.
+const ROOM_M: f64 = 1.0;
 /// Slower than this, m/s, it stands.
 const STANDING_M_S: f64 = 0.1;
 /// What is asked for and smaller than this, m or m/s, is no direction.
@@ -36,6 +38,8 @@ pub struct ObstacleWatch {
     companion: Option<RangeScan>,
     /// Distance below, m.
     below_m: Option<f64>,
+    /// Whether it is kept from going on.
+    stopped: bool,
     /// When it was stopped last, µs.
     stopped_us: Option<u64>,
     /// Whether it was told that nothing is measured.
@@ -132,6 +136,7 @@ impl ObstacleWatch {
     /// Stops the vehicle before what is measured, in the modes that keep a distance.
     pub fn keep_distance(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let Some(asked) = proposal.steering().asked().filter(|_| keeps_distance(situation)) else {
+            self.stopped = false;
             return;
         };
         let fresh = |scan: &&RangeScan| situation.time_us.saturating_sub(scan.time_us) <= OLD_US;
@@ -151,8 +156,12 @@ impl ObstacleWatch {
         self.told_blind = false;
         let points: Vec<_> = scans.iter().flat_map(|scan| scan.seen_from(here_m)).collect();
         let margin_m = situation.conduct.surroundings.obstacle_distance_m;
-        let sets_out = direction.is_some_and(|direction| free_m(&points, &direction, margin_m) < SLACK_M);
-        if sets_out || runs_into(situation, &points, margin_m) {
+        let (course, brakes_m) = braking(situation);
+        let free = |direction: &Vector2<f64>| free_m(&points, direction, margin_m);
+        let room_m = if self.stopped { brakes_m + ROOM_M } else { SLACK_M };
+        let sets_out = direction.is_some_and(|direction| free(&direction) < room_m);
+        self.stopped = sets_out || course.is_some_and(|course| free(&course) < brakes_m);
+        if self.stopped {
             let told = self.stopped_us.replace(situation.time_us);
             if told.is_none_or(|told_us| situation.time_us - told_us > TOLD_US) {
                 proposal.say(Severity::Warning, "Obstacle ahead: stopping");
@@ -193,13 +202,14 @@ fn stopped(asked: &PositionSetPoint) -> PositionSetPoint {
     PositionSetPoint { axes: [AxisTarget::HOLD, AxisTarget::HOLD, down], yaw: asked.yaw }
 }
 
-/// Whether the vehicle, braking as hard as it may from now on, comes nearer to something than the margin.
-fn runs_into(situation: &Situation, points: &[Vector2<f64>], margin_m: f64) -> bool {
-    let velocity_m_s = situation.outputs.velocity_m_s.xy();
-    let Some(direction) = velocity_m_s.try_normalize(STANDING_M_S) else { return false };
+/// Where the vehicle goes, if it does, and how far it goes on, m, when it brakes as hard as it may from now on. What counts is the
+/// reference that it follows: the vehicle itself swings about it.
+fn braking(situation: &Situation) -> (Option<Vector2<f64>>, f64) {
+    let velocity_m_s = situation.outputs.setpoint.velocity_m_s.xy();
+    let Some(course) = velocity_m_s.try_normalize(STANDING_M_S) else { return (None, 0.0) };
     let stop_m = stopping_place_m(situation, &situation.braking_limits()) - situation.outputs.position_m;
     let late_m = situation.conduct.surroundings.obstacle_delay_s * velocity_m_s.norm();
-    free_m(points, &direction, margin_m) < stop_m.xy().norm() + late_m
+    (Some(course), stop_m.xy().norm() + late_m)
 }
 
 /// How far it is in a direction until something is as near as the margin, m.
