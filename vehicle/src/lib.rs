@@ -5,6 +5,7 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
+//!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  surroundings what stands and flies around
@@ -19,6 +20,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -29,16 +31,21 @@ mod mode;
 mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod radio;
 pub mod surroundings;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
-pub use mode::{Leader, Mode};
+pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions, BatteryPack, Cause, ChangeError,
-    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState,
-    MissionStatus, Notice, ObstacleWatch, OperatorId, OperatorPlace, PositionSetPoint, Recovery, Refusal,
-    RemoteId, Reposition, SelfId, SetPoint, Severity, SteeringKind, Sticks, SurroundingsSettings, TICK_US,
-    Threat, TrackedAttitude, TrafficSettings, TrafficWatch, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight,
+    FollowSettings, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest,
+    Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
+    Pilot, PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings,
+    SelfId, SetPoint, Severity, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
+    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
 };

@@ -56,8 +56,8 @@ impl Motion {
     }
 
     /// What it is asked for.
-    pub fn asked(&self) -> &PositionSetPoint {
-        &self.set_point
+    pub fn set_point(&self) -> PositionSetPoint {
+        self.set_point
     }
 
     /// Whether it is asked to rise above z, m.

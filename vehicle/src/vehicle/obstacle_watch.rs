@@ -180,7 +180,7 @@ fn keeps_distance(situation: &Situation) -> bool {
     }
     if situation.identity.is_ardupilot() {
         let senses = settings.avoided & PROXIMITY != 0 && settings.proximity_kind > 0;
-        senses && matches!(situation.mode, Mode::Position | Mode::Offboard)
+        senses && matches!(situation.mode, Mode::Position | Mode::PositionHold | Mode::Offboard)
     } else {
         situation.mode == Mode::Position
     }

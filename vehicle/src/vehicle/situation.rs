@@ -6,13 +6,14 @@ use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 use super::conduct::Conduct;
 use super::home::Home;
 use super::notice::Refusal;
+use super::receiver::Pilot;
 use super::region::RegionOfInterest;
 use super::steering::{Steering, SteeringKind};
 use crate::estimation::{InstrumentHealth, Validity};
 use crate::fault::Sensor;
 use crate::fence::{Breach, Fence, Zones};
 use crate::identity::Identity;
-use crate::mode::Mode;
+use crate::mode::{Mode, Needs};
 use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
@@ -78,6 +79,8 @@ pub struct Situation<'a> {
     pub set_points_are_recent: bool,
     /// Whether the latest set-point has been steered to.
     pub set_point_is_applied: bool,
+    /// The pilot.
+    pub pilot: Pilot,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
 }
@@ -101,6 +104,12 @@ impl<'a> Situation<'a> {
     /// Whether there is a flight that could be ended, or flown otherwise.
     pub fn flies(&self) -> bool {
         self.armed && self.steering.kind() != SteeringKind::Idle
+    }
+
+    /// Whether commands and set-points may lead it although its rotors idle: in ArduPilot's identity a takeoff that has just been asked
+    /// for.
+    pub fn may_be_led(&self) -> bool {
+        self.armed && self.mode == Mode::Takeoff && self.identity.is_ardupilot()
     }
 
     /// Whether the mode leaves the heading to the vehicle.
@@ -164,6 +173,23 @@ impl<'a> Situation<'a> {
         estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
     }
 
+    /// Whether it knows enough of its motion to hold a height.
+    pub fn knows_its_height(&self) -> bool {
+        let (known, works) = (self.validity, self.health);
+        let estimated = known.tilt && known.vertical_position;
+        let ideal = !self.estimates;
+        estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
+    }
+
+    /// Whether it knows enough of its motion for a mode.
+    pub fn can_fly(&self, mode: Mode) -> bool {
+        match mode.needs() {
+            Needs::Attitude => self.validity.tilt && (!self.estimates || self.health.gyroscope),
+            Needs::Height => self.knows_its_height(),
+            Needs::Place => self.knows_its_place(),
+        }
+    }
+
     /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
     pub fn sink_rate_m_s(&self) -> f64 {
         let works = self.health;
@@ -184,6 +210,7 @@ impl<'a> Situation<'a> {
         let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
         Fence {
             zones: parts.zones.then_some(self.zones),
+            inclusions: settings.fence_inclusions(),
             home_m: self.home.position_m,
             radius_m: of(parts.distance, settings.fence_radius_m),
             height_m: of(parts.height, settings.fence_height_m),

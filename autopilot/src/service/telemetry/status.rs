@@ -3,7 +3,8 @@
 use mavlink::dialects::ardupilotmega::{
     BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
     MavBatteryChargeState, MavBatteryFault, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
-    MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavSysStatusSensor, MavSysStatusSensorExtended, MavVtolState, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA,
 };
 use vehicle::fence::Breach;
 use vehicle::{LandedState, Vehicle};
@@ -26,6 +27,11 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let present = if vehicle.pilot().has_radio {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+    } else {
+        present
+    };
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
     let present = if vehicle.obstacles().lidar().is_some() {
@@ -59,6 +65,7 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (vehicle.lost_rotor().is_none(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
         (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
+        (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
@@ -155,7 +162,12 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
             LandedState::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
             LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
         },
-        ..EXTENDED_SYS_STATE_DATA::default()
+        // ArduPilot's copters say that they are one; PX4 says so only of a vehicle that could be something else.
+        vtol_state: if vehicle.identity().is_ardupilot() {
+            MavVtolState::MAV_VTOL_STATE_MC
+        } else {
+            MavVtolState::MAV_VTOL_STATE_UNDEFINED
+        },
     })
 }
 
