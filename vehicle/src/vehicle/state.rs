@@ -8,6 +8,7 @@ mod plan_start;
 mod queries;
 mod reboot;
 mod requests;
+mod surroundings;
 
 use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
@@ -31,12 +32,14 @@ use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
 use super::mission::{Helm, Mission};
 use super::motor_test::MotorTests;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::perception::Perception;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
 use super::receiver::Receiver;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
@@ -47,6 +50,7 @@ use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
+use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
@@ -117,6 +121,9 @@ impl Vehicle {
             orbit: Orbit::default(),
             follow: Follow::default(),
             mission: Mission::new(program),
+            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
+            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
+            remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
         };
         let mut vehicle = Self {
@@ -162,6 +169,10 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
+        self.consult(|parts, situation, proposal| {
+            parts.obstacles.measure(situation);
+            parts.obstacles.watch_contact(situation, proposal);
+        });
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
@@ -172,6 +183,7 @@ impl Vehicle {
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
         let easing = self.closed_loop.simulation().control().state().is_easing();
         if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
@@ -237,6 +249,7 @@ impl Vehicle {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
+            parts.obstacles.keep_distance(situation, proposal);
         });
     }
 
