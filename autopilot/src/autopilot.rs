@@ -57,7 +57,7 @@ impl Autopilot {
             vehicle,
             outbox: Outbox::new(system_id),
             files: Box::new(Immediate(Nothing)),
-            streams: services.streams(),
+            streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
             reboot_us: None,

@@ -4,13 +4,14 @@ use core::convert::identity;
 
 use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, switch, whole};
-use crate::vehicle::{Action, FenceParts};
+use crate::vehicle::{Action, FenceOptions, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     switch!("FENCE_ENABLE", failsafe.fence_enabled, "Enable the fence"),
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
+    bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     switch!("FS_CRASH_CHECK", crash.check, "Disarm a vehicle that has crashed"),
     bitmask!("LOG_BITMASK", LOGGED, log.bits, identity, identity, "What is logged"),
@@ -78,10 +79,23 @@ const LOGGED: &[&str] = &[
     "Video stabilization",
     "Fast harmonic notch",
 ];
+const FENCE_OPTIONS: &[&str] =
+    &["No other mode while the vehicle comes back from a breach", "One of several inclusion zones is enough"];
+const KEEPS_MODE: u32 = 1;
+const UNION: u32 = 2;
+
 const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones"];
 const HEIGHT: u32 = 1;
 const DISTANCE: u32 = 2;
 const ZONES: u32 = 4;
+
+fn option_bits(options: FenceOptions) -> u32 {
+    u32::from(options.keeps_mode) * KEEPS_MODE + u32::from(options.union) * UNION
+}
+
+fn options(bits: u32) -> FenceOptions {
+    FenceOptions { keeps_mode: bits & KEEPS_MODE != 0, union: bits & UNION != 0 }
+}
 
 fn bits(parts: FenceParts) -> u32 {
     let of = |part: bool, bit: u32| if part { bit } else { 0 };

@@ -22,9 +22,9 @@ pub struct Conduct {
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
     pub land_speed_m_s: f64,
-    /// Disarms this long after touch-down, s; negative: never.
+    /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
-    /// Disarms when not taken off this long after arming, s; negative: never.
+    /// Disarms when not taken off this long after arming, s; not positive: never.
     pub disarm_before_takeoff_s: f64,
     /// Horizontal speed of a full stick, m/s.
     pub stick_speed_m_s: f64,
@@ -65,7 +65,7 @@ fn yes() -> bool {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 3 s) | PX4's, within our limits of speed; the times are theirs |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
@@ -83,7 +83,7 @@ impl Conduct {
             stick_speed_m_s: 5.0,
             stick_climb_m_s: 2.0,
             stick_sink_m_s: 1.5,
-            stick_timeout_s: 0.5,
+            stick_timeout_s: if ardupilot { 3.0 } else { 0.5 },
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,

@@ -2,6 +2,7 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
@@ -44,6 +45,8 @@ pub struct Machines {
     pub takeoff: Takeoff,
     /// Sticks.
     pub manual_control: ManualControl,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.

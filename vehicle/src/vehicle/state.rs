@@ -14,6 +14,7 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
@@ -26,7 +27,7 @@ use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::ManualControl;
-use super::mission::Mission;
+use super::mission::{Helm, Mission};
 use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::perception::Perception;
@@ -100,6 +101,7 @@ impl Vehicle {
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
+            turn: CommandedTurn::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
             mission: Mission::new(program),
@@ -189,13 +191,19 @@ impl Vehicle {
             Mode::Hold => {}
             Mode::Position => parts.manual_control.step(situation, proposal),
             Mode::Offboard => parts.offboard.step(situation, proposal),
-            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Mission => match parts.mission.step(situation, proposal) {
+                Helm::Mission => {}
+                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
+                Helm::Return => parts.return_home.step(situation, proposal),
+            },
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
-            if situation.chooses_its_heading() {
+            if parts.turn.is_on() {
+                parts.turn.step(proposal);
+            } else if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
