@@ -2,18 +2,18 @@
 
 import time
 
-from pymavlink import DFReader, mavutil
+from pymavlink import DFReader
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 GUIDED, LAND = 4, 9
 
 
 def fly(client):
-    client.set_mode(GUIDED)
+    client.set_mode((1, GUIDED))
     client.arm()
     client.command(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 0, 0, 0, 0, 0, 4)
     client.wait("GLOBAL_POSITION_INT", lambda message: message.relative_alt > 3800)
-    client.set_mode(LAND)
+    client.set_mode((1, LAND))
     client.wait("HEARTBEAT", lambda message: not message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED, 30)
 
 
@@ -23,10 +23,10 @@ def test_dfreader_reads_a_flight_without_a_warning(start, connect, tmp_path, cap
     client = connect(vehicle)
     fly(client)
     # Onto the same log, as ArduPilot does, and another one behind a reboot.
-    boots = client.parameter("STAT_BOOTCNT")
+    boots = client.parameter("STAT_BOOTCNT").param_value
     client.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1)
     deadline = time.monotonic() + 10
-    while client.parameter("STAT_BOOTCNT") != boots + 1:
+    while client.parameter("STAT_BOOTCNT").param_value != boots + 1:
         assert time.monotonic() < deadline, "no reboot"
     client.wait("SYSTEM_TIME", lambda message: message.time_boot_ms < 60_000)
     fly(client)
@@ -54,8 +54,6 @@ def test_dfreader_reads_a_flight_without_a_warning(start, connect, tmp_path, cap
     assert not [name for name in expected if name not in seen], seen
     assert modes[-2:] == [GUIDED, LAND]
     assert 3.8 < max(heights) < 4.3 and max(climbs) > 50, "centimetres per second"
-    # The clock of the log is that of the receiver: now.
-    assert abs(log.clock.timestamp_at(0) if hasattr(log.clock, "timestamp_at") else time.time()) > 0
     assert log.formats[log.name_to_id["ATT"]].get_unit("Roll") == "deg"
     assert log.formats[log.name_to_id["MAG"]].get_unit("MagX") == "mGauss"
 
@@ -65,15 +63,15 @@ def test_logs_are_listed_and_downloaded_as_ardupilots(start, connect, tmp_path):
     vehicle = start("--autopilot", "ardupilot", "--log-dir", str(folder), "--speed", "8", "--set", "LOG_FILE_DSRMROT=1")
     client = connect(vehicle)
     fly(client)
-    client.wait("SYSTEM_TIME")
-    time.sleep(0.5)
-    client.connection.mav.log_request_list_send(1, 1, 0, 0xffff)
+    # The log ends a second of simulation after the flight.
+    end = client.wait("SYSTEM_TIME").time_boot_ms + 2000
+    client.wait("SYSTEM_TIME", lambda message: message.time_boot_ms > end)
+    client.mav.log_request_list_send(1, 1, 0, 0xffff)
     entry = client.wait("LOG_ENTRY")
     assert (entry.id, entry.num_logs, entry.last_log_num) == (1, 1, 1), "ArduPilot counts from 1, and LASTLOG.TXT is no log"
-    client.connection.mav.log_request_data_send(1, 1, 1, 0, 900)
+    client.mav.log_request_data_send(1, 1, 1, 0, 900)
     content = b""
     while len(content) < 900:
         piece = client.wait("LOG_DATA", lambda message: message.ofs == len(content))
         content += bytes(piece.data[:piece.count])
     assert content == (folder / "00000001.BIN").read_bytes()[:900]
-    assert mavutil.mavlink is not None
