@@ -40,8 +40,8 @@ pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
     Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings,
-    HeadingPolicy, Home, LandedState, MissionState, MissionStatus, Notice, OrbitHeading, OrbitRequest,
-    OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal, Reposition, ReturnGoal,
-    ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US, TargetReport,
-    TrackedAttitude, TrailSettings, Vehicle, VehicleSettings, YawTarget, wrapped,
+    HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
+    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal,
+    Reposition, ReturnGoal, ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US,
+    TargetReport, TrackedAttitude, TrailSettings, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

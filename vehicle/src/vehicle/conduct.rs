@@ -1,11 +1,13 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
-use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
+use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
 use super::follow_settings::FollowSettings;
 use super::heading_policy::HeadingPolicy;
+use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::return_settings::ReturnSettings;
 use super::stick_settings::StickSettings;
@@ -27,9 +29,9 @@ pub struct Conduct {
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
     pub land_speed_m_s: f64,
-    /// Disarms this long after touch-down, s; negative: never.
+    /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
-    /// Disarms when not taken off this long after arming, s; negative: never.
+    /// Disarms when not taken off this long after arming, s; not positive: never.
     pub disarm_before_takeoff_s: f64,
     /// Horizontal speed of a full stick, m/s.
     pub stick_speed_m_s: f64,
@@ -73,6 +75,12 @@ pub struct Conduct {
     /// The pilot's radio.
     #[serde(default)]
     pub radio: RadioSettings,
+    /// When it counts as crashed.
+    #[serde(default)]
+    pub crash: CrashSettings,
+    /// What is logged, in ArduPilot's convention.
+    #[serde(default)]
+    pub log: LogConduct,
 }
 
 /// Records of before there were faults have none.
@@ -138,6 +146,8 @@ impl Conduct {
             failsafe: FailsafeSettings::new(ardupilot),
             sticks: StickSettings::new(ardupilot),
             radio: RadioSettings::new(ardupilot),
+            crash: CrashSettings::default(),
+            log: LogConduct::default(),
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
 use super::follow::Follow;
@@ -9,6 +11,7 @@ use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::pilot_watch::PilotWatch;
@@ -37,8 +40,12 @@ pub struct Machines {
     pub rotors: RotorWatch,
     /// Whether the position can be held.
     pub hold: HoldWatch,
+    /// Crashes.
+    pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// Tests of single rotors.
+    pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
     /// What is received of the pilot.
@@ -47,6 +54,8 @@ pub struct Machines {
     pub pilot_watch: PilotWatch,
     /// Modes that lean as the sticks say.
     pub stick_flight: StickFlight,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.

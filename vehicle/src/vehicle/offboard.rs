@@ -6,7 +6,7 @@ use super::notice::Severity;
 use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
 use super::situation::Situation;
-use super::steering::SteeringKind;
+use super::steering::{Steering, SteeringKind};
 use crate::mode::Mode;
 
 /// What has come of set-points.
@@ -20,6 +20,8 @@ pub struct Offboard {
     expired: bool,
     /// Attitudes whose thrust asks for a climb rate.
     attitude: AttitudeFlight,
+    /// What a pause has interrupted.
+    paused: Option<Steering>,
 }
 
 impl Offboard {
@@ -28,7 +30,31 @@ impl Offboard {
         if matches!(set_point, SetPoint::Position(_)) {
             self.attitude.forget();
         }
-        (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
+        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false, ..*self };
+    }
+
+    /// Holds the place until [`resume`](Self::resume), whatever set-points come.
+    pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.paused.is_none() {
+            self.paused = Some(*proposal.steering());
+            proposal.follow(situation, &PositionSetPoint::HOLD);
+            proposal.say(Severity::Info, "Paused: holding");
+        }
+    }
+
+    /// Goes on to where the pause has interrupted it, or with what was asked for meanwhile.
+    pub fn resume(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let waits = self.latest.is_some() && !self.applied;
+        match self.paused.take() {
+            Some(Steering::Goal(goal)) if !waits => proposal.steer(Steering::Goal(goal)),
+            Some(Steering::Motion(motion)) if !waits => proposal.follow(situation, &motion.set_point()),
+            _ => {}
+        }
+    }
+
+    /// Whether it is paused.
+    pub fn is_paused(&self) -> bool {
+        self.paused.is_some()
     }
 
     /// Forgets all set-points: something else has been asked for.
@@ -38,7 +64,7 @@ impl Offboard {
 
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
-        self.applied = false;
+        (self.applied, self.paused) = (false, None);
         self.attitude.forget();
     }
 
@@ -55,6 +81,9 @@ impl Offboard {
 
     /// One tick of the offboard mode.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.is_paused() {
+            return;
+        }
         if situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal) {
             return;
         }

@@ -6,6 +6,7 @@ mod pilot;
 mod plan_requests;
 mod plan_start;
 mod queries;
+mod reboot;
 mod requests;
 
 use nalgebra::Vector3;
@@ -14,6 +15,8 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
@@ -26,7 +29,8 @@ use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
-use super::mission::Mission;
+use super::mission::{Helm, Mission};
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::perception::Perception;
@@ -99,11 +103,14 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
             hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
+            motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             receiver: Receiver::default(),
             pilot_watch: PilotWatch::default(),
             stick_flight: StickFlight::default(),
+            turn: CommandedTurn::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
             smart_return: SmartReturn::default(),
@@ -152,10 +159,12 @@ impl Vehicle {
         if self.decided.is_armed() {
             self.fly();
         }
+        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
+        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
@@ -206,7 +215,11 @@ impl Vehicle {
                 parts.stick_flight.step_by_thrust(situation, proposal);
             }
             Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
-            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Mission => match parts.mission.step(situation, proposal) {
+                Helm::Mission => {}
+                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
+                Helm::Return => parts.return_home.step(situation, proposal),
+            },
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
             Mode::SmartReturn => parts.smart_return.step(situation, proposal),
@@ -218,7 +231,9 @@ impl Vehicle {
             if situation.mode != Mode::SmartReturn {
                 parts.smart_return.watch(situation, proposal);
             }
-            if situation.chooses_its_heading() {
+            if parts.turn.is_on() {
+                parts.turn.step(proposal);
+            } else if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
@@ -234,7 +249,14 @@ impl Vehicle {
             rotor_faults: self.machines.injection.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
+        let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
+        match test {
+            Some((mut steering, rotor_faults)) => {
+                let conditions = Conditions { armed: true, rotor_faults, ..conditions };
+                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+            }
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+        }
     }
 
     /// Perceives the motion after the tick.

@@ -26,11 +26,10 @@ mod status;
 mod task;
 #[cfg(test)]
 mod tests;
-mod turning;
 
 pub use course::Course;
 pub use jumps::Jumps;
 pub use machine::Mission;
 pub use route::Route;
 pub use status::{MissionState, MissionStatus};
-pub use task::TaskProgress;
+pub use task::{Helm, TaskProgress};

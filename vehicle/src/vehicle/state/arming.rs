@@ -3,7 +3,7 @@
 use quadrotor::RotorFault;
 
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::check_way;
+use super::super::plans::{check_reach, check_way};
 use super::super::set_point::PositionSetPoint;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -42,7 +42,8 @@ impl Vehicle {
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
-                let fault = check_way(&situation, self.machines.mission.program()).err();
+                let program = self.machines.mission.program();
+                let fault = check_reach(&situation, program).and(check_way(&situation, program)).err();
                 obstacles.extend(fault.map(|fault| format!("mission: {}", fault.located(identity))));
             }
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {

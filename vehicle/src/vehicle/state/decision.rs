@@ -71,11 +71,12 @@ impl Vehicle {
         if before == Mode::Mission && mode != Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if before == Mode::Return {
+        if before != mode && matches!(before, Mode::Return | Mode::Mission) {
             self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::Return(None)));
         }
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         self.machines.offboard.begin();
         self.machines.stick_flight.forget();
         self.consult(|parts, situation, proposal| match mode {
@@ -113,6 +114,7 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         let speeds = self.machines.speeds.after(SpeedChange::Return(None));
         self.use_speeds_or_say(speeds.after(SpeedChange::ForgetCommands));
         self.consult(|_, situation, proposal| {
