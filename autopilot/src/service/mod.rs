@@ -38,11 +38,14 @@ mod motor_test;
 mod notice;
 mod orbit;
 pub(crate) mod parameter;
+mod range;
 mod reboot;
+mod remote_id;
 mod set_point;
 mod standard_mode;
 mod telemetry;
 mod time_synchronization;
+pub(crate) mod traffic;
 
 pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

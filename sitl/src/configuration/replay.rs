@@ -36,6 +36,8 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         parameters,
         list_parameters,
         mission,
+        world,
+        traffic,
         autostart,
         equipment,
         record,
@@ -85,6 +87,8 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("parameters", parameters.is_some()),
         ("list-parameters", list_parameters.is_some()),
         ("mission", mission.is_some()),
+        ("world", world.is_some()),
+        ("traffic", traffic.is_some()),
         ("autostart", autostart.is_some()),
         ("equipment", equipment.is_some()),
         ("record", record.is_some()),
@@ -146,6 +150,7 @@ mod tests {
         ("autostart", "true"),
         ("equipment", "own"),
         ("lockstep", "always"),
+        ("traffic", "fleet"),
     ];
 
     #[test]

@@ -11,6 +11,7 @@ use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
 use crate::identity::Identity;
 use crate::plan::Plans;
+use crate::surroundings::Surroundings;
 use crate::world::{Geodetic, WindSettings};
 
 /// Everything that a vehicle is made from.
@@ -43,6 +44,9 @@ pub struct VehicleSettings {
     /// Whether it arms and starts its mission by itself as soon as it can.
     #[serde(default)]
     pub autostart: bool,
+    /// What stands and flies around it.
+    #[serde(default)]
+    pub surroundings: Surroundings,
     /// What flies in place of our plant or closed loop, if anything does.
     #[serde(default)]
     pub foreign: Option<ForeignDescription>,
@@ -66,6 +70,7 @@ impl VehicleSettings {
             sensors: SensorSettings::default(),
             plans: Plans::default(),
             autostart: false,
+            surroundings: Surroundings::default(),
             foreign: None,
             equipment: EquipmentVoice::default(),
         }

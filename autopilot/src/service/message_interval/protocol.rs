@@ -91,6 +91,10 @@ impl Service for MessageIntervals {
             schedule.due(time_us, |stream| {
                 if let Some(message) = stream.message(&component) {
                     outbox.send_as(stream.speaker, Destination::Link(link), message);
+                } else {
+                    for message in stream.messages(&component, 0) {
+                        outbox.send_as(stream.speaker, Destination::Link(link), message);
+                    }
                 }
             });
         }

@@ -34,6 +34,16 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
     };
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
+    let present = if vehicle.obstacles().lidar().is_some() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
+    } else {
+        present
+    };
+    let present = if vehicle.has_rangefinder() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
+    } else {
+        present
+    };
     let enabled = if vehicle.fence().is_some() {
         present
     } else {
