@@ -39,5 +39,5 @@ pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
     Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
     Notice, Pilot, PositionSetPoint, Pulses, Refusal, Reposition, SetPoint, Severity, SteeringKind,
-    StickSettings, Sticks, TICK_US, TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    StickSettings, Sticks, TICK_US, TrackedAttitude, Trainer, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

@@ -31,6 +31,7 @@ pub use file::{FileFormat, ParameterFileError, parse, render};
 pub use loop_names::{LOOP_NAMES, LoopName, loop_name};
 pub use named_value::NamedValue;
 pub use px4_parameters::PX4_PARAMETERS;
+pub use radio_parameters::radio_parameters;
 pub use set_error::SetError;
 pub use speed::Speed;
 pub use table::{Change, ParameterTable, SPEED_PARAMETER};
