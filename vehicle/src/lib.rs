@@ -43,5 +43,5 @@ pub use vehicle::{
     HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
     OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal,
     Reposition, ReturnGoal, ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US,
-    TargetReport, TrackedAttitude, TrailSettings, Vehicle, VehicleSettings, YawTarget, wrapped,
+    TargetReport, TrackedAttitude, TrailSettings, Trainer, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

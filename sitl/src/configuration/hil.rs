@@ -33,6 +33,7 @@ impl HilSettings {
             ("autostart", arguments.autostart.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
             ("accept-signing-setup", arguments.accept_signing_setup.is_some()),
+            ("rc-port", arguments.rc_port.is_some()),
         ] {
             if given {
                 return Err(wrong(

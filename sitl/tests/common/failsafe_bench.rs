@@ -3,7 +3,9 @@
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
-use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS};
+use vehicle::parameters::{
+    ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS, radio_parameters,
+};
 use vehicle::{Action, Cause, Conduct, Mode};
 
 use super::{Bench, settings};
@@ -36,7 +38,8 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
 
 /// Those of both identities.
 fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
-    CONDUCT_PARAMETERS.iter().chain(PX4_PARAMETERS).chain(ARDUPILOT_PARAMETERS)
+    let radio = radio_parameters(false).chain(radio_parameters(true));
+    CONDUCT_PARAMETERS.iter().chain(PX4_PARAMETERS).chain(ARDUPILOT_PARAMETERS).chain(radio)
 }
 
 /// The parameter of a cause.
@@ -114,10 +117,12 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
         Cause::PilotLost => {
-            bench.autopilot.receive_radio([1500; vehicle::radio::CHANNELS]);
-            bench.fly(0.1);
-            set(bench, "SIM_RC_FAIL", 1.0);
-            bench.fly(1.1);
+            bench.send(MavMessage::MANUAL_CONTROL(MANUAL_CONTROL_DATA {
+                target: 1,
+                z: 500,
+                ..MANUAL_CONTROL_DATA::default()
+            }));
+            bench.fly(0.6);
         }
     }
 }
