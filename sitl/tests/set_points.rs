@@ -6,8 +6,9 @@ mod common;
 
 use common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
-    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    AttitudeTargetTypemask, MavFrame, MavMessage, MavParamType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use vehicle::Mode;
 use vehicle::identity::Identity;

@@ -11,6 +11,7 @@ use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::return_settings::ReturnSettings;
 use super::stick_settings::StickSettings;
+use super::surroundings_settings::SurroundingsSettings;
 use super::trail::TrailSettings;
 use crate::radio::RadioSettings;
 
@@ -48,6 +49,9 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// What it does about obstacles, traffic and remote identification.
+    #[serde(default)]
+    pub surroundings: SurroundingsSettings,
     /// The way home beside its height.
     #[serde(default)]
     pub return_home: ReturnSettings,
@@ -69,18 +73,18 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
-    /// How the sticks are flown.
-    #[serde(default)]
-    pub sticks: StickSettings,
-    /// The pilot's radio.
-    #[serde(default)]
-    pub radio: RadioSettings,
     /// When it counts as crashed.
     #[serde(default)]
     pub crash: CrashSettings,
     /// What is logged, in ArduPilot's convention.
     #[serde(default)]
     pub log: LogConduct,
+    /// How the sticks are flown.
+    #[serde(default)]
+    pub sticks: StickSettings,
+    /// The pilot's radio.
+    #[serde(default)]
+    pub radio: RadioSettings,
 }
 
 /// Records of before there were faults have none.
@@ -133,6 +137,7 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            surroundings: SurroundingsSettings::new(ardupilot),
             return_home: ReturnSettings::new(ardupilot),
             heading_policy: if ardupilot {
                 HeadingPolicy::NextPlaceExceptReturn
@@ -144,10 +149,10 @@ impl Conduct {
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
-            sticks: StickSettings::new(ardupilot),
-            radio: RadioSettings::new(ardupilot),
             crash: CrashSettings::default(),
             log: LogConduct::default(),
+            sticks: StickSettings::new(ardupilot),
+            radio: RadioSettings::new(ardupilot),
         }
     }
 }

@@ -18,10 +18,10 @@ pub struct Offboard {
     applied: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
     expired: bool,
-    /// Attitudes whose thrust asks for a climb rate.
-    attitude: AttitudeFlight,
     /// What a pause has interrupted.
     paused: Option<Steering>,
+    /// Attitudes whose thrust asks for a climb rate.
+    attitude: AttitudeFlight,
 }
 
 impl Offboard {
@@ -30,7 +30,7 @@ impl Offboard {
         if matches!(set_point, SetPoint::Position(_)) {
             self.attitude.forget();
         }
-        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false, ..*self };
+        (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
     }
 
     /// Holds the place until [`resume`](Self::resume), whatever set-points come.
@@ -68,9 +68,9 @@ impl Offboard {
         self.attitude.forget();
     }
 
-    /// Whether the latest set-point has been steered to.
-    pub fn is_applied(&self) -> bool {
-        self.applied
+    /// Whether the set-point that is steered to asks for a heading.
+    pub fn turns(&self) -> bool {
+        self.applied && self.latest.is_some_and(|(set_point, _)| set_point.turns())
     }
 
     /// Whether the latest set-point is not older than a timeout, s, at a time, µs.
@@ -81,10 +81,8 @@ impl Offboard {
 
     /// One tick of the offboard mode.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        if self.is_paused() {
-            return;
-        }
-        if situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal) {
+        if self.is_paused() || situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal)
+        {
             return;
         }
         if !situation.set_points_are_recent {
@@ -191,7 +189,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
         assert!(step(&mut offboard, &mut scene).is_empty());
-        assert!(offboard.is_applied() && scene.goal_m() == Some([5.0, 0.0, -10.0]));
+        assert!(offboard.applied && scene.goal_m() == Some([5.0, 0.0, -10.0]));
         // What another part does with the steering meanwhile stays.
         scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
         step(&mut offboard, &mut scene);
@@ -209,7 +207,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, 0.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
-        assert!(!offboard.is_applied() && scene.steering.kind() == SteeringKind::Idle);
+        assert!(!offboard.applied && scene.steering.kind() == SteeringKind::Idle);
         offboard.take(place([5.0, 0.0, -2.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
         assert_eq!(scene.goal_m(), Some([5.0, 0.0, -2.0]));

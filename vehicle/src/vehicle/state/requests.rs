@@ -164,6 +164,15 @@ impl Vehicle {
         Ok(())
     }
 
+    /// Whether the fence's failsafe flies back from a breach, and nobody is to stop that.
+    fn returns_from_fence(&self, situation: &Situation) -> bool {
+        let acts = self.machines.failsafe.engaged().is_some_and(|(cause, _)| cause == Cause::Fence);
+        let crossed = situation.breach.is_some() && !situation.fence_is_ahead;
+        let keeps =
+            situation.conduct.failsafe.fence_options.keeps_mode && situation.conduct.failsafe.fence_enabled;
+        keeps && acts && crossed && situation.armed && !situation.landed
+    }
+
     /// Refuses a mode in which sticks lean the vehicle, if something else flies it or it would leap off the ground.
     fn refuse_leaning(&self, mode: Mode) -> Result<(), Refusal> {
         let situation = self.situation();
@@ -182,15 +191,6 @@ impl Vehicle {
             return Err(Refusal::later(format!("{name} mode rejected: throttle too high")));
         }
         Ok(())
-    }
-
-    /// Whether the fence's failsafe flies back from a breach, and nobody is to stop that.
-    fn returns_from_fence(&self, situation: &Situation) -> bool {
-        let acts = self.machines.failsafe.engaged().is_some_and(|(cause, _)| cause == Cause::Fence);
-        let crossed = situation.breach.is_some() && !situation.fence_is_ahead;
-        let keeps =
-            situation.conduct.failsafe.fence_options.keeps_mode && situation.conduct.failsafe.fence_enabled;
-        keeps && acts && crossed && situation.armed && !situation.landed
     }
 
     /// Takes off to a height above home, m, or to that of the parameter; when it is armed, else as soon as it is
