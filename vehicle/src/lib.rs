@@ -48,6 +48,6 @@ pub use vehicle::{
     Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
     Pilot, PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings,
     SelfId, SetPoint, Severity, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
-    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle,
+    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle,
     VehicleSettings, YawTarget, wrapped,
 };
