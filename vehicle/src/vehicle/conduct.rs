@@ -11,6 +11,7 @@ use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::return_settings::ReturnSettings;
 use super::stick_settings::StickSettings;
+use super::surroundings_settings::SurroundingsSettings;
 use super::trail::TrailSettings;
 use crate::radio::RadioSettings;
 
@@ -48,6 +49,9 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// What it does about obstacles, traffic and remote identification.
+    #[serde(default)]
+    pub surroundings: SurroundingsSettings,
     /// The way home beside its height.
     #[serde(default)]
     pub return_home: ReturnSettings,
@@ -133,6 +137,7 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            surroundings: SurroundingsSettings::new(ardupilot),
             return_home: ReturnSettings::new(ardupilot),
             heading_policy: if ardupilot {
                 HeadingPolicy::NextPlaceExceptReturn
