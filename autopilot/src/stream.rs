@@ -56,6 +56,8 @@ pub enum Build {
     Vehicle(fn(&Vehicle) -> MavMessage),
     /// From the vehicle, its parameters and its capabilities.
     Component(fn(&Component<'_>) -> MavMessage),
+    /// None, one or several, as there is something to tell.
+    Several(fn(&Component<'_>) -> Vec<MavMessage>),
     /// One or several, chosen by parameter 2 of MAV_CMD_REQUEST_MESSAGE. It is sent on request only.
     Numbered(fn(&Vehicle, u32) -> Vec<MavMessage>),
 }
@@ -79,6 +81,11 @@ impl Stream {
     /// A message made from the vehicle, with its rates on a ground station's link and on an onboard one, Hz.
     pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
         Self { id, rates_hz, group: None, build: Build::Vehicle(build), ardupilot_only: false }
+    }
+
+    /// A message that is sent when there is something to tell, with its rates.
+    pub const fn when(id: u32, rates_hz: [f64; 2], build: Build) -> Self {
+        Self { id, rates_hz, group: None, build, ardupilot_only: false }
     }
 
     /// A message that is sent only when it is asked for.
@@ -106,12 +113,12 @@ impl Stream {
         (rate > 0.0).then(|| (1e6 / rate).round() as u64)
     }
 
-    /// The message, from the present state; `None` for numbered ones.
+    /// The message, from the present state; `None` for those that may be several.
     pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
         match self.build {
             Build::Vehicle(build) => Some(build(component.vehicle)),
             Build::Component(build) => Some(build(component)),
-            Build::Numbered(_) => None,
+            Build::Several(_) | Build::Numbered(_) => None,
         }
     }
 
@@ -119,6 +126,7 @@ impl Stream {
     pub fn messages(&self, component: &Component<'_>, number: u32) -> Vec<MavMessage> {
         match self.build {
             Build::Numbered(build) => build(component.vehicle, number),
+            Build::Several(build) => build(component),
             _ => self.message(component).into_iter().collect(),
         }
     }

@@ -11,7 +11,8 @@ use vehicle::parameters::Speed;
 use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
-    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom,
+    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports,
+    TrafficChoice, WindFrom,
 };
 use super::{Conventions, LogFilter};
 use crate::fleet::LockstepPhase;
@@ -236,6 +237,24 @@ pub struct Arguments {
     )]
     pub kalman: Option<bool>,
 
+    /// Obstacles around the vehicles (TOML)
+    ///
+    /// Boxes, cylinders and walls: see "Obstacles and traffic" in the book. A lidar and a downward rangefinder measure them, and
+    /// a vehicle that touches one ends its flight.
+    #[arg(long, env = "LMPC_SITL_WORLD", value_name = "FILE.toml", help_heading = SIMULATION, hide_short_help = true)]
+    pub world: Option<PathBuf>,
+
+    /// Aircraft around the vehicles: a flight, a file or `fleet`
+    ///
+    /// NORTH,EAST,HEIGHT,SPEED,COURSE[,CLIMB] flies straight on, from a place in metres, with m/s and degrees. FILE.toml has
+    /// several, with tracks. `fleet` makes the vehicles of this run see one another. Repeat it for more.
+    #[arg(
+        long, env = "LMPC_SITL_TRAFFIC", value_name = "AIRCRAFT", value_delimiter = ';', allow_hyphen_values = true,
+        help_heading = SIMULATION, hide_short_help = true,
+        value_parser = OsStringValueParser::new().try_map(TrafficChoice::of)
+    )]
+    pub traffic: Option<Vec<TrafficChoice>>,
+
     /// Fault to inject, such as 12.5:rotor1=off
     ///
     /// SECONDS:UNIT=KIND, see "Faults" below; repeat it for more. A system id in front restricts it to one vehicle.
@@ -371,6 +390,8 @@ impl Arguments {
             seed: self.seed.or(file.seed),
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),
+            world: self.world.or(file.world),
+            traffic: self.traffic.or(file.traffic),
             parameters: self.parameters.or(file.parameters),
             list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),

@@ -24,9 +24,11 @@ mod sharing;
 mod start_parameters;
 mod suggestion;
 mod text_file;
+mod traffic;
 mod wind;
 mod wind_drag;
 mod wind_hold;
+mod world_file;
 
 pub use addressed::Addressed;
 pub use airframe::AirframeChoice;
@@ -44,4 +46,6 @@ pub use settings::{MemberSettings, Settings};
 pub use sharing::{Clocks, Ports};
 pub use suggestion::nearest;
 pub use text_file::read_text;
+pub use traffic::{Straight, TrafficChoice};
 pub use wind::WindFrom;
+pub use world_file::read_world;

@@ -36,6 +36,8 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         parameters,
         list_parameters,
         mission,
+        world,
+        traffic,
         autostart,
         record,
         record_size,
@@ -84,6 +86,8 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("parameters", parameters.is_some()),
         ("list-parameters", list_parameters.is_some()),
         ("mission", mission.is_some()),
+        ("world", world.is_some()),
+        ("traffic", traffic.is_some()),
         ("autostart", autostart.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
@@ -143,6 +147,7 @@ mod tests {
         ("log", "warn"),
         ("autostart", "true"),
         ("lockstep", "always"),
+        ("traffic", "fleet"),
     ];
 
     #[test]

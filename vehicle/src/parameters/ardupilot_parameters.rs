@@ -54,6 +54,11 @@ const BATTERY_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Hold, 7, "Brake"),
 ];
 
+const FENCE_OPTIONS: &[&str] =
+    &["No other mode while the vehicle comes back from a breach", "One of several inclusion zones is enough"];
+const KEEPS_MODE: u32 = 1;
+const UNION: u32 = 2;
+
 /// Bits of LOG_BITMASK, as ArduCopter has them.
 const LOGGED: &[&str] = &[
     "Fast attitude",
@@ -79,11 +84,6 @@ const LOGGED: &[&str] = &[
     "Video stabilization",
     "Fast harmonic notch",
 ];
-const FENCE_OPTIONS: &[&str] =
-    &["No other mode while the vehicle comes back from a breach", "One of several inclusion zones is enough"];
-const KEEPS_MODE: u32 = 1;
-const UNION: u32 = 2;
-
 const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones"];
 const HEIGHT: u32 = 1;
 const DISTANCE: u32 = 2;

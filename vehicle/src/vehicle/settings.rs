@@ -10,6 +10,7 @@ use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
 use crate::identity::Identity;
 use crate::plan::Plans;
+use crate::surroundings::Surroundings;
 use crate::world::{Geodetic, WindSettings};
 
 /// Everything that a vehicle is made from.
@@ -42,6 +43,9 @@ pub struct VehicleSettings {
     /// Whether it arms and starts its mission by itself as soon as it can.
     #[serde(default)]
     pub autostart: bool,
+    /// What stands and flies around it.
+    #[serde(default)]
+    pub surroundings: Surroundings,
     /// What flies in place of our plant or closed loop, if anything does.
     #[serde(default)]
     pub foreign: Option<ForeignDescription>,
@@ -62,6 +66,7 @@ impl VehicleSettings {
             sensors: SensorSettings::default(),
             plans: Plans::default(),
             autostart: false,
+            surroundings: Surroundings::default(),
             foreign: None,
         }
     }

@@ -86,6 +86,10 @@ impl Service for MessageIntervals {
             schedule.due(time_us, |stream| {
                 if let Some(message) = stream.message(&component) {
                     outbox.send(Destination::Link(link), message);
+                } else {
+                    for message in stream.messages(&component, 0) {
+                        outbox.send(Destination::Link(link), message);
+                    }
                 }
             });
         }

@@ -27,8 +27,23 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let present = if vehicle.pilot().has_radio {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+    } else {
+        present
+    };
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
+    let present = if vehicle.obstacles().lidar().is_some() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
+    } else {
+        present
+    };
+    let present = if vehicle.has_rangefinder() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
+    } else {
+        present
+    };
     let enabled = if vehicle.fence().is_some() {
         present
     } else {
@@ -50,6 +65,7 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (vehicle.lost_rotor().is_none(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
         (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
+        (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Action, Cause};
 use crate::fence::Inclusions;
+use crate::radio::RadioLossAction;
 
 /// Thresholds and actions; the parameters are PX4's.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +48,9 @@ pub struct FailsafeSettings {
     pub high_wind: Action,
     /// What is done without an estimate of the place (COM_POSCTL_NAVL).
     pub position_lost: Action,
+    /// What is done when the pilot is lost (NAV_RCL_ACT; ArduPilot: FS_THR_ENABLE).
+    #[serde(default = "returns")]
+    pub pilot_lost: RadioLossAction,
     /// Whether it descends on the others when a rotor is lost, or stops them, too (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
 }
@@ -54,6 +58,11 @@ pub struct FailsafeSettings {
 /// Records of before it could be chosen have none.
 fn yes() -> bool {
     true
+}
+
+/// So do those of before there was a radio.
+fn returns() -> RadioLossAction {
+    RadioLossAction::Return
 }
 
 /// Parts of the fence that are looked at.
@@ -137,6 +146,7 @@ impl Default for FailsafeSettings {
             wind_m_s: -1.0,
             high_wind: Action::Warn,
             position_lost: Action::Land,
+            pilot_lost: RadioLossAction::Return,
             rotor_failure: Action::Land,
         }
     }
@@ -175,6 +185,7 @@ impl FailsafeSettings {
             Cause::HighWind => self.high_wind,
             Cause::GroundStationLost => self.ground_station_lost,
             Cause::SetPointsLost => self.set_points_lost,
+            Cause::PilotLost => Action::without_pilot(self.pilot_lost),
         }
     }
 }

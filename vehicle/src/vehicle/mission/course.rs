@@ -27,6 +27,8 @@ pub struct Course {
     anchor_m: Vector3<f64>,
     /// Heading of the present step, rad.
     heading_rad: f64,
+    /// Whether the step asks for that heading itself.
+    heading_is_asked: bool,
 }
 
 impl Course {
@@ -58,6 +60,11 @@ impl Course {
         self.heading_rad
     }
 
+    /// Whether the step asks for that heading itself: otherwise it is that of its way.
+    pub fn heading_is_asked(&self) -> bool {
+        self.heading_is_asked
+    }
+
     /// Gives up what is being done, to be begun again; the next leg may take a turn over.
     pub fn give_up(&mut self, turn: Option<Turn>) {
         (self.task, self.turn) = (None, turn);
@@ -68,6 +75,7 @@ impl Course {
         self.turn = None;
         self.anchor_m = proposal.steering().present(situation.outputs).position_m;
         self.heading_rad = situation.outputs.attitude_rad.z;
+        self.heading_is_asked = true;
         proposal.hold(situation);
     }
 
@@ -152,6 +160,7 @@ impl Course {
             Steering::Goal(goal) => goal.yaw_rad,
             _ => situation.outputs.attitude_rad.z,
         };
+        self.heading_is_asked = true;
         proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Angle(self.heading_rad) });
         self.anchor_m = Vector3::new(here.x, here.y, z_m);
         Task::Climb { z_m, takeoff }
@@ -219,6 +228,7 @@ impl Course {
                 (Then::Wait(0.0), None)
             }
         };
+        self.heading_is_asked = asked_rad.is_some();
         if let Some(heading_rad) = asked_rad.or_else(|| leg.bearing_rad()) {
             self.heading_rad = heading_rad;
         }

@@ -1,6 +1,6 @@
 //! What is being done for a step.
 
-use super::circle::Circle;
+use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
 
 /// A task.
@@ -19,7 +19,7 @@ pub enum Task {
     /// Until a time, µs, or for ever.
     Wait(Option<u64>),
     /// Around a place.
-    Circle(Circle),
+    Circle(CircleTurns),
     /// Home, which is flown by the machine for that.
     Return,
     /// Down, above a place if there is one.
@@ -45,7 +45,7 @@ pub enum Then {
     /// Nothing.
     Stay,
     /// Turns.
-    Circle(Circle),
+    Circle(CircleTurns),
     /// A landing.
     Land([f64; 2]),
 }

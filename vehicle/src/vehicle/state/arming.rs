@@ -32,11 +32,15 @@ impl Vehicle {
                 100.0 * needed
             ));
         }
-        obstacles.extend(self.perception.obstacles());
+        obstacles.extend(self.perception.obstacles(situation.mode.needs()));
+        obstacles.extend(self.throttle_obstacle());
+        let touched = self.machines.obstacles.touched(&situation);
+        obstacles.extend(touched.map(|obstacle| format!("touches {}", obstacle.name)));
+        obstacles.extend(self.machines.remote_id.obstacle(&situation).map(str::to_owned));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
-            Mode::Land | Mode::Return => {
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
                 obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
@@ -67,8 +71,10 @@ impl Vehicle {
             return Err(Refusal::later(format!("Arming denied: {}", obstacles.join("; "))));
         }
         self.decided.arm();
+        self.machines.receiver.arm();
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
+            parts.smart_return.arm(situation);
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }
