@@ -50,7 +50,7 @@ def test_dfreader_reads_a_flight_without_a_warning(start, connect, tmp_path, cap
     assert capfd.readouterr() == ("", ""), "the reader warns"
     assert log.mav_type == mavlink.MAV_TYPE_QUADROTOR and log.params["LOG_BITMASK"] == 176126
     assert log.percent > 99
-    expected = ("FMT FMTU UNIT MULT PARM MSG MODE ATT RATE POS GPS GPA IMU BARO MAG BAT CTUN PSCN PSCE PSCD RCOU EV ARM ORGN "
+    expected = ("FMT FMTU UNIT MULT PARM MSG MODE ATT RATE POS GPS GPA IMU BARO MAG BAT CTUN PSCN PSCE PSCD RCIN RCOU EV ARM ORGN "
                 "XKF1 XKF2 XKF3 XKF4 VIBE MOTB SIM PM").split()
     assert not [name for name in expected if name not in seen], seen
     assert modes[-3:-1] == [GUIDED, LAND], "and the first mode again after landing"
