@@ -55,7 +55,7 @@ impl Autopilot {
         let mut context = Context {
             parameters: Parameters::new(settings, &vehicle, system_id, speed),
             vehicle,
-            outbox: Outbox::new(system_id),
+            outbox: Outbox::new(system_id).with_voice(settings.equipment),
             files: Box::new(Immediate(Nothing)),
             streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
@@ -70,10 +70,8 @@ impl Autopilot {
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
         self.services.hear(&mut self.context, origin);
-        if !target_of(frame).is_autopilot(self.system_id()) {
-            return;
-        }
-        self.services.receive(&mut self.context, origin, frame);
+        let Some(asked) = target_of(frame).speaker(self.system_id()) else { return };
+        self.services.receive(&mut self.context, origin, frame, asked);
         self.services.announce(&mut self.context);
     }
 

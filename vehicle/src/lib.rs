@@ -9,6 +9,7 @@
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  surroundings what stands and flies around
+//!  equipment    servos, relays, gripper, camera and gimbal
 //!  estimation   instruments and the estimator
 //!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
@@ -21,6 +22,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod absent_mode;
+pub mod equipment;
 pub mod estimation;
 pub mod fault;
 pub mod fence;

@@ -8,6 +8,7 @@ use vehicle::estimation::SensorModel;
 use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
+use super::equipment::EquipmentChoice;
 use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
@@ -143,6 +144,16 @@ pub struct Arguments {
         default_missing_value = "true", help_heading = VEHICLE, hide_possible_values = true
     )]
     pub autostart: Option<bool>,
+
+    /// Who speaks for camera and gimbal [default: autopilot]
+    ///
+    /// With `own`, the camera (component 100) and the gimbal (component 154) send heartbeats and messages of their own, as MAVLink
+    /// cameras and gimbals do. With `autopilot` no heartbeats but the autopilot's are sent, so that clients that take every
+    /// heartbeat for the autopilot's are not misled; requests to both components are answered all the same.
+    #[arg(
+        long, env = "LMPC_SITL_EQUIPMENT", value_name = "autopilot|own", help_heading = VEHICLE, hide_possible_values = true
+    )]
+    pub equipment: Option<EquipmentChoice>,
 
     /// Number of vehicles, 1 to 250 [default: 1]
     ///
@@ -396,6 +407,7 @@ impl Arguments {
             list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),
             autostart: self.autostart.or(file.autostart),
+            equipment: self.equipment.or(file.equipment),
             record: self.record.or(file.record),
             record_size: self.record_size.or(file.record_size),
             replay: self.replay.or(file.replay),

@@ -6,6 +6,7 @@ mod airframe_file;
 mod arguments;
 mod conventions;
 pub mod environment;
+mod equipment;
 pub mod file;
 mod fmu;
 mod formation;

@@ -39,6 +39,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         world,
         traffic,
         autostart,
+        equipment,
         record,
         record_size,
         replay: _,
@@ -89,6 +90,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("world", world.is_some()),
         ("traffic", traffic.is_some()),
         ("autostart", autostart.is_some()),
+        ("equipment", equipment.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
         ("fmu", fmu.is_some()),
@@ -146,6 +148,7 @@ mod tests {
         ("list-parameters", "json"),
         ("log", "warn"),
         ("autostart", "true"),
+        ("equipment", "own"),
         ("lockstep", "always"),
         ("traffic", "fleet"),
     ];

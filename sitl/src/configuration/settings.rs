@@ -281,6 +281,7 @@ pub(super) fn vehicle(
         autostart: arguments.autostart.unwrap_or(false),
         surroundings: surroundings(arguments)?,
         foreign: None,
+        equipment: arguments.equipment.unwrap_or_default().into(),
     };
     let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
     let airframe_note = chosen.map(|chosen| {

@@ -61,6 +61,8 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow | Cause::BatteryCritical | Cause::BatteryEmergency => "COM_LOW_BAT_ACT",
         Cause::PositionLost => "COM_POSCTL_NAVL",
         Cause::RotorFailure => "COM_ACT_FAIL_ACT",
+        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
+        Cause::PilotLost => "NAV_RCL_ACT",
     }
 }
 
@@ -119,6 +121,12 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
         Cause::Fence if bench.autopilot.identity().is_ardupilot() => set(bench, "FENCE_ALT_MAX", 8.0),
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
+        Cause::PilotLost => {
+            bench.autopilot.receive_radio([1500; vehicle::radio::CHANNELS]);
+            bench.fly(0.1);
+            set(bench, "SIM_RC_FAIL", 1.0);
+            bench.fly(1.1);
+        }
     }
 }
 

@@ -25,6 +25,7 @@ use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::traffic_watch::TrafficWatch;
+use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -79,4 +80,6 @@ pub struct Machines {
     pub remote_id: RemoteId,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
+    /// What it carries.
+    pub equipment: Equipment,
 }

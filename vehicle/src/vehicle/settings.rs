@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
+use crate::equipment::EquipmentVoice;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
@@ -49,6 +50,9 @@ pub struct VehicleSettings {
     /// What flies in place of our plant or closed loop, if anything does.
     #[serde(default)]
     pub foreign: Option<ForeignDescription>,
+    /// Who speaks for camera and gimbal.
+    #[serde(default)]
+    pub equipment: EquipmentVoice,
 }
 
 impl VehicleSettings {
@@ -68,6 +72,7 @@ impl VehicleSettings {
             autostart: false,
             surroundings: Surroundings::default(),
             foreign: None,
+            equipment: EquipmentVoice::default(),
         }
     }
 

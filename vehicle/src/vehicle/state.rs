@@ -2,6 +2,7 @@
 
 mod arming;
 mod decision;
+mod equipment;
 mod pilot;
 mod plan_requests;
 mod plan_start;
@@ -52,6 +53,7 @@ use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
 use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
+use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
 use crate::mode::Mode;
@@ -125,6 +127,7 @@ impl Vehicle {
             traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
             remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
+            equipment: Equipment::default(),
         };
         let mut vehicle = Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
@@ -178,6 +181,7 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
+        self.step_equipment();
         Ok(())
     }
 
