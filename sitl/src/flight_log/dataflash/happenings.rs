@@ -139,7 +139,6 @@ fn subsystem(cause: Cause) -> Option<f64> {
         Cause::PilotLost => Some(FAILSAFE_RADIO),
         Cause::Fence => Some(FAILSAFE_FENCE),
         Cause::GroundStationLost => Some(FAILSAFE_GROUND_STATION),
-        Cause::PilotLost => Some(FAILSAFE_RADIO),
         Cause::HighWind | Cause::SetPointsLost => None,
     }
 }
