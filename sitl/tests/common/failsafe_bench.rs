@@ -55,6 +55,8 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow if identity.is_ardupilot() => "BATT_FS_LOW_ACT",
         Cause::BatteryCritical | Cause::BatteryEmergency if identity.is_ardupilot() => "BATT_FS_CRT_ACT",
         Cause::SetPointsLost => "COM_OBL_RC_ACT",
+        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
+        Cause::PilotLost => "NAV_RCL_ACT",
         Cause::GroundStationLost => "NAV_DLL_ACT",
         Cause::HighWind => "COM_WIND_MAX_ACT",
         Cause::Fence => "GF_ACTION",
@@ -119,6 +121,14 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
         Cause::Fence if bench.autopilot.identity().is_ardupilot() => set(bench, "FENCE_ALT_MAX", 8.0),
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
+        Cause::PilotLost => {
+            bench.send(MavMessage::MANUAL_CONTROL(MANUAL_CONTROL_DATA {
+                target: 1,
+                z: 500,
+                ..MANUAL_CONTROL_DATA::default()
+            }));
+            bench.fly(0.6);
+        }
     }
 }
 
