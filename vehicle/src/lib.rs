@@ -24,6 +24,7 @@ pub mod fence;
 mod flight_error;
 pub mod foreign;
 pub mod identity;
+pub mod kept;
 mod mode;
 pub mod parameters;
 pub mod plan;

@@ -9,6 +9,7 @@ mod conduct_parameters;
 mod description;
 mod entry;
 mod file;
+mod limit_names;
 mod loop_access;
 mod loop_names;
 mod named_value;

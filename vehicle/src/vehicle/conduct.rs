@@ -4,6 +4,7 @@ use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
+use crate::kept::KeptValues;
 
 /// Parameters of the vehicle's behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +43,9 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// What is kept for scripts and changes nothing.
+    #[serde(default)]
+    pub kept: KeptValues,
 }
 
 /// Records of before there were faults have none.
@@ -80,6 +84,7 @@ impl Conduct {
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
+            kept: KeptValues::default(),
         }
     }
 }
