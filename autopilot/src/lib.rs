@@ -16,6 +16,7 @@
 
 mod autopilot;
 pub mod codec;
+pub mod compatibility;
 mod context;
 pub mod envelope;
 pub mod file_store;

@@ -96,7 +96,7 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
         (
             Identity::ArduPilot,
             0.0,
-            "Mode 0 is not available; available: Loiter, Guided, Auto, RTL, Land, Brake",
+            "Mode 0 is not available; available: Loiter, Brake, Auto, RTL, Land, Guided",
         ),
     ] {
         let mut bench = Bench::new(identity);

@@ -8,7 +8,7 @@
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
 //!  estimation   instruments and the estimator
-//!  mode         flight modes
+//!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
 //!  vehicle      the state machines over the closed loop, and the place that decides between them
 //!  foreign      a closed loop or a plant from elsewhere, in place of ours
@@ -26,13 +26,14 @@ pub mod foreign;
 pub mod identity;
 pub mod kept;
 mod mode;
+mod mode_table;
 pub mod parameters;
 pub mod plan;
 mod vehicle;
 pub mod world;
 
 pub use flight_error::FlightError;
-pub use mode::Mode;
+pub use mode::{Leader, Mode};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
     Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,

@@ -19,8 +19,29 @@ pub enum Mode {
     Offboard,
 }
 
+/// Who leads the vehicle in a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leader {
+    /// The pilot with sticks.
+    Sticks,
+    /// A program outside with set-points.
+    SetPoints,
+    /// The vehicle itself.
+    Vehicle,
+}
+
 impl Mode {
-    /// All modes.
-    pub const ALL: [Self; 7] =
-        [Self::Position, Self::Takeoff, Self::Hold, Self::Mission, Self::Return, Self::Land, Self::Offboard];
+    /// Who leads the vehicle.
+    pub fn leader(self) -> Leader {
+        match self {
+            Self::Position => Leader::Sticks,
+            Self::Offboard => Leader::SetPoints,
+            Self::Takeoff | Self::Hold | Self::Return | Self::Mission | Self::Land => Leader::Vehicle,
+        }
+    }
+
+    /// Whether it ends on the ground: then it is not one to be armed in.
+    pub fn ends_on_the_ground(self) -> bool {
+        matches!(self, Self::Land | Self::Return | Self::Takeoff | Self::Mission)
+    }
 }

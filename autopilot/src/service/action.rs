@@ -54,6 +54,10 @@ const FORCE: f64 = 21196.0;
 pub struct Actions;
 
 impl Service for Actions {
+    fn summary(&self) -> &'static str {
+        "What the vehicle does at once"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         &COMMANDS
     }

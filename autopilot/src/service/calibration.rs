@@ -46,6 +46,10 @@ pub struct Calibrations {
 }
 
 impl Service for Calibrations {
+    fn summary(&self) -> &'static str {
+        "Calibrations of sensors"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::COMMAND_CANCEL]
     }

@@ -17,6 +17,10 @@ const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
 pub struct CustomModes;
 
 impl Service for CustomModes {
+    fn summary(&self) -> &'static str {
+        "Modes by their numbers in HEARTBEAT"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::SET_MODE]
     }
@@ -70,8 +74,7 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
 fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
     let identity = vehicle.identity();
     let Some(mode) = identity.mode(custom_mode) else {
-        let names: Vec<_> =
-            identity.selectable_modes().iter().map(|known| identity.mode_name(*known)).collect();
+        let names: Vec<_> = identity.selectable_modes().map(|known| identity.mode_name(known)).collect();
         // PX4's main and sub-modes are bytes of the number.
         let number =
             if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };

@@ -24,6 +24,10 @@ const STREAMS: &[Stream] = &[
 pub(crate) struct Identification;
 
 impl Service for Identification {
+    fn summary(&self) -> &'static str {
+        "What it is and can do"
+    }
+
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }

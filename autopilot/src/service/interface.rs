@@ -58,6 +58,12 @@ pub type Outcome = Result<Progress, Refusal>;
 /// clients through the [`Context`] of each call. Every method has a default that does nothing, so a service implements only what it
 /// needs.
 pub trait Service: Debug + Send {
+    /// What it is for, in a few words: the table of compatibility in the book shows them beside everything that it claims. A service
+    /// that claims something needs one.
+    fn summary(&self) -> &'static str {
+        ""
+    }
+
     /// Identifiers of the messages that it takes. No two services take the same.
     fn messages(&self) -> &'static [u32] {
         &[]
@@ -70,6 +76,11 @@ pub trait Service: Debug + Send {
 
     /// Messages that clients can get from it, once or regularly. No two services have the same.
     fn streams(&self) -> &'static [Stream] {
+        &[]
+    }
+
+    /// Messages that it sends besides its streams: answers, and news of what has changed.
+    fn answers(&self) -> &'static [u32] {
         &[]
     }
 

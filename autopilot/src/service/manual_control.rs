@@ -12,6 +12,10 @@ use crate::envelope::Origin;
 pub struct ManualControl;
 
 impl Service for ManualControl {
+    fn summary(&self) -> &'static str {
+        "Sticks"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::MANUAL_CONTROL, id::RC_CHANNELS_OVERRIDE]
     }

@@ -28,6 +28,10 @@ const COMMANDS: &[CommandEntry] = &[
 pub struct MessageRequests;
 
 impl Service for MessageRequests {
+    fn summary(&self) -> &'static str {
+        "Messages that are asked for once"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }

@@ -63,6 +63,11 @@ impl Registry {
         Self { services, messages, commands, protocol: CommandProtocol::default() }
     }
 
+    /// The services, for what they claim.
+    pub fn services(&self) -> impl Iterator<Item = &dyn Service> {
+        self.services.iter().map(|service| service.as_ref())
+    }
+
     /// The table of all messages that the services make.
     pub fn streams(&self) -> StreamTable {
         StreamTable::new(self.services.iter().flat_map(|service| service.streams()))

@@ -49,6 +49,10 @@ const ATTITUDE_IGNORE: u8 = 1 << 7;
 pub struct SetPoints;
 
 impl Service for SetPoints {
+    fn summary(&self) -> &'static str {
+        "Set-points of position, velocity, acceleration and attitude"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::SET_ATTITUDE_TARGET, id::SET_POSITION_TARGET_LOCAL_NED, id::SET_POSITION_TARGET_GLOBAL_INT]
     }

@@ -127,6 +127,21 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
         (1, "kind", 0.0, 3.0)] },
 ];
 
+/// The numbers of all commands that missions, fences and rally points may have.
+pub fn command_numbers() -> impl Iterator<Item = u16> {
+    let of_missions = MISSION_COMMANDS.iter().map(|command| command.number);
+    of_missions.chain(FENCE_COMMANDS).chain([NAV_RALLY_POINT])
+}
+
+/// Commands of fences.
+pub(super) const FENCE_COMMANDS: [u16; 5] = [
+    NAV_FENCE_RETURN_POINT,
+    NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
+    NAV_FENCE_CIRCLE_INCLUSION,
+    NAV_FENCE_CIRCLE_EXCLUSION,
+];
+
 /// The command of missions with a number.
 pub(super) fn mission_command(number: u16) -> Option<&'static MissionCommand> {
     MISSION_COMMANDS.iter().find(|command| command.number == number)

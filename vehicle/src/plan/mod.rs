@@ -33,6 +33,7 @@ mod zones;
 
 pub use altitude::Altitude;
 pub use change_speed::{ChangeSpeed, SpeedKind, SpeedTarget};
+pub use command::command_numbers;
 pub use fault::{FaultCode, PlanFault};
 pub use file_fault::PlanFileFault;
 pub use item::MissionItem;

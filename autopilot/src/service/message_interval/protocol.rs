@@ -26,6 +26,14 @@ pub struct MessageIntervals {
 }
 
 impl Service for MessageIntervals {
+    fn summary(&self) -> &'static str {
+        "How often messages are sent"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::MESSAGE_INTERVAL]
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::REQUEST_DATA_STREAM]
     }

@@ -12,6 +12,10 @@ use crate::stream::{Group, Stream};
 pub struct Telemetry;
 
 impl Service for Telemetry {
+    fn summary(&self) -> &'static str {
+        "Telemetry"
+    }
+
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }

@@ -105,7 +105,7 @@ impl Vehicle {
         if mode == Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if matches!(mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
+        if mode.ends_on_the_ground() {
             self.decided.switch_to(self.setup.identity().first_mode());
         }
         self.decided.say(Severity::Info, why);
