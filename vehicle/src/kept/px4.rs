@@ -67,7 +67,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_TKO_RAMP_T", 3.0, 0.0..=5.0, "s", "Time over which a takeoff's thrust rises"),
         ("MPC_LAND_CRWL", 0.3, 0.1..=10.0, "m/s", "Land crawl descent rate"),
         ("MPC_LAND_ALT1", 10.0, 0.0..=122.0, "m", "Height at which a landing begins to slow down"),
-        ("MPC_LAND_ALT2", 5.0, 0.0..=122.0, "m", "Height from which a landing descends slowly"),
         ("MPC_LAND_ALT3", 1.0, 0.0..=122.0, "m", "Height from which a landing crawls"),
         ("COM_SPOOLUP_TIME", 1.0, 0.0..=30.0, "s", "Delay between arming and takeoff"),
         ("LNDMC_Z_VEL_MAX", 0.25, 0.0..=10.0, "m/s", "Vertical speed below which it may have landed"),

@@ -1,7 +1,7 @@
 //! Failsafes and fence by ArduPilot's names and numbers.
 
 use super::ConductParameter;
-use super::conduct_parameter::{bitmask, choice, switch};
+use super::conduct_parameter::{bitmask, choice, real, switch};
 use crate::vehicle::{Action, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
@@ -11,6 +11,15 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
+    real!("LAND_SPEED_HIGH", None, 0.0..=2000.0, land_fast_m_s, 100.0, "cm/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN"),
+    real!("LAND_SPD_HIGH_MS", None, 0.0..=20.0, land_fast_m_s, "m/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN").other(),
+    real!("BATT_LOW_VOLT", None, 0.0..=120.0, failsafe.battery_limits.low_v, "V", "Voltage below which the battery is low, after BATT_LOW_TIMER; 0: any"),
+    real!("BATT_CRT_VOLT", None, 0.0..=120.0, failsafe.battery_limits.critical_v, "V", "Voltage below which the battery is critical, after BATT_LOW_TIMER; 0: any"),
+    real!("BATT_LOW_MAH", None, 0.0..=1e6, failsafe.battery_limits.low_mah, "mAh", "Remaining charge below which the battery is low; 0: any"),
+    real!("BATT_CRT_MAH", None, 0.0..=1e6, failsafe.battery_limits.critical_mah, "mAh", "Remaining charge below which the battery is critical; 0: any"),
+    real!("BATT_LOW_TIMER", None, 0.0..=120.0, failsafe.battery_limits.low_s, "s", "Time of a low voltage after which it counts"),
+    switch!("BATT_FS_VOLTSRC", failsafe.battery_limits.at_rest, "Voltage that is looked at", ["As measured", "At rest: without the drop that the current makes"]),
+    bitmask!("FS_OPTIONS", FAILSAFE_OPTIONS, failsafe.options, u32::from, |bits| bits as u8, "What goes on in spite of a failsafe"),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {
         set: |conduct, value| {
@@ -27,6 +36,14 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     },
 ];
 
+const FAILSAFE_OPTIONS: &[&str] = &[
+    "Missions, when sticks are lost",
+    "Missions, when the ground station is lost",
+    "Guided mode, when sticks are lost",
+    "Landings, always",
+    "Loitering by sticks, when the ground station is lost",
+    "The gripper opens",
+];
 const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Warn, 0, "Report only"),
     (Action::Return, 1, "Return"),

@@ -8,6 +8,7 @@ use super::limit_names::LIMIT_NAMES;
 use super::loop_access::write;
 use super::loop_names::loop_name;
 use super::px4_parameters::PX4_PARAMETERS;
+use super::simulation_parameters::SIMULATION_PARAMETERS;
 use super::suggestion::suggestion;
 use super::value::within;
 use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
@@ -45,7 +46,8 @@ impl ParameterTable {
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
         let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
-        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).flat_map(|parameter| {
+        let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
+        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).chain(simulated).flat_map(|parameter| {
             let names = parameter.names_in(identity);
             names.map(|(id, scale, is_other)| Entry {
                 is_other,
@@ -65,13 +67,20 @@ impl ParameterTable {
         let kept = kept.map(|(place, parameter)| Entry::new(parameter.id, Source::Kept(parameter, place)));
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
+        // ArduPilot's new name.
+        let also = ardupilot.then(|| Entry::new("MAV_SYSID", Source::SystemId));
         let others = [
             Entry::new(hover, Source::HoverThrust),
             Entry::new(system, Source::SystemId),
             Entry::new(SPEED_PARAMETER, Source::Speed),
         ];
-        let mut entries: Vec<Entry> =
-            of_loop.chain(of_conduct).chain(of_limits.flatten()).chain(kept).chain(others).collect();
+        let mut entries: Vec<Entry> = of_loop
+            .chain(of_conduct)
+            .chain(of_limits.flatten())
+            .chain(kept)
+            .chain(others)
+            .chain(also)
+            .collect();
         entries.sort_by_key(|entry| entry.id);
         Self { entries }
     }

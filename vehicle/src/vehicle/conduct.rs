@@ -4,6 +4,7 @@ use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::FailsafeSettings;
+use super::simulated::Simulated;
 use crate::kept::KeptValues;
 
 /// Parameters of the vehicle's behaviour.
@@ -21,6 +22,12 @@ pub struct Conduct {
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
     pub land_speed_m_s: f64,
+    /// Below this height, m, it sinks with that speed.
+    #[serde(default = "two")]
+    pub land_slow_below_m: f64,
+    /// Sink rate farther up, m/s; 0: the limit.
+    #[serde(default)]
+    pub land_fast_m_s: f64,
     /// Disarms this long after touch-down, s; negative: never.
     pub disarm_after_landing_s: f64,
     /// Disarms when not taken off this long after arming, s; negative: never.
@@ -43,9 +50,17 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// What is simulated around the vehicle.
+    #[serde(default)]
+    pub simulated: Simulated,
     /// What is kept for scripts and changes nothing.
     #[serde(default)]
     pub kept: KeptValues,
+}
+
+/// Records of before it could be chosen have this one.
+fn two() -> f64 {
+    2.0
 }
 
 /// Records of before there were faults have none.
@@ -74,6 +89,8 @@ impl Conduct {
             acceptance_radius_m: 2.0,
             return_near_m: 5.0,
             land_speed_m_s: 0.7,
+            land_slow_below_m: two(),
+            land_fast_m_s: 0.0,
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
             stick_speed_m_s: 5.0,
@@ -84,6 +101,7 @@ impl Conduct {
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
+            simulated: Simulated::default(),
             kept: KeptValues::default(),
         }
     }

@@ -1,6 +1,6 @@
 //! What the failsafe looks at, and what it asks for.
 
-use super::failsafe::{Action, Cause, Change, Failsafe};
+use super::failsafe::{Action, Cause, Change, Failsafe, FailsafeSettings, Weakness};
 use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::situation::Situation;
@@ -16,8 +16,10 @@ impl Failsafe {
             Cause::RotorFailure => situation.lost_rotor.is_some(),
             Cause::PositionLost => situation.armed && !situation.knows_its_place(),
             Cause::BatteryEmergency => remaining < settings.battery_emergency,
-            Cause::BatteryCritical => remaining < settings.battery_critical,
-            Cause::BatteryLow => remaining < settings.battery_low,
+            Cause::BatteryCritical => {
+                remaining < settings.battery_critical || self.is_weak(Weakness::Critical)
+            }
+            Cause::BatteryLow => remaining < settings.battery_low || self.is_weak(Weakness::Low),
             Cause::Fence => situation.breach.is_some(),
             Cause::HighWind => settings.wind_m_s > 0.0 && self.wind_m_s() > settings.wind_m_s,
             Cause::GroundStationLost => self.misses_ground_station(),
@@ -65,7 +67,8 @@ impl Failsafe {
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, action: Action) {
         let flying = situation.flies();
-        let acts = flying && self.goes_before(action, Action::of_mode(situation.mode));
+        let acts =
+            flying && self.goes_before(action, Action::of_mode(situation.mode)) && !goes_on(situation, cause);
         let why = self.name(situation, cause);
         tracing::debug!(cause = why, ?action, flying, acts, "failsafe");
         let details = self.details(situation, cause);
@@ -84,6 +87,21 @@ impl Failsafe {
         match action.mode() {
             Some(mode) => proposal.enter(mode),
             None => proposal.terminate(),
+        }
+    }
+
+    /// Feels the battery: whether its voltage or charge is below a limit.
+    pub fn feel_battery(&mut self, situation: &Situation) {
+        let limits = &situation.conduct.failsafe.battery_limits;
+        let voltage_v =
+            if limits.at_rest { situation.battery_resting_v } else { situation.battery_voltage_v };
+        let late_us = (limits.low_s * 1e6) as u64;
+        for (weakness, volts, mah) in [
+            (Weakness::Low, limits.low_v, limits.low_mah),
+            (Weakness::Critical, limits.critical_v, limits.critical_mah),
+        ] {
+            let lasting = self.lasts(weakness, voltage_v < volts, situation.time_us, late_us);
+            self.set_weak(weakness, lasting || situation.battery_left_mah < mah);
         }
     }
 
@@ -150,6 +168,17 @@ impl Failsafe {
         }
         Ok(())
     }
+}
+
+/// Whether a mode goes on in spite of a cause, by FS_OPTIONS. The other bits are for causes that are not there.
+fn goes_on(situation: &Situation, cause: Cause) -> bool {
+    let options = situation.conduct.failsafe.options;
+    let bit = match (cause, situation.mode) {
+        (Cause::GroundStationLost, Mode::Mission) => FailsafeSettings::MISSION_GOES_ON,
+        (Cause::GroundStationLost, Mode::Position) => FailsafeSettings::LOITERING_GOES_ON,
+        _ => 0,
+    };
+    situation.identity.is_ardupilot() && options & bit != 0
 }
 
 /// How severe a cause with this action is.

@@ -7,7 +7,7 @@ use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
 use crate::estimation::{
-    Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, TrueMotion, Validity,
+    Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, SensorErrors, TrueMotion, Validity,
 };
 use crate::fault::Faults;
 use crate::world::LocalFrame;
@@ -35,10 +35,19 @@ impl Perception {
     }
 
     /// Looks at the motion that the last tick has led to. `stands` tells that it is disarmed on the ground.
-    pub fn step(&mut self, closed_loop: &ClosedLoop, frame: &LocalFrame, faults: &Faults, stands: bool) {
+    pub fn step(
+        &mut self,
+        closed_loop: &ClosedLoop,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: &SensorErrors,
+        stands: bool,
+    ) {
         self.truth = closed_loop.outputs();
         match &mut self.navigation {
-            Some(navigation) => navigation.step(&TrueMotion::of(&self.truth), frame, faults, stands),
+            Some(navigation) => {
+                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, stands);
+            }
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
         self.outputs = self.known(closed_loop);
