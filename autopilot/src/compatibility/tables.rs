@@ -199,10 +199,7 @@ pub fn modes(identity: Identity) -> Vec<ModeRow> {
     let known: BTreeSet<u32> = original.modes.iter().map(|(_, number)| *number).collect();
     let here = |number: u32| identity.mode(number).map(|mode| identity.mode_name(mode));
     let row = |name: &'static str, custom_mode: u32| ModeRow { name, custom_mode, here: here(custom_mode) };
-    let ours = identity
-        .selectable_modes()
-        .iter()
-        .map(|mode| (identity.mode_name(*mode), identity.custom_mode(*mode)));
+    let ours = identity.selectable_modes().map(|mode| (identity.mode_name(mode), identity.custom_mode(mode)));
     let others = ours.filter(|(_, number)| !known.contains(number));
     original.modes.iter().copied().chain(others).map(|(name, number)| row(name, number)).collect()
 }
