@@ -43,13 +43,14 @@ fn px4s_ground_truth_is_the_true_motion() {
 
 /// pymavlink's and autotest's `sim_location` read SIMSTATE; the group of attitudes brings it, as MAVProxy asks for groups.
 #[test]
+#[allow(deprecated)] // MAVProxy sends it.
 fn ardupilots_simstate_comes_with_the_attitudes() {
     let mut bench = Bench::hovering(Identity::ArduPilot);
     bench.send(MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
         req_message_rate: 10,
         target_system: 1,
         target_component: 1,
-        req_stream_id: 10,
+        req_stream_id: MavDataStream::MAV_DATA_STREAM_EXTRA1,
         start_stop: 1,
     }));
     bench.heard.clear();

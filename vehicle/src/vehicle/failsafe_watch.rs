@@ -117,6 +117,9 @@ impl Failsafe {
     fn name(&self, situation: &Situation, cause: Cause) -> &'static str {
         match cause {
             Cause::Fence if situation.fence_is_ahead => "Fence ahead",
+            // Clients of ArduPilot look for its words.
+            Cause::BatteryLow if situation.identity.is_ardupilot() => "Battery 1 is low",
+            Cause::BatteryCritical if situation.identity.is_ardupilot() => "Battery 1 is critical",
             _ => cause.name(),
         }
     }
