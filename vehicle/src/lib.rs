@@ -35,8 +35,9 @@ pub mod world;
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode};
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryLimits, BatteryPack, Cause,
-    ChangeError, Conduct, Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState,
-    MissionState, MissionStatus, Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity,
-    Simulated, SteeringKind, Sticks, TICK_US, TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, Battery, BatteryActions,
+    BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Failsafe, FailsafeSettings, FenceParts,
+    FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice, PositionSetPoint, Refusal,
+    Reposition, SetPoint, Severity, Simulated, SteeringKind, Sticks, TICK_US, TrackedAttitude, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
 };

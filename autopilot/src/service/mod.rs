@@ -19,6 +19,7 @@ mod calibration;
 mod command;
 mod component_metadata;
 mod custom_mode;
+mod event;
 mod file_transfer;
 mod global_origin;
 mod greeting;

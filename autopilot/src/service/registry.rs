@@ -34,6 +34,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::file_transfer::FileServer::default()),
         Box::new(super::log::LogServer::default()),
         Box::new(super::telemetry::Telemetry),
+        Box::new(super::event::Events::default()),
         Box::new(super::message_request::MessageRequests),
         Box::new(super::message_interval::MessageIntervals::default()),
     ]

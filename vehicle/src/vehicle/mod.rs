@@ -36,6 +36,7 @@
 //!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
 //! ```
 
+mod arming_obstacle;
 mod autostart;
 mod battery;
 mod battery_pack;
@@ -84,6 +85,7 @@ mod takeoff;
 mod tick;
 mod trajectory;
 
+pub use arming_obstacle::{ArmingObstacle, ArmingSubject};
 pub use battery::Battery;
 pub use battery_pack::BatteryPack;
 pub use change_error::ChangeError;

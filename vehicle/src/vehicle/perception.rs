@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
+use super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
 use crate::estimation::{
@@ -115,21 +116,30 @@ impl Perception {
     }
 
     /// What of the estimate speaks against arming.
-    pub fn obstacles(&self) -> impl Iterator<Item = String> {
+    pub fn obstacles(&self) -> impl Iterator<Item = ArmingObstacle> {
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
-            (health.gyroscope, "gyroscope failed"),
-            (health.accelerometer, "accelerometer failed"),
-            (health.magnetometer, "magnetometer failed"),
-            (health.barometer, "barometer failed"),
-            (health.gps, "no GPS fix"),
-            (aligned, "attitude not aligned yet"),
-            (!aligned || validity.tilt && validity.heading, "no attitude estimate"),
-            (!aligned || validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
-            (!aligned || validity.horizontal_position && validity.vertical_position, "no position estimate"),
+            (health.gyroscope, Subject::Gyroscope, "gyroscope failed"),
+            (health.accelerometer, Subject::Accelerometer, "accelerometer failed"),
+            (health.magnetometer, Subject::Magnetometer, "magnetometer failed"),
+            (health.barometer, Subject::Barometer, "barometer failed"),
+            (health.gps, Subject::Gps, "no GPS fix"),
+            (aligned, Subject::Attitude, "attitude not aligned yet"),
+            (!aligned || validity.tilt && validity.heading, Subject::Attitude, "no attitude estimate"),
+            (
+                !aligned || validity.horizontal_velocity && validity.vertical_velocity,
+                Subject::Velocity,
+                "no velocity estimate",
+            ),
+            (
+                !aligned || validity.horizontal_position && validity.vertical_position,
+                Subject::Position,
+                "no position estimate",
+            ),
         ];
-        checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned())
+        let bad = checks.into_iter().filter(|(good, ..)| !good);
+        bad.map(|(_, subject, why)| ArmingObstacle::new(subject, why))
     }
 }
 
