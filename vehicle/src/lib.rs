@@ -37,7 +37,7 @@ pub use mode::{Leader, Mode};
 pub use vehicle::{
     Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, Battery, BatteryActions,
     BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Failsafe, FailsafeSettings, FenceParts,
-    FenceRecord, Home, LandedState, MissionState, MissionStatus, Notice, PositionSetPoint, Refusal,
-    Reposition, SetPoint, Severity, Simulated, SteeringKind, Sticks, TICK_US, TrackedAttitude, Vehicle,
-    VehicleSettings, YawTarget, wrapped,
+    FenceRecord, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
+    PositionSetPoint, Refusal, Reposition, SetPoint, Severity, Simulated, SteeringKind, Sticks, TICK_US,
+    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

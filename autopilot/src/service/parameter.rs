@@ -168,7 +168,9 @@ fn error_code(error: &SetError) -> MavParamError {
     match error {
         SetError::Unknown { .. } => MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
         SetError::NotAllowed { .. } => MavParamError::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE,
-        SetError::ReadOnly(_) | SetError::Calculated(_) => MavParamError::MAV_PARAM_ERROR_READ_ONLY,
+        SetError::ReadOnly(_) | SetError::Calculated(_) | SetError::Counted(_) => {
+            MavParamError::MAV_PARAM_ERROR_READ_ONLY
+        }
         // The closed loop could not fly with it, or nothing here could follow it now.
         SetError::Refused { .. } => MavParamError::MAV_PARAM_ERROR_PERMISSION_DENIED,
     }

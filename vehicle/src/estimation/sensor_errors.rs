@@ -56,7 +56,7 @@ pub struct SensorErrors {
     /// Standard deviation of additional noise of GPS heights, m.
     pub gps_noise_m: f64,
     /// Satellites that the receiver says it uses.
-    pub gps_satellites: f64,
+    pub gps_satellites: u8,
 }
 
 /// Which instruments say nothing, or are not listened to.
@@ -98,7 +98,7 @@ pub enum MagnetometerUse {
 }
 
 /// Satellites of the simulated receiver.
-const SATELLITES: f64 = 12.0;
+const SATELLITES: u8 = 12;
 /// A degree of latitude, m.
 const DEGREE_M: f64 = 111_319.5;
 
@@ -228,7 +228,7 @@ impl ErrorSource {
         let noise = if errors.gps_noise_m > 0.0 { self.noise.normal(errors.gps_noise_m) } else { 0.0 };
         let east_m = longitude * DEGREE_M * libm::cos(latitude_deg.to_radians());
         fix.position_m += Vector3::new(latitude * DEGREE_M, east_m, -up_m - noise);
-        fix.satellites = errors.gps_satellites as u8;
+        fix.satellites = errors.gps_satellites;
         fix
     }
 }

@@ -61,7 +61,7 @@ macro_rules! real {
     ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $unit:literal, $text:literal) => {
         real!($id, $ardupilot, $minimum..=$maximum, $($field).+, 1.0, $unit, $text)
     };
-    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:literal, $unit:literal, $text:literal) => {
+    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:expr, $unit:literal, $text:literal) => {
         ConductParameter {
             id: $id,
             ardupilot: $ardupilot,
@@ -93,23 +93,6 @@ macro_rules! chosen {
                 true
             },
             ..real!($id, None, $minimum..=$maximum, takeoff_height_m, $unit, $text)
-        }
-    };
-}
-
-/// A whole number with a unit.
-macro_rules! whole {
-    ($id:literal, $minimum:literal..=$maximum:literal, $($field:ident).+, $unit:literal, $text:literal) => {
-        ConductParameter {
-            integer: true,
-            set: |conduct, value| {
-                let means = value.fract() == 0.0;
-                if means {
-                    conduct.$($field).+ = value;
-                }
-                means
-            },
-            ..real!($id, None, $minimum..=$maximum, $($field).+, $unit, $text)
         }
     };
 }
@@ -216,6 +199,33 @@ macro_rules! bitmask {
             text: $text,
             names: Vec::new,
             bits: $names,
+        }
+    };
+}
+
+/// A whole number: identifier, range, field, its type, text.
+macro_rules! whole {
+    ($id:literal, $minimum:literal..=$maximum:literal, $($field:ident).+, $kind:ty, $text:literal) => {
+        ConductParameter {
+            id: $id,
+            ardupilot: None,
+            also: &[],
+            is_other: false,
+            integer: true,
+            minimum: $minimum as f64,
+            maximum: $maximum as f64,
+            get: |conduct| f64::from(conduct.$($field).+),
+            set: |conduct, value| {
+                let whole = value.fract() == 0.0 && ($minimum as f64..=$maximum as f64).contains(&value);
+                if whole {
+                    conduct.$($field).+ = value as $kind;
+                }
+                whole
+            },
+            unit: "",
+            text: $text,
+            names: Vec::new,
+            bits: &[],
         }
     };
 }

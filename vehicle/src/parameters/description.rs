@@ -6,7 +6,7 @@ use super::entry::Source;
 use super::limit_names::LimitName;
 use super::loop_names::loop_name;
 use super::named_value::SWITCH;
-use super::{ConductParameter, Entry, NamedValue};
+use super::{ConductParameter, Entry, NamedValue, Statistic};
 use crate::kept::KeptParameter;
 
 /// A parameter in words.
@@ -83,6 +83,16 @@ impl Entry {
                 group: "Airframe",
                 needs_restart: false,
                 read_only: true,
+            },
+            Source::Statistic(statistic) => Description {
+                text: statistic.text().to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: f64::from(i32::MAX), unit: statistic.unit() },
+                whole: true,
+                names: statistic.choices().iter().map(|(value, name)| NamedValue::new(*value, name)).collect(),
+                bits: &[],
+                group: "Statistics",
+                needs_restart: false,
+                read_only: statistic != Statistic::Reset,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),

@@ -5,7 +5,7 @@ use quadrotor::Parameter;
 use super::limit_names::LimitName;
 use super::loop_access::{number, read};
 use super::loop_names::LoopName;
-use super::{ConductParameter, ParameterValues, Value};
+use super::{ConductParameter, ParameterValues, Statistic, Value};
 use crate::kept::KeptParameter;
 
 /// Where a parameter lives.
@@ -25,6 +25,8 @@ pub(super) enum Source {
     Speed,
     /// Thrust in hover as a share of the largest, calculated from the airframe.
     HoverThrust,
+    /// What the vehicle counts.
+    Statistic(Statistic),
 }
 
 /// A parameter with its names.
@@ -103,6 +105,9 @@ impl Entry {
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
+            Source::Statistic(statistic) => {
+                Value::Integer(i32::try_from(statistic.of(&values.statistics)).unwrap_or(i32::MAX))
+            }
             Source::HoverThrust => Value::Real(values.configuration.airframe.hover_thrust_share() as f32),
         }
     }

@@ -74,8 +74,13 @@ mod tests {
         ] {
             let table = ParameterTable::new(identity);
             let (configuration, conduct) = (Configuration::default(), Conduct::new(identity.is_ardupilot()));
-            let mut values =
-                ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Factor(1.0) };
+            let mut values = ParameterValues {
+                configuration,
+                conduct,
+                system_id: 1,
+                speed: Speed::Factor(1.0),
+                statistics: Default::default(),
+            };
             table.set(set, value, &mut values).expect(set);
             for (name, expected) in told {
                 let shown = table.find(name).expect(name).value(&values).number();

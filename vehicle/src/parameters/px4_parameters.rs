@@ -1,7 +1,7 @@
 //! What only PX4 has, or what ArduPilot has with other numbers.
 
 use super::ConductParameter;
-use super::conduct_parameter::{bitmask, choice, switch};
+use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use super::conduct_parameters::FENCE_ACTIONS;
 use crate::estimation::MagnetometerUse;
 use crate::vehicle::{Action, BatteryActions};
@@ -15,8 +15,16 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     switch!("EKF2_BARO_CTRL", simulated.errors.switches.barometer_control, "Use of the barometer"),
     choice!("EKF2_MAG_TYPE", MAGNETOMETER_USES, simulated.errors.switches.magnetometer, "Use of the magnetometer"),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+    real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES, "deg", "Roll that counts as a failure; 0 disables it"),
+    real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES, "deg", "Pitch that counts as a failure; 0 disables it"),
+    real!("FD_FAIL_R_TTRI", None, 0.02..=5.0, crash.roll_s, "s", "Time that the roll must last to count as a failure"),
+    real!("FD_FAIL_P_TTRI", None, 0.02..=5.0, crash.pitch_s, "s", "Time that the pitch must last to count as a failure"),
+    real!("COM_LKDOWN_TKO", None, -1.0..=5.0, crash.lockdown_s, "s", "Time from arming in which a failure stops the rotors"),
+    whole!("CBRK_FLIGHTTERM", 0..=121_212, crash.circuit_breaker, u32, "Circuit breaker of flight termination; 121212: a failure in flight is only reported"),
 ];
 
+/// Of a radian.
+const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 const GPS_PARTS: &[&str] = &["Longitude and latitude", "Altitude", "Velocity", "Heading of two antennas"];
 const MAGNETOMETER_USES: &[(MagnetometerUse, i32, &str)] = &[
     (MagnetometerUse::Automatic, 0, "Automatic"),

@@ -11,7 +11,9 @@ use super::px4_parameters::PX4_PARAMETERS;
 use super::simulation_parameters::SIMULATION_PARAMETERS;
 use super::suggestion::suggestion;
 use super::value::within;
-use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
+use super::{
+    CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Statistic, Statistics, Value,
+};
 use crate::identity::Identity;
 use crate::kept::{KeptParameter, Owner, kept_parameters};
 use crate::vehicle::Conduct;
@@ -30,6 +32,8 @@ pub enum Change {
     Conduct,
     /// The pace of its time.
     Speed,
+    /// What it counts begins anew.
+    Statistics,
 }
 
 /// All parameters, in alphabetical order: the order of their indices.
@@ -74,12 +78,16 @@ impl ParameterTable {
             Entry::new(system, Source::SystemId),
             Entry::new(SPEED_PARAMETER, Source::Speed),
         ];
+        let counted = if ardupilot { &Statistic::ALL[..] } else { &[] };
+        let of_statistics =
+            counted.iter().map(|(id, statistic)| Entry::new(id, Source::Statistic(*statistic)));
         let mut entries: Vec<Entry> = of_loop
             .chain(of_conduct)
             .chain(of_limits.flatten())
             .chain(kept)
             .chain(others)
             .chain(also)
+            .chain(of_statistics)
             .collect();
         entries.sort_by_key(|entry| entry.id);
         Self { entries }
@@ -150,6 +158,11 @@ impl ParameterTable {
             }
             Source::SystemId => return Err(SetError::ReadOnly(name.to_owned())),
             Source::HoverThrust => return Err(SetError::Calculated(name.to_owned())),
+            Source::Statistic(Statistic::Reset) => (value == 0.0).then(|| {
+                values.statistics = Statistics::default();
+                Change::Statistics
+            }),
+            Source::Statistic(_) => return Err(SetError::Counted(name.to_owned())),
             Source::Speed => Speed::from_parameter(value).map(|speed| {
                 values.speed = speed;
                 Change::Speed
@@ -256,12 +269,18 @@ mod tests {
 
     use super::{Change, ParameterTable};
     use crate::identity::Identity;
-    use crate::parameters::{FileFormat, ParameterValues, SetError, Speed, Value, parse, render};
+    use crate::parameters::{FileFormat, ParameterValues, SetError, Speed, Statistics, Value, parse, render};
     use crate::vehicle::Conduct;
 
     fn defaults() -> (ParameterTable, ParameterValues) {
         let (configuration, conduct) = (Configuration::default(), Conduct::new(false));
-        let values = ParameterValues { configuration, conduct, system_id: 7, speed: Speed::Factor(1.0) };
+        let values = ParameterValues {
+            configuration,
+            conduct,
+            system_id: 7,
+            speed: Speed::Factor(1.0),
+            statistics: Statistics::default(),
+        };
         (ParameterTable::new(Identity::Px4), values)
     }
 

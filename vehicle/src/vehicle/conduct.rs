@@ -1,9 +1,11 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
-use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
+use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
+use super::log_conduct::LogConduct;
 use super::simulated::Simulated;
 use crate::kept::KeptValues;
 
@@ -28,9 +30,9 @@ pub struct Conduct {
     /// Sink rate farther up, m/s; 0: the limit.
     #[serde(default)]
     pub land_fast_m_s: f64,
-    /// Disarms this long after touch-down, s; negative: never.
+    /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
-    /// Disarms when not taken off this long after arming, s; negative: never.
+    /// Disarms when not taken off this long after arming, s; not positive: never.
     pub disarm_before_takeoff_s: f64,
     /// Horizontal speed of a full stick, m/s.
     pub stick_speed_m_s: f64,
@@ -56,6 +58,12 @@ pub struct Conduct {
     /// What is kept for scripts and changes nothing.
     #[serde(default)]
     pub kept: KeptValues,
+    /// When it counts as crashed.
+    #[serde(default)]
+    pub crash: CrashSettings,
+    /// What is logged, in ArduPilot's convention.
+    #[serde(default)]
+    pub log: LogConduct,
 }
 
 /// Records of before it could be chosen have this one.
@@ -76,7 +84,7 @@ fn yes() -> bool {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s | PX4's, within our limits of speed |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 3 s) | PX4's, within our limits of speed; the times are theirs |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
@@ -96,13 +104,15 @@ impl Conduct {
             stick_speed_m_s: 5.0,
             stick_climb_m_s: 2.0,
             stick_sink_m_s: 1.5,
-            stick_timeout_s: 0.5,
+            stick_timeout_s: if ardupilot { 3.0 } else { 0.5 },
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
             failsafe: FailsafeSettings::new(ardupilot),
             simulated: Simulated::default(),
             kept: KeptValues::default(),
+            crash: CrashSettings::default(),
+            log: LogConduct::default(),
         }
     }
 }

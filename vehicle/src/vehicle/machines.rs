@@ -2,6 +2,8 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
 use super::hold_watch::HoldWatch;
@@ -9,6 +11,7 @@ use super::injection::Injection;
 use super::landing::Landing;
 use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
@@ -32,12 +35,18 @@ pub struct Machines {
     pub rotors: RotorWatch,
     /// Whether the position can be held.
     pub hold: HoldWatch,
+    /// Crashes.
+    pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// Tests of single rotors.
+    pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
     /// Sticks.
     pub manual_control: ManualControl,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.

@@ -5,7 +5,7 @@ use super::notice::Severity;
 use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
 use super::situation::Situation;
-use super::steering::SteeringKind;
+use super::steering::{Steering, SteeringKind};
 use crate::mode::Mode;
 
 /// What has come of set-points.
@@ -17,12 +17,38 @@ pub struct Offboard {
     applied: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
     expired: bool,
+    /// What a pause has interrupted.
+    paused: Option<Steering>,
 }
 
 impl Offboard {
     /// Takes a set-point that came at a time, µs.
     pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
-        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false };
+        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false, ..*self };
+    }
+
+    /// Holds the place until [`resume`](Self::resume), whatever set-points come.
+    pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.paused.is_none() {
+            self.paused = Some(*proposal.steering());
+            proposal.follow(situation, &PositionSetPoint::HOLD);
+            proposal.say(Severity::Info, "Paused: holding");
+        }
+    }
+
+    /// Goes on to where the pause has interrupted it, or with what was asked for meanwhile.
+    pub fn resume(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let waits = self.latest.is_some() && !self.applied;
+        match self.paused.take() {
+            Some(Steering::Goal(goal)) if !waits => proposal.steer(Steering::Goal(goal)),
+            Some(Steering::Motion(motion)) if !waits => proposal.follow(situation, &motion.set_point()),
+            _ => {}
+        }
+    }
+
+    /// Whether it is paused.
+    pub fn is_paused(&self) -> bool {
+        self.paused.is_some()
     }
 
     /// Forgets all set-points: something else has been asked for.
@@ -32,7 +58,7 @@ impl Offboard {
 
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
-        self.applied = false;
+        (self.applied, self.paused) = (false, None);
     }
 
     /// Whether the latest set-point has been steered to.
@@ -48,6 +74,9 @@ impl Offboard {
 
     /// One tick of the offboard mode.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.is_paused() {
+            return;
+        }
         if !situation.set_points_are_recent {
             match situation.identity.is_ardupilot() {
                 true => self.guided_without_news(situation, proposal),

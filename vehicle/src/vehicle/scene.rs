@@ -164,7 +164,7 @@ impl Scene {
     }
 
     /// Shows the situation to a machine and steers as it asks. Returns its requests.
-    pub fn show(&mut self, ask: impl FnOnce(&Situation, &mut Proposal)) -> Vec<Request> {
+    pub fn show<T>(&mut self, ask: impl FnOnce(&Situation, &mut Proposal) -> T) -> Vec<Request> {
         let situation = self.situation();
         let mut proposal = Proposal::new(&situation);
         ask(&situation, &mut proposal);

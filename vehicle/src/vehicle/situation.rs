@@ -109,6 +109,12 @@ impl<'a> Situation<'a> {
         self.armed && self.steering.kind() != SteeringKind::Idle
     }
 
+    /// Whether commands and set-points may lead it although its rotors idle: in ArduPilot's identity a takeoff that has just been asked
+    /// for.
+    pub fn may_be_led(&self) -> bool {
+        self.armed && self.mode == Mode::Takeoff && self.identity.is_ardupilot()
+    }
+
     /// Whether the mode leaves the heading to the vehicle.
     pub fn chooses_its_heading(&self) -> bool {
         match self.mode {
@@ -190,6 +196,7 @@ impl<'a> Situation<'a> {
         let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
         Fence {
             zones: parts.zones.then_some(self.zones),
+            inclusions: settings.fence_inclusions(),
             home_m: self.home.position_m,
             radius_m: of(parts.distance, settings.fence_radius_m),
             height_m: of(parts.height, settings.fence_height_m),

@@ -5,6 +5,7 @@ mod decision;
 mod plan_requests;
 mod plan_start;
 mod queries;
+mod reboot;
 mod requests;
 
 use nalgebra::Vector3;
@@ -13,6 +14,8 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
@@ -24,7 +27,8 @@ use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::ManualControl;
-use super::mission::Mission;
+use super::mission::{Helm, Mission};
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
 use super::perception::Perception;
 use super::plans::KnownPlans;
@@ -94,9 +98,12 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
             hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
+            motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             manual_control: ManualControl::default(),
+            turn: CommandedTurn::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
             mission: Mission::new(program),
@@ -141,10 +148,12 @@ impl Vehicle {
         if self.decided.is_armed() {
             self.fly();
         }
+        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
+        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
@@ -185,13 +194,19 @@ impl Vehicle {
             Mode::Hold => {}
             Mode::Position => parts.manual_control.step(situation, proposal),
             Mode::Offboard => parts.offboard.step(situation, proposal),
-            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Mission => match parts.mission.step(situation, proposal) {
+                Helm::Mission => {}
+                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
+                Helm::Return => parts.return_home.step(situation, proposal),
+            },
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
-            if situation.chooses_its_heading() {
+            if parts.turn.is_on() {
+                parts.turn.step(proposal);
+            } else if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
@@ -207,7 +222,14 @@ impl Vehicle {
             rotor_faults: self.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
+        let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
+        match test {
+            Some((mut steering, rotor_faults)) => {
+                let conditions = Conditions { armed: true, rotor_faults, ..conditions };
+                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+            }
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+        }
     }
 
     /// Perceives the motion after the tick.

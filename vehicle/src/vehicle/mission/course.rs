@@ -43,6 +43,11 @@ impl Course {
         }
     }
 
+    /// Whether the way home is flown.
+    pub fn returns(&self) -> bool {
+        matches!(self.task, Some(Task::Return))
+    }
+
     /// Whether it climbs from the ground or descends to it.
     pub fn is_vertical(&self) -> (bool, bool) {
         (matches!(self.task, Some(Task::Climb { .. })), matches!(self.task, Some(Task::Descend(_))))
@@ -101,7 +106,11 @@ impl Course {
             Navigate::Takeoff { place, .. } => {
                 return self.begin_takeoff(step, place, route, situation, proposal);
             }
-            Navigate::ReturnToLaunch => return TaskProgress::Done(None),
+            // ArduPilot returns within the mission's mode, the others change to that of the return.
+            Navigate::ReturnToLaunch if grounded || !situation.identity.is_ardupilot() => {
+                return TaskProgress::Done(None);
+            }
+            Navigate::ReturnToLaunch => Task::Return,
             Navigate::Land { .. } if grounded => return TaskProgress::Done(None),
             Navigate::Delay(delay) => {
                 proposal.hold(situation);
@@ -244,12 +253,12 @@ impl Course {
                 self.task = Some(Task::Circle(circle));
                 TaskProgress::Going
             }
-            Task::Descend(_) if situation.landed => TaskProgress::Done(None),
+            Task::Descend(_) | Task::Return if situation.landed => TaskProgress::Done(None),
             Task::Descend(above) => {
                 descend(situation, proposal, above);
                 TaskProgress::Going
             }
-            Task::Climb { .. } | Task::Wait(_) => TaskProgress::Going,
+            Task::Climb { .. } | Task::Wait(_) | Task::Return => TaskProgress::Going,
         }
     }
 

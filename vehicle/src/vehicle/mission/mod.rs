@@ -26,7 +26,7 @@ mod status;
 mod task;
 #[cfg(test)]
 mod tests;
-mod turning;
 
 pub use machine::Mission;
 pub use status::{MissionState, MissionStatus};
+pub use task::Helm;

@@ -20,8 +20,21 @@ pub enum Task {
     Wait(Option<u64>),
     /// Around a place.
     Circle(Circle),
+    /// Home, which is flown by the machine for that.
+    Return,
     /// Down, above a place if there is one.
     Descend(Option<[f64; 2]>),
+}
+
+/// Who steers in a tick of the mission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Helm {
+    /// The mission itself.
+    Mission,
+    /// From now on the return.
+    ReturnBegins,
+    /// The return, which is under way.
+    Return,
 }
 
 /// What comes at the end of a leg.

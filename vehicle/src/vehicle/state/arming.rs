@@ -4,7 +4,7 @@ use quadrotor::RotorFault;
 
 use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject, joined};
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::check_way;
+use super::super::plans::{check_reach, check_way};
 use super::super::set_point::PositionSetPoint;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -43,7 +43,8 @@ impl Vehicle {
                 obstacles.push(ArmingObstacle::new(Subject::Mission, "no mission"));
             }
             Mode::Mission => {
-                let fault = check_way(&situation, self.machines.mission.program()).err();
+                let program = self.machines.mission.program();
+                let fault = check_reach(&situation, program).and(check_way(&situation, program)).err();
                 let text = fault.map(|fault| format!("mission: {}", fault.located(identity)));
                 obstacles.extend(text.map(|text| ArmingObstacle::new(Subject::Mission, text)));
             }

@@ -68,6 +68,7 @@ impl Vehicle {
         }
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         self.machines.offboard.begin();
         self.consult(|parts, situation, proposal| match mode {
             Mode::Hold | Mode::Position => proposal.hold(situation),
@@ -95,6 +96,7 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::ForgetCommands));
         self.consult(|_, situation, proposal| {
             proposal.look_at(None);
