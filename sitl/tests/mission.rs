@@ -397,3 +397,28 @@ fn a_relative_turn_may_be_more_than_a_circle() {
     let turned: f64 = track.windows(2).map(|pair| (pair[1] - pair[0] + 3.0 * PI).rem_euclid(TAU) - PI).sum();
     assert!((turned.to_degrees() - 450.0).abs() < 5.0, "{}", turned.to_degrees());
 }
+/// MPC_YAW_MODE and WP_YAW_BEHAVIOR: where the nose points on a leg that leads east, while home lies in the south-west.
+#[test]
+fn the_nose_points_as_the_parameter_says() {
+    use vehicle::HeadingPolicy::{AwayFromHome, Hold, Home, NextPlace, NextPlaceExceptReturn, Travel};
+    for (policy, expected_deg) in [
+        (NextPlace, 90.0),
+        (NextPlaceExceptReturn, 90.0),
+        (Travel, 90.0),
+        (Hold, 0.0),
+        (Home, -135.0),
+        (AwayFromHome, 45.0),
+    ] {
+        let mut settings = common::settings(Identity::Px4);
+        settings.conduct.heading_policy = policy;
+        let mut bench = Bench::of(&settings);
+        let items = [takeoff(), waypoint([60.0, 0.0, -10.0]), waypoint([60.0, 90.0, -10.0])];
+        assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+        bench.arm();
+        assert_eq!(bench.set_mode(Mode::Mission), 0);
+        bench.fly_until("on the second leg", 90.0, |bench| bench.position()[1] > 60.0);
+        let heading_deg = bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees();
+        let off_deg = (heading_deg - expected_deg + 540.0).rem_euclid(360.0) - 180.0;
+        assert!(off_deg.abs() < 6.0, "{policy:?}: {heading_deg}");
+    }
+}

@@ -5,8 +5,11 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
+//!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
+//!  surroundings what stands and flies around
+//!  equipment    servos, relays, gripper, camera and gimbal
 //!  estimation   instruments and the estimator
 //!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
@@ -18,6 +21,8 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
+pub mod equipment;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -29,15 +34,22 @@ mod mode;
 mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod radio;
+pub mod surroundings;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
-pub use mode::{Leader, Mode};
+pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
-    Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, Battery, BatteryActions,
-    BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Failsafe, FailsafeSettings, FenceParts,
-    FenceRecord, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
-    PositionSetPoint, Refusal, Reposition, SetPoint, Severity, Simulated, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions,
+    BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Encounter, Failsafe, FailsafeSettings,
+    FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings, HeadingPolicy, Home, LandedState,
+    LogConduct, MissionState, MissionStatus, MotorTest, Notice, ObstacleWatch, OperatorId, OperatorPlace,
+    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Recovery,
+    Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Simulated,
+    SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US, TargetReport, Threat,
+    TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle, VehicleSettings, YawTarget,
+    wrapped,
 };

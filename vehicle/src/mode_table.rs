@@ -43,7 +43,12 @@ const fn row(mode: Mode, px4: Option<KnownMode>, ardupilot: Option<KnownMode>) -
 /// All modes, in the order in which they are listed.
 #[rustfmt::skip] // One line per mode reads as the table that it is.
 const MODES: &[Row] = &[
+    row(Mode::Manual, known(px4(1, 0), "Manual"), None),
+    row(Mode::Stabilize, known(px4(7, 0), "Stabilized"), known(0, "Stabilize")),
+    row(Mode::Acro, known(px4(5, 0), "Acro"), known(1, "Acro")),
+    row(Mode::Altitude, known(px4(2, 0), "Altitude"), known(2, "AltHold")),
     row(Mode::Position, known(px4(3, 0), "Position"), known(5, "Loiter")),
+    row(Mode::PositionHold, None, known(16, "PosHold")),
     row(Mode::Hold, known(px4(4, 3), "Hold"), known(17, "Brake")),
     // ArduCopter takes off in its guided mode.
     row(Mode::Takeoff, known(px4(4, 2), "Takeoff"), shown_as(4, "Guided")),
@@ -51,11 +56,14 @@ const MODES: &[Row] = &[
     row(Mode::Return, known(px4(4, 5), "Return"), known(6, "RTL")),
     row(Mode::Land, known(px4(4, 6), "Land"), known(9, "Land")),
     row(Mode::Offboard, known(px4(6, 0), "Offboard"), known(4, "Guided")),
+    row(Mode::GuidedAttitude, None, known(20, "Guided NoGPS")),
+    row(Mode::Orbit, known(px4(3, 1), "Orbit"), known(7, "Circle")),
+    row(Mode::Follow, known(px4(4, 8), "Follow Me"), known(23, "Follow")),
+    row(Mode::SmartReturn, None, known(21, "Smart RTL")),
 ];
 
-/// Other numbers that mean a mode: PX4's automatic mode without a sub-mode is the one that waits, ArduPilot's POSHOLD holds a place, too.
+/// Other numbers that mean a mode: PX4's automatic mode without a sub-mode is the one that waits.
 const PX4_ALIASES: &[(u32, Mode)] = &[(px4(4, 0), Mode::Hold), (px4(4, 1), Mode::Hold)];
-const ARDUPILOT_ALIASES: &[(u32, Mode)] = &[(16, Mode::Position)];
 
 impl Identity {
     /// The modes that such an autopilot has, in the order in which they are listed.
@@ -85,7 +93,7 @@ impl Identity {
 
     /// The mode of a custom mode, if this vehicle has it.
     pub fn mode(self, custom_mode: u32) -> Option<Mode> {
-        let aliases = if self.is_ardupilot() { ARDUPILOT_ALIASES } else { PX4_ALIASES };
+        let aliases = if self.is_ardupilot() { &[][..] } else { PX4_ALIASES };
         let alias = aliases.iter().find(|(number, _)| *number == custom_mode).map(|(_, mode)| *mode);
         let chosen = |(_, known): &(Mode, KnownMode)| known.selectable && known.number == custom_mode;
         alias.or_else(|| self.modes().find(chosen).map(|(mode, _)| mode))

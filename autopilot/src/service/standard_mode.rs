@@ -51,10 +51,12 @@ impl Service for StandardModes {
 fn standard(mode: Mode) -> MavStandardMode {
     match mode {
         Mode::Position => MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD,
+        Mode::Altitude => MavStandardMode::MAV_STANDARD_MODE_ALTITUDE_HOLD,
         Mode::Return => MavStandardMode::MAV_STANDARD_MODE_SAFE_RECOVERY,
         Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
         Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,
         Mode::Takeoff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
+        Mode::Orbit => MavStandardMode::MAV_STANDARD_MODE_ORBIT,
         _ => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
     }
 }

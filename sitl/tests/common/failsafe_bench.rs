@@ -3,7 +3,10 @@
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
-use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS};
+use vehicle::parameters::{
+    ARDUPILOT_PARAMETERS, ARDUPILOT_SURROUNDINGS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS,
+    PX4_SURROUNDINGS,
+};
 use vehicle::{Action, Cause, Conduct, Mode};
 
 use super::{Bench, settings};
@@ -36,7 +39,12 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
 
 /// Those of both identities.
 fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
-    CONDUCT_PARAMETERS.iter().chain(PX4_PARAMETERS).chain(ARDUPILOT_PARAMETERS)
+    CONDUCT_PARAMETERS
+        .iter()
+        .chain(PX4_PARAMETERS)
+        .chain(ARDUPILOT_PARAMETERS)
+        .chain(PX4_SURROUNDINGS)
+        .chain(ARDUPILOT_SURROUNDINGS)
 }
 
 /// The parameter of a cause.

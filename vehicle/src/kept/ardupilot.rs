@@ -81,7 +81,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MOT_BAT_VOLT_MAX", 0.0, 0.0..=100.0, "V", "Voltage at which thrust is not compensated"),
         ("MOT_BAT_VOLT_MIN", 0.0, 0.0..=100.0, "V", "Voltage below which thrust is not compensated"),
         ("MOT_SPOOL_TIME", 0.5, 0.0..=2.0, "s", "Spool-up time of the motors"),
-        ("ACRO_BAL_ROLL", 1.0, 0.0..=3.0, "", "Return to level of roll in acro mode"),
         ("ACRO_BAL_PITCH", 1.0, 0.0..=3.0, "", "Return to level of pitch in acro mode"),
     ], whole [
         ("ATC_RATE_FF_ENAB", 1, 0..=1, "", "Feed-forward of rates"),
@@ -103,10 +102,8 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("WPNAV_ACCEL_C", 0.0, 0.0..=500.0, "cm/s^2", "Acceleration in corners; 0: twice that of straights"),
         ("WP_ACC_CNR", 0.0, 0.0..=5.0, "m/s^2", "Acceleration in corners; 0: twice that of straights"),
         ("WPNAV_TER_MARGIN", 10.0, 0.1..=100.0, "m", "Margin when following the terrain"),
-        ("PILOT_ACCEL_Z", 250.0, 50.0..=500.0, "cm/s^2", "Vertical acceleration under sticks"),
         ("PILOT_ACC_Z", 2.5, 0.5..=5.0, "m/s^2", "Vertical acceleration under sticks"),
         ("PILOT_THR_FILT", 0.0, 0.0..=10.0, "Hz", "Filter of the throttle"),
-        ("PILOT_Y_RATE", 202.5, 1.0..=360.0, "deg/s", "Largest yaw rate under sticks"),
         ("PILOT_Y_EXPO", 0.0, -0.5..=1.0, "", "Curve of the yaw stick"),
         ("PILOT_Y_RATE_TC", 0.0, 0.0..=1.0, "s", "Time constant of the yaw stick"),
     ], whole [
@@ -181,7 +178,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("INS_GYRO_FILTER", 20, 0..=256, "Hz", "Filter of the gyroscopes"),
         ("INS_ACCEL_FILTER", 20, 0..=256, "Hz", "Filter of the accelerometers"),
         ("INS_FAST_SAMPLE", 1, 0..=7, "", "Fast sampling"),
-        ("RNGFND1_TYPE", 0, 0..=50, "", "Kind of range finder; there is none"),
         ("FLOW_TYPE", 0, 0..=10, "", "Kind of optical flow sensor; there is none"),
         ("VISO_TYPE", 0, 0..=3, "", "Kind of visual odometry; there is none"),
     ]),
@@ -194,7 +190,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SIM_DRIFT_SPEED", 0.05, 0.0..=10.0, "deg/s/min", "Rate of change of the gyroscopes' drift; here they walk by the data sheet"),
         ("SIM_DRIFT_TIME", 5.0, 0.0..=1000.0, "min", "Period of the gyroscopes' drift"),
     ], whole [
-        ("ARMING_RUDDER", 2, 0..=2, "", "Arming by the yaw stick"),
         ("ARMING_REQUIRE", 1, 0..=2, "", "Arming is required"),
         ("ARMING_OPTIONS", 0, 0..=7, "", "Options of arming"),
         ("ARMING_MIS_ITEMS", 0, 0..=127, "", "Mission items that are required to arm"),
@@ -232,7 +227,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SUPER_SIMPLE", 0, 0..=63, "", "Super simple mode by switch position"),
         ("TELEM_DELAY", 0, 0..=30, "s", "Delay of telemetry"),
         ("FORMAT_VERSION", 120, 0..=1000, "", "Version of the storage's format"),
-        ("ADSB_TYPE", 0, 0..=5, "", "Kind of transponder"),
         ("NTF_LED_TYPES", 0, 0..=16383, "", "Kinds of lights"),
         ("SYSID_ENFORCE", 0, 0..=1, "", "Only one ground station commands"),
     ]),

@@ -48,10 +48,8 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_ACC_DOWN_MAX", 3.0, 2.0..=15.0, "m/s^2", "Largest downward acceleration"),
         ("MPC_JERK_MAX", 8.0, 0.5..=500.0, "m/s^3", "Largest jerk under sticks"),
         ("MPC_TILTMAX_LND", 12.0, 10.0..=89.0, "deg", "Largest tilt while landing"),
-        ("MPC_MAN_TILT_MAX", 35.0, 1.0..=70.0, "deg", "Largest tilt under sticks"),
         ("MPC_THR_MIN", 0.12, 0.05..=0.5, "norm", "Smallest thrust in controlled modes"),
         ("MPC_THR_MAX", 1.0, 0.0..=1.0, "norm", "Largest thrust"),
-        ("MPC_MAN_Y_MAX", 150.0, 0.0..=400.0, "deg/s", "Largest yaw rate under sticks"),
         ("MPC_YAWRAUTO_ACC", 60.0, 5.0..=360.0, "deg/s^2", "Largest yaw acceleration in automatic modes"),
         ("MC_ROLLRATE_MAX", 220.0, 0.0..=1800.0, "deg/s", "Largest roll rate"),
         ("MC_PITCHRATE_MAX", 220.0, 0.0..=1800.0, "deg/s", "Largest pitch rate"),
@@ -60,7 +58,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_VEL_MAN_BACK", -1.0, -1.0..=20.0, "m/s", "Largest backward speed under sticks; negative: as forwards"),
     ], whole [
         ("MPC_POS_MODE", 4, 0..=4, "", "Position mode's response to sticks"),
-        ("MPC_YAW_MODE", 0, 0..=4, "", "Heading in automatic modes"),
     ]),
     kept!(Px4, "takeoffs and landings are shaped by the limits of speed and MPC_LAND_SPEED", real [
         ("MPC_TKO_SPEED", 1.5, 1.0..=5.0, "m/s", "Takeoff climb rate"),

@@ -51,7 +51,7 @@ pub static LIMIT_NAMES: &[LimitName] = &[
     limit("limits.acceleration.horizontal", &[("MPC_ACC_HOR", 1.0)], &[("WPNAV_ACCEL", 100.0), ("WP_ACC", 1.0)], "Horizontal acceleration"),
     limit("limits.acceleration.vertical", &[("MPC_ACC_UP_MAX", 1.0)], &[("WPNAV_ACCEL_Z", 100.0), ("WP_ACC_Z", 1.0)], "Vertical acceleration"),
     limit("limits.jerk.horizontal", &[("MPC_JERK_AUTO", 1.0)], &[("WPNAV_JERK", 1.0), ("WP_JERK", 1.0)], "Horizontal jerk"),
-    limit("limits.tilt", &[("MPC_TILTMAX_AIR", DEGREES)], &[("ANGLE_MAX", CENTIDEGREES), ("ATC_ANGLE_MAX", DEGREES)], "Largest tilt"),
+    limit("limits.tilt", &[("MPC_TILTMAX_AIR", DEGREES)], &[("ATC_ANGLE_MAX", DEGREES)], "Largest tilt"),
     limit("limits.yaw_rate", &[("MPC_YAWRAUTO_MAX", DEGREES)], &[("ATC_SLEW_YAW", CENTIDEGREES), ("ATC_RATE_WPY_MAX", DEGREES)], "Largest rate at which the vehicle turns by itself"),
 ];
 
@@ -68,7 +68,7 @@ mod tests {
         for (identity, set, value, told) in [
             (Identity::ArduPilot, "WPNAV_SPEED", 350.0, &[("WP_SPD", 3.5), ("LIM_SPEED_HORIZ", 3.5)][..]),
             (Identity::ArduPilot, "WP_SPD_DN", 0.75, &[("WPNAV_SPEED_DN", 75.0), ("LIM_SPEED_DOWN", 0.75)]),
-            (Identity::ArduPilot, "ATC_ANGLE_MAX", 20.0, &[("ANGLE_MAX", 2000.0)]),
+            (Identity::ArduPilot, "ATC_ANGLE_MAX", 20.0, &[("LIM_TILT", 20_f32.to_radians())]),
             (Identity::Px4, "MPC_XY_CRUISE", 3.5, &[("LIM_SPEED_HORIZ", 3.5)]),
             (Identity::Px4, "MPC_TILTMAX_AIR", 20.0, &[("LIM_TILT", 20_f32.to_radians())]),
         ] {

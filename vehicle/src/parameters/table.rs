@@ -7,9 +7,12 @@ use super::entry::{Entry, Source};
 use super::limit_names::LIMIT_NAMES;
 use super::loop_access::write;
 use super::loop_names::loop_name;
+use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
+use super::radio_parameters::radio_parameters;
 use super::simulation_parameters::SIMULATION_PARAMETERS;
 use super::suggestion::suggestion;
+use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
 use super::{
     CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Statistic, Statistics, Value,
@@ -49,15 +52,27 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
-        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
         let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
-        let of_conduct = CONDUCT_PARAMETERS.iter().chain(own).chain(simulated).flat_map(|parameter| {
-            let names = parameter.names_in(identity);
-            names.map(|(id, scale, is_other)| Entry {
-                is_other,
-                ..Entry::new(id, Source::Conduct(parameter, scale))
-            })
-        });
+        let (own, of_modes) = if ardupilot {
+            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
+        } else {
+            (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
+        };
+        let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
+        let of_conduct = CONDUCT_PARAMETERS
+            .iter()
+            .chain(own)
+            .chain(of_modes)
+            .chain(radio_parameters(ardupilot))
+            .chain(around)
+            .chain(simulated)
+            .flat_map(|parameter| {
+                let names = parameter.names_in(identity);
+                names.map(|(id, scale, is_other)| Entry {
+                    is_other,
+                    ..Entry::new(id, Source::Conduct(parameter, scale))
+                })
+            });
         let of_limits = LIMIT_NAMES.iter().filter_map(|name| {
             let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name.dotted)?;
             let names = if ardupilot { name.ardupilot } else { name.px4 };

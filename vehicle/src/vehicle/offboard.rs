@@ -1,5 +1,6 @@
 //! Set-points from outside.
 
+use super::attitude_flight::AttitudeFlight;
 use super::failsafe::Cause;
 use super::notice::Severity;
 use super::proposal::Proposal;
@@ -19,12 +20,17 @@ pub struct Offboard {
     expired: bool,
     /// What a pause has interrupted.
     paused: Option<Steering>,
+    /// Attitudes whose thrust asks for a climb rate.
+    attitude: AttitudeFlight,
 }
 
 impl Offboard {
     /// Takes a set-point that came at a time, µs.
     pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
-        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false, ..*self };
+        if matches!(set_point, SetPoint::Position(_)) {
+            self.attitude.forget();
+        }
+        (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
     }
 
     /// Holds the place until [`resume`](Self::resume), whatever set-points come.
@@ -59,11 +65,12 @@ impl Offboard {
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
         (self.applied, self.paused) = (false, None);
+        self.attitude.forget();
     }
 
-    /// Whether the latest set-point has been steered to.
-    pub fn is_applied(&self) -> bool {
-        self.applied
+    /// Whether the set-point that is steered to asks for a heading.
+    pub fn turns(&self) -> bool {
+        self.applied && self.latest.is_some_and(|(set_point, _)| set_point.turns())
     }
 
     /// Whether the latest set-point is not older than a timeout, s, at a time, µs.
@@ -74,7 +81,8 @@ impl Offboard {
 
     /// One tick of the offboard mode.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        if self.is_paused() {
+        if self.is_paused() || situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal)
+        {
             return;
         }
         if !situation.set_points_are_recent {
@@ -102,6 +110,25 @@ impl Offboard {
             }
         }
         self.applied = true;
+    }
+
+    /// ArduPilot: flies an attitude whose thrust asks for a climb rate, and in the mode that takes attitudes only what comes instead
+    /// of one. Returns whether that is flown.
+    fn climbs_by_thrust(&mut self, situation: &Situation, proposal: &mut Proposal) -> bool {
+        let latest = self.latest.filter(|_| situation.set_points_are_recent);
+        match latest {
+            Some((SetPoint::Attitude(asked), _)) if !situation.conduct.thrust_is_asked_for() => {
+                self.attitude.step(Some(&asked), situation, proposal);
+                self.applied = true;
+                true
+            }
+            Some((SetPoint::Attitude(_), _)) => false,
+            _ if situation.mode == Mode::GuidedAttitude => {
+                self.attitude.step(None, situation, proposal);
+                true
+            }
+            _ => false,
+        }
     }
 
     /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds
@@ -162,7 +189,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
         assert!(step(&mut offboard, &mut scene).is_empty());
-        assert!(offboard.is_applied() && scene.goal_m() == Some([5.0, 0.0, -10.0]));
+        assert!(offboard.applied && scene.goal_m() == Some([5.0, 0.0, -10.0]));
         // What another part does with the steering meanwhile stays.
         scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
         step(&mut offboard, &mut scene);
@@ -180,7 +207,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, 0.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
-        assert!(!offboard.is_applied() && scene.steering.kind() == SteeringKind::Idle);
+        assert!(!offboard.applied && scene.steering.kind() == SteeringKind::Idle);
         offboard.take(place([5.0, 0.0, -2.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
         assert_eq!(scene.goal_m(), Some([5.0, 0.0, -2.0]));

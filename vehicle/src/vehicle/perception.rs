@@ -11,6 +11,7 @@ use crate::estimation::{
     Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, SensorErrors, TrueMotion, Validity,
 };
 use crate::fault::Faults;
+use crate::mode::Needs;
 use crate::world::LocalFrame;
 
 /// What is perceived of the motion, and by what.
@@ -116,7 +117,8 @@ impl Perception {
     }
 
     /// What of the estimate speaks against arming.
-    pub fn obstacles(&self) -> impl Iterator<Item = ArmingObstacle> {
+    pub fn obstacles(&self, needs: Needs) -> impl Iterator<Item = ArmingObstacle> {
+        let (place, height) = (needs == Needs::Place, needs >= Needs::Height);
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
@@ -124,19 +126,20 @@ impl Perception {
             (health.accelerometer, Subject::Accelerometer, "accelerometer failed"),
             (health.magnetometer, Subject::Magnetometer, "magnetometer failed"),
             (health.barometer, Subject::Barometer, "barometer failed"),
-            (health.gps, Subject::Gps, "no GPS fix"),
+            (!place || health.gps, Subject::Gps, "no GPS fix"),
             (aligned, Subject::Attitude, "attitude not aligned yet"),
             (!aligned || validity.tilt && validity.heading, Subject::Attitude, "no attitude estimate"),
             (
-                !aligned || validity.horizontal_velocity && validity.vertical_velocity,
+                !aligned || !place || validity.horizontal_velocity && validity.vertical_velocity,
                 Subject::Velocity,
                 "no velocity estimate",
             ),
             (
-                !aligned || validity.horizontal_position && validity.vertical_position,
+                !aligned || !place || validity.horizontal_position && validity.vertical_position,
                 Subject::Position,
                 "no position estimate",
             ),
+            (!aligned || !height || validity.vertical_position, Subject::Position, "no height estimate"),
         ];
         let bad = checks.into_iter().filter(|(good, ..)| !good);
         bad.map(|(_, subject, why)| ArmingObstacle::new(subject, why))

@@ -13,6 +13,7 @@ const LAND_COMPLETE: f64 = 18.0;
 const SET_HOME: f64 = 25.0;
 const NOT_LANDED: f64 = 28.0;
 /// … of what errors come from …
+const FAILSAFE_RADIO: f64 = 5.0;
 const FAILSAFE_BATTERY: f64 = 6.0;
 const FAILSAFE_GROUND_STATION: f64 = 8.0;
 const FAILSAFE_FENCE: f64 = 9.0;
@@ -137,6 +138,7 @@ fn subsystem(cause: Cause) -> Option<f64> {
         Cause::BatteryEmergency | Cause::BatteryCritical | Cause::BatteryLow => Some(FAILSAFE_BATTERY),
         Cause::Fence => Some(FAILSAFE_FENCE),
         Cause::GroundStationLost => Some(FAILSAFE_GROUND_STATION),
+        Cause::PilotLost => Some(FAILSAFE_RADIO),
         Cause::HighWind | Cause::SetPointsLost => None,
     }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Action, Cause};
 use crate::fence::Inclusions;
+use crate::radio::RadioLossAction;
 
 /// Thresholds and actions; the parameters are PX4's.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,9 +27,6 @@ pub struct FailsafeSettings {
     /// Voltages and charges below which the battery is low or critical as well.
     #[serde(default)]
     pub battery_limits: BatteryLimits,
-    /// What goes on in spite of a failsafe, as bits (ArduPilot: FS_OPTIONS).
-    #[serde(default)]
-    pub options: u8,
     /// What the fence does (GF_ACTION).
     pub fence: Action,
     /// Whether it acts as soon as the vehicle could not stop before the fence, not only beyond it (GF_PREDICT).
@@ -53,6 +51,9 @@ pub struct FailsafeSettings {
     pub high_wind: Action,
     /// What is done without an estimate of the place (COM_POSCTL_NAVL).
     pub position_lost: Action,
+    /// What is done when the pilot is lost (NAV_RCL_ACT; ArduPilot: FS_THR_ENABLE).
+    #[serde(default = "returns")]
+    pub pilot_lost: RadioLossAction,
     /// Whether it descends on the others when a rotor is lost, or stops them, too (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
 }
@@ -60,6 +61,11 @@ pub struct FailsafeSettings {
 /// Records of before it could be chosen have none.
 fn yes() -> bool {
     true
+}
+
+/// So do those of before there was a radio.
+fn returns() -> RadioLossAction {
+    RadioLossAction::Return
 }
 
 /// Parts of the fence that are looked at.
@@ -158,7 +164,6 @@ impl Default for FailsafeSettings {
             battery_emergency: 0.05,
             battery: BatteryActions::default(),
             battery_limits: BatteryLimits::default(),
-            options: 0,
             fence: Action::Hold,
             fence_ahead: true,
             fence_enabled: true,
@@ -169,17 +174,13 @@ impl Default for FailsafeSettings {
             wind_m_s: -1.0,
             high_wind: Action::Warn,
             position_lost: Action::Land,
+            pilot_lost: RadioLossAction::Return,
             rotor_failure: Action::Land,
         }
     }
 }
 
 impl FailsafeSettings {
-    /// Bits of the options: a mission goes on without the ground station, and so does loitering by sticks, ArduPilot's default.
-    pub const MISSION_GOES_ON: u8 = 2;
-    #[allow(missing_docs)] // With the one above.
-    pub const LOITERING_GOES_ON: u8 = 16;
-
     /// The defaults, which differ by convention: ArduPilot returns at the fence and lets nobody choose another mode until it is back, stays
     /// where all inclusion zones are, and misses its ground station after 5 s.
     pub fn new(ardupilot: bool) -> Self {
@@ -191,7 +192,6 @@ impl FailsafeSettings {
             fence: Action::Return,
             fence_options: FenceOptions { keeps_mode: true, union: false },
             ground_station_timeout_s: 5.0,
-            options: Self::LOITERING_GOES_ON,
             ..px4
         }
     }
@@ -213,6 +213,7 @@ impl FailsafeSettings {
             Cause::HighWind => self.high_wind,
             Cause::GroundStationLost => self.ground_station_lost,
             Cause::SetPointsLost => self.set_points_lost,
+            Cause::PilotLost => Action::without_pilot(self.pilot_lost),
         }
     }
 }

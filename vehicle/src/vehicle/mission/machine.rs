@@ -1,5 +1,6 @@
 //! The mission as a machine: which step is flown, and what becomes of it.
 
+use super::super::heading_policy::{HeadingPolicy, Purpose};
 use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_reach, check_way};
 use super::super::proposal::Proposal;
@@ -358,7 +359,12 @@ impl Mission {
                 // What is too near to be looked at does not turn the vehicle.
                 region.heading(&situation.outputs.setpoint, next_m).unwrap_or((yaw_rad, 0.0))
             }
-            (None, None) => (self.course.heading_rad(), 0.0),
+            (None, None) if self.course.heading_is_asked() => (self.course.heading_rad(), 0.0),
+            (None, None) => {
+                let policy = HeadingPolicy::of(situation);
+                let heading_rad = policy.heading_rad(Purpose::Mission, self.course.heading_rad(), situation);
+                (heading_rad.unwrap_or(yaw_rad), 0.0)
+            }
         };
         proposal.turn_on(Some(heading));
     }

@@ -31,11 +31,16 @@ impl Vehicle {
             let text = format!("battery at {:.0} %, required {:.0} %", 100.0 * remaining, 100.0 * needed);
             obstacles.push(ArmingObstacle::new(Subject::Battery, text));
         }
-        obstacles.extend(self.perception.obstacles());
+        obstacles.extend(self.perception.obstacles(situation.mode.needs()));
+        obstacles.extend(self.throttle_obstacle().map(ArmingObstacle::from));
+        let touched = self.machines.obstacles.touched(&situation);
+        obstacles.extend(touched.map(|obstacle| ArmingObstacle::from(format!("touches {}", obstacle.name))));
+        let remote_id = self.machines.remote_id.obstacle(&situation).map(str::to_owned);
+        obstacles.extend(remote_id.map(ArmingObstacle::from));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
-            Mode::Land | Mode::Return => {
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
                 let text = format!("{} mode is active", identity.mode_name(situation.mode));
                 obstacles.push(ArmingObstacle::new(Subject::Mode, text));
             }
@@ -71,8 +76,10 @@ impl Vehicle {
             return Err(Refusal::later(format!("Arming denied: {}", joined(&obstacles))));
         }
         self.decided.arm();
+        self.machines.receiver.arm();
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
+            parts.smart_return.arm(situation);
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }

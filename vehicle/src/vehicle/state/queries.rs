@@ -10,6 +10,7 @@ use super::super::fence_watch::FenceRecord;
 use super::super::home::Home;
 use super::super::landed::LandedState;
 use super::super::mission::MissionStatus;
+use super::super::orbit_request::OrbitStatus;
 use super::super::speeds::with_speeds;
 use super::super::steering::{SteeringKind, TrackedAttitude};
 use super::Vehicle;
@@ -199,6 +200,7 @@ impl Vehicle {
             Mode::Takeoff => LandedState::TakingOff,
             Mode::Land => LandedState::Landing,
             Mode::Return if self.machines.return_home.descends() => LandedState::Landing,
+            Mode::SmartReturn if self.machines.smart_return.descends() => LandedState::Landing,
             _ => LandedState::InAir,
         }
     }
@@ -216,6 +218,11 @@ impl Vehicle {
     /// Whether there is anything that it must keep to: zones, a greatest distance or height.
     pub fn has_fence(&self) -> bool {
         self.situation().whole_fence().bounds()
+    }
+
+    /// The orbit that is flown.
+    pub fn orbit_status(&self) -> Option<OrbitStatus> {
+        self.machines.orbit.status().filter(|_| self.mode() == Mode::Orbit)
     }
 
     /// What of the fence forbids a place, NED, m.

@@ -7,19 +7,21 @@ use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::follow::Follow;
 use super::super::motor_test::MotorTest;
 use super::super::notice::{Notice, Refusal, Severity};
+use super::super::orbit_request::OrbitRequest;
 use super::super::proposal::check_distance;
 use super::super::region::RegionOfInterest;
 use super::super::reposition::Reposition;
 use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 use super::super::situation::Situation;
 use super::super::steering::{Steering, SteeringKind};
-use super::super::sticks::Sticks;
+use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
 use crate::foreign::ForeignRole;
-use crate::mode::Mode;
+use crate::mode::{Leader, Mode};
 use crate::plan::step::Turn;
 use crate::plan::{ChangeSpeed, Look};
 use crate::world::wind_drag;
@@ -79,12 +81,6 @@ impl Vehicle {
     /// Tells whether a ground station is heard.
     pub fn hear_ground_station(&mut self, heard: bool) {
         self.machines.failsafe.hear_ground_station(heard);
-    }
-
-    /// Takes the pilot's sticks.
-    pub fn move_sticks(&mut self, sticks: Sticks) {
-        let time_us = self.time_us();
-        self.machines.manual_control.take(sticks, time_us);
     }
 
     /// Switches the fence on or off.
@@ -158,12 +154,17 @@ impl Vehicle {
         if mode != Mode::Land {
             situation.refuse_without_rotor()?;
         }
+        if mode.leader() == Leader::Sticks && mode != Mode::Position {
+            self.refuse_leaning(mode)?;
+        }
         match mode {
             Mode::Takeoff => return self.take_off(None),
             Mode::Mission => return self.start_mission(None),
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
+            Mode::Follow => Follow::may_begin(&situation)?,
+            Mode::SmartReturn => self.machines.smart_return.may_begin()?,
             Mode::Land | Mode::Return if situation.armed && !flying => {
                 return Err(Refusal::later(format!(
                     "{} mode rejected: on the ground",
@@ -195,6 +196,26 @@ impl Vehicle {
         let keeps =
             situation.conduct.failsafe.fence_options.keeps_mode && situation.conduct.failsafe.fence_enabled;
         keeps && acts && crossed && situation.armed && !situation.landed
+    }
+
+    /// Refuses a mode in which sticks lean the vehicle, if something else flies it or it would leap off the ground.
+    fn refuse_leaning(&self, mode: Mode) -> Result<(), Refusal> {
+        let situation = self.situation();
+        let name = situation.identity.mode_name(mode);
+        let follows = self.foreign().filter(|model| model.role == ForeignRole::ClosedLoop);
+        if let Some(model) = follows {
+            let reason = format!("{} follows positions, not attitudes or thrust", model.name);
+            return Err(Refusal::denied(format!("{name} mode denied: {reason}")));
+        }
+        let by_thrust = mode.is_flown_by_thrust() && !situation.mode.is_flown_by_thrust();
+        let hover = situation.configuration.airframe.hover_thrust_share();
+        let leaps = situation.pilot.sticks.is_some_and(|sticks| {
+            sticks.thrust(situation.conduct, hover, situation.identity.is_ardupilot()) > hover / 2.0
+        });
+        if situation.armed && situation.landed && by_thrust && leaps {
+            return Err(Refusal::later(format!("{name} mode rejected: throttle too high")));
+        }
+        Ok(())
     }
 
     /// Takes off to a height above home, m, or to that of the parameter; when it is armed, else as soon as it is
@@ -279,6 +300,34 @@ impl Vehicle {
         Ok(())
     }
 
+    /// Flies around a centre.
+    ///
+    /// # Errors
+    /// [`Refusal`] on the ground, and for a circle that the fence forbids.
+    pub fn orbit(&mut self, request: &OrbitRequest) -> Result<(), Refusal> {
+        let situation = self.situation();
+        situation.refuse_without_rotor()?;
+        if situation.steering.kind() == SteeringKind::Idle {
+            return Err(Refusal::later("Orbit rejected: not flying"));
+        }
+        self.may_enter(Mode::Orbit)?;
+        if let (Some([x, y]), z) = (request.centre_m, request.down_m.unwrap_or_default()) {
+            check_distance(&Vector3::new(x, y, z))?;
+        }
+        self.machines.orbit.check(&situation, request)?;
+        self.machines.failsafe.release();
+        if self.mode() != Mode::Orbit {
+            self.enter(Mode::Orbit);
+        }
+        self.consult(|parts, situation, proposal| parts.orbit.ask(request, situation, proposal));
+        Ok(())
+    }
+
+    /// Hears from the target of the follow mode.
+    pub fn hear_target(&mut self, report: &TargetReport) {
+        self.consult(|parts, situation, _| parts.follow.hear(report, situation));
+    }
+
     /// Turns, and keeps the heading until something else asks for one. The way that it flies goes on.
     ///
     /// # Errors
@@ -313,10 +362,16 @@ impl Vehicle {
     pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
         let situation = self.situation();
         if situation.identity.is_ardupilot() {
-            if !matches!(situation.mode, Mode::Offboard | Mode::Takeoff) {
-                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
-            }
             let position = matches!(set_point, SetPoint::Position(_));
+            match situation.mode {
+                Mode::Offboard | Mode::Takeoff => {}
+                Mode::GuidedAttitude if !position => {}
+                Mode::GuidedAttitude => {
+                    let reason = "Guided NoGPS takes attitudes only; use Guided for places and velocities";
+                    return Err(Refusal::denied(format!("Set-point denied: {reason}")));
+                }
+                _ => return Err(Refusal::later("Set-point ignored: not in Guided mode")),
+            }
             if position && situation.steering.kind() == SteeringKind::Idle && !situation.may_be_led() {
                 return Err(Refusal::later("Set-point ignored: take off first"));
             }

@@ -46,13 +46,22 @@ pub fn vehicle_status(source: &LogSource<'_>, row: &mut Row) {
 /// PX4's `nav_state` of a mode.
 fn nav_state(mode: Mode) -> u8 {
     match mode {
-        Mode::Position => 2,
+        Mode::Stabilize => 15,
+        Mode::Manual => 0,
+        Mode::Altitude => 1,
+        Mode::Acro => 10,
+        Mode::Position | Mode::PositionHold => 2,
         Mode::Mission => 3,
         Mode::Hold => 4,
         Mode::Return => 5,
         Mode::Offboard => 14,
         Mode::Takeoff => 17,
         Mode::Land => 18,
+        Mode::Follow => 19,
+        Mode::Orbit => 21,
+        // PX4 has no such modes; the nearest ones.
+        Mode::SmartReturn => 5,
+        Mode::GuidedAttitude => 14,
     }
 }
 
