@@ -130,8 +130,10 @@ impl Vehicle {
     }
 
     /// Everything that is broken now.
-    pub fn faults(&self) -> &Faults {
-        self.machines.injection.faults()
+    pub fn faults(&self) -> Faults {
+        let simulated = &self.conduct().simulated;
+        let faults = simulated.errors.switches.with(*self.machines.injection.faults());
+        faults.with_weak(simulated.weak_rotors as u32, simulated.weak_share)
     }
 
     /// Home.
