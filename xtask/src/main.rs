@@ -17,6 +17,7 @@ mod test;
 mod threads;
 mod toolchains;
 mod universal;
+mod wheel;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -67,6 +68,14 @@ enum Task {
         /// Leaves the MAVLink vehicle out.
         #[arg(long)]
         fmu_only: bool,
+    },
+    /// Writes target/wheels/….whl: the Python package with native module, MAVLink vehicle, FMUs and licences.
+    ///
+    /// For any machine with this one's system and processor: for Linux with glibc 2.17 or newer.
+    Wheel {
+        /// Installs what is missing for it: standard libraries by rustup, Debian packages by apt-get if this is root.
+        #[arg(long)]
+        install: bool,
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
@@ -151,6 +160,11 @@ fn run(task: &Task) -> Result<(), Failure> {
                 checked.insert(0, reference);
             }
             platforms::check(&workspace, &progress, &checked, platforms.install, *fmu_only)
+        }
+        Task::Wheel { install } => {
+            let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
+            let release = prepared(&workspace, &progress, &[host], *install)?;
+            wheel::make(&workspace, &progress, &release, host)
         }
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),

@@ -11,8 +11,9 @@ use roxmltree::Document;
 use crate::fmu;
 use crate::program::{self, Beside, VEHICLE};
 use crate::progress::Progress;
-use crate::python::{self, Packages, Python};
+use crate::python::{self, Interpreter, Packages, Python};
 use crate::threads;
+use crate::wheel;
 use xtask::cargo::cargo;
 use xtask::failure::Failure;
 use xtask::files;
@@ -70,12 +71,18 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
         python_passed &= passed;
     }
 
+    let (counted, package_passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    count += counted;
+
     let mut failed = Vec::new();
     if !rust_passed {
         failed.push("Rust tests");
     }
     if !python_passed {
         failed.push("Python tests");
+    }
+    if !package_passed {
+        failed.push("tests of the Python package");
     }
     let Count { passed, failed: count_failed, skipped } = count;
     progress.print_summary();
@@ -125,6 +132,34 @@ fn python_tests(
             .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
             .env("LMPC_SITL", sitl),
     )?;
+    Ok((python_count(&files::read_text(&report)?)?, status.success()))
+}
+
+/// Builds the Python package with the FMUs and the vehicle that there are, installs it where nothing else of ours is, and tests it there.
+fn package_tests(
+    workspace: &Workspace,
+    progress: &Progress,
+    interpreter: &Interpreter,
+    sitl: &Path,
+) -> Result<(Count, bool), Failure> {
+    let wheel = wheel::make_for_tests(workspace, progress, interpreter, sitl)?;
+    let python = python::environment(workspace, progress, interpreter, Packages::Package)?;
+    progress.timed("Installing the Python package", || python.install_wheel(&wheel))?;
+    let (tests, report) = (workspace.package_tests(), workspace.package_report());
+    let status = progress.timed("Testing the Python package", || {
+        process::status(
+            python
+                .command()
+                .args(["-m", "pytest", "-p", "no:cacheprovider", "--numprocesses", "2"])
+                .arg("-c")
+                .arg(tests.join("pytest.ini"))
+                .arg(&tests)
+                .arg(format!("--junitxml={}", report.display()))
+                // Away from the sources, so that nothing is imported from there.
+                .current_dir(python.programs())
+                .env("LMPC_QUADROTOR_ROOT", workspace.root()),
+        )
+    })?;
     Ok((python_count(&files::read_text(&report)?)?, status.success()))
 }
 

@@ -46,6 +46,7 @@ class Options:
 
     def with_(self, changes: dict[str, Any]) -> Options:
         """With some of them changed. `fault` may be one string, `args` and `parameters` add to those that are there."""
+        __tracebackhide__ = True
         names = [one.name for one in fields(self)]
         for name in changes:
             if name not in names:
@@ -125,6 +126,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def of_test(request: pytest.FixtureRequest) -> Options:
     """Those of the command line, and over them those of the test's markers, the nearest last."""
+    __tracebackhide__ = True
     config = request.config
     names = [name for name, _, _ in _COMMAND_LINE] + ["faults", "args"]
     given = {name: config.getoption(f"sitl_{name}") for name in names}

@@ -43,6 +43,7 @@ def sitl_factory(
     item = request.node
 
     def start(**options: Any) -> Sitl:
+        __tracebackhide__ = True
         folder = tmp_path_factory.mktemp(f"sitl_{_plain(item.name)[:40]}", numbered=True)
         vehicle = Sitl(of_test(request).with_(options), folder)
         vehicles.append(vehicle)
@@ -65,6 +66,7 @@ def sitl_factory(
 @pytest.fixture
 def sitl(sitl_factory: SitlFactory) -> Sitl:
     """A vehicle that can be armed, on ports of its own; the marker `sitl` and the options `--sitl-…` say which."""
+    __tracebackhide__ = True
     return sitl_factory()
 
 

@@ -28,6 +28,7 @@ class Sitl:
     """A simulated vehicle that runs for a test: on ports of its own on 127.0.0.1, with a record and logs in a folder of its own."""
 
     def __init__(self, options: Options, folder: Path) -> None:
+        __tracebackhide__ = True
         self.options = options
         #: Where record, logs and output are.
         self.folder = folder
@@ -63,6 +64,7 @@ class Sitl:
         self.start_ms = (time.monotonic() - begun) * 1e3
 
     def _wait(self, ready: Path, begun: float) -> None:
+        __tracebackhide__ = True
         deadline = begun + self.options.timeout
         while not ready.exists():
             self._check_running()
@@ -81,6 +83,7 @@ class Sitl:
                 )
 
     def _check_running(self) -> None:
+        __tracebackhide__ = True
         if self._process.poll() is not None:
             self._asked = True
             raise SitlError(f"lmpc-sitl did not start (exit code {self._process.returncode}):\n{self.output()}")
