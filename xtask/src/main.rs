@@ -102,7 +102,11 @@ enum Task {
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
-    Test,
+    Test {
+        /// Runs only the tests of the Python package, with the FMUs that are built, if there are any.
+        #[arg(long)]
+        package: bool,
+    },
 }
 
 /// For whom something is built.
@@ -170,7 +174,8 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
-        Task::Test => test::run_all(&workspace, &progress),
+        Task::Test { package: true } => test::run_package(&workspace, &progress),
+        Task::Test { package: false } => test::run_all(&workspace, &progress),
     }
 }
 

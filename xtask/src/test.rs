@@ -91,6 +91,20 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }
 }
 
+/// Runs the tests of the Python package alone.
+pub fn run_package(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
+    let interpreter = python::interpreter()?;
+    if !workspace.fmu().is_file() {
+        fmu::make(workspace, progress, &[], Beside::Nothing)?;
+    }
+    let sitl = progress
+        .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Nothing))?;
+    let (count, passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    progress.print_summary();
+    println!("total: {} passed, {} failed, {} skipped", count.passed, count.failed, count.skipped);
+    if passed { Ok(()) } else { Err(Failure::Tests { failed: "tests of the Python package".to_owned() }) }
+}
+
 /// Runs `cargo test` for the whole workspace, passing its output on while counting.
 fn rust_tests(workspace: &Workspace) -> Result<(Count, bool), Failure> {
     let mut command = cargo();

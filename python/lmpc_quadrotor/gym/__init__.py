@@ -5,7 +5,9 @@
 | `lmpc_quadrotor/Hover-v0` | fly to a point at random, and stay there |
 | `lmpc_quadrotor/Track-v0` | follow a point that moves on a figure of eight |
 
-Gymnasium finds them by itself when this package is installed:
+An import of this module registers them:
+
+    import lmpc_quadrotor.gym
 
     environment = gymnasium.make("lmpc_quadrotor/Hover-v0", action="rates")
     environments = gymnasium.make_vec("lmpc_quadrotor/Hover-v0", num_envs=1000, action="rotors")

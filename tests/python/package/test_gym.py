@@ -1,5 +1,7 @@
 """Environments: Gymnasium's own checker, seeds, and a thousand vehicles at once."""
 
+import subprocess
+import sys
 import warnings
 
 import gymnasium
@@ -16,10 +18,15 @@ TASKS, ACTIONS = ["Hover", "Track"], ["rotors", "rates", "position"]
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("action", ACTIONS)
 def test_gymnasiums_checker_has_nothing_to_say(task, action):
-    """The environments are found without an import of theirs."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check_env(gymnasium.make(f"lmpc_quadrotor/{task}-v0", action=action).unwrapped, skip_render_check=True)
+
+
+def test_an_import_registers_the_environments():
+    program = "import gymnasium, lmpc_quadrotor.gym; print(gymnasium.make('lmpc_quadrotor/Hover-v0').spec.id)"
+    answer = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert answer.stdout.strip() == "lmpc_quadrotor/Hover-v0", answer
 
 
 def flown(environment, seed, steps=60):
