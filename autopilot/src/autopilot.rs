@@ -4,9 +4,9 @@
 use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
-use vehicle::{FlightError, Severity, Vehicle, VehicleSettings};
+use vehicle::{FlightError, LandedState, Pulses, Severity, TICK_US, Vehicle, VehicleSettings};
 
-use crate::codec::{Frame, target_of};
+use crate::codec::{Frame, Message, target_of};
 use crate::context::Context;
 use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 use crate::file_store::Nothing;
@@ -14,13 +14,16 @@ use crate::file_work::{FileWorker, Immediate};
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::registry::Registry;
-use crate::service::{heartbeat, parameter};
+use crate::service::{heartbeat, parameter, traffic};
 
 /// A vehicle with its services.
 #[derive(Debug)]
 pub struct Autopilot {
     context: Context,
     services: Registry,
+    /// How long the boots before the present one have lasted, µs.
+    before_us: u64,
+    boots: u32,
 }
 
 impl Autopilot {
@@ -52,23 +55,23 @@ impl Autopilot {
         let mut context = Context {
             parameters: Parameters::new(settings, &vehicle, system_id, speed),
             vehicle,
-            outbox: Outbox::new(system_id),
+            outbox: Outbox::new(system_id).with_voice(settings.equipment),
             files: Box::new(Immediate(Nothing)),
-            streams: services.streams(),
+            streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
+            reboot_us: None,
         };
+        context.parameters.statistics_mut().reset(unix_start_us / 1_000_000);
         services.start(&mut context);
-        Self { context, services }
+        Self { context, services, before_us: 0, boots: 1 }
     }
 
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
         self.services.hear(&mut self.context, origin);
-        if !target_of(frame).is_autopilot(self.system_id()) {
-            return;
-        }
-        self.services.receive(&mut self.context, origin, frame);
+        let Some(asked) = target_of(frame).speaker(self.system_id()) else { return };
+        self.services.receive(&mut self.context, origin, frame, asked);
         self.services.announce(&mut self.context);
     }
 
@@ -77,16 +80,61 @@ impl Autopilot {
     /// # Errors
     /// [`FlightError`]: the flight cannot go on.
     pub fn tick(&mut self) -> Result<(), FlightError> {
+        let time_us = self.context.vehicle.time_us();
+        if self.context.reboot_us.is_some_and(|due_us| time_us >= due_us) {
+            self.reboot()?;
+        }
         self.context.vehicle.tick()?;
+        self.count();
         self.services.tick(&mut self.context);
         self.services.announce(&mut self.context);
         self.services.stream(&mut self.context);
         Ok(())
     }
 
+    /// Boots again: with its parameters, its plans and its clients' files, and nothing else.
+    fn reboot(&mut self) -> Result<(), FlightError> {
+        let context = &mut self.context;
+        let settings = context.vehicle.settings_of_reboot(context.parameters.settings());
+        let lasted_us = context.vehicle.time_us();
+        let unix_start_us = context.vehicle.unix_start_us() + lasted_us;
+        context.vehicle = Vehicle::new(&settings).map_err(FlightError::from)?;
+        context.vehicle.set_unix_start_us(unix_start_us);
+        context.reboot_us = None;
+        context.outbox.restart();
+        context.parameters.statistics_mut().boots += 1;
+        self.before_us += lasted_us;
+        self.boots += 1;
+        self.services = Registry::new();
+        self.services.start(context);
+        Ok(())
+    }
+
+    fn count(&mut self) {
+        let flies = self.context.vehicle.landed_state() != LandedState::OnGround;
+        let statistics = self.context.parameters.statistics_mut();
+        statistics.run_us += TICK_US;
+        statistics.flight_us += if flies { TICK_US } else { 0 };
+    }
+
+    /// Simulation time since the program has started, µs: that of the vehicle begins anew with each boot.
+    pub fn time_us(&self) -> u64 {
+        self.before_us + self.context.vehicle.time_us()
+    }
+
+    /// How often it has booted.
+    pub fn boots(&self) -> u32 {
+        self.boots
+    }
+
     /// Tells whether a ground station is heard: that is judged by the wall clock, which is outside.
     pub fn hear_ground_station(&mut self, heard: bool) {
         self.context.vehicle.hear_ground_station(heard);
+    }
+
+    /// The pilot's radio sends these pulses from now on, µs; 0 where there is no channel.
+    pub fn receive_radio(&mut self, pulses: Pulses) {
+        self.context.vehicle.receive_radio(pulses);
     }
 
     /// A heartbeat beside the regular ones: a link must not look dead while simulation time stands still.
@@ -107,6 +155,11 @@ impl Autopilot {
         if let Some(message) = stream.and_then(|stream| stream.message(&self.context.component())) {
             self.context.outbox.send(Destination::Peer(to), message);
         }
+    }
+
+    /// What its transponder tells to other vehicles.
+    pub fn transponder_report(&self) -> Message {
+        traffic::own_report(&self.context.vehicle, self.system_id()).into()
     }
 
     /// Lines for the pilot since the last call, with their times, µs.
@@ -180,6 +233,11 @@ impl Autopilot {
     /// All parameters with their values, in the order of the table.
     pub fn parameters(&self) -> impl Iterator<Item = (&'static str, Value)> {
         self.context.parameters.all(&self.context.vehicle)
+    }
+
+    /// The values that parameters had at the start, in the order of the table.
+    pub fn initial_parameters(&self) -> &[Value] {
+        self.context.parameters.initial()
     }
 
     /// The parameters as the text of a file, if one has changed since the last call.

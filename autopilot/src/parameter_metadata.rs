@@ -81,6 +81,10 @@ fn describe(table: &ParameterTable, initial: &[Value]) -> Vec<u8> {
                     |named: &NamedValue| json!({ "value": named.value, "description": named.to_string() });
                 put("values", description.names.iter().map(name).collect());
             }
+            if !description.bits.is_empty() {
+                let bit = |(index, text): (u32, &&str)| json!({ "index": index, "description": text });
+                put("bitmask", (0..).zip(description.bits).map(bit).collect());
+            }
             Json::Object(parameter)
         })
         .collect();

@@ -5,10 +5,13 @@
 //! ```text
 //!  world        local frame, air, wind, magnetic field
 //!  fence        areas, and the ways around them
+//!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
+//!  surroundings what stands and flies around
+//!  equipment    servos, relays, gripper, camera and gimbal
 //!  estimation   instruments and the estimator
-//!  mode         flight modes
+//!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
 //!  vehicle      the state machines over the closed loop, and the place that decides between them
 //!  foreign      a closed loop or a plant from elsewhere, in place of ours
@@ -18,6 +21,8 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
+pub mod equipment;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -25,16 +30,24 @@ mod flight_error;
 pub mod foreign;
 pub mod identity;
 mod mode;
+mod mode_table;
 pub mod parameters;
 pub mod plan;
+pub mod radio;
+pub mod surroundings;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
-pub use mode::Mode;
+pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, PositionSetPoint, Refusal, Reposition, SetPoint, Severity, SteeringKind, Sticks, TICK_US,
-    TrackedAttitude, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Action, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions, BatteryPack, Cause, ChangeError,
+    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight,
+    FollowSettings, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest,
+    Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
+    Pilot, PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings,
+    SelfId, SetPoint, Severity, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
+    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
 };

@@ -5,6 +5,16 @@
 pub enum Mode {
     /// Sticks command velocity; without a stick it holds its place.
     Position,
+    /// Sticks lean the vehicle; released ones hold its place (ArduPilot: POSHOLD).
+    PositionHold,
+    /// Sticks lean the vehicle, the throttle commands the climb rate.
+    Altitude,
+    /// Sticks lean the vehicle, the throttle is the thrust.
+    Stabilize,
+    /// The same, as PX4 shows it when it is asked for its manual mode.
+    Manual,
+    /// Sticks command rates about the body's axes, the throttle is the thrust.
+    Acro,
     /// Climbs to the takeoff height, then holds.
     Takeoff,
     /// Holds its place, or flies to one and holds there.
@@ -17,10 +27,76 @@ pub enum Mode {
     Land,
     /// Follows set-points (ArduPilot: guided).
     Offboard,
+    /// Follows attitudes that are set from outside, and no places (ArduPilot: guided without GPS).
+    GuidedAttitude,
+    /// Flies around a centre (ArduPilot: circle).
+    Orbit,
+    /// Follows a target that moves.
+    Follow,
+    /// Flies back along its own way and lands.
+    SmartReturn,
+}
+
+/// Who leads the vehicle in a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leader {
+    /// The pilot with sticks.
+    Sticks,
+    /// A program outside with set-points.
+    SetPoints,
+    /// The vehicle itself.
+    Vehicle,
+}
+
+/// What of its motion the vehicle must know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Needs {
+    /// How it leans.
+    Attitude,
+    /// And how high it is.
+    Height,
+    /// And where it is.
+    Place,
 }
 
 impl Mode {
-    /// All modes.
-    pub const ALL: [Self; 7] =
-        [Self::Position, Self::Takeoff, Self::Hold, Self::Mission, Self::Return, Self::Land, Self::Offboard];
+    /// Who leads the vehicle.
+    pub fn leader(self) -> Leader {
+        match self {
+            Self::Position
+            | Self::PositionHold
+            | Self::Altitude
+            | Self::Stabilize
+            | Self::Manual
+            | Self::Acro => Leader::Sticks,
+            Self::Offboard | Self::GuidedAttitude => Leader::SetPoints,
+            Self::Takeoff
+            | Self::Hold
+            | Self::Return
+            | Self::SmartReturn
+            | Self::Mission
+            | Self::Land
+            | Self::Orbit
+            | Self::Follow => Leader::Vehicle,
+        }
+    }
+
+    /// Whether the throttle is the thrust.
+    pub fn is_flown_by_thrust(self) -> bool {
+        matches!(self, Self::Stabilize | Self::Manual | Self::Acro)
+    }
+
+    /// What of its motion the vehicle must know for it.
+    pub fn needs(self) -> Needs {
+        match self {
+            Self::Stabilize | Self::Manual | Self::Acro => Needs::Attitude,
+            Self::Altitude | Self::GuidedAttitude => Needs::Height,
+            _ => Needs::Place,
+        }
+    }
+
+    /// Whether it ends on the ground: then it is not one to be armed in.
+    pub fn ends_on_the_ground(self) -> bool {
+        matches!(self, Self::Land | Self::Return | Self::SmartReturn | Self::Takeoff | Self::Mission)
+    }
 }

@@ -16,6 +16,10 @@ const STREAMS: &[Stream] = &[Stream::on_request(COMPONENT_METADATA_DATA::ID, Bui
 pub struct ComponentMetadata;
 
 impl Service for ComponentMetadata {
+    fn summary(&self) -> &'static str {
+        "Where descriptions of parameters are"
+    }
+
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }

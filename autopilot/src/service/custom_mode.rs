@@ -17,6 +17,10 @@ const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
 pub struct CustomModes;
 
 impl Service for CustomModes {
+    fn summary(&self) -> &'static str {
+        "Modes by their numbers in HEARTBEAT"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::SET_MODE]
     }
@@ -30,7 +34,7 @@ impl Service for CustomModes {
     /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         const SET_MODE_MESSAGE: u16 = id::SET_MODE as u16;
-        let result = set_custom_mode(&mut context.vehicle, frame.payload().u32(0));
+        let result = context.vehicle.set_custom_mode(frame.payload().u32(0));
         let outcome = result.map(|()| Progress::Done);
         acknowledge_outcome(&mut context.outbox, origin, SET_MODE_MESSAGE, Some(&outcome));
         explain(context, &outcome);
@@ -63,20 +67,5 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     } else {
         return Err(Refusal::denied(format!("Unknown mode {main}, {sub}")));
     };
-    set_custom_mode(vehicle, custom_mode)
-}
-
-/// Changes to a mode by its number in HEARTBEAT.
-fn set_custom_mode(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
-    let identity = vehicle.identity();
-    let Some(mode) = identity.mode(custom_mode) else {
-        let names: Vec<_> =
-            identity.selectable_modes().iter().map(|known| identity.mode_name(*known)).collect();
-        // PX4's main and sub-modes are bytes of the number.
-        let number =
-            if identity.is_ardupilot() { custom_mode.to_string() } else { format!("{custom_mode:#x}") };
-        let there_are = names.join(", ");
-        return Err(Refusal::Unsupported(format!("Mode {number} is not available; available: {there_are}")));
-    };
-    vehicle.set_mode(mode)
+    vehicle.set_custom_mode(custom_mode)
 }

@@ -17,6 +17,10 @@ const STREAMS: &[Stream] = &[Stream::new(GPS_GLOBAL_ORIGIN_DATA::ID, [0.1, 1.0],
 pub struct GlobalOrigin;
 
 impl Service for GlobalOrigin {
+    fn summary(&self) -> &'static str {
+        "The origin of the local frame, which is told and cannot be changed"
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[SET_GPS_GLOBAL_ORIGIN_DATA::ID]
     }

@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::{
     HEARTBEAT_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
 };
 use vehicle::identity::Identity;
-use vehicle::{Action, Cause, Mode, SteeringKind, Vehicle};
+use vehicle::{Action, Cause, Leader, Mode, SteeringKind, Vehicle};
 
 use super::Service;
 use crate::context::Context;
@@ -24,6 +24,10 @@ pub struct Heartbeat {
 }
 
 impl Service for Heartbeat {
+    fn summary(&self) -> &'static str {
+        "Who it is, its mode and whether it is armed"
+    }
+
     fn streams(&self) -> &'static [Stream] {
         STREAMS
     }
@@ -96,12 +100,10 @@ fn base_mode(vehicle: &Vehicle) -> MavModeFlag {
     let stabilized =
         MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED;
     let guided = stabilized | MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED;
-    let flags = match vehicle.mode() {
-        Mode::Position => stabilized | MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
-        Mode::Offboard => guided,
-        Mode::Takeoff | Mode::Hold | Mode::Mission | Mode::Return | Mode::Land => {
-            guided | MavModeFlag::MAV_MODE_FLAG_AUTO_ENABLED
-        }
+    let flags = match vehicle.mode().leader() {
+        Leader::Sticks => stabilized | MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
+        Leader::SetPoints => guided,
+        Leader::Vehicle => guided | MavModeFlag::MAV_MODE_FLAG_AUTO_ENABLED,
     };
     if vehicle.is_armed() { flags | MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED } else { flags }
 }

@@ -66,6 +66,10 @@ pub struct HighLatency {
 }
 
 impl Service for HighLatency {
+    fn summary(&self) -> &'static str {
+        "Telemetry for slow links"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }

@@ -9,6 +9,7 @@ use vehicle::identity::Identity;
 use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::envelope::{Origin, PeerId};
+use crate::speaker::Speaker;
 use crate::stream::Stream;
 
 /// How a command that arrives twice is taken.
@@ -58,8 +59,19 @@ pub type Outcome = Result<Progress, Refusal>;
 /// clients through the [`Context`] of each call. Every method has a default that does nothing, so a service implements only what it
 /// needs.
 pub trait Service: Debug + Send {
+    /// What it is for, in a few words: the table of compatibility in the book shows them beside everything that it claims. A service
+    /// that claims something needs one.
+    fn summary(&self) -> &'static str {
+        ""
+    }
+
     /// Identifiers of the messages that it takes. No two services take the same.
     fn messages(&self) -> &'static [u32] {
+        &[]
+    }
+
+    /// Messages of other systems that it looks at, too: another service may take them.
+    fn listens(&self) -> &'static [u32] {
         &[]
     }
 
@@ -68,8 +80,18 @@ pub trait Service: Debug + Send {
         &[]
     }
 
+    /// Components whose messages and commands it takes.
+    fn speakers(&self) -> &'static [Speaker] {
+        &[Speaker::Autopilot]
+    }
+
     /// Messages that clients can get from it, once or regularly. No two services have the same.
     fn streams(&self) -> &'static [Stream] {
+        &[]
+    }
+
+    /// Messages that it sends besides its streams: answers, and news of what has changed.
+    fn answers(&self) -> &'static [u32] {
         &[]
     }
 
@@ -84,7 +106,7 @@ pub trait Service: Debug + Send {
     /// Called for every received frame, whoever it is for, before it is handed to its service.
     fn hear(&mut self, _context: &mut Context, _origin: &Origin) {}
 
-    /// Takes in one of the messages that it claims.
+    /// Takes in one of the messages that it claims, or listens to.
     fn receive(&mut self, _context: &mut Context, _origin: &Origin, _frame: &Frame) {}
 
     /// Carries out one of the commands that it claims. The acknowledgement is sent for it, ahead of everything that it sends here.

@@ -41,6 +41,14 @@ pub struct ParameterProtocol {
 }
 
 impl Service for ParameterProtocol {
+    fn summary(&self) -> &'static str {
+        "Parameters"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::PARAM_VALUE]
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::PARAM_REQUEST_READ, id::PARAM_REQUEST_LIST, id::PARAM_SET]
     }

@@ -4,7 +4,8 @@ use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
     AVAILABLE_MODES_DATA, CURRENT_MODE_DATA, MavCmd, MavMessage, MavModeProperty, MavStandardMode,
 };
-use vehicle::{Mode, Refusal, Vehicle};
+use vehicle::identity::Identity;
+use vehicle::{Leader, Mode, Refusal, Vehicle};
 
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::Command;
@@ -24,6 +25,10 @@ const STREAMS: &[Stream] = &[
 pub struct StandardModes;
 
 impl Service for StandardModes {
+    fn summary(&self) -> &'static str {
+        "Standard modes"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
@@ -33,7 +38,8 @@ impl Service for StandardModes {
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
-        let mode = command.whole(1).and_then(mode);
+        let identity = context.identity();
+        let mode = command.whole(1).and_then(|number| mode(identity, number));
         let mode =
             mode.ok_or_else(|| Refusal::denied(format!("Unknown standard mode {}", command.parameter(1))))?;
         context.vehicle.set_mode(mode)?;
@@ -45,30 +51,33 @@ impl Service for StandardModes {
 fn standard(mode: Mode) -> MavStandardMode {
     match mode {
         Mode::Position => MavStandardMode::MAV_STANDARD_MODE_POSITION_HOLD,
+        Mode::Altitude => MavStandardMode::MAV_STANDARD_MODE_ALTITUDE_HOLD,
         Mode::Return => MavStandardMode::MAV_STANDARD_MODE_SAFE_RECOVERY,
         Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
         Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,
         Mode::Takeoff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
-        Mode::Hold | Mode::Offboard => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
+        Mode::Orbit => MavStandardMode::MAV_STANDARD_MODE_ORBIT,
+        _ => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
     }
 }
 
 /// The mode of a standard mode's number, if there is one.
-fn mode(number: u32) -> Option<Mode> {
+fn mode(identity: Identity, number: u32) -> Option<Mode> {
     let non_standard = MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD as u32;
-    Mode::ALL.into_iter().find(|mode| number != non_standard && standard(*mode) as u32 == number)
+    let mut modes = identity.selectable_modes().filter(|_| number != non_standard);
+    modes.find(|mode| standard(*mode) as u32 == number)
 }
 
 /// AVAILABLE_MODES of one mode, counted from one, or of all for zero; empty for any other number.
 fn available(vehicle: &Vehicle, index: u32) -> Vec<MavMessage> {
     let identity = vehicle.identity();
-    let modes = identity.selectable_modes();
+    let modes: Vec<Mode> = identity.selectable_modes().collect();
     let wanted = |number: u32| index == 0 || index == number;
     (1..)
-        .zip(modes)
+        .zip(&modes)
         .filter(|(number, _)| wanted(*number))
         .map(|(number, mode)| {
-            let automatic = *mode != Mode::Position;
+            let automatic = mode.leader() != Leader::Sticks;
             MavMessage::AVAILABLE_MODES(AVAILABLE_MODES_DATA {
                 custom_mode: identity.custom_mode(*mode),
                 properties: if automatic {

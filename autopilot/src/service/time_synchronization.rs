@@ -17,6 +17,14 @@ const STREAMS: &[Stream] = &[Stream::new(TIMESYNC_DATA::ID, [0.0, 10.0], request
 pub struct TimeSynchronization;
 
 impl Service for TimeSynchronization {
+    fn summary(&self) -> &'static str {
+        "Round trips and clocks"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::PING, id::TIMESYNC]
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::PING, id::TIMESYNC]
     }

@@ -3,23 +3,24 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use autopilot::codec::id;
-use autopilot::envelope::{Destination, Outgoing};
+use autopilot::COMPONENT;
+use autopilot::codec::{Frame, Version, id};
+use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 use vehicle::Severity;
 use vehicle::foreign::ForeignModel;
 
 use super::Member;
 use super::books::Books;
+use super::kept_file::KeptFile;
 use super::lockstep::{Lockstep, Step};
-use super::parameter_file::ParameterFile;
 use super::reception::Reception;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
 use crate::failure::Failure;
-use crate::files::{Disk, FileLock, FileThread, LogFolder};
+use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
-use crate::link::Links;
+use crate::link::{Links, Received};
 use crate::record::Participant;
 
 /// Longest time of one look that long answers may take.
@@ -38,6 +39,8 @@ pub struct Fleet {
     pub(super) reception: Reception,
     /// Does the work of clients on files.
     _files: FileThread,
+    /// Whether the vehicles see one another as traffic.
+    shares_traffic: bool,
     /// The vehicle whose long answers go on next.
     next_transfer: usize,
     /// The key's files are those of this process.
@@ -75,12 +78,15 @@ impl Fleet {
         let members = (0..)
             .zip(participants.iter().zip(&settings.vehicles))
             .map(|(number, (participant, own))| {
-                let parameters = own.parameters.as_deref().map(ParameterFile::open).transpose()?;
+                let parameters = own.parameters.as_deref().map(KeptFile::of_parameters).transpose()?;
+                let plans = own.parameters.as_deref().map(|path| KeptFile::of_plans(&plans_beside(path)));
                 let model = models.next().flatten();
-                let member =
-                    Member::new(participant, model, settings.speed, own.hub, parameters, unix_start_us)?;
+                let member = Member::new(participant, model, settings.speed, own.hub, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
-                Ok(member.keep(files.desk(number), log).keep_step(settings.lockstep))
+                Ok(member
+                    .keep(files.desk(number), log)
+                    .remember(parameters, plans)
+                    .keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Self {
@@ -91,6 +97,7 @@ impl Fleet {
             reception: Reception::new(hubs.len()),
             hubs,
             _files: files,
+            shares_traffic: settings.fleet_traffic,
             next_transfer: 0,
             _key_lock: key_lock,
         })
@@ -168,8 +175,29 @@ impl Fleet {
                     self.books.keep_size(&self.members);
                 }
                 self.send(number, now);
+                self.share_traffic(number, now);
             }
             Err(error) => self.lose(number, error, now),
+        }
+    }
+
+    /// Once a second the others hear the transponder of a vehicle, as if it had been received: records hold it.
+    fn share_traffic(&mut self, number: usize, now: Instant) {
+        const PERIOD_US: u64 = 1_000_000;
+        let Some(member) = self.members.get(number).filter(|_| self.shares_traffic) else { return };
+        if !member.time_us().is_multiple_of(PERIOD_US) {
+            return;
+        }
+        let system = member.autopilot.system_id();
+        let sequence = (member.time_us() / PERIOD_US) as u8;
+        let report = member.autopilot.transponder_report();
+        let Some(frame) = Frame::encode(&report, Version::Two, sequence, (system, COMPONENT)) else { return };
+        let peer = PeerId { link: 0, number: u64::MAX };
+        let received = Received { origin: Origin { peer, system, component: COMPONENT }, frame };
+        for other in (0..self.members.len()).filter(|other| *other != number) {
+            if self.members.get(other).is_some_and(|member| member.loss().is_none()) {
+                self.take_in(other, &received, now);
+            }
         }
     }
 
@@ -187,6 +215,7 @@ impl Fleet {
             return false;
         }
         member.save_parameters(now);
+        member.save_plans(now);
         let Some(links) = self.hubs.get_mut(member.hub) else { return false };
         let all = member.autopilot.take_outgoing();
         let any = !all.is_empty();

@@ -3,7 +3,10 @@
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
-use vehicle::parameters::{ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS};
+use vehicle::parameters::{
+    ARDUPILOT_PARAMETERS, ARDUPILOT_SURROUNDINGS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS,
+    PX4_SURROUNDINGS,
+};
 use vehicle::{Action, Cause, Conduct, Mode};
 
 use super::{Bench, settings};
@@ -13,7 +16,7 @@ pub const TEMPORARILY_REJECTED: u8 = 1;
 pub fn set(bench: &mut Bench, id: &str, value: f64) {
     let mut param_id = [0; 16];
     param_id[..id.len()].copy_from_slice(id.as_bytes());
-    let integer = CONDUCT_PARAMETERS.iter().any(|known| known.id == id && known.integer);
+    let integer = known_parameters().any(|known| known.id == id && known.integer);
     let ardupilot = bench.autopilot.identity().is_ardupilot();
     // PX4's integers travel bytewise.
     let (param_value, param_type) = if integer && !ardupilot {
@@ -34,6 +37,16 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
     assert_eq!(now.to_bits(), param_value.to_bits(), "{id}: {:?}", bench.texts());
 }
 
+/// Those of both identities.
+fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
+    CONDUCT_PARAMETERS
+        .iter()
+        .chain(PX4_PARAMETERS)
+        .chain(ARDUPILOT_PARAMETERS)
+        .chain(PX4_SURROUNDINGS)
+        .chain(ARDUPILOT_SURROUNDINGS)
+}
+
 /// The parameter of a cause.
 pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
     match cause {
@@ -48,6 +61,8 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow | Cause::BatteryCritical | Cause::BatteryEmergency => "COM_LOW_BAT_ACT",
         Cause::PositionLost => "COM_POSCTL_NAVL",
         Cause::RotorFailure => "COM_ACT_FAIL_ACT",
+        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
+        Cause::PilotLost => "NAV_RCL_ACT",
     }
 }
 
@@ -106,6 +121,12 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
         Cause::Fence if bench.autopilot.identity().is_ardupilot() => set(bench, "FENCE_ALT_MAX", 8.0),
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
+        Cause::PilotLost => {
+            bench.autopilot.receive_radio([1500; vehicle::radio::CHANNELS]);
+            bench.fly(0.1);
+            set(bench, "SIM_RC_FAIL", 1.0);
+            bench.fly(1.1);
+        }
     }
 }
 
@@ -127,8 +148,7 @@ pub fn lose_ground_station(bench: &mut Bench) {
 /// The numbers that a cause's parameter takes, and what it does then.
 pub fn choices(identity: Identity, cause: Cause) -> Vec<(u8, Action)> {
     let name = parameter(identity, cause);
-    let mut known = CONDUCT_PARAMETERS.iter().chain(ARDUPILOT_PARAMETERS);
-    let parameter = known.find(|known| known.id == name).expect("there is one");
+    let parameter = known_parameters().find(|known| known.id == name).expect("there is one");
     let choice = |number: u8| {
         let mut conduct = Conduct::new(identity.is_ardupilot());
         (parameter.set)(&mut conduct, f64::from(number)).then(|| (number, conduct.failsafe.action(cause)))

@@ -1,7 +1,10 @@
 //! Bytes of all kinds into the decoder and the vehicle.
 
+use std::collections::BTreeSet;
+
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, FrameDecoder};
+use autopilot::compatibility;
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use autopilot::file_work::Immediate;
 use sitl::configuration::{Arguments, Conventions, Settings};
@@ -80,6 +83,8 @@ struct Target {
     autopilot: Autopilot,
     stream: FrameDecoder,
     frames: u64,
+    /// Messages that the table of compatibility says to be sent.
+    sent: BTreeSet<u32>,
     /// What clients may read and write.
     _folder: TempDir,
 }
@@ -99,7 +104,9 @@ impl Target {
         std::fs::write(logs.path().join("flight_00001_id1.ulg"), [7; 20_000]).expect("written");
         let disk = Disk::open(Some(&logs), Some(&(shared, true))).expect("folders");
         autopilot.share(Box::new(Immediate(disk)));
-        Self { autopilot, stream: FrameDecoder::default(), frames: 0, _folder: folder }
+        let rows = compatibility::messages().into_iter().filter(|row| row.here.sent);
+        let sent = rows.map(|row| row.id).collect();
+        Self { autopilot, stream: FrameDecoder::default(), frames: 0, sent, _folder: folder }
     }
 
     fn order(&mut self, id: u32, payload: &[u8]) {
@@ -119,7 +126,10 @@ impl Target {
         self.autopilot.tick().expect("the flight goes on");
         // As much as a link of 460800 baud takes.
         self.autopilot.transfer(TURNS, |_| Some(true));
-        drop(self.autopilot.take_outgoing());
+        for outgoing in self.autopilot.take_outgoing() {
+            let id = outgoing.message.id();
+            assert!(self.sent.contains(&id), "message {id} is sent, but no service claims it in `answers`");
+        }
     }
 
     /// One piece of bytes from a peer, then some time.

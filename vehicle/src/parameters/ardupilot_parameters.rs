@@ -1,33 +1,28 @@
 //! Failsafes and fence by ArduPilot's names and numbers.
 
+use core::convert::identity;
+
 use super::ConductParameter;
-use super::conduct_parameters::{choice, switch};
-use crate::vehicle::{Action, FenceParts};
+use super::conduct_parameter::{bitmask, choice, switch, whole};
+use crate::vehicle::{Action, FenceOptions, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
-    switch!("FENCE_ENABLE", failsafe.fence_enabled),
-    ConductParameter {
-        id: "FENCE_TYPE",
-        ardupilot: None,
-        integer: true,
-        minimum: 0.0,
-        maximum: 7.0,
-        get: |conduct| f64::from(bits(conduct.failsafe.fence_parts)),
-        set: |conduct, value| {
-            let parts = (0..=7).find(|bits| f64::from(*bits) == value).map(parts);
-            conduct.failsafe.fence_parts = parts.unwrap_or(conduct.failsafe.fence_parts);
-            parts.is_some()
-        },
-    },
-    choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence),
-    choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost),
-    choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low),
+    switch!("FENCE_ENABLE", failsafe.fence_enabled, "Enable the fence"),
+    bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
+    bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),
+    choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+    switch!("FS_CRASH_CHECK", crash.check, "Disarm a vehicle that has crashed"),
+    bitmask!("LOG_BITMASK", LOGGED, log.bits, identity, identity, "What is logged"),
+    whole!("LOG_DISARMED", 0..=3, log.disarmed, u8, "Log while disarmed, too: 0 off, 1 to 3 on"),
+    switch!("LOG_FILE_DSRMROT", log.rotates, "Begin a new log with each flight instead of each boot"),
+    choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
+    choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {
         set: |conduct, value| {
-            let action = BATTERY_ACTIONS.iter().find(|(_, number)| f64::from(*number) == value);
-            if let Some((action, _)) = action {
+            let action = BATTERY_ACTIONS.iter().find(|(_, number, _)| f64::from(*number) == value);
+            if let Some((action, ..)) = action {
                 let battery = &mut conduct.failsafe.battery;
                 battery.critical = *action;
                 // ArduPilot knows no third level: what acts at the second one lands at the latest when it is empty.
@@ -35,30 +30,79 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
             }
             action.is_some()
         },
-        ..choice!("BATT_FS_CRT_ACT", BATTERY_ACTIONS, failsafe.battery.critical)
+        ..choice!("BATT_FS_CRT_ACT", BATTERY_ACTIONS, failsafe.battery.critical, "Action when the battery is critical; when almost empty the vehicle lands at the latest, unless this is 0")
     },
 ];
 
-/// PX4's identifiers whose meaning the ones above have.
-pub const REPLACED: [&str; 3] = ["GF_ACTION", "NAV_DLL_ACT", "COM_LOW_BAT_ACT"];
+const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::Warn, 0, "Report only"),
+    (Action::Return, 1, "Return"),
+    (Action::Land, 2, "Land"),
+    (Action::Hold, 4, "Brake"),
+];
+const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::None, 0, "Nothing"),
+    (Action::Return, 1, "Return"),
+    (Action::Land, 5, "Land"),
+    (Action::Hold, 7, "Brake"),
+];
+const BATTERY_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::Warn, 0, "Warn"),
+    (Action::Land, 1, "Land"),
+    (Action::Return, 2, "Return"),
+    (Action::Terminate, 5, "Terminate"),
+    (Action::Hold, 7, "Brake"),
+];
 
-const FENCE_ACTIONS: &[(Action, i32)] =
-    &[(Action::Warn, 0), (Action::Return, 1), (Action::Land, 2), (Action::Hold, 4)];
-const GROUND_STATION_ACTIONS: &[(Action, i32)] =
-    &[(Action::None, 0), (Action::Return, 1), (Action::Land, 5), (Action::Hold, 7)];
-const BATTERY_ACTIONS: &[(Action, i32)] =
-    &[(Action::Warn, 0), (Action::Land, 1), (Action::Return, 2), (Action::Terminate, 5), (Action::Hold, 7)];
+const FENCE_OPTIONS: &[&str] =
+    &["No other mode while the vehicle comes back from a breach", "One of several inclusion zones is enough"];
+const KEEPS_MODE: u32 = 1;
+const UNION: u32 = 2;
 
-const HEIGHT: u8 = 1;
-const DISTANCE: u8 = 2;
-const ZONES: u8 = 4;
+/// Bits of LOG_BITMASK, as ArduCopter has them.
+const LOGGED: &[&str] = &[
+    "Fast attitude",
+    "Medium attitude",
+    "GPS",
+    "System performance",
+    "Control tuning",
+    "Navigation tuning",
+    "RC input",
+    "IMU",
+    "Mission commands",
+    "Battery monitor",
+    "RC output",
+    "Optical flow",
+    "PID",
+    "Compass",
+    "(unused)",
+    "Camera",
+    "(unused)",
+    "Motors",
+    "Fast IMU",
+    "Raw IMU",
+    "Video stabilization",
+    "Fast harmonic notch",
+];
+const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones"];
+const HEIGHT: u32 = 1;
+const DISTANCE: u32 = 2;
+const ZONES: u32 = 4;
 
-fn bits(parts: FenceParts) -> u8 {
-    let of = |part: bool, bit: u8| if part { bit } else { 0 };
+fn option_bits(options: FenceOptions) -> u32 {
+    u32::from(options.keeps_mode) * KEEPS_MODE + u32::from(options.union) * UNION
+}
+
+fn options(bits: u32) -> FenceOptions {
+    FenceOptions { keeps_mode: bits & KEEPS_MODE != 0, union: bits & UNION != 0 }
+}
+
+fn bits(parts: FenceParts) -> u32 {
+    let of = |part: bool, bit: u32| if part { bit } else { 0 };
     of(parts.height, HEIGHT) | of(parts.distance, DISTANCE) | of(parts.zones, ZONES)
 }
 
-fn parts(bits: u8) -> FenceParts {
+fn parts(bits: u32) -> FenceParts {
     FenceParts { height: bits & HEIGHT != 0, distance: bits & DISTANCE != 0, zones: bits & ZONES != 0 }
 }
 

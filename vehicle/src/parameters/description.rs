@@ -3,8 +3,8 @@
 use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
 use super::entry::Source;
-use super::{ConductParameter, Entry, NamedValue};
-use crate::vehicle::Conduct;
+use super::named_value::SWITCH;
+use super::{ConductParameter, Entry, NamedValue, Statistic};
 
 /// A parameter in words.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Description {
     pub whole: bool,
     /// Values that have names, if only those are allowed.
     pub names: Vec<NamedValue>,
+    /// Meanings of the bits, the lowest first, if the value is a sum of them.
+    pub bits: &'static [&'static str],
     /// What it belongs to.
     pub group: &'static str,
     /// Whether a change takes effect at the next start only.
@@ -24,66 +26,6 @@ pub struct Description {
     /// Whether it is only told: it follows from others, or from the start.
     pub read_only: bool,
 }
-
-/// Text and unit of the vehicle's own parameters, by PX4's identifiers. ArduPilot's units are others: see [`ardupilot_unit`].
-#[rustfmt::skip] // One line per parameter reads as the table that it is.
-const CONDUCT: &[(&str, &str, &str)] = &[
-    ("MIS_TAKEOFF_ALT", "Height above home of a takeoff without an altitude of its own", "m"),
-    ("COM_OF_LOSS_T", "Time without set-points after which they count as lost", "s"),
-    ("COM_OBL_RC_ACT", "Action when set-points are lost", ""),
-    ("RTL_RETURN_ALT", "Height above home at which the vehicle returns", "m"),
-    ("RTL_MIN_DIST", "Distance from home within which a return lands without climbing first", "m"),
-    ("MPC_LAND_SPEED", "Descent rate near the ground", "m/s"),
-    ("COM_DISARM_LAND", "Delay from touch-down to automatic disarming; negative disables it", "s"),
-    ("COM_DISARM_PRFLT", "Delay from arming without a takeoff to automatic disarming; negative disables it", "s"),
-    ("MPC_VEL_MANUAL", "Horizontal speed at full stick deflection", "m/s"),
-    ("MPC_Z_V_MAN_UP", "Climb rate at full stick deflection", "m/s"),
-    ("MPC_Z_V_MAN_DN", "Descent rate at full stick deflection", "m/s"),
-    ("COM_RC_LOSS_T", "Time without stick inputs after which they count as lost", "s"),
-    ("BAT1_CAPACITY", "Capacity of the battery", "mAh"),
-    ("NAV_ACC_RAD", "Acceptance radius of waypoints without one of their own", "m"),
-    ("SYS_FAILURE_EN", "Allow failure injection by command", ""),
-    ("COM_DL_LOSS_T", "Time without heartbeats after which the ground station counts as lost", "s"),
-    ("NAV_DLL_ACT", "Action when the ground station is lost", ""),
-    ("BAT_LOW_THR", "Remaining charge at which the battery is low", "norm"),
-    ("BAT_CRIT_THR", "Remaining charge at which the battery is critical", "norm"),
-    ("BAT_EMERGEN_THR", "Remaining charge at which the battery is almost empty", "norm"),
-    ("COM_LOW_BAT_ACT", "Action when the battery is critical; 3 returns, then lands when the battery is almost empty", ""),
-    ("GF_ACTION", "Action at the fence", ""),
-    ("GF_PREDICT", "Act as soon as the vehicle could no longer stop before the fence", ""),
-    ("GF_MAX_HOR_DIST", "Radius of the fence around home; 0 disables it", "m"),
-    ("GF_MAX_VER_DIST", "Height of the fence above home; 0 disables it", "m"),
-    ("COM_WIND_MAX", "Wind speed that is too high to fly in; negative disables the check", "m/s"),
-    ("COM_WIND_MAX_ACT", "Action when the wind is too high", ""),
-    ("COM_POSCTL_NAVL", "Action when the position estimate is lost", ""),
-    ("COM_ACT_FAIL_ACT", "Action when a rotor fails", ""),
-    ("FENCE_ENABLE", "Enable the fence", ""),
-    ("FENCE_TYPE", "Enabled parts of the fence, added up: 1 maximum height, 2 maximum distance, 4 zones", ""),
-    ("FENCE_ACTION", "Action at the fence", ""),
-    ("FS_GCS_ENABLE", "Action when the ground station is lost", ""),
-    ("BATT_FS_LOW_ACT", "Action when the battery is low", ""),
-    ("BATT_FS_CRT_ACT", "Action when the battery is critical; when almost empty the vehicle lands at the latest, unless this is 0", ""),
-    ("COM_ARM_BAT_MIN", "Smallest remaining charge with which the vehicle arms", "norm"),
-];
-
-/// Names of values of the vehicle's own parameters.
-#[rustfmt::skip] // As above.
-const NAMES: &[(&str, &[(i32, &str)])] = &[
-    ("COM_OBL_RC_ACT", &[(0, "Position mode"), (3, "Return"), (4, "Land"), (5, "Hold"), (6, "Terminate")]),
-    ("SYS_FAILURE_EN", &[(0, "Off"), (1, "On")]),
-    ("GF_PREDICT", &[(0, "Beyond the fence only"), (1, "Ahead of it")]),
-    ("NAV_DLL_ACT", &[(0, "Nothing"), (1, "Hold"), (2, "Return"), (3, "Land"), (5, "Terminate")]),
-    ("COM_LOW_BAT_ACT", &[(0, "Warn"), (2, "Land"), (3, "Return, then land")]),
-    ("GF_ACTION", &[(0, "Nothing"), (1, "Warn"), (2, "Hold"), (3, "Return"), (4, "Terminate"), (5, "Land")]),
-    ("FENCE_ENABLE", &[(0, "Off"), (1, "On")]),
-    ("FENCE_ACTION", &[(0, "Report only"), (1, "Return"), (2, "Land"), (4, "Brake")]),
-    ("FS_GCS_ENABLE", &[(0, "Nothing"), (1, "Return"), (5, "Land"), (7, "Brake")]),
-    ("BATT_FS_LOW_ACT", &[(0, "Warn"), (1, "Land"), (2, "Return"), (5, "Terminate"), (7, "Brake")]),
-    ("BATT_FS_CRT_ACT", &[(0, "Warn"), (1, "Land"), (2, "Return"), (5, "Terminate"), (7, "Brake")]),
-    ("COM_WIND_MAX_ACT", &[(0, "Nothing"), (1, "Warn"), (2, "Hold"), (3, "Return"), (4, "Terminate"), (5, "Land")]),
-    ("COM_POSCTL_NAVL", &[(0, "Warn"), (1, "Land"), (2, "Terminate")]),
-    ("COM_ACT_FAIL_ACT", &[(0, "Warn"), (1, "Hold"), (2, "Land"), (3, "Return"), (4, "Terminate")]),
-];
 
 /// PX4's unit of shares of a whole, which says nothing to a person.
 const SHARE: &str = "norm";
@@ -120,6 +62,7 @@ impl Entry {
                 range: ValueRange { minimum: 1.0, maximum: 250.0, unit: "" },
                 whole: true,
                 names: Vec::new(),
+                bits: &[],
                 group: "MAVLink",
                 needs_restart: true,
                 read_only: true,
@@ -131,15 +74,27 @@ impl Entry {
                 range: ValueRange { minimum: 0.0, maximum: 1.0, unit: "norm" },
                 whole: false,
                 names: Vec::new(),
+                bits: &[],
                 group: "Airframe",
                 needs_restart: false,
                 read_only: true,
+            },
+            Source::Statistic(statistic) => Description {
+                text: statistic.text().to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: f64::from(i32::MAX), unit: statistic.unit() },
+                whole: true,
+                names: statistic.choices().iter().map(|(value, name)| NamedValue::new(*value, name)).collect(),
+                bits: &[],
+                group: "Statistics",
+                needs_restart: false,
+                read_only: statistic != Statistic::Reset,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),
                 range: ValueRange { minimum: -1.0, maximum: 1000.0, unit: "" },
                 whole: false,
                 names: Vec::new(),
+                bits: &[],
                 group: "Simulation",
                 needs_restart: false,
                 read_only: false,
@@ -165,13 +120,14 @@ fn describe_loop(parameter: &Parameter) -> Description {
             let names = items.map(|(value, (name, text))| NamedValue { value, name, meaning: Some(text) });
             (1.0, choice.items.len() as f64, names.collect())
         }
-        Access::Boolean { .. } => (0.0, 1.0, SWITCH.map(|(value, name)| plain(value, name)).to_vec()),
+        Access::Boolean { .. } => (0.0, 1.0, SWITCH.to_vec()),
     };
     Description {
         text: parameter.description.to_owned(),
         range: ValueRange { minimum, maximum, unit: parameter.unit.symbol() },
         whole: !matches!(parameter.access, Access::Real { .. }),
         names,
+        bits: &[],
         group: group(parameter.name),
         needs_restart: parameter.mutability == Mutability::Start,
         read_only: false,
@@ -179,33 +135,22 @@ fn describe_loop(parameter: &Parameter) -> Description {
 }
 
 fn describe_conduct(parameter: &ConductParameter, scale: f64) -> Description {
-    let known = CONDUCT.iter().find(|(id, ..)| *id == parameter.id);
-    let (_, text, unit) = known.copied().unwrap_or((parameter.id, parameter.id, ""));
-    let names = NAMES.iter().find(|(id, _)| *id == parameter.id);
-    let names = names.map_or(&[][..], |(_, names)| names).iter();
-    // What the parameter refuses is not offered.
-    let takes = |value: i32| (parameter.set)(&mut Conduct::new(false), f64::from(value));
-    let names = names.filter(|(value, _)| takes(*value));
+    let names = (parameter.names)();
+    let values = || names.iter().map(|named| f64::from(named.value));
+    // Of what has names only those are taken.
+    let minimum = values().reduce(f64::min).unwrap_or(parameter.minimum * scale);
+    let maximum = values().reduce(f64::max).unwrap_or(parameter.maximum * scale);
+    let unit = if scale == 1.0 { parameter.unit } else { ardupilot_unit(parameter.unit) };
     Description {
-        text: text.to_owned(),
-        range: ValueRange {
-            minimum: parameter.minimum * scale,
-            maximum: parameter.maximum * scale,
-            unit: if scale == 1.0 { unit } else { ardupilot_unit(unit) },
-        },
+        text: parameter.text.to_owned(),
+        range: ValueRange { minimum, maximum, unit },
         whole: parameter.integer,
-        names: names.map(|(value, name)| plain(*value, name)).collect(),
+        names,
+        bits: parameter.bits,
         group: "Vehicle",
         needs_restart: false,
         read_only: false,
     }
-}
-
-/// Names of the values of a switch.
-const SWITCH: [(i32, &str); 2] = [(0, "Off"), (1, "On")];
-
-fn plain(value: i32, name: &'static str) -> NamedValue {
-    NamedValue { value, name, meaning: None }
 }
 
 /// ArduPilot counts metres in hundredths.

@@ -4,7 +4,7 @@ use quadrotor::Parameter;
 
 use super::loop_access::read;
 use super::loop_names::LoopName;
-use super::{ConductParameter, ParameterValues, Value};
+use super::{ConductParameter, ParameterValues, Statistic, Value};
 
 /// Where a parameter lives.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(super) enum Source {
     Speed,
     /// Thrust in hover as a share of the largest, calculated from the airframe.
     HoverThrust,
+    /// What the vehicle counts.
+    Statistic(Statistic),
 }
 
 /// A parameter with its names.
@@ -29,17 +31,19 @@ pub struct Entry {
     /// Earlier MAVLink name, accepted wherever a name is, and never listed.
     pub former: Option<&'static str>,
     pub(super) source: Source,
+    /// Whether it is a further name of something that is listed before: files hold it once.
+    pub(super) is_other: bool,
 }
 
 impl Entry {
     /// A parameter of the closed loop.
     pub(super) fn of_loop(name: &LoopName, parameter: &'static Parameter) -> Self {
-        Self { id: name.id, former: name.former, source: Source::Loop(parameter) }
+        Self { id: name.id, former: name.former, source: Source::Loop(parameter), is_other: false }
     }
 
     /// A parameter that has always had its name.
     pub(super) fn new(id: &'static str, source: Source) -> Self {
-        Self { id, former: None, source }
+        Self { id, former: None, source, is_other: false }
     }
 
     /// Public name in the closed loop, such as `airframe.mass`; `None` for the vehicle's own parameters.
@@ -52,6 +56,11 @@ impl Entry {
 
     /// Whether parameter files hold it.
     pub fn is_kept(&self) -> bool {
+        !self.is_other && self.is_of_vehicle()
+    }
+
+    /// Whether it belongs to the vehicle, not to the run, and may be in a file.
+    pub(super) fn is_of_vehicle(&self) -> bool {
         matches!(self.source, Source::Loop(_) | Source::Conduct(..))
     }
 
@@ -60,7 +69,7 @@ impl Entry {
         match self.source {
             Source::SystemId => Some("--system-id"),
             Source::Speed => Some("--speed"),
-            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust => None,
+            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust | Source::Statistic(_) => None,
         }
     }
 
@@ -83,6 +92,9 @@ impl Entry {
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
+            Source::Statistic(statistic) => {
+                Value::Integer(i32::try_from(statistic.of(&values.statistics)).unwrap_or(i32::MAX))
+            }
             Source::HoverThrust => Value::Real(values.configuration.airframe.hover_thrust_share() as f32),
         }
     }

@@ -4,30 +4,41 @@
 //! values is its own matter: [`Vehicle::adopt`](crate::Vehicle::adopt).
 
 mod ardupilot_parameters;
+mod conduct_parameter;
 mod conduct_parameters;
 mod description;
 mod entry;
 mod file;
 mod loop_access;
 mod loop_names;
+mod mode_parameters;
 mod named_value;
+mod px4_parameters;
+mod radio_parameters;
 mod set_error;
 mod speed;
+mod statistics;
 mod suggestion;
+mod surroundings_parameters;
 mod table;
 mod value;
 mod value_text;
 mod values;
 
 pub use ardupilot_parameters::ARDUPILOT_PARAMETERS;
-pub use conduct_parameters::{CONDUCT_PARAMETERS, ConductParameter};
+pub use conduct_parameter::ConductParameter;
+pub use conduct_parameters::CONDUCT_PARAMETERS;
 pub use description::Description;
 pub use entry::Entry;
 pub use file::{FileFormat, ParameterFileError, parse, render};
 pub use loop_names::{LOOP_NAMES, LoopName, loop_name};
+pub use mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 pub use named_value::NamedValue;
+pub use px4_parameters::PX4_PARAMETERS;
 pub use set_error::SetError;
 pub use speed::Speed;
+pub use statistics::{Statistic, Statistics};
+pub use surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 pub use table::{Change, ParameterTable, SPEED_PARAMETER};
 pub use value::Value;
 pub use values::ParameterValues;

@@ -13,7 +13,15 @@ pub struct NamedValue {
     pub meaning: Option<&'static str>,
 }
 
+/// Values of a switch.
+pub(super) const SWITCH: [NamedValue; 2] = [NamedValue::new(0, "Off"), NamedValue::new(1, "On")];
+
 impl NamedValue {
+    /// A value whose name says all.
+    pub const fn new(value: i32, name: &'static str) -> Self {
+        Self { value, name, meaning: None }
+    }
+
     /// Whether a text names it. Case does not count, and spaces, hyphens and underscores are alike.
     pub fn is_named(&self, text: &str) -> bool {
         let plain = |text: &str| text.to_lowercase().replace(['-', '_'], " ");

@@ -1,7 +1,7 @@
 //! Plans made from items: in SI units and the local frame.
 
 use super::command::{self, Source, mission_command};
-use super::step::{Do, Step};
+use super::step::{Condition, Do, Step, Turn};
 use super::{FaultCode, Look, MissionItem, Place, PlanFault, PlanKind, Program, ProgramStep, Site, check};
 
 /// The steps of a mission whose items were checked. The first item of ArduPilot's convention is home, and never checked: what
@@ -48,6 +48,43 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
             Err(PlanFault::of_item(index, FaultCode::Unsupported, reason))
         }
     }
+}
+
+/// What is done at once for a command that is no part of a mission.
+///
+/// # Errors
+/// [`PlanFault`] of what is not done at once.
+pub fn action(item: &MissionItem, site: &Site) -> Result<Do, PlanFault> {
+    match alone(item, site)? {
+        Step::Do(action) => Ok(action),
+        _ => Err(unsupported(site)),
+    }
+}
+
+/// The turn that CONDITION_YAW asks for.
+///
+/// # Errors
+/// [`PlanFault`] of what is no turn.
+pub fn turn(item: &MissionItem, site: &Site) -> Result<Turn, PlanFault> {
+    match alone(item, site)? {
+        Step::Condition(Condition::Yaw(turn)) => Ok(turn),
+        _ => Err(unsupported(site)),
+    }
+}
+
+/// The number of an item that is no part of a mission: as any item but home.
+fn alone_index(site: &Site) -> usize {
+    usize::from(site.identity.is_ardupilot())
+}
+
+/// The step of an item that is no part of a mission, once it has been checked.
+fn alone(item: &MissionItem, site: &Site) -> Result<Step, PlanFault> {
+    check::item(PlanKind::Mission, alone_index(site), item, site)?;
+    Ok(step(item, &[], site))
+}
+
+fn unsupported(site: &Site) -> PlanFault {
+    PlanFault::of_item(alone_index(site), FaultCode::Unsupported, "not supported")
 }
 
 fn step(item: &MissionItem, items: &[MissionItem], site: &Site) -> Step {

@@ -17,6 +17,7 @@ pub mod check;
 #[allow(missing_docs)] // The names of the numbers are their documentation.
 pub mod command;
 pub mod compile;
+mod equipment_commands;
 mod fault;
 pub mod file;
 mod file_fault;
@@ -33,6 +34,7 @@ mod zones;
 
 pub use altitude::Altitude;
 pub use change_speed::{ChangeSpeed, SpeedKind, SpeedTarget};
+pub use command::command_numbers;
 pub use fault::{FaultCode, PlanFault};
 pub use file_fault::PlanFileFault;
 pub use item::MissionItem;

@@ -5,7 +5,7 @@ use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::situation::Situation;
 use crate::fence::Breach;
-use crate::mode::Mode;
+use crate::mode::{Leader, Mode, Needs};
 
 impl Failsafe {
     /// Whether a cause is there now.
@@ -14,7 +14,13 @@ impl Failsafe {
         let remaining = situation.battery_remaining;
         match cause {
             Cause::RotorFailure => situation.lost_rotor.is_some(),
-            Cause::PositionLost => situation.armed && !situation.knows_its_place(),
+            Cause::PositionLost => {
+                situation.armed && situation.mode.needs() == Needs::Place && !situation.knows_its_place()
+            }
+            // ArduPilot does not arm without its radio, either.
+            Cause::PilotLost => {
+                situation.pilot.missed && (situation.armed || situation.identity.is_ardupilot())
+            }
             Cause::BatteryEmergency => remaining < settings.battery_emergency,
             Cause::BatteryCritical => remaining < settings.battery_critical,
             Cause::BatteryLow => remaining < settings.battery_low,
@@ -51,12 +57,21 @@ impl Failsafe {
         present: bool,
     ) -> Option<Change> {
         let change = self.see(cause, present, situation.time_us);
-        let action = situation.conduct.failsafe.action(cause);
+        let action = action_in(situation, cause);
         match change {
             Some(_) if action == Action::None => {}
+            Some(Change::Begun) if cause == Cause::PilotLost && stands_armed(situation) => {
+                proposal.stop_rotors("Radio failsafe: disarmed on the ground");
+            }
             Some(Change::Begun) => self.act(situation, proposal, cause, action),
             Some(Change::Ended) => {
-                proposal.say(Severity::Info, format!("Failsafe cleared: {}", cause.cleared()));
+                let cleared = match cause {
+                    Cause::PilotLost if situation.identity.is_ardupilot() => {
+                        "Radio Failsafe Cleared".to_owned()
+                    }
+                    _ => format!("Failsafe cleared: {}", cause.cleared()),
+                };
+                proposal.say(Severity::Info, cleared);
             }
             None => {}
         }
@@ -99,6 +114,7 @@ impl Failsafe {
     fn name(&self, situation: &Situation, cause: Cause) -> &'static str {
         match cause {
             Cause::Fence if situation.fence_is_ahead => "Fence ahead",
+            Cause::PilotLost if situation.identity.is_ardupilot() => "Radio Failsafe",
             _ => cause.name(),
         }
     }
@@ -141,7 +157,8 @@ impl Failsafe {
         if !situation.flies() || mode == Mode::Land {
             return Ok(());
         }
-        let lost = self.is_present(Cause::PositionLost);
+        let lost =
+            !situation.can_fly(mode) || mode.needs() == Needs::Place && self.is_present(Cause::PositionLost);
         if lost && situation.conduct.failsafe.position_lost >= Action::Land {
             let name = situation.identity.mode_name(mode);
             return Err(Refusal::later(format!(
@@ -150,6 +167,47 @@ impl Failsafe {
         }
         Ok(())
     }
+}
+
+/// What is done about a cause in the present mode.
+fn action_in(situation: &Situation, cause: Cause) -> Action {
+    let action = situation.conduct.failsafe.action(cause);
+    if cause == Cause::PilotLost && action > Action::Warn {
+        if goes_on_without_pilot(situation) {
+            return Action::Warn;
+        }
+        let mode = action.mode();
+        // Without a place there is no way home.
+        if mode.is_some_and(|mode| mode != Mode::Land && !situation.can_fly(mode)) {
+            return Action::Land;
+        }
+    }
+    action
+}
+
+/// Whether the present mode is one that parameters let go on without the pilot.
+fn goes_on_without_pilot(situation: &Situation) -> bool {
+    let radio = &situation.conduct.radio;
+    let (bits, mission, automatic, offboard, landing) = if situation.identity.is_ardupilot() {
+        (radio.options, 1, 0, 4, 8)
+    } else {
+        (radio.lost_exceptions, 1, 2, 4, 2)
+    };
+    let bit = match situation.mode {
+        Mode::Mission => mission,
+        Mode::Land => landing,
+        mode => match mode.leader() {
+            Leader::Sticks => 0,
+            Leader::SetPoints => offboard,
+            Leader::Vehicle => automatic,
+        },
+    };
+    bits & bit != 0
+}
+
+/// ArduPilot disarms at once without its radio on the ground.
+fn stands_armed(situation: &Situation) -> bool {
+    situation.identity.is_ardupilot() && situation.armed && situation.landed
 }
 
 /// How severe a cause with this action is.

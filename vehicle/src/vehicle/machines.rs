@@ -2,18 +2,30 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
-use super::manual_control::ManualControl;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
+use super::pilot_watch::PilotWatch;
+use super::receiver::Receiver;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
+use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
+use super::traffic_watch::TrafficWatch;
+use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -32,18 +44,42 @@ pub struct Machines {
     pub rotors: RotorWatch,
     /// Whether the position can be held.
     pub hold: HoldWatch,
+    /// Crashes.
+    pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// Tests of single rotors.
+    pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
-    /// Sticks.
-    pub manual_control: ManualControl,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
+    /// What is received of the pilot.
+    pub receiver: Receiver,
+    /// What the pilot asks for by switches and gestures.
+    pub pilot_watch: PilotWatch,
+    /// Modes that lean as the sticks say.
+    pub stick_flight: StickFlight,
     /// Set-points.
     pub offboard: Offboard,
     /// The way home.
     pub return_home: Return,
+    /// The trail, and the way back on it.
+    pub smart_return: SmartReturn,
+    /// Orbits.
+    pub orbit: Orbit,
+    /// The target that is followed.
+    pub follow: Follow,
     /// The mission.
     pub mission: Mission,
+    /// What stands around.
+    pub obstacles: ObstacleWatch,
+    /// What flies around.
+    pub traffic: TrafficWatch,
+    /// What it tells of itself.
+    pub remote_id: RemoteId,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
+    /// What it carries.
+    pub equipment: Equipment,
 }

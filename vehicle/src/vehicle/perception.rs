@@ -10,6 +10,7 @@ use crate::estimation::{
     Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, TrueMotion, Validity,
 };
 use crate::fault::Faults;
+use crate::mode::Needs;
 use crate::world::LocalFrame;
 
 /// What is perceived of the motion, and by what.
@@ -106,7 +107,8 @@ impl Perception {
     }
 
     /// What of the estimate speaks against arming.
-    pub fn obstacles(&self) -> impl Iterator<Item = String> {
+    pub fn obstacles(&self, needs: Needs) -> impl Iterator<Item = String> {
+        let (place, height) = (needs == Needs::Place, needs >= Needs::Height);
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
@@ -114,11 +116,18 @@ impl Perception {
             (health.accelerometer, "accelerometer failed"),
             (health.magnetometer, "magnetometer failed"),
             (health.barometer, "barometer failed"),
-            (health.gps, "no GPS fix"),
+            (!place || health.gps, "no GPS fix"),
             (aligned, "attitude not aligned yet"),
             (!aligned || validity.tilt && validity.heading, "no attitude estimate"),
-            (!aligned || validity.horizontal_velocity && validity.vertical_velocity, "no velocity estimate"),
-            (!aligned || validity.horizontal_position && validity.vertical_position, "no position estimate"),
+            (
+                !aligned || !place || validity.horizontal_velocity && validity.vertical_velocity,
+                "no velocity estimate",
+            ),
+            (
+                !aligned || !place || validity.horizontal_position && validity.vertical_position,
+                "no position estimate",
+            ),
+            (!aligned || !height || validity.vertical_position, "no height estimate"),
         ];
         checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned())
     }

@@ -7,6 +7,7 @@ use super::conduct::Conduct;
 use super::home::Home;
 use super::motion::at_rest;
 use super::proposal::{Proposal, Request};
+use super::receiver::Pilot;
 use super::situation::Situation;
 use super::steering::Steering;
 use crate::estimation::{InstrumentHealth, Validity};
@@ -37,6 +38,7 @@ pub struct Scene {
     pub mission_goes_on: bool,
     pub rotor_command_rad_s: [f64; 4],
     pub wind_m_s: Vector3<f64>,
+    pub pilot: Pilot,
     frame: LocalFrame,
 }
 
@@ -91,6 +93,7 @@ impl Scene {
             mission_goes_on: false,
             rotor_command_rad_s: [hover_rad_s; 4],
             wind_m_s: Vector3::zeros(),
+            pilot: Pilot::default(),
             frame: LocalFrame::new(origin),
         }
     }
@@ -155,13 +158,14 @@ impl Scene {
             breach: None,
             fence_is_ahead: false,
             set_points_are_recent: self.set_points_are_recent,
-            set_point_is_applied: false,
+            set_point_turns: false,
+            pilot: self.pilot,
             mission_goes_on: self.mission_goes_on,
         }
     }
 
     /// Shows the situation to a machine and steers as it asks. Returns its requests.
-    pub fn show(&mut self, ask: impl FnOnce(&Situation, &mut Proposal)) -> Vec<Request> {
+    pub fn show<T>(&mut self, ask: impl FnOnce(&Situation, &mut Proposal) -> T) -> Vec<Request> {
         let situation = self.situation();
         let mut proposal = Proposal::new(&situation);
         ask(&situation, &mut proposal);

@@ -6,13 +6,14 @@ use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 use super::conduct::Conduct;
 use super::home::Home;
 use super::notice::Refusal;
+use super::receiver::Pilot;
 use super::region::RegionOfInterest;
 use super::steering::{Steering, SteeringKind};
 use crate::estimation::{InstrumentHealth, Validity};
 use crate::fault::Sensor;
 use crate::fence::{Breach, Fence, Zones};
 use crate::identity::Identity;
-use crate::mode::Mode;
+use crate::mode::{Mode, Needs};
 use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
@@ -76,8 +77,10 @@ pub struct Situation<'a> {
     pub fence_is_ahead: bool,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
-    /// Whether the latest set-point has been steered to.
-    pub set_point_is_applied: bool,
+    /// Whether the set-point that is steered to asks for a heading.
+    pub set_point_turns: bool,
+    /// The pilot.
+    pub pilot: Pilot,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
 }
@@ -103,12 +106,18 @@ impl<'a> Situation<'a> {
         self.armed && self.steering.kind() != SteeringKind::Idle
     }
 
+    /// Whether commands and set-points may lead it although its rotors idle: in ArduPilot's identity a takeoff that has just been asked
+    /// for.
+    pub fn may_be_led(&self) -> bool {
+        self.armed && self.mode == Mode::Takeoff && self.identity.is_ardupilot()
+    }
+
     /// Whether the mode leaves the heading to the vehicle.
     pub fn chooses_its_heading(&self) -> bool {
         match self.mode {
             Mode::Hold | Mode::Takeoff => true,
-            // ArduPilot's guided mode, before set-points steer it.
-            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_is_applied,
+            // ArduPilot's guided mode, unless a set-point has a heading of its own.
+            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_turns,
             _ => false,
         }
     }
@@ -164,6 +173,23 @@ impl<'a> Situation<'a> {
         estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
     }
 
+    /// Whether it knows enough of its motion to hold a height.
+    pub fn knows_its_height(&self) -> bool {
+        let (known, works) = (self.validity, self.health);
+        let estimated = known.tilt && known.vertical_position;
+        let ideal = !self.estimates;
+        estimated && (ideal || works.gyroscope && works.accelerometer && (works.gps || works.barometer))
+    }
+
+    /// Whether it knows enough of its motion for a mode.
+    pub fn can_fly(&self, mode: Mode) -> bool {
+        match mode.needs() {
+            Needs::Attitude => self.validity.tilt && (!self.estimates || self.health.gyroscope),
+            Needs::Height => self.knows_its_height(),
+            Needs::Place => self.knows_its_place(),
+        }
+    }
+
     /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
     pub fn sink_rate_m_s(&self) -> f64 {
         let works = self.health;
@@ -184,6 +210,7 @@ impl<'a> Situation<'a> {
         let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
         Fence {
             zones: parts.zones.then_some(self.zones),
+            inclusions: settings.fence_inclusions(),
             home_m: self.home.position_m,
             radius_m: of(parts.distance, settings.fence_radius_m),
             height_m: of(parts.height, settings.fence_height_m),

@@ -2,10 +2,14 @@
 
 mod arming;
 mod decision;
+mod equipment;
+mod pilot;
 mod plan_requests;
 mod plan_start;
 mod queries;
+mod reboot;
 mod requests;
+mod surroundings;
 
 use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
@@ -13,30 +17,43 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
-use super::manual_control::ManualControl;
-use super::mission::Mission;
+use super::manual_control::fly_by_velocity;
+use super::mission::{Helm, Mission};
+use super::motor_test::MotorTests;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
 use super::perception::Perception;
+use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
+use super::receiver::Receiver;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
+use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
+use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
+use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
 use crate::mode::Mode;
@@ -92,13 +109,25 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
             hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
+            motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
-            manual_control: ManualControl::default(),
+            turn: CommandedTurn::default(),
+            receiver: Receiver::default(),
+            pilot_watch: PilotWatch::default(),
+            stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
+            smart_return: SmartReturn::default(),
+            orbit: Orbit::default(),
+            follow: Follow::default(),
             mission: Mission::new(program),
+            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
+            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
+            remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
+            equipment: Equipment::default(),
         };
         let mut vehicle = Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
@@ -135,21 +164,30 @@ impl Vehicle {
         if self.machines.injection.is_due(self.time_us()) {
             self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
         }
+        self.watch_pilot();
         self.watch();
         if self.decided.is_armed() {
             self.fly();
         }
+        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
+        self.consult(|parts, situation, proposal| {
+            parts.obstacles.measure(situation);
+            parts.obstacles.watch_contact(situation, proposal);
+        });
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
+        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
+        self.step_equipment();
         Ok(())
     }
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
         let easing = self.closed_loop.simulation().control().state().is_easing();
         if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
@@ -180,18 +218,42 @@ impl Vehicle {
             _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
-            Mode::Position => parts.manual_control.step(situation, proposal),
-            Mode::Offboard => parts.offboard.step(situation, proposal),
-            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Position => fly_by_velocity(situation, proposal),
+            Mode::PositionHold if situation.pilot.sticks.is_some_and(|sticks| sticks.leans()) => {
+                parts.stick_flight.step_by_height(situation, proposal);
+            }
+            Mode::PositionHold => {
+                parts.stick_flight.forget();
+                fly_by_velocity(situation, proposal);
+            }
+            Mode::Altitude => parts.stick_flight.step_by_height(situation, proposal),
+            Mode::Stabilize | Mode::Manual | Mode::Acro => {
+                parts.stick_flight.step_by_thrust(situation, proposal);
+            }
+            Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
+            Mode::Mission => match parts.mission.step(situation, proposal) {
+                Helm::Mission => {}
+                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
+                Helm::Return => parts.return_home.step(situation, proposal),
+            },
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
+            Mode::SmartReturn => parts.smart_return.step(situation, proposal),
+            Mode::Orbit => parts.orbit.step(situation, proposal),
+            Mode::Follow => parts.follow.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
-            if situation.chooses_its_heading() {
+            if situation.mode != Mode::SmartReturn {
+                parts.smart_return.watch(situation, proposal);
+            }
+            if parts.turn.is_on() {
+                parts.turn.step(proposal);
+            } else if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
+            parts.obstacles.keep_distance(situation, proposal);
         });
     }
 
@@ -204,7 +266,14 @@ impl Vehicle {
             rotor_faults: self.machines.injection.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
+        let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
+        match test {
+            Some((mut steering, rotor_faults)) => {
+                let conditions = Conditions { armed: true, rotor_faults, ..conditions };
+                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+            }
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+        }
     }
 
     /// Perceives the motion after the tick.
@@ -274,7 +343,8 @@ fn situation<'a>(
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
-        set_point_is_applied: machines.offboard.is_applied(),
+        set_point_turns: machines.offboard.turns(),
+        pilot: *machines.receiver.pilot(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }

@@ -1,4 +1,4 @@
-//! Sticks of the position mode.
+//! A pilot's sticks, and what they mean.
 
 use nalgebra::{Rotation2, Vector2};
 
@@ -18,34 +18,71 @@ pub struct Sticks {
     pub turn: f64,
 }
 
-/// Share of a stick's way around its centre that means zero.
+/// Share of a stick's way around its centre that means zero where sticks command a velocity.
 const DEAD_ZONE: f64 = 0.1;
 
 impl Sticks {
+    /// Way of the throttle from its low end, 0 to 1.
+    pub fn throttle(&self) -> f64 {
+        (self.up.clamp(-1.0, 1.0) + 1.0) / 2.0
+    }
+
+    /// The climb rate that is asked for, m/s.
+    pub fn climb_m_s(&self, conduct: &Conduct) -> f64 {
+        let up = beyond(self.up, 2.0 * conduct.sticks.throttle_dead_zone);
+        up * if up > 0.0 { conduct.stick_climb_m_s } else { conduct.stick_sink_m_s }
+    }
+
     /// Velocities in the frame of the heading.
     pub fn set_point(&self, conduct: &Conduct, yaw_rad: f64, yaw_rate_rad_s: f64) -> PositionSetPoint {
+        let live = |stick| beyond(stick, DEAD_ZONE);
         let stick = Vector2::new(live(self.forward), live(self.right));
         // A stick in the corner is not faster than one at the edge.
         let stick = if stick.norm() > 1.0 { stick.normalize() } else { stick };
         let velocity = Rotation2::new(yaw_rad) * stick * conduct.stick_speed_m_s;
-        let up = live(self.up);
-        let climb = up * if up > 0.0 { conduct.stick_climb_m_s } else { conduct.stick_sink_m_s };
         let turn = live(self.turn);
         PositionSetPoint {
             axes: [
                 AxisTarget::Velocity(velocity.x),
                 AxisTarget::Velocity(velocity.y),
-                AxisTarget::Velocity(-climb),
+                AxisTarget::Velocity(-self.climb_m_s(conduct)),
             ],
             yaw: if turn == 0.0 { YawTarget::Hold } else { YawTarget::Rate(turn * yaw_rate_rad_s) },
         }
     }
+
+    /// Roll and pitch that are asked for, rad: no more than the largest lean in any direction.
+    pub fn lean_rad(&self, largest_rad: f64) -> [f64; 2] {
+        let stick = Vector2::new(self.right.clamp(-1.0, 1.0), -self.forward.clamp(-1.0, 1.0));
+        let stick = if stick.norm() > 1.0 { stick.normalize() } else { stick };
+        [stick.x * largest_rad, stick.y * largest_rad]
+    }
+
+    /// Whether roll or pitch is asked for.
+    pub fn leans(&self) -> bool {
+        beyond(self.forward, DEAD_ZONE) != 0.0 || beyond(self.right, DEAD_ZONE) != 0.0
+    }
+
+    /// Share of the largest thrust that a throttle asks for by hand, where this share hovers.
+    pub fn thrust(&self, conduct: &Conduct, hover: f64, ardupilot: bool) -> f64 {
+        let (way, settings) = (self.throttle(), &conduct.sticks);
+        if ardupilot {
+            // A cubic through the hovering thrust in the middle and the largest one at the top.
+            let bend = (-(hover - 0.5) / 0.375).clamp(-0.5, 1.0);
+            return way * (1.0 - bend) + bend * way * way * way;
+        }
+        let least = settings.least_thrust.min(hover);
+        if !settings.hovers_centred {
+            return least + way * (1.0 - least);
+        }
+        if self.up < 0.0 { hover + self.up * (hover - least) } else { hover + self.up * (1.0 - hover) }
+    }
 }
 
 /// A deflection without its dead zone, within ±1.
-fn live(stick: f64) -> f64 {
+fn beyond(stick: f64, dead_zone: f64) -> f64 {
     let stick = stick.clamp(-1.0, 1.0);
-    let beyond = (stick.abs() - DEAD_ZONE).max(0.0) / (1.0 - DEAD_ZONE);
+    let beyond = (stick.abs() - dead_zone).max(0.0) / (1.0 - dead_zone);
     if beyond == 0.0 { 0.0 } else { libm::copysign(beyond, stick) }
 }
 
@@ -69,5 +106,23 @@ mod tests {
         };
         assert!(north.abs() < 1e-12 && (east - 5.0).abs() < 1e-12 && (down - 1.5).abs() < 1e-12);
         assert_eq!(moving.yaw, YawTarget::Rate(-0.8));
+    }
+
+    #[test]
+    fn a_centred_throttle_hovers_and_the_ends_are_the_least_and_the_largest_thrust() {
+        for (ardupilot, least) in [(true, 0.0), (false, 0.08)] {
+            let conduct = Conduct::new(ardupilot);
+            let thrust = |up: f64| Sticks { up, ..Sticks::default() }.thrust(&conduct, 0.3139, ardupilot);
+            assert!((thrust(-1.0) - least).abs() < 1e-9 && (thrust(1.0) - 1.0).abs() < 1e-9);
+            assert!((thrust(0.0) - 0.3139).abs() < 1e-3, "{}", thrust(0.0));
+            let steps: Vec<f64> = (-10..=10).map(|tenth| thrust(f64::from(tenth) / 10.0)).collect();
+            assert!(steps.windows(2).all(|pair| pair[1] > pair[0]), "{steps:?}");
+        }
+    }
+
+    #[test]
+    fn a_corner_leans_no_further_than_an_edge() {
+        let [roll, pitch] = Sticks { forward: 1.0, right: 1.0, ..Sticks::default() }.lean_rad(0.5);
+        assert!((roll.hypot(pitch) - 0.5).abs() < 1e-12 && roll > 0.0 && pitch < 0.0);
     }
 }

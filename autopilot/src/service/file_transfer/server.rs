@@ -45,6 +45,14 @@ impl Default for FileServer {
 }
 
 impl Service for FileServer {
+    fn summary(&self) -> &'static str {
+        "Files (MAVLink FTP)"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::FILE_TRANSFER_PROTOCOL]
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::FILE_TRANSFER_PROTOCOL]
     }

@@ -41,6 +41,14 @@ impl Default for LogServer {
 }
 
 impl Service for LogServer {
+    fn summary(&self) -> &'static str {
+        "Lists and downloads of flight logs"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[id::LOG_ENTRY, id::LOG_DATA]
+    }
+
     fn messages(&self) -> &'static [u32] {
         &[id::LOG_REQUEST_LIST, id::LOG_REQUEST_DATA, id::LOG_REQUEST_END, id::LOG_ERASE]
     }

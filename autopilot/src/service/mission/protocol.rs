@@ -44,6 +44,23 @@ pub struct Missions {
 }
 
 impl Service for Missions {
+    fn summary(&self) -> &'static str {
+        "Plans: missions, fences, rally points, and where the mission is"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[
+            id::MISSION_ACK,
+            id::MISSION_COUNT,
+            id::MISSION_ITEM,
+            id::MISSION_ITEM_INT,
+            id::MISSION_REQUEST,
+            id::MISSION_REQUEST_INT,
+            id::MISSION_ITEM_REACHED,
+            id::MISSION_CURRENT,
+        ]
+    }
+
     fn messages(&self) -> &'static [u32] {
         MESSAGES
     }

@@ -3,7 +3,8 @@
 use mavlink::dialects::ardupilotmega::{
     BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
     MavBatteryChargeState, MavBatteryFault, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
-    MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavSysStatusSensor, MavSysStatusSensorExtended, MavVtolState, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA,
 };
 use vehicle::fence::Breach;
 use vehicle::{LandedState, Vehicle};
@@ -26,8 +27,23 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
         | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
         | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
+    let present = if vehicle.pilot().has_radio {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER
+    } else {
+        present
+    };
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
+    let present = if vehicle.obstacles().lidar().is_some() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
+    } else {
+        present
+    };
+    let present = if vehicle.has_rangefinder() {
+        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
+    } else {
+        present
+    };
     let enabled = if vehicle.fence().is_some() {
         present
     } else {
@@ -49,6 +65,7 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (vehicle.lost_rotor().is_none(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
         (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
+        (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
@@ -120,18 +137,32 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
     })
 }
 
-/// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most.
+/// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most, and the servos
+/// behind them, 0 where nothing has been asked of one.
 pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
         outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
+    let servos = vehicle.equipment().servos();
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
         time_usec: boot_us(outputs.time_us),
         servo1_raw,
         servo2_raw,
         servo3_raw,
         servo4_raw,
+        servo5_raw: servos.pulse_us(5),
+        servo6_raw: servos.pulse_us(6),
+        servo7_raw: servos.pulse_us(7),
+        servo8_raw: servos.pulse_us(8),
+        servo9_raw: servos.pulse_us(9),
+        servo10_raw: servos.pulse_us(10),
+        servo11_raw: servos.pulse_us(11),
+        servo12_raw: servos.pulse_us(12),
+        servo13_raw: servos.pulse_us(13),
+        servo14_raw: servos.pulse_us(14),
+        servo15_raw: servos.pulse_us(15),
+        servo16_raw: servos.pulse_us(16),
         ..SERVO_OUTPUT_RAW_DATA::default()
     })
 }
@@ -145,7 +176,12 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
             LandedState::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
             LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
         },
-        ..EXTENDED_SYS_STATE_DATA::default()
+        // ArduPilot's copters say that they are one; PX4 says so only of a vehicle that could be something else.
+        vtol_state: if vehicle.identity().is_ardupilot() {
+            MavVtolState::MAV_VTOL_STATE_MC
+        } else {
+            MavVtolState::MAV_VTOL_STATE_UNDEFINED
+        },
     })
 }
 

@@ -35,7 +35,7 @@ pub fn parse(
         };
         let refused = |source| ParameterFileError::Refused { line, source };
         let entry = table.require(name).map_err(refused)?;
-        if entry.is_kept() {
+        if entry.is_of_vehicle() {
             let value = table.number(name, value).map_err(refused)?;
             waiting.push(Waiting { line, id: entry.id, value });
         }

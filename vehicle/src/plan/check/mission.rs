@@ -77,19 +77,16 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
     if !named {
         return Ok(());
     }
-    let place = place(item, site)?;
-    match place.down_m(site.home_m.z) {
-        Some(down_m) if rule == PlaceRule::Goal && down_m > 0.0 => {
-            let reason = format!("altitude = {} m is {down_m:.1} m below the ground", item.position[2]);
-            Err((FaultCode::InvalidParameter(7), reason))
-        }
-        _ => Ok(()),
-    }
+    place(item, site).map(drop)
 }
 
 /// Checks how the items belong together: a jump goes to an item that there is.
 pub fn whole(items: &[MissionItem]) -> Result<(), PlanFault> {
     for (index, item) in items.iter().enumerate() {
+        if item.command == command::DO_JUMP_TAG && command::tagged_item(items, item.parameter(1)).is_none() {
+            let reason = format!("no item has tag {}", item.parameter(1));
+            return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
+        }
         let target = match item.command {
             command::DO_JUMP => Some((1, item.parameter(1))),
             command::DO_SET_ROI if item.parameter(1) == ROI_ITEM => Some((2, item.parameter(2))),

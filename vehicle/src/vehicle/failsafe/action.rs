@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::mode::Mode;
+use crate::radio::RadioLossAction;
 
 /// Actions, the mildest first: a worse one goes before a milder one, never the other way round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -39,10 +40,24 @@ impl Action {
         }
     }
 
+    /// What is done without the pilot.
+    pub fn without_pilot(action: RadioLossAction) -> Self {
+        match action {
+            RadioLossAction::None => Self::None,
+            RadioLossAction::Hold | RadioLossAction::BrakeOrLand => Self::Hold,
+            RadioLossAction::Return
+            | RadioLossAction::TraceOrReturn
+            | RadioLossAction::TraceOrLand
+            | RadioLossAction::MissionLandingOrReturn => Self::Return,
+            RadioLossAction::Land => Self::Land,
+            RadioLossAction::Terminate | RadioLossAction::Disarm => Self::Terminate,
+        }
+    }
+
     /// The action that a mode is already: a return is not called off to hold, a landing not to return.
     pub fn of_mode(mode: Mode) -> Self {
         match mode {
-            Mode::Return => Self::Return,
+            Mode::Return | Mode::SmartReturn => Self::Return,
             Mode::Land => Self::Land,
             _ => Self::None,
         }

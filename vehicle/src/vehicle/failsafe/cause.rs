@@ -21,11 +21,13 @@ pub enum Cause {
     GroundStationLost,
     /// The set-points of the offboard mode have stopped.
     SetPointsLost,
+    /// The pilot's radio or joystick is not received any more.
+    PilotLost,
 }
 
 impl Cause {
     /// All causes.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::RotorFailure,
         Self::PositionLost,
         Self::BatteryEmergency,
@@ -35,6 +37,7 @@ impl Cause {
         Self::HighWind,
         Self::GroundStationLost,
         Self::SetPointsLost,
+        Self::PilotLost,
     ];
 
     /// Words for the pilot.
@@ -49,6 +52,7 @@ impl Cause {
             Self::HighWind => "High wind",
             Self::GroundStationLost => "Ground station lost",
             Self::SetPointsLost => "Set-points lost",
+            Self::PilotLost => "Manual control lost",
         }
     }
 
@@ -64,6 +68,7 @@ impl Cause {
             Self::HighWind => "wind below limit",
             Self::GroundStationLost => "ground station connected",
             Self::SetPointsLost => "set-points received",
+            Self::PilotLost => "manual control regained",
         }
     }
 

@@ -32,6 +32,9 @@ impl Vehicle {
             self.decided.steer(steering);
         }
         self.decided.move_home(outcome.home);
+        if outcome.region.is_some() && outcome.region != self.decided.region() {
+            self.machines.equipment.track();
+        }
         self.decided.look_at(outcome.region);
         for request in outcome.requests {
             match request {
@@ -43,6 +46,12 @@ impl Vehicle {
                 }
                 Request::ChangeSpeeds(change) => self.use_speeds_or_say(self.machines.speeds.after(change)),
                 Request::See(cause, present) => self.see(cause, present),
+                Request::Operate(operation) => {
+                    if let Err(refusal) = self.operate(&operation) {
+                        self.decided.say(Severity::Warning, format!("Mission: {refusal}"));
+                    }
+                }
+                Request::EnableFence(enabled) => self.enable_fence(enabled),
                 Request::StopRotors(why) => self.stop_rotors(&why),
                 Request::Terminate => self.terminate(),
             }
@@ -58,6 +67,11 @@ impl Vehicle {
 
     /// Changes to a mode, whatever speaks against it.
     pub(super) fn enter(&mut self, mode: Mode) {
+        // Without a trail it returns as it always does.
+        let mode = match mode {
+            Mode::SmartReturn if self.machines.smart_return.may_begin().is_err() => Mode::Return,
+            _ => mode,
+        };
         let before = self.decided.mode();
         if mode != before {
             let name = self.setup.identity().mode_name(mode);
@@ -66,15 +80,29 @@ impl Vehicle {
         if before == Mode::Mission && mode != Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
+        if before != mode && matches!(before, Mode::Return | Mode::Mission) {
+            self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::Return(None)));
+        }
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         self.machines.offboard.begin();
+        self.machines.stick_flight.forget();
         self.consult(|parts, situation, proposal| match mode {
-            Mode::Hold | Mode::Position => proposal.hold(situation),
+            Mode::Hold | Mode::Position | Mode::PositionHold => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
             Mode::Mission => parts.mission.enter(situation, proposal),
             Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
                 parts.return_home.begin(situation, proposal);
+            }
+            Mode::SmartReturn if proposal.steering().kind() != SteeringKind::Idle => {
+                parts.smart_return.begin(situation, proposal);
+            }
+            Mode::Orbit => parts.orbit.begin(situation, proposal),
+            Mode::Follow => parts.follow.begin(situation, proposal),
+            Mode::GuidedAttitude => {
+                parts.offboard.forget();
+                proposal.hold(situation);
             }
             _ => {}
         });
@@ -95,7 +123,9 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
-        self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::ForgetCommands));
+        self.machines.turn.forget();
+        let speeds = self.machines.speeds.after(SpeedChange::Return(None));
+        self.use_speeds_or_say(speeds.after(SpeedChange::ForgetCommands));
         self.consult(|_, situation, proposal| {
             proposal.look_at(None);
             proposal.idle(situation);
@@ -105,7 +135,7 @@ impl Vehicle {
         if mode == Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if matches!(mode, Mode::Land | Mode::Return | Mode::Takeoff | Mode::Mission) {
+        if mode.ends_on_the_ground() {
             self.decided.switch_to(self.setup.identity().first_mode());
         }
         self.decided.say(Severity::Info, why);

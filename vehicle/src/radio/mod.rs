@@ -1,0 +1,26 @@
+//! A pilot's radio: how pulses of its channels are read. What follows from them is the vehicle's matter.
+//!
+//! ```text
+//!  channel    ends, trim, dead zone and direction of a channel; deflections
+//!  switch     positions of switches, and when they count
+//!  function   what a switch can do, by ArduPilot's numbers
+//!  settings   all of it for one vehicle
+//! ```
+
+mod channel;
+mod function;
+mod loss;
+mod settings;
+mod switch;
+
+pub use channel::Channel;
+pub use function::{Function, function};
+pub use loss::RadioLossAction;
+pub use settings::{Axes, InputChoice, PX4_SLOTS, RadioFailure, RadioSettings, RudderArming, Switches};
+pub use switch::{Debounced, Position, position, sixth};
+
+/// Channels that are received at the most.
+pub const CHANNELS: usize = 18;
+
+/// A pulse in the middle, µs.
+pub const MIDDLE_US: u16 = 1500;
