@@ -48,15 +48,14 @@ pub fn make(
     let packages = if with_zig { Packages::WheelForAll } else { Packages::Wheel };
     let python = python::environment(workspace, progress, &interpreter, packages)?;
     let flags = Paths::find(workspace)?.flags(&Toolchain::of(workspace, host)?);
-    let mut options = Command::new("");
-    options.args(["--profile", "release", "--target", host.target()]);
-    if with_zig {
-        // The oldest C library that Rust knows.
-        options.args(["--zig", "--compatibility", "manylinux2014"]);
-    }
     let wheel = package.write(workspace, progress, &python, |maturin| {
-        maturin.args(options.get_args()).env_remove("RUSTFLAGS").env("CARGO_ENCODED_RUSTFLAGS", &flags);
-        maturin.arg("--target-dir").arg(workspace.platforms().join(host.fmi2_folder()));
+        maturin.args(["--profile", "release"]).arg("--target-dir");
+        maturin.arg(workspace.platforms().join(host.fmi2_folder()));
+        if with_zig {
+            // The oldest C library that Rust knows.
+            maturin.args(["--target", host.target(), "--zig", "--compatibility", "manylinux2014"]);
+        }
+        maturin.env_remove("RUSTFLAGS").env("CARGO_ENCODED_RUSTFLAGS", &flags);
     })?;
     let bytes = files::read(&wheel)?.len();
     println!("{} ({:.1} MB)", workspace.shown(&wheel), bytes as f64 / 1e6);

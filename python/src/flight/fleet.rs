@@ -56,22 +56,30 @@ pub struct Fleet {
 }
 
 /// One value for all vehicles, or one for each.
-fn each<'py>(
-    name: &str,
-    value: &Bound<'py, PyAny>,
-    count: usize,
-) -> PyResult<Box<dyn Fn(usize) -> PyResult<Bound<'py, PyAny>> + 'py>> {
-    let value = value.clone();
-    if value.is_instance_of::<PyString>() || value.len().is_err() {
-        return Ok(Box::new(move |_| Ok(value.clone())));
+enum Each<'py> {
+    Same(Bound<'py, PyAny>),
+    Own(Bound<'py, PyAny>),
+}
+
+impl<'py> Each<'py> {
+    fn new(name: &str, value: &Bound<'py, PyAny>, count: usize) -> PyResult<Self> {
+        // A text is one value, and so is whatever has no length.
+        let length = if value.is_instance_of::<PyString>() { None } else { value.len().ok() };
+        match length {
+            None => Ok(Self::Same(value.clone())),
+            Some(length) if length == count => Ok(Self::Own(value.clone())),
+            Some(length) => Err(ArgumentError::new_err(format!(
+                "{name} has {length} values; expected one, or {count}: one for each vehicle"
+            ))),
+        }
     }
-    let length = value.len()?;
-    if length != count {
-        return Err(ArgumentError::new_err(format!(
-            "{name} has {length} values; expected one, or {count}: one for each vehicle"
-        )));
+
+    fn of(&self, vehicle: usize) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Same(value) => Ok(value.clone()),
+            Self::Own(values) => values.get_item(vehicle),
+        }
     }
-    Ok(Box::new(move |vehicle| value.get_item(vehicle)))
 }
 
 impl Fleet {
@@ -142,9 +150,9 @@ impl Fleet {
         for (name, value) in parameters {
             let name: String = name.extract()?;
             let parameter = parameters::of(python, &name)?;
-            let value_of = each(&name, &value, count)?;
+            let values = Each::new(&name, &value, count)?;
             for (vehicle, configuration) in configurations.iter_mut().enumerate() {
-                parameters::set(configuration, parameter, &value_of(vehicle)?)?;
+                parameters::set(configuration, parameter, &values.of(vehicle)?)?;
             }
         }
         let mut commands: Vec<Commands> = configurations
