@@ -12,13 +12,18 @@ use xtask::workspace::Workspace;
 
 /// Files of the folder `licenses/`, by name.
 pub fn texts(workspace: &Workspace) -> Result<Vec<(&'static str, String)>, Failure> {
-    let linked = linked_packages(workspace)?;
+    let linked = linked_packages(workspace, &["fmu"])?;
     Ok(vec![
         ("license.txt", OVERVIEW.to_owned()),
         ("LICENSE-MIT.txt", files::read_text(&workspace.root().join("LICENSE-MIT"))?),
         ("LICENSE-APACHE.txt", files::read_text(&workspace.root().join("LICENSE-APACHE"))?),
-        ("third-party.txt", notices(&linked)?),
+        ("third-party.txt", notices("this FMU", &linked)?),
     ])
+}
+
+/// The notices of what is linked into some of our packages together; `product` is what they make, for a person.
+pub fn of_packages(workspace: &Workspace, product: &str, packages: &[&str]) -> Result<String, Failure> {
+    notices(product, &linked_packages(workspace, packages)?)
 }
 
 const OVERVIEW: &str = "\
@@ -30,11 +35,13 @@ This FMU is licensed under either of
 at your option. It contains the libraries that third-party.txt lists with their notices.
 ";
 
-/// Packages linked into the library: neither build tools nor procedural macros.
-fn linked_packages(workspace: &Workspace) -> Result<Vec<Package>, Failure> {
+/// Packages linked into some of ours: neither build tools nor procedural macros.
+fn linked_packages(workspace: &Workspace, of: &[&str]) -> Result<Vec<Package>, Failure> {
     let tree = process::output(
         cargo()
-            .args(["tree", "--package", "fmu", "--edges", "normal,no-proc-macro"])
+            .arg("tree")
+            .args(of.iter().flat_map(|package| ["--package", package]))
+            .args(["--edges", "normal,no-proc-macro"])
             .args(["--prefix", "none", "--format", "{p}"])
             .current_dir(workspace.root()),
         "cargo tree",
@@ -60,8 +67,8 @@ fn names_and_versions(tree: &str) -> BTreeSet<(String, String)> {
 }
 
 /// The list of packages, and each licence text once with the packages that carry it.
-fn notices(packages: &[Package]) -> Result<String, Failure> {
-    let mut page = "Libraries that are linked into this FMU.\n\n".to_owned();
+fn notices(product: &str, packages: &[Package]) -> Result<String, Failure> {
+    let mut page = format!("Libraries that are linked into {product}.\n\n");
     let mut carriers: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for package in packages {
         let license = package.license.as_deref().unwrap_or("see its text");

@@ -58,6 +58,11 @@ enum Task {
     },
     /// Rewrites modelDescription.xml at the root of the repository.
     ModelDescription,
+    /// Writes the notices of the libraries that are linked into the Python package.
+    PackageLicenses {
+        /// File to write.
+        file: PathBuf,
+    },
 }
 
 /// Reads `linux64=target/release/libfmu.so`.
@@ -82,6 +87,11 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Fmu { library, merge } => {
             fmu_file::write_all(&workspace, library, merge)?;
             ssp::write(&workspace)
+        }
+        Task::PackageLicenses { file } => {
+            let notices =
+                licenses::of_packages(&workspace, "this package", &["sitl", "fmu", "lmpc-quadrotor-python"])?;
+            Ok(files::write(file, notices.as_bytes())?)
         }
         Task::ModelDescription => {
             let path = workspace.model_description();

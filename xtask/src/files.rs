@@ -59,6 +59,27 @@ pub fn copy(from: &Path, to: &Path) -> Result<u64, Failure> {
     fs::copy(from, to).map_err(failure("write", to))
 }
 
+/// Copies a folder with all that it holds, but for what is named in `without`.
+///
+/// # Errors
+///
+/// If one of the files or folders cannot be accessed; the error names its path.
+pub fn copy_folder(from: &Path, to: &Path, without: &[&str]) -> Result<(), Failure> {
+    create_folder(to)?;
+    for path in names_in(from)? {
+        let Some(name) = path.file_name() else { continue };
+        if without.iter().any(|excluded| name == *excluded) {
+            continue;
+        }
+        if path.is_dir() {
+            copy_folder(&path, &to.join(name), without)?;
+        } else {
+            copy(&path, &to.join(name))?;
+        }
+    }
+    Ok(())
+}
+
 /// Creates a folder with its parents.
 ///
 /// # Errors

@@ -18,6 +18,7 @@ mod test;
 mod threads;
 mod toolchains;
 mod universal;
+mod wheel;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -69,6 +70,14 @@ enum Task {
         #[arg(long)]
         fmu_only: bool,
     },
+    /// Writes target/wheels/….whl: the Python package with native module, MAVLink vehicle, FMUs and licences.
+    ///
+    /// For any machine with this one's system and processor: for Linux with glibc 2.17 or newer.
+    Wheel {
+        /// Installs what is missing for it: standard libraries by rustup, Debian packages by apt-get if this is root.
+        #[arg(long)]
+        install: bool,
+    },
     /// Rewrites modelDescription.xml at the root of the repository.
     ///
     /// A test fails if the file differs from what the FMU's table of variables generates.
@@ -96,7 +105,11 @@ enum Task {
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
-    Test,
+    Test {
+        /// Runs only the tests of the Python package, with the FMUs that are built, if there are any.
+        #[arg(long)]
+        package: bool,
+    },
 }
 
 /// For whom something is built.
@@ -155,12 +168,18 @@ fn run(task: &Task) -> Result<(), Failure> {
             }
             platforms::check(&workspace, &progress, &checked, platforms.install, *fmu_only)
         }
+        Task::Wheel { install } => {
+            let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
+            let release = prepared(&workspace, &progress, &[host], *install)?;
+            wheel::make(&workspace, &progress, &release, host)
+        }
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
         Task::Crates => crates::check(&workspace, &progress),
-        Task::Test => test::run_all(&workspace, &progress),
+        Task::Test { package: true } => test::run_package(&workspace, &progress),
+        Task::Test { package: false } => test::run_all(&workspace, &progress),
     }
 }
 

@@ -69,6 +69,27 @@ const ZIG_LAYERS: [Layer; 1] = [Layer {
     made_from: "made-from.txt",
 }];
 
+/// The tool that writes the Python package, and the linker with which it runs on old systems.
+const WHEEL_LAYERS: [Layer; 2] = [
+    Layer {
+        what: "Installing the tool that writes the Python package (first time; downloads about 10 MB)",
+        lists: &[Pinned { file: "wheel.txt", complete: true }],
+        made_from: "made-from.txt",
+    },
+    Layer {
+        what: "Installing the linker for old systems (first time; downloads about 95 MB)",
+        lists: &[Pinned { file: "zig.txt", complete: true }],
+        made_from: "made-from-zig.txt",
+    },
+];
+
+/// What the tests of the installed Python package need beside it.
+const PACKAGE_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing what the Python package is tested with (first time; downloads about 100 MB)",
+    lists: &[Pinned { file: "package.txt", complete: false }],
+    made_from: "made-from.txt",
+}];
+
 /// What an environment is for.
 #[derive(Clone, Copy)]
 pub enum Packages {
@@ -82,6 +103,12 @@ pub enum Packages {
     Optimum,
     /// The linker for other platforms.
     Zig,
+    /// What writes the Python package for this machine.
+    Wheel,
+    /// What writes the Python package for any machine of this platform.
+    WheelForAll,
+    /// The tests of the installed Python package.
+    Package,
 }
 
 impl Packages {
@@ -93,6 +120,9 @@ impl Packages {
             Self::Book => ("venv-book", &BOOK_LAYERS, 1),
             Self::Optimum => ("venv-optimum", &OPTIMUM_LAYERS, 1),
             Self::Zig => ("venv-zig", &ZIG_LAYERS, 1),
+            Self::Wheel => ("venv-wheel", &WHEEL_LAYERS, 1),
+            Self::WheelForAll => ("venv-wheel", &WHEEL_LAYERS, 2),
+            Self::Package => ("venv-package", &PACKAGE_LAYERS, 1),
         }
     }
 }
@@ -142,6 +172,14 @@ impl Python {
             install.arg("--no-deps");
         }
         install.arg("--requirement").arg(sources.join(list.file));
+        if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
+    }
+
+    /// Installs a wheel with nothing else, in place of the one that is there.
+    pub fn install_wheel(&self, wheel: &Path) -> Result<(), Failure> {
+        let mut install = self.command();
+        install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]);
+        install.args(["--no-deps", "--no-index", "--force-reinstall"]).arg(wheel);
         if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
     }
 

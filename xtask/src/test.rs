@@ -11,8 +11,9 @@ use roxmltree::Document;
 use crate::fmu;
 use crate::program::{self, Beside, VEHICLE};
 use crate::progress::Progress;
-use crate::python::{self, Packages, Python};
+use crate::python::{self, Interpreter, Packages, Python};
 use crate::threads;
+use crate::wheel;
 use xtask::cargo::cargo;
 use xtask::failure::Failure;
 use xtask::files;
@@ -70,6 +71,9 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
         python_passed &= passed;
     }
 
+    let (counted, package_passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    count += counted;
+
     let mut failed = Vec::new();
     if !rust_passed {
         failed.push("Rust tests");
@@ -77,11 +81,28 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     if !python_passed {
         failed.push("Python tests");
     }
+    if !package_passed {
+        failed.push("tests of the Python package");
+    }
     let Count { passed, failed: count_failed, skipped } = count;
     progress.print_summary();
     println!("note: Windows and Linux on ARM are left to `cargo xtask platforms`");
     println!("total: {passed} passed, {count_failed} failed, {skipped} skipped");
     if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }
+}
+
+/// Runs the tests of the Python package alone.
+pub fn run_package(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
+    let interpreter = python::interpreter()?;
+    if !workspace.fmu().is_file() {
+        fmu::make(workspace, progress, &[], Beside::Nothing)?;
+    }
+    let sitl = progress
+        .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Nothing))?;
+    let (count, passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    progress.print_summary();
+    println!("total: {} passed, {} failed, {} skipped", count.passed, count.failed, count.skipped);
+    if passed { Ok(()) } else { Err(Failure::Tests { failed: "tests of the Python package".to_owned() }) }
 }
 
 /// Runs `cargo test` for the whole workspace, passing its output on while counting.
@@ -125,6 +146,34 @@ fn python_tests(
             .env("LMPC_QUADROTOR_EXAMPLES", workspace.examples())
             .env("LMPC_SITL", sitl),
     )?;
+    Ok((python_count(&files::read_text(&report)?)?, status.success()))
+}
+
+/// Builds the Python package with the FMUs and the vehicle that there are, installs it where nothing else of ours is, and tests it there.
+fn package_tests(
+    workspace: &Workspace,
+    progress: &Progress,
+    interpreter: &Interpreter,
+    sitl: &Path,
+) -> Result<(Count, bool), Failure> {
+    let wheel = wheel::make_for_tests(workspace, progress, interpreter, sitl)?;
+    let python = python::environment(workspace, progress, interpreter, Packages::Package)?;
+    progress.timed("Installing the Python package", || python.install_wheel(&wheel))?;
+    let (tests, report) = (workspace.package_tests(), workspace.package_report());
+    let status = progress.timed("Testing the Python package", || {
+        process::status(
+            python
+                .command()
+                .args(["-m", "pytest", "-p", "no:cacheprovider", "--numprocesses", "2"])
+                .arg("-c")
+                .arg(tests.join("pytest.ini"))
+                .arg(&tests)
+                .arg(format!("--junitxml={}", report.display()))
+                // Away from the sources, so that nothing is imported from there.
+                .current_dir(python.programs())
+                .env("LMPC_QUADROTOR_ROOT", workspace.root()),
+        )
+    })?;
     Ok((python_count(&files::read_text(&report)?)?, status.success()))
 }
 

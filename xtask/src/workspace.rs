@@ -87,6 +87,26 @@ impl Workspace {
         self.target.join("sitl")
     }
 
+    /// Sources of the Python package.
+    pub fn python_package(&self) -> PathBuf {
+        self.root.join("python")
+    }
+
+    /// The wheels that are built to be shipped.
+    pub fn wheels(&self) -> PathBuf {
+        self.target.join("wheels")
+    }
+
+    /// Tests of the installed Python package.
+    pub fn package_tests(&self) -> PathBuf {
+        self.python_tests().join("package")
+    }
+
+    /// Report of the tests of the Python package.
+    pub fn package_report(&self) -> PathBuf {
+        self.target.join("package-tests.xml")
+    }
+
     /// A file or folder below the target folder.
     pub fn target(&self, name: &str) -> PathBuf {
         self.target.join(name)

@@ -1,0 +1,62 @@
+//! Discrete Laguerre functions.
+
+use nalgebra::DMatrix;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays::{array1, array2};
+use crate::errors;
+
+/// N discrete Laguerre functions with the scaling factor a.
+#[pyclass(frozen, module = "lmpc_quadrotor.control")]
+#[derive(Clone)]
+pub struct LaguerreBasis(pub lmpc::LaguerreBasis);
+
+#[pymethods]
+impl LaguerreBasis {
+    #[new]
+    fn new(terms: usize, scale: f64) -> PyResult<Self> {
+        lmpc::LaguerreBasis::new(terms, scale).map(Self).map_err(|refusal| errors::design(&refusal))
+    }
+
+    #[staticmethod]
+    fn for_control_horizon(terms: usize, control_horizon: f64) -> PyResult<Self> {
+        let basis = lmpc::LaguerreBasis::for_control_horizon(terms, control_horizon);
+        basis.map(Self).map_err(|refusal| errors::design(&refusal))
+    }
+
+    #[getter]
+    fn terms(&self) -> usize {
+        self.0.terms()
+    }
+
+    #[getter]
+    fn scale(&self) -> f64 {
+        self.0.scale()
+    }
+
+    #[getter]
+    fn a_l<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array2(python, self.0.a_l())
+    }
+
+    #[getter]
+    fn initial<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array1(python, self.0.initial().as_slice())
+    }
+
+    /// L(0) … L(samples − 1) as rows.
+    fn functions<'py>(&self, python: Python<'py>, samples: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut functions = DMatrix::zeros(samples, self.0.terms());
+        let mut l = self.0.initial().clone();
+        for mut row in functions.row_iter_mut() {
+            row.copy_from(&l.transpose());
+            l = self.0.a_l() * l;
+        }
+        array2(python, &functions)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("LaguerreBasis(terms={}, scale={})", self.0.terms(), self.0.scale())
+    }
+}

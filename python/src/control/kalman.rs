@@ -1,0 +1,96 @@
+//! The stationary Kalman predictor.
+
+use lmpc::NoiseCovariance;
+use nalgebra::{DMatrix, DVector};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use super::models::StateSpace;
+use crate::arrays::{array1, array2, matrix, vector_of};
+use crate::errors;
+
+/// Design of the stationary predictor.
+#[pyclass(frozen, module = "lmpc_quadrotor.control")]
+pub struct KalmanDesign {
+    plant: lmpc::StateSpace,
+    design: lmpc::KalmanDesign,
+}
+
+#[pymethods]
+impl KalmanDesign {
+    #[new]
+    #[pyo3(signature = (plant, state_noise, measurement_noise, cross = None))]
+    fn new(
+        plant: &StateSpace,
+        state_noise: &Bound<'_, PyAny>,
+        measurement_noise: &Bound<'_, PyAny>,
+        cross: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (state, measurement) =
+            (matrix("state_noise", state_noise)?, matrix("measurement_noise", measurement_noise)?);
+        let noise = match cross {
+            Some(cross) => NoiseCovariance { state, measurement, cross: matrix("cross", cross)? },
+            None => NoiseCovariance::uncorrelated(state, measurement),
+        };
+        let design = lmpc::KalmanDesign::new(&plant.0, &noise).map_err(|refusal| errors::design(&refusal))?;
+        Ok(Self { plant: plant.0.clone(), design })
+    }
+
+    #[getter]
+    fn gain<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array2(python, self.design.gain())
+    }
+
+    #[getter]
+    fn covariance<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        array2(python, self.design.covariance())
+    }
+}
+
+/// The predictor of a design at run time: of any size, unlike [`lmpc::KalmanPredictor`], whose sizes are known when it is compiled.
+#[pyclass(module = "lmpc_quadrotor.control")]
+pub struct KalmanPredictor {
+    plant: lmpc::StateSpace,
+    gain: DMatrix<f64>,
+    estimate: DVector<f64>,
+}
+
+#[pymethods]
+impl KalmanPredictor {
+    #[new]
+    #[pyo3(signature = (design, estimate = None))]
+    fn new(design: &KalmanDesign, estimate: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let states = design.plant.states();
+        Ok(Self {
+            plant: design.plant.clone(),
+            gain: design.design.gain().clone(),
+            estimate: vector_of("estimate", estimate, states)?,
+        })
+    }
+
+    /// x̂(k given k − 1).
+    #[getter]
+    fn estimate<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array1(python, self.estimate.as_slice())
+    }
+
+    /// Goes on to the next sample and returns its estimate.
+    fn predict<'py>(
+        &mut self,
+        python: Python<'py>,
+        input: &Bound<'py, PyAny>,
+        measurement: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let input = vector_of("input", Some(input), self.plant.inputs())?;
+        let measurement = vector_of("measurement", Some(measurement), self.plant.outputs())?;
+        // x̂(k+1|k) = A x̂(k|k−1) + B u(k) + K (y(k) − C x̂(k|k−1))
+        let open_loop = self.plant.a() * &self.estimate + self.plant.b() * input;
+        let innovation = measurement - self.plant.c() * &self.estimate;
+        let corrected = &open_loop + &self.gain * innovation;
+        let finite = |vector: &DVector<f64>| vector.iter().all(|value| value.is_finite());
+        if let Some(next) = [corrected, open_loop].into_iter().find(finite) {
+            self.estimate = next;
+        }
+        Ok(self.estimate(python))
+    }
+}

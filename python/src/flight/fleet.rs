@@ -1,0 +1,359 @@
+//! Many flights at once.
+
+use nalgebra::DMatrix;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyString};
+use quadrotor::Configuration;
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::actuation::Actuation;
+use super::commands::Commands;
+use super::inputs::Input;
+use super::outputs::{self, Output};
+use super::parameters;
+use super::saved::Saved;
+use super::simulation::instants;
+use super::vehicle::{MOTION, Vehicle};
+use crate::arrays::{matrix, vector};
+use crate::errors::{ArgumentError, ParameterError};
+
+/// A vehicle of a fleet.
+struct Member {
+    vehicle: Vehicle,
+    /// Where its flights begin.
+    start: Saved,
+    /// Why it could not go on.
+    failure: Option<String>,
+}
+
+impl Member {
+    fn advance_to(&mut self, time_us: u64) {
+        if self.failure.is_none() {
+            self.failure = self.vehicle.advance_to(time_us).err().map(|error| error.to_string());
+        }
+    }
+
+    fn advance_by(&mut self, duration_us: u64) {
+        self.advance_to(self.vehicle.time_us().saturating_add(duration_us));
+    }
+
+    fn restart(&mut self, motion: Option<&[f64; MOTION]>) -> Result<(), String> {
+        self.start.commands = self.vehicle.commands;
+        self.vehicle.restore(&self.start)?;
+        self.failure = None;
+        motion.map_or(Ok(()), |motion| self.vehicle.place(motion))
+    }
+}
+
+/// Many flights that go on side by side on several threads. Each is that of a [`super::simulation::Simulation`], whatever the others do.
+#[pyclass(module = "lmpc_quadrotor._native")]
+pub struct Fleet {
+    members: Vec<Member>,
+    actuation: Actuation,
+    threads: ThreadPool,
+}
+
+/// One value for all vehicles, or one for each.
+enum Each<'py> {
+    Same(Bound<'py, PyAny>),
+    Own(Bound<'py, PyAny>),
+}
+
+impl<'py> Each<'py> {
+    fn new(name: &str, value: &Bound<'py, PyAny>, count: usize) -> PyResult<Self> {
+        // A text is one value, and so is whatever has no length.
+        let length = if value.is_instance_of::<PyString>() { None } else { value.len().ok() };
+        match length {
+            None => Ok(Self::Same(value.clone())),
+            Some(length) if length == count => Ok(Self::Own(value.clone())),
+            Some(length) => Err(ArgumentError::new_err(format!(
+                "{name} has {length} values; expected one, or {count}: one for each vehicle"
+            ))),
+        }
+    }
+
+    fn of(&self, vehicle: usize) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Same(value) => Ok(value.clone()),
+            Self::Own(values) => values.get_item(vehicle),
+        }
+    }
+}
+
+impl Fleet {
+    fn set(commands: &mut [Commands], values: &Bound<'_, PyDict>) -> PyResult<()> {
+        let mut changed = commands.to_vec();
+        for (name, value) in values {
+            let name: String = name.extract()?;
+            let input = Input::of(values.py(), &name)?;
+            let numbers = vector(&name, &value)?;
+            if numbers.len() != 1 && numbers.len() != changed.len() {
+                return Err(ArgumentError::new_err(format!(
+                    "{name} has {} values; expected one, or {}: one for each vehicle",
+                    numbers.len(),
+                    changed.len()
+                )));
+            }
+            for (vehicle, commands) in changed.iter_mut().enumerate() {
+                input.set(commands, if numbers.len() == 1 { numbers[0] } else { numbers[vehicle] })?;
+            }
+        }
+        commands.copy_from_slice(&changed);
+        Ok(())
+    }
+
+    fn chosen(&self, python: Python<'_>, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
+        match names {
+            Some(names) => outputs::named(python, &names, self.actuation),
+            None => Ok(outputs::of(self.actuation).collect()),
+        }
+    }
+
+    /// The outputs of all vehicles, a row for each.
+    fn rows(&self, chosen: &[Output]) -> Vec<f64> {
+        self.threads.install(|| {
+            self.members
+                .par_iter()
+                .flat_map_iter(|member| {
+                    let outputs = member.vehicle.outputs();
+                    chosen.iter().map(move |output| output.get(&outputs))
+                })
+                .collect()
+        })
+    }
+}
+
+#[pymethods]
+impl Fleet {
+    #[new]
+    #[pyo3(signature = (count, parameters, inputs, actuation = "reference", threads = None))]
+    fn new(
+        python: Python<'_>,
+        count: usize,
+        parameters: &Bound<'_, PyDict>,
+        inputs: &Bound<'_, PyDict>,
+        actuation: &str,
+        threads: Option<usize>,
+    ) -> PyResult<Self> {
+        if count == 0 {
+            return Err(ArgumentError::new_err("count = 0; expected 1 vehicle or more"));
+        }
+        if threads == Some(0) {
+            return Err(ArgumentError::new_err(
+                "threads = 0; expected 1 or more, or None for one on each core",
+            ));
+        }
+        let actuation = Actuation::from_name(actuation)?;
+        let mut configurations = vec![Configuration::default(); count];
+        for (name, value) in parameters {
+            let name: String = name.extract()?;
+            let parameter = parameters::of(python, &name)?;
+            let values = Each::new(&name, &value, count)?;
+            for (vehicle, configuration) in configurations.iter_mut().enumerate() {
+                parameters::set(configuration, parameter, &values.of(vehicle)?)?;
+            }
+        }
+        let mut commands: Vec<Commands> = configurations
+            .iter()
+            .map(|configuration| Commands::new(&configuration.with_airframe()))
+            .collect();
+        Self::set(&mut commands, inputs)?;
+        let threads = ThreadPoolBuilder::new()
+            .num_threads(threads.unwrap_or(0))
+            .thread_name(|thread| format!("fleet {thread}"))
+            .build()
+            .map_err(|error| ArgumentError::new_err(format!("threads: {error}")))?;
+        let members = python.detach(|| {
+            threads.install(|| {
+                // Vehicles that are alike are designed once.
+                let settings: Vec<(Configuration, Commands)> =
+                    configurations.into_iter().zip(commands).collect();
+                let mut designed: Vec<(Configuration, Commands)> = Vec::new();
+                let mut kinds = Vec::with_capacity(settings.len());
+                for setting in &settings {
+                    let kind = designed.iter().rposition(|known| known == setting).unwrap_or_else(|| {
+                        designed.push(*setting);
+                        designed.len() - 1
+                    });
+                    kinds.push(kind);
+                }
+                let vehicles = designed
+                    .par_iter()
+                    .map(|(configuration, commands)| Vehicle::new(configuration, commands, actuation))
+                    .collect::<Result<Vec<_>, _>>()?;
+                let member = |kind: usize| {
+                    let vehicle = vehicles[kind].clone();
+                    Member { start: vehicle.save(), vehicle, failure: None }
+                };
+                Ok::<_, String>(kinds.into_par_iter().map(member).collect::<Vec<_>>())
+            })
+        });
+        Ok(Self { members: members.map_err(ParameterError::new_err)?, actuation, threads })
+    }
+
+    fn __len__(&self) -> usize {
+        self.members.len()
+    }
+
+    #[getter]
+    fn actuation(&self) -> &'static str {
+        self.actuation.name()
+    }
+
+    #[getter]
+    fn times_us<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        PyArray1::from_vec(python, self.members.iter().map(|member| member.vehicle.time_us()).collect())
+    }
+
+    /// Why each vehicle could not go on, if it could not.
+    #[getter]
+    fn failures(&self) -> Vec<Option<&str>> {
+        self.members.iter().map(|member| member.failure.as_deref()).collect()
+    }
+
+    #[getter]
+    fn failed<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_vec(python, self.members.iter().map(|member| member.failure.is_some()).collect())
+    }
+
+    fn output_names(&self) -> Vec<&'static str> {
+        outputs::of(self.actuation).map(Output::name).collect()
+    }
+
+    fn set_inputs(&mut self, values: &Bound<'_, PyDict>) -> PyResult<()> {
+        let mut commands: Vec<Commands> = self.members.iter().map(|member| member.vehicle.commands).collect();
+        Self::set(&mut commands, values)?;
+        for (member, commands) in self.members.iter_mut().zip(commands) {
+            member.vehicle.commands = commands;
+        }
+        Ok(())
+    }
+
+    /// All vehicles that can fly on by a duration.
+    fn advance(&mut self, python: Python<'_>, duration_us: u64) {
+        let (members, threads) = (&mut self.members, &self.threads);
+        python.detach(|| {
+            threads.install(|| members.par_iter_mut().for_each(|member| member.advance_by(duration_us)));
+        });
+    }
+
+    #[pyo3(signature = (names = None))]
+    fn read<'py>(
+        &self,
+        python: Python<'py>,
+        names: Option<Vec<String>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let chosen = self.chosen(python, names)?;
+        let rows = python.detach(|| self.rows(&chosen));
+        PyArray1::from_vec(python, rows).reshape([self.members.len(), chosen.len()])
+    }
+
+    /// Flies on by a duration and returns the times since then, µs, and the outputs: by time, vehicle and name.
+    #[pyo3(signature = (duration_us, step_us, names = None))]
+    #[allow(clippy::type_complexity, reason = "two arrays, as Python takes them")]
+    fn record<'py>(
+        &mut self,
+        python: Python<'py>,
+        duration_us: u64,
+        step_us: u64,
+        names: Option<Vec<String>>,
+    ) -> PyResult<(Bound<'py, PyArray1<u64>>, Bound<'py, PyArray3<f64>>)> {
+        let chosen = self.chosen(python, names)?;
+        let instants = instants(0, duration_us, step_us)?;
+        let begun: Vec<u64> = self.members.iter().map(|member| member.vehicle.time_us()).collect();
+        let mut table = Vec::with_capacity(instants.len() * self.members.len() * chosen.len());
+        python.detach(|| {
+            for instant in &instants {
+                let (members, threads) = (&mut self.members, &self.threads);
+                threads.install(|| {
+                    members
+                        .par_iter_mut()
+                        .zip(&begun)
+                        .for_each(|(member, begun)| member.advance_to(begun.saturating_add(*instant)));
+                });
+                table.extend(self.rows(&chosen));
+            }
+        });
+        let shape = [instants.len(), self.members.len(), chosen.len()];
+        let table = PyArray1::from_vec(python, table).reshape(shape)?;
+        Ok((PyArray1::from_vec(python, instants), table))
+    }
+
+    /// Begins the flights of some vehicles anew, under their present inputs, each in its own motion if there is one.
+    #[pyo3(signature = (vehicles, motions = None))]
+    fn restart(
+        &mut self,
+        python: Python<'_>,
+        vehicles: Vec<usize>,
+        motions: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let motions = motions.map(|motions| matrix("motions", motions)).transpose()?;
+        if let Some(motions) = &motions
+            && motions.shape() != (vehicles.len(), MOTION)
+        {
+            return Err(ArgumentError::new_err(format!(
+                "motions has the shape {:?}, expected ({}, {MOTION})",
+                motions.shape(),
+                vehicles.len()
+            )));
+        }
+        for vehicle in &vehicles {
+            self.member(*vehicle)?;
+        }
+        let motion_of = |row: usize| {
+            motions
+                .as_ref()
+                .map(|motions: &DMatrix<f64>| std::array::from_fn(|column| motions[(row, column)]))
+        };
+        let rows: Vec<(usize, Option<[f64; MOTION]>)> =
+            vehicles.iter().enumerate().map(|(row, vehicle)| (*vehicle, motion_of(row))).collect();
+        python
+            .detach(|| {
+                rows.iter().try_for_each(|(vehicle, motion)| self.members[*vehicle].restart(motion.as_ref()))
+            })
+            .map_err(ArgumentError::new_err)
+    }
+
+    fn save<'py>(&self, python: Python<'py>) -> PyResult<Vec<Bound<'py, PyBytes>>> {
+        let bytes = |member: &Member| Ok(PyBytes::new(python, &member.vehicle.save().bytes()?));
+        self.members.iter().map(bytes).collect()
+    }
+
+    fn restore(&mut self, python: Python<'_>, saved: Vec<Vec<u8>>) -> PyResult<()> {
+        if saved.len() != self.members.len() {
+            return Err(ArgumentError::new_err(format!(
+                "saved has {} flights, expected {}",
+                saved.len(),
+                self.members.len()
+            )));
+        }
+        let saved = saved.iter().map(|bytes| Saved::from_bytes(bytes)).collect::<PyResult<Vec<_>>>()?;
+        if saved.iter().any(|saved| saved.actuation != self.actuation) {
+            return Err(ArgumentError::new_err("saved has flights with another actuation than this fleet's"));
+        }
+        let (members, threads) = (&mut self.members, &self.threads);
+        let restored = python.detach(|| {
+            threads.install(|| {
+                members.par_iter_mut().zip(&saved).try_for_each(|(member, saved)| {
+                    member.vehicle.restore(saved)?;
+                    member.failure = None;
+                    Ok::<_, String>(())
+                })
+            })
+        });
+        restored.map_err(ArgumentError::new_err)
+    }
+}
+
+impl Fleet {
+    fn member(&self, vehicle: usize) -> PyResult<&Member> {
+        self.members.get(vehicle).ok_or_else(|| {
+            ArgumentError::new_err(format!(
+                "there is no vehicle {vehicle}; allowed are 0 to {}",
+                self.members.len().saturating_sub(1)
+            ))
+        })
+    }
+}

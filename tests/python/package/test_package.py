@@ -1,0 +1,110 @@
+"""What the wheel holds, and its programs."""
+
+import subprocess
+import sys
+import zipfile
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+
+import lmpc_quadrotor
+from lmpc_quadrotor import Simulation, fmu_path, sitl_path
+from lmpc_quadrotor.view import flight_page
+
+PACKAGE = Path(lmpc_quadrotor.__file__).parent
+
+
+def run(*arguments, **options):
+    command = [sys.executable, "-m", "lmpc_quadrotor", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, **options)
+
+
+def test_it_is_the_installed_package():
+    assert PACKAGE.parent.name == "site-packages"
+    assert metadata.version("lmpc-quadrotor") == lmpc_quadrotor.__version__
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+@pytest.mark.parametrize("model", ["quadrotor", "controller", "plant"])
+def test_fmus_are_valid_and_fly(model, version):
+    path = fmu_path(model, version)
+    assert validate_fmu(path) == []
+    result = simulate_fmu(path, fmi_type="CoSimulation", stop_time=0.2)
+    assert len(result) > 1
+    printed = run("fmu", model, "--version", version)
+    assert printed.stdout.strip() == path and printed.returncode == 0
+
+
+def test_the_system_is_there():
+    assert zipfile.is_zipfile(fmu_path("system"))
+    with pytest.raises(ValueError, match="model = 'copter'; allowed are 'quadrotor', 'controller', 'plant' and 'system'"):
+        fmu_path("copter")
+    with pytest.raises(ValueError, match="version = '1.0'; allowed are '2.0' and '3.0'"):
+        fmu_path(version="1.0")
+
+
+def test_the_vehicle_is_a_program_of_the_environment():
+    program = Path(sitl_path())
+    assert program.parent == Path(sys.executable).parent
+    for command in ([str(program)], [sys.executable, "-m", "lmpc_quadrotor", "sitl"]):
+        answer = subprocess.run([*command, "--version"], capture_output=True, text=True, timeout=60)
+        assert answer.stdout.startswith("lmpc-sitl "), answer
+    assert run("sitl", "--no-such-flag").returncode == 2
+
+
+def test_licences_are_inside():
+    texts = {file.name: file.locate().read_text() for file in metadata.files("lmpc-quadrotor") if "licenses" in file.parts}
+    assert {"LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"} <= set(texts)
+    for library in ("nalgebra", "pyo3", "numpy", "mavlink", "rsruckig", "rayon"):
+        assert f"\n{library} " in texts["THIRD-PARTY.txt"], library
+
+
+def test_commands_say_how_they_are_used():
+    assert "sitl" in run("--help").stdout
+    wrong = run("fly")
+    assert wrong.returncode == 2 and "unknown command 'fly'" in wrong.stderr
+
+
+def test_types_are_those_of_the_module(tmp_path):
+    """mypy finds no error in the package and in a program that uses it, and the stubs say what the module has."""
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import lmpc_quadrotor as quadrotor\n"
+        "flight = quadrotor.Simulation({'airframe.mass': 0.9})\n"
+        "height: float = flight['altitude']\n"
+        "basis = quadrotor.control.LaguerreBasis(5, 0.8)\n"
+        "terms: int = basis.terms\n"
+    )
+    for module, arguments in [
+        ("mypy", ["--strict", "--cache-dir", str(tmp_path / "cache"), "-p", "lmpc_quadrotor"]),
+        ("mypy", ["--strict", "--cache-dir", str(tmp_path / "cache"), str(program)]),
+        ("mypy.stubtest", ["lmpc_quadrotor._native"]),
+    ]:
+        checked = subprocess.run([sys.executable, "-m", module, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=240)
+        assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_a_csv_file_of_fmpy_is_shown(tmp_path):
+    from fmpy.util import write_csv
+
+    result = simulate_fmu(fmu_path(), stop_time=2.0, output=["position.x", "position.y", "position.z", "setpoint.position.x", "setpoint.position.y", "setpoint.position.z"])
+    write_csv(tmp_path / "flight.csv", result)
+    shown = run("view", str(tmp_path / "flight.csv"))
+    assert shown.returncode == 0, shown
+    page = (tmp_path / "flight.html").read_text()
+    assert "position.x" in page and "http" not in page.lower().replace("</html", "")
+    assert flight_page(Simulation().fly(0.1)).startswith("<!doctype html>")
+    (tmp_path / "other.csv").write_text("time,height\n0,1\n")
+    wrong = run("view", str(tmp_path / "other.csv"))
+    assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z" in wrong.stderr
+
+
+def test_benchmark_prints_its_table():
+    answer = run("benchmark", "--vehicles", "2")
+    assert answer.returncode == 0, answer
+    assert "Fleet, body rates" in answer.stdout and "gym-pybullet-drones" in answer.stdout
+    assert np.isfinite(float(answer.stdout.split("plant, rotor speeds")[1].split()[0]))
