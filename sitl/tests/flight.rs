@@ -72,7 +72,7 @@ fn nothing_happens_after_arming_disarms() {
 /// With the delays at zero it stays armed, before a flight and after it.
 #[test]
 fn a_delay_of_zero_never_disarms() {
-    let mut start = common::settings(Identity::ArduPilot);
+    let mut start = settings(Identity::ArduPilot);
     start.conduct.disarm_before_takeoff_s = 0.0;
     start.conduct.disarm_after_landing_s = 0.0;
     let mut bench = Bench::of(&start);

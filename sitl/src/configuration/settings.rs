@@ -309,7 +309,8 @@ pub(super) fn vehicle(
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
     vehicle.configuration.sensors.seed = noise_seed(arguments, number);
     let windy = wind.speed_m_s > 0.0 || gusts_m_s > 0.0;
-    let drag_n_s_m = if windy { wind_drag::provide(&mut vehicle.configuration) } else { None };
+    let drag_n_s_m =
+        if windy { vehicle::world::wind_drag::provide(&mut vehicle.configuration) } else { None };
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
     let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
     let home_m = Vector3::from(vehicle.configuration.initial.position_m);

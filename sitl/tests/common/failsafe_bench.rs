@@ -57,6 +57,8 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow if identity.is_ardupilot() => "BATT_FS_LOW_ACT",
         Cause::BatteryCritical | Cause::BatteryEmergency if identity.is_ardupilot() => "BATT_FS_CRT_ACT",
         Cause::SetPointsLost => "COM_OBL_RC_ACT",
+        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
+        Cause::PilotLost => "NAV_RCL_ACT",
         Cause::GroundStationLost => "NAV_DLL_ACT",
         Cause::HighWind => "COM_WIND_MAX_ACT",
         Cause::Fence => "GF_ACTION",

@@ -1,5 +1,6 @@
 """Logs in ArduPilot's format, read by pymavlink's DFReader, and a reboot as ArduPilot's own tests ask for it."""
 
+import subprocess
 import time
 
 from pymavlink import DFReader
@@ -49,10 +50,10 @@ def test_dfreader_reads_a_flight_without_a_warning(start, connect, tmp_path, cap
     assert capfd.readouterr() == ("", ""), "the reader warns"
     assert log.mav_type == mavlink.MAV_TYPE_QUADROTOR and log.params["LOG_BITMASK"] == 176126
     assert log.percent > 99
-    expected = ("FMT FMTU UNIT MULT PARM MSG MODE ATT RATE POS GPS GPA IMU BARO MAG BAT CTUN PSCN PSCE PSCD RCOU EV ARM ORGN "
+    expected = ("FMT FMTU UNIT MULT PARM MSG MODE ATT RATE POS GPS GPA IMU BARO MAG BAT CTUN PSCN PSCE PSCD RCIN RCOU EV ARM ORGN "
                 "XKF1 XKF2 XKF3 XKF4 VIBE MOTB SIM PM").split()
     assert not [name for name in expected if name not in seen], seen
-    assert modes[-2:] == [GUIDED, LAND]
+    assert modes[-3:-1] == [GUIDED, LAND], "and the first mode again after landing"
     assert 3.8 < max(heights) < 4.3 and max(climbs) > 50, "centimetres per second"
     assert log.formats[log.name_to_id["ATT"]].get_unit("Roll") == "deg"
     assert log.formats[log.name_to_id["MAG"]].get_unit("MagX") == "mGauss"
@@ -75,3 +76,29 @@ def test_logs_are_listed_and_downloaded_as_ardupilots(start, connect, tmp_path):
         piece = client.wait("LOG_DATA", lambda message: message.ofs == len(content))
         content += bytes(piece.data[:piece.count])
     assert content == (folder / "00000001.BIN").read_bytes()[:900]
+
+
+def test_plans_survive_a_restart_and_a_record_replays_over_a_reboot(start, connect, program, tmp_path):
+    parameters, record = tmp_path / "kept.params", tmp_path / "flight.record"
+    options = ("--autopilot", "ardupilot", "--parameters", str(parameters), "--speed", "8")
+    vehicle = start(*options, "--record", str(record))
+    client = connect(vehicle)
+    items = [(mavlink.MAV_CMD_NAV_WAYPOINT, 0), (mavlink.MAV_CMD_NAV_TAKEOFF, 5), (mavlink.MAV_CMD_NAV_WAYPOINT, 7)]
+    client.mav.mission_count_send(*client.target, len(items))
+    for number, (command, height) in enumerate(items):
+        client.wait(["MISSION_REQUEST", "MISSION_REQUEST_INT"], lambda request: request.seq == number)
+        client.mav.mission_item_int_send(*client.target, number, 3, command, 0, 1, 0, 0, 0, 0, 473977418, 85455939, height)
+    assert client.wait("MISSION_ACK").type == mavlink.MAV_MISSION_ACCEPTED
+
+    def count():
+        client.mav.mission_request_list_send(*client.target)
+        return client.wait("MISSION_COUNT").count
+
+    client.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1)
+    client.wait("STATUSTEXT", lambda message: "simulated quadrotor" in message.text)
+    assert count() == 3, "over a reboot"
+    assert vehicle.stop() == 0
+    client = connect(start(*options))
+    assert count() == 3, "over a restart"
+    replayed = subprocess.run([program, "--replay", record], capture_output=True, text=True, timeout=60)
+    assert replayed.returncode == 0 and "the same flight" in replayed.stdout, replayed.stdout + replayed.stderr
