@@ -98,6 +98,11 @@ fn failed_rotor() {
     every_action_of(Cause::RotorFailure);
 }
 
+#[test]
+fn manual_control_lost() {
+    every_action_of(Cause::PilotLost);
+}
+
 /// Ends of modes, which are no failures.
 const ENDS: [(&str, &str); 5] = [
     ("Takeoff --> Hold", "height reached"),

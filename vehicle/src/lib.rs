@@ -50,6 +50,6 @@ pub use vehicle::{
     OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Recovery,
     Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Simulated,
     SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US, TargetReport, Threat,
-    TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle, VehicleSettings, YawTarget,
-    wrapped,
+    TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings,
+    YawTarget, wrapped,
 };

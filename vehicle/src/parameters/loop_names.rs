@@ -175,7 +175,7 @@ mod tests {
                     assert!(seen.insert(name), "{name} twice");
                     assert!(name.len() <= LONGEST, "{name}");
                     let plain = |byte: u8| byte == b'_' || byte.is_ascii_uppercase() || byte.is_ascii_digit();
-                    // ArduPilot's modes of a switch have a number only.
+                    // ArduPilot's modes of the mode switch have no group.
                     let grouped = name.contains('_') || name.starts_with("FLTMODE");
                     assert!(grouped && name.bytes().all(plain), "{name}");
                 }

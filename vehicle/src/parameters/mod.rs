@@ -37,6 +37,7 @@ pub use loop_names::{LOOP_NAMES, LoopName, loop_name};
 pub use mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 pub use named_value::NamedValue;
 pub use px4_parameters::PX4_PARAMETERS;
+pub use radio_parameters::radio_parameters;
 pub use set_error::SetError;
 pub use simulation_parameters::SIMULATION_PARAMETERS;
 pub use speed::Speed;

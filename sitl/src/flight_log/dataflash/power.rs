@@ -1,4 +1,4 @@
-//! Battery, motors, and the program itself.
+//! Battery, radio, motors, and the program itself.
 
 use super::field::{Field, field, instance};
 use crate::flight_log::LogSource;
@@ -19,6 +19,29 @@ pub const BAT: &[Field] = &[
     field("Res", 'f', 'w', '0', |_| 0.0),
     field("RemPct", 'B', '%', '0', |source| (100.0 * source.vehicle.battery_remaining()).round()),
     field("H", 'B', '-', '-', |_| 1.0),
+];
+
+fn channel_us(source: &LogSource<'_>, channel: usize) -> f64 {
+    let pulses = source.vehicle.pilot().pulses;
+    pulses.and_then(|pulses| pulses.get(channel).copied()).map_or(0.0, f64::from)
+}
+
+/// Channels of the pilot's radio, µs.
+pub const RCIN: &[Field] = &[
+    field("C1", 'H', 'Y', '-', |source| channel_us(source, 0)),
+    field("C2", 'H', 'Y', '-', |source| channel_us(source, 1)),
+    field("C3", 'H', 'Y', '-', |source| channel_us(source, 2)),
+    field("C4", 'H', 'Y', '-', |source| channel_us(source, 3)),
+    field("C5", 'H', 'Y', '-', |source| channel_us(source, 4)),
+    field("C6", 'H', 'Y', '-', |source| channel_us(source, 5)),
+    field("C7", 'H', 'Y', '-', |source| channel_us(source, 6)),
+    field("C8", 'H', 'Y', '-', |source| channel_us(source, 7)),
+    field("C9", 'H', 'Y', '-', |source| channel_us(source, 8)),
+    field("C10", 'H', 'Y', '-', |source| channel_us(source, 9)),
+    field("C11", 'H', 'Y', '-', |source| channel_us(source, 10)),
+    field("C12", 'H', 'Y', '-', |source| channel_us(source, 11)),
+    field("C13", 'H', 'Y', '-', |source| channel_us(source, 12)),
+    field("C14", 'H', 'Y', '-', |source| channel_us(source, 13)),
 ];
 
 /// Motor outputs, µs; without a motor 0.

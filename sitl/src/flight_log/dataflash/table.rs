@@ -3,7 +3,7 @@
 use super::estimates::{XKF1, XKF2, XKF3, XKF4};
 use super::field::Field;
 use super::motion::{ATT, CTUN, POS, PSCD, PSCE, PSCN, RATE, SIM};
-use super::power::{BAT, MOTB, PM, RCOU};
+use super::power::{BAT, MOTB, PM, RCIN, RCOU};
 use super::sensors::{BARO, GPA, GPS, IMU, MAG, VIBE};
 
 /// Bits of LOG_BITMASK.
@@ -13,6 +13,7 @@ const GPS_BIT: u8 = 2;
 const PERFORMANCE: u8 = 3;
 const CONTROL_TUNING: u8 = 4;
 const NAVIGATION_TUNING: u8 = 5;
+const RADIO: u8 = 6;
 const INERTIAL: u8 = 7;
 const CURRENT: u8 = 9;
 const MOTOR_OUTPUT: u8 = 10;
@@ -97,4 +98,5 @@ pub static MESSAGES: &[Message] = &[
     message(20, "XKF2", XKF2, ALWAYS),
     message(21, "XKF3", XKF3, ALWAYS),
     message(22, "XKF4", XKF4, ALWAYS),
+    message(23, "RCIN", RCIN, &[(Some(RADIO), MEDIUM_US)]),
 ];

@@ -80,7 +80,7 @@ impl Vehicle {
         if before == Mode::Mission && mode != Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if before == Mode::Return {
+        if before != mode && matches!(before, Mode::Return | Mode::Mission) {
             self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::Return(None)));
         }
         self.decided.switch_to(mode);

@@ -259,11 +259,6 @@ impl Vehicle {
         MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
     }
 
-    /// Whether it is in the air, or about to leave the ground.
-    pub fn is_flying(&self) -> bool {
-        self.situation().flies()
-    }
-
     /// Whether there is something to be flown.
     pub fn has_mission(&self) -> bool {
         self.machines.mission.program().is_flown()
