@@ -26,7 +26,6 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     real!("BATT_CRT_MAH", None, 0.0..=1e6, failsafe.battery_limits.critical_mah, "mAh", "Remaining charge below which the battery is critical; 0: any"),
     real!("BATT_LOW_TIMER", None, 0.0..=120.0, failsafe.battery_limits.low_s, "s", "Time of a low voltage after which it counts"),
     switch!("BATT_FS_VOLTSRC", failsafe.battery_limits.at_rest, "Voltage that is looked at", ["As measured", "At rest: without the drop that the current makes"]),
-    bitmask!("FS_OPTIONS", FAILSAFE_OPTIONS, radio.options, identity, identity, "What goes on in spite of a failsafe; there is no gripper"),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {
         set: |conduct, value| {
@@ -43,14 +42,6 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     },
 ];
 
-const FAILSAFE_OPTIONS: &[&str] = &[
-    "Missions, when sticks are lost",
-    "Missions, when the ground station is lost",
-    "Guided mode, when sticks are lost",
-    "Landings, when sticks are lost",
-    "Modes by sticks, when the ground station is lost",
-    "The gripper opens",
-];
 const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Warn, 0, "Report only"),
     (Action::Return, 1, "Return"),

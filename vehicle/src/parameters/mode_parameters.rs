@@ -177,7 +177,7 @@ mod tests {
                     parameter.id
                 );
                 let mut taken = 0;
-                for value in (-1..100).map(f64::from) {
+                for value in (-1..100).map(f64::from).chain([0.25, 0.75]) {
                     let mut conduct = Conduct::new(ardupilot);
                     if value < parameter.minimum || value > parameter.maximum {
                         continue;
