@@ -19,6 +19,7 @@ pub mod codec;
 pub mod compatibility;
 mod context;
 pub mod envelope;
+mod event_catalog;
 pub mod file_store;
 pub mod file_work;
 mod outbox;

@@ -1,14 +1,19 @@
-//! Files that describe the parameters to ground stations, as component metadata.
+//! Files that describe the parameters and events to ground stations, as component metadata.
 
 use quadrotor::ValueRange;
 use serde_json::{Map, Value as Json, json};
+use vehicle::identity::Identity;
 use vehicle::parameters::{NamedValue, ParameterTable, Value};
 
 use crate::codec::ascii::ascii;
 use crate::codec::checksum::checksum;
+use crate::event_catalog;
 
 /// COMP_METADATA_TYPE_PARAMETER.
 const TYPE_PARAMETER: u8 = 1;
+/// COMP_METADATA_TYPE_EVENTS.
+const TYPE_EVENTS: u8 = 4;
+const EVENTS_URI: &str = "mftp:///metadata/events.json";
 const PARAMETERS_URI: &str = "mftp:///metadata/parameters.json";
 
 /// The files. They stay the same however parameters are set: clients keep them by their checksums.
@@ -20,19 +25,23 @@ pub struct ParameterMetadata {
     pub general_checksum: u32,
     /// Describes the parameters.
     pub parameters: Vec<u8>,
+    /// Describes the events.
+    pub events: Vec<u8>,
 }
 
 impl ParameterMetadata {
     /// The files about parameters with these values at the start.
-    pub fn new(table: &ParameterTable, initial: &[Value]) -> Self {
+    pub fn new(identity: Identity, table: &ParameterTable, initial: &[Value]) -> Self {
         let parameters = describe(table, initial);
-        let types = json!([{
-            "type": TYPE_PARAMETER,
-            "uri": PARAMETERS_URI,
-            "fileCrc": checksum(&parameters),
-        }]);
+        let events = event_catalog::render(identity);
+        let file = |kind: u8, uri: &str, bytes: &[u8]| json!({ "type": kind, "uri": uri, "fileCrc": checksum(bytes) });
+        let mut types = vec![file(TYPE_PARAMETER, PARAMETERS_URI, &parameters)];
+        // ArduPilot has none.
+        if !identity.is_ardupilot() {
+            types.push(file(TYPE_EVENTS, EVENTS_URI, &events));
+        }
         let general = json!({ "version": 1, "metadataTypes": types }).to_string().into_bytes();
-        Self { general_checksum: checksum(&general), general, parameters }
+        Self { general_checksum: checksum(&general), general, parameters, events }
     }
 }
 

@@ -73,7 +73,8 @@ impl Parameters {
 
     /// Files that describe them.
     pub fn metadata(&self) -> &ParameterMetadata {
-        self.metadata.get_or_init(|| ParameterMetadata::new(&self.table, &self.initial))
+        self.metadata
+            .get_or_init(|| ParameterMetadata::new(self.settings.identity, &self.table, &self.initial))
     }
 
     /// What the table reads.

@@ -22,6 +22,7 @@ pub mod fmu;
 pub mod hil;
 pub mod link;
 mod pace;
+mod radio_port;
 mod rarely;
 mod ready;
 pub mod record;

@@ -29,6 +29,7 @@ pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
         let list = |list: fn(&Links) -> Vec<String>| fleet.hubs().get(member.hub()).map(list);
         serde_json::json!({
             "system_id": member.autopilot().system_id(),
+            "radio": member.radio_address().map(|address| address.to_string()),
             "addresses": list(Links::addresses),
             "links": list(Links::descriptions),
         })

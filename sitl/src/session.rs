@@ -73,6 +73,7 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
     let several = clocks.len() as u32;
     while !stop.load(Ordering::Relaxed) && !clocks.iter().all(|clock| clock.is_over(fleet)) {
         fleet.receive(Instant::now());
+        fleet.hear_radios();
         let now = Instant::now();
         let mut behind = false;
         for clock in &mut clocks {

@@ -21,8 +21,13 @@ fn every_action_as(identity: Identity, cause: Cause) {
         // Until the next heartbeat that comes by itself.
         bench.fly(1.1);
         let (vehicle, texts) = (bench.autopilot.vehicle(), bench.texts());
-        let told = cause.name().to_owned();
-        let announced = texts.iter().any(|text| text.starts_with(&told));
+        // ArduPilot's words for its battery are its own.
+        let told = match cause {
+            Cause::BatteryLow if identity.is_ardupilot() => "Battery 1 is low",
+            Cause::BatteryCritical if identity.is_ardupilot() => "Battery 1 is critical",
+            _ => cause.name(),
+        };
+        let announced = texts.iter().any(|text| text.starts_with(told));
         assert_eq!(announced, action != Action::None, "{cause:?} {action:?}: {texts:?}");
         match action {
             Action::None | Action::Warn => assert_eq!(vehicle.mode(), before, "{cause:?} {action:?}"),
@@ -91,6 +96,11 @@ fn breached_fence() {
 #[test]
 fn failed_rotor() {
     every_action_of(Cause::RotorFailure);
+}
+
+#[test]
+fn manual_control_lost() {
+    every_action_of(Cause::PilotLost);
 }
 
 /// Ends of modes, which are no failures.

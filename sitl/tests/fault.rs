@@ -208,7 +208,7 @@ fn what_has_no_meaning_is_refused_with_the_reason() {
         assert_eq!(inject(&mut bench, unit, kind, instance), result, "{reason}");
         assert!(bench.texts().iter().any(|text| text.contains(reason)), "{reason}: {:?}", bench.texts());
     }
-    assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
+    assert_eq!(bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 
 /// Ideal sensors read the truth: what would change nothing is not accepted. Realistic ones take it all, and show it.
@@ -297,7 +297,7 @@ fn a_parameter_forbids_it() {
     let mut bench = Bench::of(&start);
     assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
     assert!(bench.texts().iter().any(|text| text.contains("set SYS_FAILURE_EN to 1")), "{:?}", bench.texts());
-    assert_eq!(*bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
+    assert_eq!(bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());
 }
 
 /// In wind and gusts, and by instruments and the estimator instead of the true motion. Measured: 29° to 38°, 9 to 20 m.

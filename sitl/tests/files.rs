@@ -87,16 +87,6 @@ fn the_mission_is_a_file_that_reads_as_the_mission() {
     }
 }
 
-/// Bit by bit, as the polynomial says.
-fn crc32(bytes: &[u8]) -> u32 {
-    bytes.iter().fold(0, |crc, byte| {
-        (0..8).fold(
-            crc ^ u32::from(*byte),
-            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
-        )
-    })
-}
-
 /// Paths to what is outside, or is no file.
 #[cfg(unix)]
 const OUTSIDE: [&str; 20] = [

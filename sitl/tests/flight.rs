@@ -72,7 +72,7 @@ fn nothing_happens_after_arming_disarms() {
 /// With the delays at zero it stays armed, before a flight and after it.
 #[test]
 fn a_delay_of_zero_never_disarms() {
-    let mut start = common::settings(Identity::ArduPilot);
+    let mut start = settings(Identity::ArduPilot);
     start.conduct.disarm_before_takeoff_s = 0.0;
     start.conduct.disarm_after_landing_s = 0.0;
     let mut bench = Bench::of(&start);
@@ -138,17 +138,17 @@ fn a_refused_arming_says_why() {
 
 #[test]
 fn a_mode_that_there_is_not_names_those_that_there_are() {
-    // PX4's acrobatic mode and ArduPilot's STABILIZE.
+    // PX4's rattitude mode, which is gone, and ArduPilot's AUTOTUNE.
     for (identity, main, told) in [
         (
             Identity::Px4,
-            5.0,
-            "Mode 0x50000 is not available; available: Position, Hold, Takeoff, Mission, Return, Land, Offboard",
+            9.0,
+            "Mode 0x90000 is not available; available: Position, Hold, Takeoff, Mission, Return, Land, Offboard",
         ),
         (
             Identity::ArduPilot,
-            0.0,
-            "Mode 0 is not available; available: Loiter, Brake, Auto, RTL, Land, Guided",
+            15.0,
+            "Mode 15 is not available; available: Loiter, Brake, Auto, RTL, Land, Guided",
         ),
     ] {
         let mut bench = Bench::new(identity);
@@ -258,7 +258,9 @@ fn reposition(bench: &mut Bench, frame: MavFrame, altitude_m: f32) -> u8 {
 
 #[test]
 fn sticks_fly_the_position_mode_and_their_loss_holds() {
-    let mut bench = Bench::hovering(Identity::Px4);
+    let mut start = settings(Identity::Px4);
+    start.conduct.failsafe.pilot_lost = vehicle::radio::RadioLossAction::Hold;
+    let mut bench = Bench::hovering_with(&start);
     assert_eq!(bench.set_mode(Mode::Position), 0);
     let forward = MANUAL_CONTROL_DATA { target: 1, x: 1000, z: 500, ..MANUAL_CONTROL_DATA::default() };
     bench.stream(4.0, |bench| bench.send(MavMessage::MANUAL_CONTROL(forward.clone())));

@@ -1,5 +1,7 @@
 //! Commands that navigate at once, by COMMAND_LONG and COMMAND_INT, as PX4 and ArduPilot take them.
 
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
 mod common;
 
 use autopilot::codec::Message;

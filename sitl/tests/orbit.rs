@@ -22,7 +22,8 @@ fn orbit(bench: &mut Bench, [x, y]: [f64; 2], radius: f32, speed: f32, behaviour
     bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
         target_system: 1,
         target_component: 1,
-        frame: MavFrame::MAV_FRAME_GLOBAL,
+        // As MAVSDK sends it: an altitude above sea level in this frame.
+        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
         command: MavCmd::MAV_CMD_DO_ORBIT,
         param1: radius,
         param2: speed,

@@ -29,6 +29,7 @@ pub mod fence;
 mod flight_error;
 pub mod foreign;
 pub mod identity;
+pub mod kept;
 mod mode;
 mod mode_table;
 pub mod parameters;
@@ -42,12 +43,13 @@ pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions, BatteryPack, Cause, ChangeError,
-    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight,
-    FollowSettings, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest,
-    Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
-    Pilot, PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings,
-    SelfId, SetPoint, Severity, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
-    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Vehicle,
-    VehicleSettings, YawTarget, wrapped,
+    Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions,
+    BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Encounter, Failsafe, FailsafeSettings,
+    FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings, HeadingPolicy, Home, LandedState,
+    LogConduct, MissionState, MissionStatus, MotorTest, Notice, ObstacleWatch, OperatorId, OperatorPlace,
+    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Recovery,
+    Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Simulated,
+    SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US, TargetReport, Threat,
+    TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings,
+    YawTarget, wrapped,
 };

@@ -16,12 +16,11 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 19] = [
+const ACTIONS: [(MavCmd, CarryOut); 18] = [
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
     (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
     (MavCmd::MAV_CMD_NAV_TAKEOFF, take_off),
-    (MavCmd::MAV_CMD_DO_LAND_START, begin_landing),
     (MavCmd::MAV_CMD_CONDITION_YAW, turn),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED, change_speed),
     (MavCmd::MAV_CMD_DO_SET_HOME, set_home),
@@ -82,20 +81,6 @@ impl Service for Actions {
 fn loiter(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
     let mode = if context.identity().is_ardupilot() { Mode::Position } else { Mode::Hold };
     context.vehicle.set_mode(mode)
-}
-
-/// Goes on with the mission where its landing begins.
-fn begin_landing(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
-    let vehicle = &mut context.vehicle;
-    let items = vehicle.plans().get(PlanKind::Mission).items();
-    let begins = items.iter().position(|item| item.command == MavCmd::MAV_CMD_DO_LAND_START as u16);
-    let Some(index) = begins else {
-        return Err(Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned()));
-    };
-    if !vehicle.is_flying() {
-        return Err(Refusal::Failed("Landing rejected: not flying".to_owned()));
-    }
-    vehicle.start_mission(Some(index))
 }
 
 /// ArduPilot takes no speed that is not above zero; PX4 returns to the parameter's by it, and −1 keeps what there is.

@@ -20,6 +20,7 @@ mod command;
 mod component_metadata;
 mod custom_mode;
 mod equipment;
+mod event;
 mod file_transfer;
 mod follow;
 mod global_origin;

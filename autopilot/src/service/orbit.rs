@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::{MavCmd, MavFrame, MavMessage, ORBIT_EXECU
 use vehicle::plan::frame;
 use vehicle::{OrbitHeading, OrbitRequest, Refusal, Vehicle};
 
-use super::command::{global_frame, told_place};
+use super::command::told_place;
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, scaled_degrees};
 use crate::context::Context;
@@ -58,7 +58,8 @@ impl Service for Orbits {
     }
 }
 
-/// Radius, m, speed, m/s, ORBIT_YAW_BEHAVIOUR, way around, rad, centre. What is no number is left open.
+/// Radius, m, speed, m/s, ORBIT_YAW_BEHAVIOUR, way around, rad, centre. What is no number is left open. The altitude is above sea level
+/// whatever the frame says: so PX4 has it, and MAVSDK sends one above sea level in a frame of heights above home.
 fn request(command: &Command, vehicle: &Vehicle) -> Result<OrbitRequest, Refusal> {
     let given = |number: usize| Some(command.parameter(number)).filter(|value| value.is_finite());
     let heading = match given(3) {
@@ -76,10 +77,9 @@ fn request(command: &Command, vehicle: &Vehicle) -> Result<OrbitRequest, Refusal
     };
     let nowhere = command.x.is_nan() || command.y.is_nan();
     let centre_m = if nowhere { None } else { Some(told_place(command, vehicle)?) };
-    let frame = if nowhere && command.z.is_nan() { frame::GLOBAL } else { global_frame(command)? };
     Ok(OrbitRequest {
         centre_m: centre_m.map(|place_m| [place_m.x, place_m.y]),
-        down_m: Some(command.z).filter(|z| z.is_finite()).map(|z| vehicle.site().down_m(frame, z)),
+        down_m: Some(command.z).filter(|z| z.is_finite()).map(|z| vehicle.site().down_m(frame::GLOBAL, z)),
         radius_m: given(1),
         speed_m_s: given(2),
         heading,

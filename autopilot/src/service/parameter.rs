@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use mavlink::dialects::ardupilotmega::{
-    MavCmd, MavMessage, MavParamType, MavProtocolCapability, PARAM_VALUE_DATA,
+    MavCmd, MavMessage, MavParamError, MavParamType, MavProtocolCapability, PARAM_ERROR_DATA,
+    PARAM_VALUE_DATA,
 };
 use quadrotor::StabilityWarning;
 use vehicle::identity::Identity;
-use vehicle::parameters::Value;
+use vehicle::parameters::{SetError, Value};
 use vehicle::{Refusal, Severity};
 
 use super::{CommandEntry, Outcome, Progress, Service};
@@ -20,6 +21,8 @@ use crate::turns::Turns;
 const HASH_CHECK: &str = "_HASH_CHECK";
 /// Index of what is not in the list.
 const NO_INDEX: u16 = u16::MAX;
+/// Index in PARAM_ERROR of what was asked for by its name.
+const BY_NAME: i16 = -1;
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_PREFLIGHT_STORAGE as u16)];
 
@@ -131,7 +134,11 @@ fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
     let payload = frame.payload();
     let to = Destination::Peer(origin.peer);
     if let Ok(index) = usize::try_from(payload.i16(0)) {
-        send_value(context, index, to);
+        if context.parameters.table().entries().len() > index {
+            send_value(context, index, to);
+        } else {
+            refuse(context, origin, payload.i16(0), "", MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+        }
         return;
     }
     let name = payload.name(4);
@@ -139,6 +146,33 @@ fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
         send_hash(context, to);
     } else if let Some(index) = context.parameters.table().index_of(&name) {
         send_value_as(context, index, &name, to);
+    } else {
+        refuse(context, origin, payload.i16(0), &name, MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST);
+    }
+}
+
+/// PARAM_ERROR: why a request could not be met, to who made it.
+fn refuse(context: &mut Context, origin: &Origin, param_index: i16, name: &str, error: MavParamError) {
+    let message = PARAM_ERROR_DATA {
+        param_index,
+        target_system: origin.system,
+        target_component: origin.component,
+        param_id: name.into(),
+        error,
+    };
+    context.outbox.send(Destination::Peer(origin.peer), MavMessage::PARAM_ERROR(message));
+}
+
+/// MAV_PARAM_ERROR of a refused change.
+fn error_code(error: &SetError) -> MavParamError {
+    match error {
+        SetError::Unknown { .. } => MavParamError::MAV_PARAM_ERROR_DOES_NOT_EXIST,
+        SetError::NotAllowed { .. } => MavParamError::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE,
+        SetError::ReadOnly(_) | SetError::Calculated(_) | SetError::Counted(_) => {
+            MavParamError::MAV_PARAM_ERROR_READ_ONLY
+        }
+        // The closed loop could not fly with it, or nothing here could follow it now.
+        SetError::Refused { .. } => MavParamError::MAV_PARAM_ERROR_PERMISSION_DENIED,
     }
 }
 
@@ -159,6 +193,7 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
         }
     }
     if let Err(error) = result {
+        refuse(context, origin, BY_NAME, &name, error_code(&error));
         context.say(Severity::Warning, &error.to_string());
     }
     for warning in stability_warnings(context) {

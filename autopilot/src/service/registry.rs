@@ -46,6 +46,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::file_transfer::FileServer::default()),
         Box::new(super::log::LogServer::default()),
         Box::new(super::telemetry::Telemetry),
+        Box::new(super::event::Events::default()),
         Box::new(super::range::Ranges),
         Box::new(super::traffic::Traffic),
         Box::new(super::remote_id::RemoteIdentification),

@@ -80,6 +80,14 @@ pub struct Arguments {
     )]
     pub accept_signing_setup: Option<bool>,
 
+    /// UDP port that hears a pilot's radio
+    ///
+    /// Datagrams have 8 or 16 pulses of 16 bits, µs, the lowest byte first, as ArduPilot's SITL receives them on its port 5501. The
+    /// last pulses stay until others come. Further vehicles have a port each, 10 apart; 0 is any free port. The port is open to
+    /// this machine only. [default: none]
+    #[arg(long, env = "LMPC_SITL_RC_PORT", value_name = "PORT", help_heading = LINKS, hide_short_help = true)]
+    pub rc_port: Option<u16>,
+
     /// Autopilot whose conventions to follow [default: px4]
     #[arg(long, env = "LMPC_SITL_AUTOPILOT", help_heading = VEHICLE)]
     pub autopilot: Option<Conventions>,
@@ -425,6 +433,7 @@ impl Arguments {
             fmu_check: self.fmu_check.or(file.fmu_check),
             signing_key: self.signing_key.or(file.signing_key),
             accept_signing_setup: self.accept_signing_setup.or(file.accept_signing_setup),
+            rc_port: self.rc_port.or(file.rc_port),
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),
             log: self.log.or(file.log),

@@ -34,6 +34,7 @@ impl HilSettings {
             ("equipment", arguments.equipment.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
             ("accept-signing-setup", arguments.accept_signing_setup.is_some()),
+            ("rc-port", arguments.rc_port.is_some()),
         ] {
             if given {
                 return Err(wrong(

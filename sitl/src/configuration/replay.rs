@@ -57,6 +57,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ftp_write,
         signing_key,
         accept_signing_setup,
+        rc_port,
         ready_file,
         duration,
         log: _,
@@ -107,6 +108,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("ftp-write", ftp_write.is_some()),
         ("signing-key", signing_key.is_some()),
         ("accept-signing-setup", accept_signing_setup.is_some()),
+        ("rc-port", rc_port.is_some()),
         ("ready-file", ready_file.is_some()),
         ("duration", duration.is_some()),
     ];
@@ -144,6 +146,7 @@ mod tests {
         ("log-start", "arm"),
         ("ftp-write", "true"),
         ("accept-signing-setup", "true"),
+        ("rc-port", "5501"),
         ("wind", "3"),
         ("list-parameters", "json"),
         ("log", "warn"),

@@ -81,6 +81,8 @@ pub struct MemberSettings {
     pub hub: usize,
     /// Parameter file.
     pub parameters: Option<PathBuf>,
+    /// Port that hears its pilot's radio; 0: any.
+    pub rc_port: Option<u16>,
 }
 
 impl Settings {
@@ -106,7 +108,8 @@ impl Settings {
                 Some(choice) => fmu::check(arguments, choice, &vehicle)?,
                 None => Vec::new(),
             };
-            let own = MemberSettings { system_id, vehicle, hub, parameters };
+            let rc_port = arguments.rc_port.map(|port| rc_port(port, number)).transpose()?;
+            let own = MemberSettings { system_id, vehicle, hub, parameters, rc_port };
             Ok((own, notes.into_iter().chain(warning).chain(about_fmu).collect()))
         };
         let members: Result<Vec<_>, Failure> = ids.into_iter().enumerate().map(member).collect();
@@ -151,6 +154,18 @@ impl Settings {
         };
         self.vehicles.iter().map(participant).collect()
     }
+}
+
+/// The port of the radio of a vehicle: ports of several are apart as ArduPilot has them.
+fn rc_port(first: u16, number: usize) -> Result<u16, Failure> {
+    const APART: usize = 10;
+    if first == 0 {
+        return Ok(0);
+    }
+    u16::try_from(usize::from(first) + APART * number).map_err(|_| Failure::Value {
+        name: "--rc-port".to_owned(),
+        reason: format!("{first} leaves no port for vehicle {}; choose a lower one", number + 1),
+    })
 }
 
 /// Whether and how simulation time waits for set-points.
@@ -294,7 +309,8 @@ pub(super) fn vehicle(
     vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
     vehicle.configuration.sensors.seed = noise_seed(arguments, number);
     let windy = wind.speed_m_s > 0.0 || gusts_m_s > 0.0;
-    let drag_n_s_m = if windy { wind_drag::provide(&mut vehicle.configuration) } else { None };
+    let drag_n_s_m =
+        if windy { vehicle::world::wind_drag::provide(&mut vehicle.configuration) } else { None };
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
     let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
     let home_m = Vector3::from(vehicle.configuration.initial.position_m);

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use autopilot::codec::Frame;
+use vehicle::Pulses;
 use vehicle::foreign::ForeignMotion;
 
 use super::Member;
@@ -51,6 +52,13 @@ impl Books {
     pub fn received(&mut self, member: usize, time_us: u64, received: &Received) {
         if let Some(recorder) = &mut self.recorder {
             recorder.frame(member, time_us, &received.origin, &received.frame);
+        }
+    }
+
+    /// A member's radio sends something else.
+    pub fn radio(&mut self, member: usize, time_us: u64, pulses: &Pulses) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.radio(member, time_us, pulses);
         }
     }
 

@@ -1,5 +1,6 @@
 //! One vehicle among those of a run.
 
+use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
@@ -15,6 +16,7 @@ use super::loss::Loss;
 use crate::failure::Failure;
 use crate::files::render_plans;
 use crate::flight_log::FlightLog;
+use crate::radio_port::RadioPort;
 use crate::record::{Digest, Participant};
 use crate::terminal::set_simulation_time;
 
@@ -33,6 +35,7 @@ pub struct Member {
     pub(super) hub: usize,
     pub(super) last_heartbeat: Instant,
     pub(super) lockstep: Option<Lockstep>,
+    pub(super) radio: Option<RadioPort>,
     /// When a ground station was heard last, and what the vehicle knows of it.
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
@@ -73,6 +76,7 @@ impl Member {
             hub,
             last_heartbeat: Instant::now(),
             lockstep: None,
+            radio: None,
             ground_station: None,
             digest: Digest::default(),
             parameters: None,
@@ -98,6 +102,17 @@ impl Member {
     pub(super) fn remember(mut self, parameters: Option<KeptFile>, plans: Option<KeptFile>) -> Self {
         (self.parameters, self.plans) = (parameters, plans);
         self
+    }
+
+    /// Hears the pilot's radio on a port.
+    pub(super) fn hear_radio(mut self, port: Option<RadioPort>) -> Self {
+        self.radio = port;
+        self
+    }
+
+    /// Where it hears the pilot's radio.
+    pub fn radio_address(&self) -> Option<SocketAddr> {
+        self.radio.as_ref().and_then(RadioPort::address)
     }
 
     /// Lets its simulation time wait for set-points.

@@ -21,6 +21,7 @@ use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
 use crate::link::{Links, Received};
+use crate::radio_port::RadioPort;
 use crate::record::Participant;
 
 /// Longest time of one look that long answers may take.
@@ -83,6 +84,7 @@ impl Fleet {
                 let model = models.next().flatten();
                 let member = Member::new(participant, model, settings.speed, own.hub, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
+                let member = member.hear_radio(own.rc_port.map(RadioPort::open).transpose()?);
                 Ok(member
                     .keep(files.desk(number), log)
                     .remember(parameters, plans)
@@ -233,6 +235,17 @@ impl Fleet {
             }
         }
         any
+    }
+
+    /// Hands what the pilots' radios send on to their vehicles.
+    pub(crate) fn hear_radios(&mut self) {
+        for (number, member) in self.members.iter_mut().enumerate() {
+            let Some(pulses) = member.radio.as_mut().and_then(RadioPort::news) else { continue };
+            if member.loss().is_none() {
+                self.books.radio(number, member.time_us(), &pulses);
+                member.autopilot.receive_radio(pulses);
+            }
+        }
     }
 
     /// Heartbeats where simulation time is too slow for them.

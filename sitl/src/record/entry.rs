@@ -4,6 +4,7 @@ use std::fmt;
 
 use autopilot::codec::Frame;
 use autopilot::envelope::{Origin, PeerId};
+use vehicle::Pulses;
 
 /// What happened to one vehicle, and when.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,8 @@ pub enum Event {
     Frame(Origin, Frame),
     /// A ground station is heard, or no more: that is judged by the wall clock.
     GroundStation(bool),
+    /// The pilot's radio sends these pulses from now on.
+    Radio(Pulses),
     /// How a foreign model moves the vehicle in the tick that follows.
     Motion(Vec<f64>),
     /// The digest of the flight so far, to be compared.
@@ -41,6 +44,7 @@ impl Event {
         match self {
             Self::Frame(..) => "frame",
             Self::GroundStation(_) => "station",
+            Self::Radio(_) => "radio",
             Self::Motion(_) => "motion",
             Self::State(_) => "state",
             Self::End(_) => "end",
@@ -59,6 +63,10 @@ impl fmt::Display for Entry {
                 frame.bytes().iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
             }
             Event::GroundStation(heard) => write!(formatter, "{}", u8::from(*heard)),
+            Event::Radio(pulses) => {
+                let words: Vec<String> = pulses.iter().map(u16::to_string).collect();
+                formatter.write_str(&words.join(" "))
+            }
             Event::Motion(values) => {
                 let words: Vec<String> =
                     values.iter().map(|value| format!("{:x}", value.to_bits())).collect();
@@ -91,6 +99,10 @@ impl Entry {
                 "1" => Event::GroundStation(true),
                 _ => return None,
             },
+            "radio" => {
+                let read: Vec<u16> = words.by_ref().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+                Event::Radio(read.try_into().ok()?)
+            }
             "motion" => {
                 let value = |word| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
                 let values: Vec<f64> = words.by_ref().map(value).collect::<Option<_>>()?;
@@ -142,6 +154,7 @@ mod tests {
             Event::Frame(origin, frame),
             Event::GroundStation(true),
             Event::GroundStation(false),
+            Event::Radio([1500; 18]),
             Event::State(7),
             Event::End(u64::MAX),
             Event::Limit(0),

@@ -10,6 +10,7 @@ use super::checksum::Checksum;
 use super::{Digest, Entry, Event, Header};
 use crate::failure::Failure;
 use crate::files::{FileLock, Notice, Spool, Upkeep};
+use vehicle::Pulses;
 use vehicle::Severity;
 use vehicle::foreign::ForeignMotion;
 
@@ -67,6 +68,11 @@ impl Recorder {
     /// Records whether a vehicle hears a ground station from a time on, µs.
     pub fn ground_station(&mut self, vehicle: usize, time_us: u64, heard: bool) {
         self.entry(vehicle, time_us, Event::GroundStation(heard));
+    }
+
+    /// Records what a pilot's radio sends to a vehicle from a time on, µs.
+    pub fn radio(&mut self, vehicle: usize, time_us: u64, pulses: &Pulses) {
+        self.entry(vehicle, time_us, Event::Radio(*pulses));
     }
 
     /// Records how a foreign model has moved a vehicle in the tick that began at a time, µs.

@@ -206,6 +206,7 @@ impl Flown {
         match entry.event {
             Event::Frame(origin, frame) => self.autopilot.receive(&origin, &frame),
             Event::GroundStation(heard) => self.autopilot.hear_ground_station(heard),
+            Event::Radio(pulses) => self.autopilot.receive_radio(pulses),
             Event::Motion(values) => self.motions.push(values),
             Event::State(digest) => self.compare(entry.time_us, digest)?,
             Event::End(digest) => {

@@ -29,6 +29,11 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
             text.push_str(&format!("Links of system {}:\n", first.autopilot().system_id()));
         }
     }
+    for member in fleet.members() {
+        if let Some(address) = member.radio_address() {
+            text.push_str(&format!("  radio of system {}: UDP {address}\n", member.autopilot().system_id()));
+        }
+    }
     // How to connect to one shows how to connect to all.
     for (links, specifications) in fleet.hubs().iter().zip(&settings.hubs).take(1) {
         text.push_str(&ways(links, specifications));

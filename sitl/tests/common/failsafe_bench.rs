@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 use vehicle::parameters::{
     ARDUPILOT_PARAMETERS, ARDUPILOT_SURROUNDINGS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS,
-    PX4_SURROUNDINGS,
+    PX4_SURROUNDINGS, radio_parameters,
 };
 use vehicle::{Action, Cause, Conduct, Mode};
 
@@ -39,12 +39,14 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
 
 /// Those of both identities.
 fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
+    let radio = radio_parameters(false).chain(radio_parameters(true));
     CONDUCT_PARAMETERS
         .iter()
         .chain(PX4_PARAMETERS)
         .chain(ARDUPILOT_PARAMETERS)
         .chain(PX4_SURROUNDINGS)
         .chain(ARDUPILOT_SURROUNDINGS)
+        .chain(radio)
 }
 
 /// The parameter of a cause.
@@ -55,6 +57,8 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow if identity.is_ardupilot() => "BATT_FS_LOW_ACT",
         Cause::BatteryCritical | Cause::BatteryEmergency if identity.is_ardupilot() => "BATT_FS_CRT_ACT",
         Cause::SetPointsLost => "COM_OBL_RC_ACT",
+        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
+        Cause::PilotLost => "NAV_RCL_ACT",
         Cause::GroundStationLost => "NAV_DLL_ACT",
         Cause::HighWind => "COM_WIND_MAX_ACT",
         Cause::Fence => "GF_ACTION",
@@ -122,10 +126,12 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
         Cause::PilotLost => {
-            bench.autopilot.receive_radio([1500; vehicle::radio::CHANNELS]);
-            bench.fly(0.1);
-            set(bench, "SIM_RC_FAIL", 1.0);
-            bench.fly(1.1);
+            bench.send(MavMessage::MANUAL_CONTROL(MANUAL_CONTROL_DATA {
+                target: 1,
+                z: 500,
+                ..MANUAL_CONTROL_DATA::default()
+            }));
+            bench.fly(0.6);
         }
     }
 }

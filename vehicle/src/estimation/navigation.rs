@@ -7,6 +7,7 @@ use super::estimator::Estimator;
 use super::gps::{self, GpsFix, GpsReceiver};
 use super::inertial::{InertialReading, InertialUnit};
 use super::magnetometer::{self, Magnetometer, MagnetometerReading};
+use super::sensor_errors::{ErrorSource, SensorErrors};
 use super::true_motion::TrueMotion;
 use super::vibration::Vibration;
 use super::watch::{Trust, Watch};
@@ -95,6 +96,7 @@ pub struct Navigation {
     vibration: Vibration,
     readings: Readings,
     defects: Defects,
+    errors: ErrorSource,
     gyroscope_watch: Watch,
     accelerometer_watch: Watch,
     barometer_watch: Watch,
@@ -124,6 +126,7 @@ impl Navigation {
                 barometer: Defect::new(Sensor::Barometer, seed),
                 gps: Defect::new(Sensor::Gps, seed),
             },
+            errors: ErrorSource::new(seed),
             gyroscope_watch: Watch::default(),
             accelerometer_watch: Watch::default(),
             barometer_watch: Watch::default(),
@@ -136,12 +139,23 @@ impl Navigation {
         }
     }
 
-    /// One tick: the vehicle moves like this, with these faults, and stands or not.
-    pub fn step(&mut self, motion: &TrueMotion, frame: &LocalFrame, faults: &Faults, stands: bool) {
+    /// One tick: the vehicle moves like this, with these faults and errors, and stands or not.
+    pub fn step(
+        &mut self,
+        motion: &TrueMotion,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: &SensorErrors,
+        stands: bool,
+    ) {
         let time_us = motion.time_us;
         self.time_us = time_us;
-        self.read_inertial(motion, faults);
-        let altitude_m = frame.origin().altitude_m - motion.position_m.z;
+        let errors = Some(errors).filter(|errors| **errors != SensorErrors::default());
+        self.read_inertial(motion, faults, errors);
+        let mut altitude_m = frame.origin().altitude_m - motion.position_m.z;
+        if let Some(errors) = errors.filter(|_| time_us.is_multiple_of(barometer::PERIOD_US)) {
+            altitude_m += self.errors.height_m(errors, barometer::PERIOD_US as f64 / 1e6);
+        }
         let reading = self.barometer.sample(time_us, altitude_m);
         let fault = faults.sensor(Sensor::Barometer);
         if let Some(reading) = reading.and_then(|reading| self.defects.barometer.tell(reading, fault)) {
@@ -152,6 +166,12 @@ impl Navigation {
         }
         let field = || earth_field_ned(&frame.to_geodetic(&motion.position_m));
         let reading = self.magnetometer.sample(time_us, &motion.attitude, field);
+        let reading = reading.map(|reading| match errors {
+            Some(errors) => {
+                MagnetometerReading { field_gauss: self.errors.field(errors, reading.field_gauss), ..reading }
+            }
+            None => reading,
+        });
         let fault = faults.sensor(Sensor::Magnetometer);
         if let Some(reading) = reading.and_then(|reading| self.defects.magnetometer.tell(reading, fault)) {
             self.magnetometer_watch.update(time_us, reading.field_gauss.into());
@@ -160,7 +180,11 @@ impl Navigation {
             self.readings.magnetometer = Some(reading);
         }
         let fault = faults.sensor(Sensor::Gps);
-        if let Some(fix) = self.gps.sample(motion).and_then(|fix| self.defects.gps.tell(fix, fault)) {
+        let fix = self.gps.sample(motion).map(|fix| match errors {
+            Some(errors) => self.errors.fix(errors, fix, frame.origin().latitude_deg),
+            None => fix,
+        });
+        if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let fitted = self.estimator.gps(&fix);
             self.gps_trust.update(fitted, gps::PERIOD_US);
             self.gps_watch.update(time_us, fix.position_m.into());
@@ -172,9 +196,13 @@ impl Navigation {
     }
 
     /// A reading needs both of its halves.
-    fn read_inertial(&mut self, motion: &TrueMotion, faults: &Faults) {
+    fn read_inertial(&mut self, motion: &TrueMotion, faults: &Faults, errors: Option<&SensorErrors>) {
         let time_us = motion.time_us;
-        let reading = self.inertial.sample(motion);
+        let mut reading = self.inertial.sample(motion);
+        if let Some(errors) = errors {
+            reading.body_rate_rad_s = self.errors.rate(errors, reading.body_rate_rad_s);
+            reading.specific_force_m_s2 = self.errors.force(errors, reading.specific_force_m_s2);
+        }
         let rate = Axes { time_us, axes: reading.body_rate_rad_s };
         let force = Axes { time_us, axes: reading.specific_force_m_s2 };
         let rate = self.defects.gyroscope.tell(rate, faults.sensor(Sensor::Gyroscope));

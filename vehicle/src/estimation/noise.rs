@@ -20,6 +20,8 @@ pub enum Channel {
     Magnetometer,
     /// What a fault adds to an instrument.
     Fault(Sensor),
+    /// What a user adds to all of them.
+    Error,
 }
 
 impl Channel {
@@ -30,6 +32,7 @@ impl Channel {
             Self::Barometer => 3,
             Self::Magnetometer => 4,
             Self::Fault(sensor) => 5 + u64::from(sensor.number()),
+            Self::Error => 10,
         }
     }
 }

@@ -35,6 +35,17 @@ impl Faults {
         }
     }
 
+    /// With rotors that make a share of their thrust only, the first in the lowest bit; one that is broken already stays as it is.
+    pub fn with_weak(mut self, rotors: u32, share: f64) -> Self {
+        let fault = if share > 0.0 { RotorFault::Weak { share } } else { RotorFault::Off };
+        for (index, place) in self.rotors.iter_mut().enumerate() {
+            if rotors & 1 << index != 0 {
+                place.get_or_insert(fault);
+            }
+        }
+        self
+    }
+
     /// What is wrong with an instrument.
     pub fn sensor(&self, sensor: Sensor) -> Option<SensorFault> {
         Sensor::ALL.into_iter().zip(self.sensors).find(|(kept, _)| *kept == sensor)?.1

@@ -3,7 +3,7 @@
 use core::convert::identity;
 
 use super::ConductParameter;
-use super::conduct_parameter::{bitmask, choice, switch, whole};
+use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use crate::vehicle::{Action, FenceOptions, FenceParts};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
@@ -18,6 +18,15 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     whole!("LOG_DISARMED", 0..=3, log.disarmed, u8, "Log while disarmed, too: 0 off, 1 to 3 on"),
     switch!("LOG_FILE_DSRMROT", log.rotates, "Begin a new log with each flight instead of each boot"),
     choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
+    real!("LAND_SPEED_HIGH", None, 0.0..=2000.0, land_fast_m_s, 100.0, "cm/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN"),
+    real!("LAND_SPD_HIGH_MS", None, 0.0..=20.0, land_fast_m_s, "m/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN").other(),
+    real!("BATT_LOW_VOLT", None, 0.0..=120.0, failsafe.battery_limits.low_v, "V", "Voltage below which the battery is low, after BATT_LOW_TIMER; 0: any"),
+    real!("BATT_CRT_VOLT", None, 0.0..=120.0, failsafe.battery_limits.critical_v, "V", "Voltage below which the battery is critical, after BATT_LOW_TIMER; 0: any"),
+    real!("BATT_LOW_MAH", None, 0.0..=1e6, failsafe.battery_limits.low_mah, "mAh", "Remaining charge below which the battery is low; 0: any"),
+    real!("BATT_CRT_MAH", None, 0.0..=1e6, failsafe.battery_limits.critical_mah, "mAh", "Remaining charge below which the battery is critical; 0: any"),
+    real!("BATT_LOW_TIMER", None, 0.0..=120.0, failsafe.battery_limits.low_s, "s", "Time of a low voltage after which it counts"),
+    switch!("BATT_FS_VOLTSRC", failsafe.battery_limits.at_rest, "Voltage that is looked at", ["As measured", "At rest: without the drop that the current makes"]),
+    bitmask!("FS_OPTIONS", FAILSAFE_OPTIONS, radio.options, identity, identity, "What goes on in spite of a failsafe; there is no gripper"),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {
         set: |conduct, value| {
@@ -34,6 +43,14 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     },
 ];
 
+const FAILSAFE_OPTIONS: &[&str] = &[
+    "Missions, when sticks are lost",
+    "Missions, when the ground station is lost",
+    "Guided mode, when sticks are lost",
+    "Landings, when sticks are lost",
+    "Modes by sticks, when the ground station is lost",
+    "The gripper opens",
+];
 const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Warn, 0, "Report only"),
     (Action::Return, 1, "Return"),
@@ -116,10 +133,15 @@ mod tests {
         for parameter in ARDUPILOT_PARAMETERS {
             let mut taken = 0;
             for value in (-1..10).map(f64::from).chain([0.5, f64::NAN]) {
+                // The range of a number is looked at before.
+                if value.is_nan() && !parameter.integer {
+                    continue;
+                }
                 let mut conduct = Conduct::new(true);
                 let before = conduct;
                 if (parameter.set)(&mut conduct, value) {
-                    assert_eq!((parameter.get)(&conduct), value, "{}", parameter.id);
+                    let read = (parameter.get)(&conduct);
+                    assert_eq!(read as f32, value as f32, "{}", parameter.id);
                     taken += 1;
                 } else {
                     assert_eq!(conduct, before, "{} = {value}", parameter.id);

@@ -14,6 +14,8 @@ pub struct ConductParameter {
     pub ardupilot: Option<(&'static str, f64)>,
     /// Further names of ArduPilot, from before or after a renaming, with their units.
     pub also: &'static [(&'static str, f64)],
+    /// Whether it is another name of something that another row has: files hold that one.
+    pub is_other: bool,
     /// Whether only whole numbers are allowed.
     pub integer: bool,
     /// Smallest value, in our units.
@@ -40,12 +42,17 @@ impl ConductParameter {
         Self { also, ..self }
     }
 
+    /// The same as another name of something that another row has.
+    pub(super) const fn other(self) -> Self {
+        Self { is_other: true, ..self }
+    }
+
     /// Its names in the terms of an identity, each with how many of its units one of ours is, and whether it is a further one.
     pub(super) fn names_in(&self, identity: Identity) -> impl Iterator<Item = (&'static str, f64, bool)> {
         let ardupilot = identity.is_ardupilot();
         let (id, scale) = self.ardupilot.filter(|_| ardupilot).unwrap_or((self.id, 1.0));
         let also = if ardupilot { self.also } else { &[] };
-        std::iter::once((id, scale, false)).chain(also.iter().map(|(id, scale)| (*id, *scale, true)))
+        std::iter::once((id, scale, self.is_other)).chain(also.iter().map(|(id, scale)| (*id, *scale, true)))
     }
 }
 
@@ -59,6 +66,7 @@ macro_rules! real {
             id: $id,
             ardupilot: $ardupilot,
             also: &[],
+            is_other: false,
             integer: false,
             minimum: $minimum,
             maximum: $maximum,
@@ -75,6 +83,20 @@ macro_rules! real {
     };
 }
 
+/// A number that is as it was at the start until it is set, and is shown as the given one if the start says nothing.
+macro_rules! chosen {
+    ($id:literal, $minimum:literal..=$maximum:literal, $($field:ident).+, $shown:expr, $unit:literal, $text:literal) => {
+        ConductParameter {
+            get: |conduct| conduct.$($field).+.unwrap_or($shown),
+            set: |conduct, value| {
+                conduct.$($field).+ = Some(value);
+                true
+            },
+            ..real!($id, None, $minimum..=$maximum, takeoff_height_m, $unit, $text)
+        }
+    };
+}
+
 /// One of a few meanings with numbers and names; the first one stands for what has none.
 macro_rules! choice {
     ($id:literal, $meanings:ident, $($field:ident).+, $text:literal) => {
@@ -82,6 +104,7 @@ macro_rules! choice {
             id: $id,
             ardupilot: None,
             also: &[],
+            is_other: false,
             integer: true,
             minimum: -100.0,
             maximum: 100.0,
@@ -112,11 +135,25 @@ macro_rules! switch {
     ($id:literal, $($field:ident).+, $text:literal) => {
         switch!($id, $($field).+, $text, ["Off", "On"])
     };
+    ($id:literal, $($field:ident).+, $text:literal, not) => {
+        ConductParameter {
+            get: |conduct| f64::from(u8::from(!conduct.$($field).+)),
+            set: |conduct, value| {
+                let means = value == 0.0 || value == 1.0;
+                if means {
+                    conduct.$($field).+ = value == 0.0;
+                }
+                means
+            },
+            ..switch!($id, $($field).+, $text)
+        }
+    };
     ($id:literal, $($field:ident).+, $text:literal, [$off:literal, $on:literal]) => {
         ConductParameter {
             id: $id,
             ardupilot: None,
             also: &[],
+            is_other: false,
             integer: true,
             minimum: 0.0,
             maximum: 1.0,
@@ -146,6 +183,7 @@ macro_rules! bitmask {
             id: $id,
             ardupilot: None,
             also: &[],
+            is_other: false,
             integer: true,
             minimum: 0.0,
             maximum: ((1_u32 << $names.len()) - 1) as f64,
@@ -172,6 +210,7 @@ macro_rules! whole {
             id: $id,
             ardupilot: None,
             also: &[],
+            is_other: false,
             integer: true,
             minimum: $minimum as f64,
             maximum: $maximum as f64,
@@ -191,4 +230,4 @@ macro_rules! whole {
     };
 }
 
-pub(super) use {bitmask, choice, real, switch, whole};
+pub(super) use {bitmask, choice, chosen, real, switch, whole};

@@ -3,8 +3,11 @@
 use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
 use super::entry::Source;
+use super::limit_names::LimitName;
+use super::loop_names::loop_name;
 use super::named_value::SWITCH;
 use super::{ConductParameter, Entry, NamedValue, Statistic};
+use crate::kept::KeptParameter;
 
 /// A parameter in words.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +60,8 @@ impl Entry {
         match self.source {
             Source::Loop(parameter) => describe_loop(parameter),
             Source::Conduct(parameter, scale) => describe_conduct(parameter, scale),
+            Source::Alias(name, parameter, scale) => describe_alias(name, parameter, scale),
+            Source::Kept(parameter, _) => describe_kept(parameter),
             Source::SystemId => Description {
                 text: "MAVLink system id; set at the start".to_owned(),
                 range: ValueRange { minimum: 1.0, maximum: 250.0, unit: "" },
@@ -130,6 +135,32 @@ fn describe_loop(parameter: &Parameter) -> Description {
         bits: &[],
         group: group(parameter.name),
         needs_restart: parameter.mutability == Mutability::Start,
+        read_only: false,
+    }
+}
+
+/// In the unit of the name; nothing else differs.
+fn describe_alias(name: &LimitName, parameter: &Parameter, scale: f64) -> Description {
+    let known = describe_loop(parameter);
+    let range = ValueRange {
+        minimum: known.range.minimum * scale,
+        maximum: known.range.maximum * scale,
+        unit: name.unit_at(scale, known.range.unit),
+    };
+    let text =
+        format!("{}; the same as {}", name.text, loop_name(name.dotted).map_or(name.dotted, |own| own.id));
+    Description { text, range, ..known }
+}
+
+fn describe_kept(parameter: &KeptParameter) -> Description {
+    Description {
+        text: format!("{} (no effect here: {})", parameter.text, parameter.reason),
+        range: ValueRange { minimum: parameter.minimum, maximum: parameter.maximum, unit: parameter.unit },
+        whole: parameter.integer,
+        names: Vec::new(),
+        bits: &[],
+        group: "Without effect",
+        needs_restart: false,
         read_only: false,
     }
 }

@@ -2,9 +2,11 @@
 
 use quadrotor::Parameter;
 
-use super::loop_access::read;
+use super::limit_names::LimitName;
+use super::loop_access::{number, read};
 use super::loop_names::LoopName;
 use super::{ConductParameter, ParameterValues, Statistic, Value};
+use crate::kept::KeptParameter;
 
 /// Where a parameter lives.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +15,10 @@ pub(super) enum Source {
     Loop(&'static Parameter),
     /// In the vehicle's behaviour; the factor converts our unit to that of the name.
     Conduct(&'static ConductParameter, f64),
+    /// In the closed loop, by another name than ours.
+    Alias(&'static LimitName, &'static Parameter, f64),
+    /// Kept, without effect, at a place.
+    Kept(&'static KeptParameter, usize),
     /// System id: set at the start.
     SystemId,
     /// Pace of simulation time.
@@ -61,7 +67,7 @@ impl Entry {
 
     /// Whether it belongs to the vehicle, not to the run, and may be in a file.
     pub(super) fn is_of_vehicle(&self) -> bool {
-        matches!(self.source, Source::Loop(_) | Source::Conduct(..))
+        matches!(self.source, Source::Loop(_) | Source::Conduct(..) | Source::Alias(..) | Source::Kept(..))
     }
 
     /// The flag of the program that sets a parameter of the run, rather than of the vehicle.
@@ -69,7 +75,7 @@ impl Entry {
         match self.source {
             Source::SystemId => Some("--system-id"),
             Source::Speed => Some("--speed"),
-            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust | Source::Statistic(_) => None,
+            _ => None,
         }
     }
 
@@ -89,6 +95,13 @@ impl Entry {
                 } else {
                     Value::Real((value * scale) as f32)
                 }
+            }
+            Source::Alias(_, parameter, scale) => {
+                Value::Real((number(parameter, &values.configuration) * scale) as f32)
+            }
+            Source::Kept(parameter, place) => {
+                let value = values.conduct.kept.get(place).unwrap_or(parameter.default);
+                if parameter.integer { Value::Integer(value as i32) } else { Value::Real(value) }
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),

@@ -14,6 +14,14 @@ pub fn read(parameter: &Parameter, configuration: &Configuration) -> Value {
     }
 }
 
+/// Present value as a number, in full precision.
+pub fn number(parameter: &Parameter, configuration: &Configuration) -> f64 {
+    match parameter.access {
+        Access::Real { get, .. } => get(configuration),
+        _ => read(parameter, configuration).number(),
+    }
+}
+
 /// Writes a number into a configuration as the parameter's type. `None` if the parameter cannot have it; nothing has changed
 /// then.
 pub fn write(parameter: &Parameter, value: f64, into: &mut Configuration) -> Option<()> {

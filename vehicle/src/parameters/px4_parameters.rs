@@ -1,8 +1,9 @@
 //! What only PX4 has, or what ArduPilot has with other numbers.
 
 use super::ConductParameter;
-use super::conduct_parameter::{choice, real, whole};
+use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use super::conduct_parameters::FENCE_ACTIONS;
+use crate::estimation::MagnetometerUse;
 use crate::vehicle::{Action, BatteryActions};
 
 /// Parameters that are there unless the vehicle presents itself as ArduPilot.
@@ -10,6 +11,9 @@ use crate::vehicle::{Action, BatteryActions};
 pub static PX4_PARAMETERS: &[ConductParameter] = &[
     choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
     choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery, "Action when the battery is critical; 3 returns, then lands when the battery is almost empty"),
+    bitmask!("EKF2_GPS_CTRL", GPS_PARTS, simulated.errors.switches.gps_control, whole_bits, f64::from, "What of GPS is used; without the first bit nothing"),
+    switch!("EKF2_BARO_CTRL", simulated.errors.switches.barometer_control, "Use of the barometer"),
+    choice!("EKF2_MAG_TYPE", MAGNETOMETER_USES, simulated.errors.switches.magnetometer, "Use of the magnetometer"),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES, "deg", "Roll that counts as a failure; 0 disables it"),
     real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES, "deg", "Pitch that counts as a failure; 0 disables it"),
@@ -21,6 +25,17 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
 
 /// Of a radian.
 const DEGREES: f64 = 180.0 / core::f64::consts::PI;
+const GPS_PARTS: &[&str] = &["Longitude and latitude", "Altitude", "Velocity", "Heading of two antennas"];
+const MAGNETOMETER_USES: &[(MagnetometerUse, i32, &str)] = &[
+    (MagnetometerUse::Automatic, 0, "Automatic"),
+    (MagnetometerUse::Heading, 1, "Heading; here as automatic"),
+    (MagnetometerUse::None, 5, "None"),
+    (MagnetometerUse::AtStart, 6, "At the start; here as automatic"),
+];
+
+fn whole_bits(value: f64) -> u32 {
+    value as u32
+}
 
 const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::None, 0, "Nothing"),

@@ -12,6 +12,7 @@ macro_rules! whole {
             id: $id,
             ardupilot: None,
             also: &[],
+            is_other: false,
             integer: true,
             minimum: $minimum,
             maximum: $maximum,
@@ -94,6 +95,7 @@ macro_rules! px4_channel {
                 id: concat!("RC", $number, "_REV"),
                 ardupilot: None,
                 also: &[],
+                is_other: false,
                 integer: false,
                 minimum: -1.0,
                 maximum: 1.0,
@@ -176,6 +178,7 @@ static ARDUPILOT_RADIO: &[ConductParameter] = &[
     flight_mode!("FLTMODE5", 4),
     flight_mode!("FLTMODE6", 5),
     choice!("FS_THR_ENABLE", ARDUPILOT_LOSS, failsafe.pilot_lost, "Action when the radio is lost"),
+    bitmask!("FS_OPTIONS", OPTIONS, radio.options, same, same, "What goes on in spite of a failsafe"),
     whole!("FS_THR_VALUE", 910.0..=1100.0, conduct, conduct.radio.low_throttle_us, "us", "Throttle below which the receiver has lost its sender"),
     real!("RC_OVERRIDE_TIME", None, -1.0..=120.0, radio.override_s, "s", "Time for which an override of a channel counts; -1 is for ever, 0 ignores overrides"),
     choice!("ARMING_RUDDER", RUDDER, radio.rudder, "What the rudder stick does that is held at an end with the throttle low"),
@@ -305,4 +308,12 @@ const INPUTS: &[(InputChoice, i32, &str)] = &[
 ];
 const CURVES: &[(bool, i32, &str)] = &[(true, 0, "Hovering thrust"), (false, 1, "Half of the thrust")];
 const EXCEPTIONS: &[&str] = &["Mission", "Hold and other automatic modes", "Offboard"];
+const OPTIONS: &[&str] = &[
+    "Continue a mission without the radio",
+    "Continue a mission without the ground station",
+    "Continue in guided mode without the radio",
+    "Continue a landing",
+    "Continue with a pilot without the ground station",
+    "Release the gripper",
+];
 const OVERRIDES: &[&str] = &["Automatic modes", "Offboard"];

@@ -1,14 +1,16 @@
 //! All parameters in their order: reading and writing them.
 
-use quadrotor::PARAMETERS;
+use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 
 use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
+use super::limit_names::LIMIT_NAMES;
 use super::loop_access::write;
 use super::loop_names::loop_name;
 use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
+use super::simulation_parameters::SIMULATION_PARAMETERS;
 use super::suggestion::suggestion;
 use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
@@ -16,6 +18,7 @@ use super::{
     CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Statistic, Statistics, Value,
 };
 use crate::identity::Identity;
+use crate::kept::{KeptParameter, Owner, kept_parameters};
 use crate::vehicle::Conduct;
 
 /// Name of the pace of simulation time.
@@ -49,6 +52,7 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
+        let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
         let (own, of_modes) = if ardupilot {
             (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
         } else {
@@ -61,6 +65,7 @@ impl ParameterTable {
             .chain(of_modes)
             .chain(radio_parameters(ardupilot))
             .chain(around)
+            .chain(simulated)
             .flat_map(|parameter| {
                 let names = parameter.names_in(identity);
                 names.map(|(id, scale, is_other)| Entry {
@@ -68,8 +73,21 @@ impl ParameterTable {
                     ..Entry::new(id, Source::Conduct(parameter, scale))
                 })
             });
+        let of_limits = LIMIT_NAMES.iter().filter_map(|name| {
+            let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name.dotted)?;
+            let names = if ardupilot { name.ardupilot } else { name.px4 };
+            Some(names.iter().map(move |(id, scale)| Entry {
+                is_other: true,
+                ..Entry::new(id, Source::Alias(name, parameter, *scale))
+            }))
+        });
+        let owner = if ardupilot { Owner::ArduPilot } else { Owner::Px4 };
+        let kept = kept_parameters().filter(|(_, parameter)| parameter.owner == owner);
+        let kept = kept.map(|(place, parameter)| Entry::new(parameter.id, Source::Kept(parameter, place)));
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
+        // ArduPilot's new name.
+        let also = ardupilot.then(|| Entry::new("MAV_SYSID", Source::SystemId));
         let others = [
             Entry::new(hover, Source::HoverThrust),
             Entry::new(system, Source::SystemId),
@@ -78,7 +96,14 @@ impl ParameterTable {
         let counted = if ardupilot { &Statistic::ALL[..] } else { &[] };
         let of_statistics =
             counted.iter().map(|(id, statistic)| Entry::new(id, Source::Statistic(*statistic)));
-        let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).chain(of_statistics).collect();
+        let mut entries: Vec<Entry> = of_loop
+            .chain(of_conduct)
+            .chain(of_limits.flatten())
+            .chain(kept)
+            .chain(others)
+            .chain(also)
+            .chain(of_statistics)
+            .collect();
         entries.sort_by_key(|entry| entry.id);
         Self { entries }
     }
@@ -139,6 +164,12 @@ impl ParameterTable {
             }
             Source::Conduct(parameter, scale) => {
                 set_conduct(parameter, value, scale, &mut values.conduct).map(|()| Change::Conduct)
+            }
+            Source::Alias(_, parameter, scale) => {
+                set_alias(parameter, value, scale, &mut values.configuration).map(|()| Change::ClosedLoop)
+            }
+            Source::Kept(parameter, place) => {
+                set_kept(parameter, place, value, &mut values.conduct).map(|()| Change::Conduct)
             }
             Source::SystemId => return Err(SetError::ReadOnly(name.to_owned())),
             Source::HoverThrust => return Err(SetError::Calculated(name.to_owned())),
@@ -225,6 +256,26 @@ fn set_conduct(parameter: &ConductParameter, value: f64, scale: f64, into: &mut 
     let value = within(parameter.minimum * scale, parameter.maximum * scale, value)?;
     let mut conduct = *into;
     (parameter.set)(&mut conduct, value / scale).then(|| *into = conduct)
+}
+
+/// `None` if the parameter cannot have the value; nothing has changed then. What rounds to a bound in the unit of the name is that bound.
+fn set_alias(parameter: &Parameter, value: f64, scale: f64, into: &mut Configuration) -> Option<()> {
+    let ends = match parameter.access {
+        Access::Real { minimum, maximum, .. } => [minimum, maximum],
+        _ => return None,
+    };
+    let bound = ends.into_iter().find(|end| (end * scale) as f32 == value as f32);
+    write(parameter, bound.unwrap_or(value / scale), into)
+}
+
+/// `None` if the parameter cannot have the value; nothing has changed then.
+fn set_kept(parameter: &KeptParameter, place: usize, value: f64, into: &mut Conduct) -> Option<()> {
+    let value = within(parameter.minimum, parameter.maximum, value)?;
+    if parameter.integer && value.fract() != 0.0 {
+        return None;
+    }
+    into.kept.set(place, value as f32);
+    Some(())
 }
 
 #[cfg(test)]

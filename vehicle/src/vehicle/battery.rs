@@ -5,6 +5,8 @@ use quadrotor::{Airframe, BatteryOutput, cell_voltage_v};
 use super::battery_pack::BatteryPack;
 use crate::fault::BatteryFault;
 
+/// So often the interval of the charge at a voltage is halved: to the last digit.
+const CHARGE_HALVINGS: usize = 60;
 /// Below this a cell is not believed to go, V: it bounds the current.
 const LOWEST_CELL_V: f64 = 8.0 / 3.0;
 
@@ -12,6 +14,12 @@ const LOWEST_CELL_V: f64 = 8.0 / 3.0;
 pub fn capacity_ah(airframe: &Airframe, setting_ah: f64) -> f64 {
     let pack = &airframe.battery;
     if pack.sag { pack.capacity_a_s / 3600.0 } else { setting_ah }
+}
+
+/// Voltage of the full battery at rest, V: that of the pack whose voltage the rotors follow, or else of ours.
+pub fn full_voltage_v(airframe: &Airframe, battery: &Battery) -> f64 {
+    let pack = &airframe.battery;
+    if pack.sag { pack.voltage_v } else { cell_voltage_v(1.0) * f64::from(battery.cells()) }
 }
 
 /// State of the battery.
@@ -92,6 +100,24 @@ impl Battery {
             None => self.drawn_as + self.current_a * dt_s,
         };
         self.energy_j += power_w * dt_s;
+    }
+
+    /// Charges it, or discharges it, to a voltage at rest, V.
+    pub fn charge_to(&mut self, voltage_v: f64, capacity_ah: f64) {
+        let cell_v = voltage_v / f64::from(self.pack.cells);
+        // The voltage rises with the charge: halve the interval.
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..CHARGE_HALVINGS {
+            let middle = 0.5 * (low + high);
+            if cell_voltage_v(middle) < cell_v { low = middle } else { high = middle }
+        }
+        self.drawn_as = (1.0 - high) * capacity_ah * 3600.0;
+        self.terminal_v = cell_voltage_v(high) * f64::from(self.pack.cells);
+    }
+
+    /// Voltage without the drop that the current makes, V.
+    pub fn resting_voltage_v(&self) -> f64 {
+        self.voltage_v + self.current_a * self.pack.resistance_ohm
     }
 
     /// Breaks, or works again.

@@ -22,4 +22,10 @@ pub enum ChangeError {
         /// What the parameters describe.
         part: &'static str,
     },
+    /// Ideal sensors have no readings that could be wrong.
+    #[error("ideal sensors have no errors; start with --sensors realistic")]
+    IdealSensors,
+    /// The battery is part of the plant, which does not jump.
+    #[error("the rotors follow the battery's voltage (FRAME_BATT_SAG): its charge cannot be set in flight")]
+    BatteryOfPlant,
 }

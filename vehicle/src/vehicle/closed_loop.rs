@@ -11,7 +11,7 @@ use super::foreign_flight::ForeignFlight;
 use super::steering::Steering;
 use crate::FlightError;
 use crate::foreign::{ForeignDescription, ForeignModel, ForeignMotion};
-use crate::world::{Wind, WindSettings};
+use crate::world::{Wind, WindSettings, WindShape};
 
 /// The closed loop and the air around it.
 #[derive(Debug)]
@@ -107,6 +107,11 @@ impl ClosedLoop {
     /// Lets lower limits hold: the motion can keep them.
     pub fn release_limits(&mut self) {
         self.limits.release();
+    }
+
+    /// The wind becomes another one.
+    pub fn change_wind(&mut self, settings: WindSettings, shape: WindShape) {
+        self.wind.change(settings, shape);
     }
 
     /// Velocity of the air, NED, m/s.

@@ -10,9 +10,11 @@ use super::heading_policy::HeadingPolicy;
 use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::return_settings::ReturnSettings;
+use super::simulated::Simulated;
 use super::stick_settings::StickSettings;
 use super::surroundings_settings::SurroundingsSettings;
 use super::trail::TrailSettings;
+use crate::kept::KeptValues;
 use crate::radio::RadioSettings;
 
 /// Parameters of the vehicle's behaviour.
@@ -30,6 +32,12 @@ pub struct Conduct {
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
     pub land_speed_m_s: f64,
+    /// Below this height, m, it sinks with that speed.
+    #[serde(default = "two")]
+    pub land_slow_below_m: f64,
+    /// Sink rate farther up, m/s; 0: the limit.
+    #[serde(default)]
+    pub land_fast_m_s: f64,
     /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
     /// Disarms when not taken off this long after arming, s; not positive: never.
@@ -73,6 +81,12 @@ pub struct Conduct {
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// What is simulated around the vehicle.
+    #[serde(default)]
+    pub simulated: Simulated,
+    /// What is kept for scripts and changes nothing.
+    #[serde(default)]
+    pub kept: KeptValues,
     /// When it counts as crashed.
     #[serde(default)]
     pub crash: CrashSettings,
@@ -85,6 +99,11 @@ pub struct Conduct {
     /// The pilot's radio.
     #[serde(default)]
     pub radio: RadioSettings,
+}
+
+/// Records of before it could be chosen have this one.
+fn two() -> f64 {
+    2.0
 }
 
 /// Records of before there were faults have none.
@@ -128,6 +147,8 @@ impl Conduct {
             acceptance_radius_m: 2.0,
             return_near_m: 5.0,
             land_speed_m_s: 0.7,
+            land_slow_below_m: two(),
+            land_fast_m_s: 0.0,
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
             stick_speed_m_s: 5.0,
@@ -149,6 +170,8 @@ impl Conduct {
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
+            simulated: Simulated::default(),
+            kept: KeptValues::default(),
             crash: CrashSettings::default(),
             log: LogConduct::default(),
             sticks: StickSettings::new(ardupilot),

@@ -8,9 +8,7 @@ use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget
 use super::situation::Situation;
 use super::steering::SteeringKind;
 
-/// Below this height, m, the vehicle sinks with its speed of landing.
-const SLOW_M: f64 = 2.0;
-/// By how much it sinks faster per metre above that, 1/s, as far as a share of the vertical acceleration and jerk can brake it.
+/// By how much it sinks faster per metre above the height from which it is slow, 1/s, as far as a share of the vertical acceleration and jerk can brake it.
 const SLOWING_PER_S: f64 = 0.4;
 const BRAKING_SHARE: f64 = 0.5;
 /// By how much the reference may be faster while it brakes, m/s: a reference that follows a speed with deceleration a and jerk j
@@ -39,12 +37,16 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let slow = situation.conduct.land_speed_m_s;
     // Slower towards the ground, within what the shaper is allowed.
     let limits = situation.braking_limits();
-    let fastest = limits.speed_down_m_s.max(slow);
+    let asked = situation.conduct.land_fast_m_s;
+    let fastest =
+        if asked > 0.0 { limits.speed_down_m_s.min(asked) } else { limits.speed_down_m_s }.max(slow);
     let jerk_m_s3 = limits.jerk_vertical_m_s3;
     let braking_m_s2 =
         (BRAKING_SHARE * limits.acceleration_vertical_m_s2).min(libm::sqrt(2.0 * jerk_m_s3 * LATE_M_S));
     let slowing_per_s = SLOWING_PER_S.min(libm::sqrt(BRAKING_SHARE * jerk_m_s3 / fastest));
-    let speed = (slow + approach(height_m - SLOW_M, slowing_per_s, braking_m_s2)).clamp(slow, fastest);
+    let speed = (slow
+        + approach(height_m - situation.conduct.land_slow_below_m, slowing_per_s, braking_m_s2))
+    .clamp(slow, fastest);
     let [x, y] = match above {
         Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
         None => [AxisTarget::HOLD; 2],

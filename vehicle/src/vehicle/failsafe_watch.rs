@@ -1,11 +1,15 @@
 //! What the failsafe looks at, and what it asks for.
 
-use super::failsafe::{Action, Cause, Change, Failsafe};
+use super::failsafe::{Action, Cause, Change, Failsafe, Weakness};
 use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::situation::Situation;
 use crate::fence::Breach;
 use crate::mode::{Leader, Mode, Needs};
+
+/// Bits of FS_OPTIONS: missions go on without the ground station, and so do modes that are flown by sticks.
+const MISSION_GOES_ON: u32 = 2;
+const STICKS_GO_ON: u32 = 16;
 
 impl Failsafe {
     /// Whether a cause is there now.
@@ -22,8 +26,10 @@ impl Failsafe {
                 situation.pilot.missed && (situation.armed || situation.identity.is_ardupilot())
             }
             Cause::BatteryEmergency => remaining < settings.battery_emergency,
-            Cause::BatteryCritical => remaining < settings.battery_critical,
-            Cause::BatteryLow => remaining < settings.battery_low,
+            Cause::BatteryCritical => {
+                remaining < settings.battery_critical || self.is_weak(Weakness::Critical)
+            }
+            Cause::BatteryLow => remaining < settings.battery_low || self.is_weak(Weakness::Low),
             Cause::Fence => situation.breach.is_some(),
             Cause::HighWind => settings.wind_m_s > 0.0 && self.wind_m_s() > settings.wind_m_s,
             Cause::GroundStationLost => self.misses_ground_station(),
@@ -80,7 +86,8 @@ impl Failsafe {
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, action: Action) {
         let flying = situation.flies();
-        let acts = flying && self.goes_before(action, Action::of_mode(situation.mode));
+        let acts =
+            flying && self.goes_before(action, Action::of_mode(situation.mode)) && !goes_on(situation, cause);
         let why = self.name(situation, cause);
         tracing::debug!(cause = why, ?action, flying, acts, "failsafe");
         let details = self.details(situation, cause);
@@ -102,6 +109,21 @@ impl Failsafe {
         }
     }
 
+    /// Feels the battery: whether its voltage or charge is below a limit.
+    pub fn feel_battery(&mut self, situation: &Situation) {
+        let limits = &situation.conduct.failsafe.battery_limits;
+        let voltage_v =
+            if limits.at_rest { situation.battery_resting_v } else { situation.battery_voltage_v };
+        let late_us = (limits.low_s * 1e6) as u64;
+        for (weakness, volts, mah) in [
+            (Weakness::Low, limits.low_v, limits.low_mah),
+            (Weakness::Critical, limits.critical_v, limits.critical_mah),
+        ] {
+            let lasting = self.lasts(weakness, voltage_v < volts, situation.time_us, late_us);
+            self.set_weak(weakness, lasting || situation.battery_left_mah < mah);
+        }
+    }
+
     /// Announces that the fence, which was announced as ahead, has been crossed.
     pub fn tell_crossing(&self, situation: &Situation, proposal: &mut Proposal, breach: Breach) {
         let action = situation.conduct.failsafe.action(Cause::Fence);
@@ -114,6 +136,9 @@ impl Failsafe {
     fn name(&self, situation: &Situation, cause: Cause) -> &'static str {
         match cause {
             Cause::Fence if situation.fence_is_ahead => "Fence ahead",
+            // Clients of ArduPilot look for its words.
+            Cause::BatteryLow if situation.identity.is_ardupilot() => "Battery 1 is low",
+            Cause::BatteryCritical if situation.identity.is_ardupilot() => "Battery 1 is critical",
             Cause::PilotLost if situation.identity.is_ardupilot() => "Radio Failsafe",
             _ => cause.name(),
         }
@@ -167,6 +192,16 @@ impl Failsafe {
         }
         Ok(())
     }
+}
+
+/// Whether a mode goes on without its ground station, by FS_OPTIONS.
+fn goes_on(situation: &Situation, cause: Cause) -> bool {
+    let bit = match (cause, situation.mode) {
+        (Cause::GroundStationLost, Mode::Mission) => MISSION_GOES_ON,
+        (Cause::GroundStationLost, mode) if mode.leader() == Leader::Sticks => STICKS_GO_ON,
+        _ => 0,
+    };
+    situation.identity.is_ardupilot() && situation.conduct.radio.options & bit != 0
 }
 
 /// What is done about a cause in the present mode.

@@ -3,10 +3,12 @@
 use super::proposal::Proposal;
 use super::situation::Situation;
 use super::steering::SteeringKind;
+use super::sticks::Sticks;
 
 /// One tick of the position mode. Without a pilot it goes on with what it does: how it came here decides by what.
 pub fn fly_by_velocity(situation: &Situation, proposal: &mut Proposal) {
-    let Some(sticks) = situation.pilot.sticks else { return };
+    let released = situation.pilot.released.then(Sticks::default);
+    let Some(sticks) = situation.pilot.sticks.or(released) else { return };
     let outputs = situation.outputs;
     let yaw_rate = situation.limits().yaw_rate_rad_s;
     let set_point = sticks.set_point(situation.conduct, outputs.attitude_rad.z, yaw_rate);

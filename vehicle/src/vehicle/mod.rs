@@ -36,6 +36,7 @@
 //!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
 //! ```
 
+mod arming_obstacle;
 mod attitude_flight;
 mod autostart;
 mod battery;
@@ -92,6 +93,7 @@ mod scene;
 mod set_point;
 mod settings;
 mod setup;
+mod simulated;
 mod situation;
 mod smart_return;
 mod speeds;
@@ -109,11 +111,14 @@ mod trail;
 mod trajectory;
 mod turning;
 
+pub use arming_obstacle::{ArmingObstacle, ArmingSubject};
 pub use battery::Battery;
 pub use battery_pack::BatteryPack;
 pub use change_error::ChangeError;
 pub use conduct::Conduct;
-pub use failsafe::{Action, BatteryActions, Cause, Failsafe, FailsafeSettings, FenceOptions, FenceParts};
+pub use failsafe::{
+    Action, BatteryActions, BatteryLimits, Cause, Failsafe, FailsafeSettings, FenceOptions, FenceParts,
+};
 pub use fence_watch::FenceRecord;
 pub use follow_settings::{FollowHeading, FollowHeight, FollowSettings};
 pub use heading_policy::HeadingPolicy;
@@ -132,6 +137,7 @@ pub use reposition::Reposition;
 pub use return_settings::{ReturnGoal, ReturnSettings};
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 pub use settings::VehicleSettings;
+pub use simulated::{Simulated, WIND_FROM_DEG};
 pub use state::Vehicle;
 pub use steering::{SteeringKind, TrackedAttitude};
 pub use stick_settings::{StickSettings, Trainer};

@@ -4,10 +4,11 @@
 use nalgebra::Vector3;
 use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
+use super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
 use crate::estimation::{
-    Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, TrueMotion, Validity,
+    Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, SensorErrors, TrueMotion, Validity,
 };
 use crate::fault::Faults;
 use crate::mode::Needs;
@@ -36,10 +37,19 @@ impl Perception {
     }
 
     /// Looks at the motion that the last tick has led to. `stands` tells that it is disarmed on the ground.
-    pub fn step(&mut self, closed_loop: &ClosedLoop, frame: &LocalFrame, faults: &Faults, stands: bool) {
+    pub fn step(
+        &mut self,
+        closed_loop: &ClosedLoop,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: &SensorErrors,
+        stands: bool,
+    ) {
         self.truth = closed_loop.outputs();
         match &mut self.navigation {
-            Some(navigation) => navigation.step(&TrueMotion::of(&self.truth), frame, faults, stands),
+            Some(navigation) => {
+                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, stands);
+            }
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
         self.outputs = self.known(closed_loop);
@@ -107,29 +117,32 @@ impl Perception {
     }
 
     /// What of the estimate speaks against arming.
-    pub fn obstacles(&self, needs: Needs) -> impl Iterator<Item = String> {
+    pub fn obstacles(&self, needs: Needs) -> impl Iterator<Item = ArmingObstacle> {
         let (place, height) = (needs == Needs::Place, needs >= Needs::Height);
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let checks = [
-            (health.gyroscope, "gyroscope failed"),
-            (health.accelerometer, "accelerometer failed"),
-            (health.magnetometer, "magnetometer failed"),
-            (health.barometer, "barometer failed"),
-            (!place || health.gps, "no GPS fix"),
-            (aligned, "attitude not aligned yet"),
-            (!aligned || validity.tilt && validity.heading, "no attitude estimate"),
+            (health.gyroscope, Subject::Gyroscope, "gyroscope failed"),
+            (health.accelerometer, Subject::Accelerometer, "accelerometer failed"),
+            (health.magnetometer, Subject::Magnetometer, "magnetometer failed"),
+            (health.barometer, Subject::Barometer, "barometer failed"),
+            (!place || health.gps, Subject::Gps, "no GPS fix"),
+            (aligned, Subject::Attitude, "attitude not aligned yet"),
+            (!aligned || validity.tilt && validity.heading, Subject::Attitude, "no attitude estimate"),
             (
                 !aligned || !place || validity.horizontal_velocity && validity.vertical_velocity,
+                Subject::Velocity,
                 "no velocity estimate",
             ),
             (
                 !aligned || !place || validity.horizontal_position && validity.vertical_position,
+                Subject::Position,
                 "no position estimate",
             ),
-            (!aligned || !height || validity.vertical_position, "no height estimate"),
+            (!aligned || !height || validity.vertical_position, Subject::Position, "no height estimate"),
         ];
-        checks.into_iter().filter(|(good, _)| !good).map(|(_, why)| why.to_owned())
+        let bad = checks.into_iter().filter(|(good, ..)| !good);
+        bad.map(|(_, subject, why)| ArmingObstacle::new(subject, why))
     }
 }
 

@@ -23,6 +23,8 @@ pub struct Pilot {
     pub lost: bool,
     /// Whether that is a reason to act: PX4 does without a pilot who was not there when it was armed.
     pub missed: bool,
+    /// Whether there is no pilot any more, because overrides of channels have ended.
+    pub released: bool,
     /// Whether the throttle has been at its low end for a while.
     pub throttle_is_zero: bool,
     /// The pulses that count now; `None`: no radio.
@@ -48,7 +50,7 @@ pub struct Receiver {
     /// Sticks of MANUAL_CONTROL, and when they came, µs.
     joystick: Option<(Sticks, u64)>,
     first: Option<Source>,
-    /// When sticks were received last, µs; `None`: never, or they were given back.
+    /// When sticks were received last, µs; `None`: never.
     received_us: Option<u64>,
     low_since_us: Option<u64>,
     zero_since_us: Option<u64>,
@@ -75,9 +77,6 @@ impl Receiver {
                 Some(0) => *channel = None,
                 Some(pulse) => *channel = Some((*pulse, time_us)),
             }
-        }
-        if self.radio.is_none() && self.overrides.iter().all(Option::is_none) {
-            self.received_us = None;
         }
     }
 
@@ -136,18 +135,20 @@ impl Receiver {
         }
         let watched = watched && identity.is_ardupilot();
         let low = self.is_low(watched, settings, pulses.as_ref(), time_us);
-        let silent = self.received_us.is_some_and(|received_us| !young(received_us));
+        let ever = self.received_us.is_some();
+        // PX4's timeout has passed already.
+        let silent =
+            ever && chosen.is_none() && (!identity.is_ardupilot() || !self.received_us.is_some_and(young));
         // ArduPilot's simulation has a radio all the time: what overrides gave back is centred.
         let gone = silent
             && (!identity.is_ardupilot()
                 || settings.failure == RadioFailure::NoPulses
                 || self.radio.is_some());
-        let ever = self.received_us.is_some();
+        let released = silent && !gone;
         let sticks = match chosen {
             _ if low || gone => Some(Sticks::default()),
             Some(sticks) => Some(sticks),
-            None if !ever => None,
-            None if silent => Some(Sticks::default()),
+            None if !ever || released => None,
             None => self.now.sticks,
         };
         let at_zero = chosen.is_some_and(|sticks| sticks.throttle() <= 0.0);
@@ -158,6 +159,7 @@ impl Receiver {
             sticks,
             lost,
             missed: lost && !self.optional,
+            released,
             throttle_is_zero: self.zero_since_us.is_some_and(|since_us| time_us >= since_us + ZERO_US),
             pulses,
             has_radio: ever,

@@ -1,8 +1,9 @@
 //! What the vehicle has been given: conventions, behaviour, place and time.
 
 use super::conduct::Conduct;
+use super::settings::VehicleSettings;
 use crate::identity::Identity;
-use crate::world::LocalFrame;
+use crate::world::{LocalFrame, WindSettings};
 
 /// What only a user changes.
 #[derive(Clone, Debug)]
@@ -10,13 +11,26 @@ pub struct Setup {
     identity: Identity,
     conduct: Conduct,
     frame: LocalFrame,
+    /// What it started with: the wind, and the voltage of the full battery, V.
+    wind: WindSettings,
+    full_battery_v: f64,
     unix_start_us: u64,
 }
 
 impl Setup {
     /// Starts at an unknown time of day.
-    pub fn new(identity: Identity, conduct: Conduct, frame: LocalFrame) -> Self {
-        Self { identity, conduct, frame, unix_start_us: 0 }
+    pub fn new(settings: &VehicleSettings, full_battery_v: f64) -> Self {
+        let frame = LocalFrame::new(settings.origin);
+        let (identity, wind) = (settings.identity, settings.wind);
+        let conduct = settings.conduct;
+        let mut setup = Self { identity, conduct, frame, wind, full_battery_v, unix_start_us: 0 };
+        setup.set_conduct(conduct);
+        setup
+    }
+
+    /// The wind of now, as the parameters have it.
+    pub fn wind(&self) -> WindSettings {
+        self.conduct.simulated.wind(&self.wind)
     }
 
     /// Whose conventions it follows.
@@ -31,7 +45,8 @@ impl Setup {
 
     /// Changes the parameters of its behaviour.
     pub fn set_conduct(&mut self, conduct: Conduct) {
-        self.conduct = conduct;
+        let simulated = conduct.simulated.since(&self.wind, self.full_battery_v);
+        self.conduct = Conduct { simulated, ..conduct };
     }
 
     /// The local frame.

@@ -57,6 +57,12 @@ pub struct Situation<'a> {
     pub wind_m_s: Vector3<f64>,
     /// Remaining share of the battery, as the gauge has it.
     pub battery_remaining: f64,
+    /// Its voltage, and that without the drop that the current makes, V.
+    pub battery_voltage_v: f64,
+    #[allow(missing_docs)] // With the one above.
+    pub battery_resting_v: f64,
+    /// Its remaining charge, mA·h.
+    pub battery_left_mah: f64,
     /// Whether the rotors may turn.
     pub armed: bool,
     /// The mode.

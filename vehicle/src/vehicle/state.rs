@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
 
 use super::autostart::Autostart;
-use super::battery::{Battery, capacity_ah};
+use super::battery::{Battery, capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
@@ -101,10 +101,12 @@ impl Vehicle {
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
+        let battery = Battery::new(settings.battery);
+        let full_battery_v = full_voltage_v(&configuration.airframe, &battery);
         let machines = Machines {
             autostart: Autostart::new(settings.autostart && program.is_flown()),
             injection: Injection::new(settings.faults.clone()),
-            battery: Battery::new(settings.battery),
+            battery,
             fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
@@ -130,7 +132,7 @@ impl Vehicle {
             equipment: Equipment::default(),
         };
         let mut vehicle = Self {
-            setup: Setup::new(settings.identity, settings.conduct, frame),
+            setup: Setup::new(settings, full_battery_v),
             closed_loop,
             perception,
             plans: KnownPlans::new(settings.plans.clone(), &site),
@@ -195,6 +197,7 @@ impl Vehicle {
         let (situation, parts) = self.situation_and_machines();
         let crossed = parts.fence.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
+        parts.failsafe.feel_battery(&situation);
         if let Some(breach) = crossed {
             self.consult(|parts, situation, proposal| {
                 parts.failsafe.tell_crossing(situation, proposal, breach);
@@ -263,7 +266,7 @@ impl Vehicle {
             outputs: self.perception.outputs(),
             height_m: -self.perception.truth().position_m.z,
             armed: self.decided.is_armed(),
-            rotor_faults: self.machines.injection.faults().rotors(),
+            rotor_faults: self.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
         let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
@@ -278,9 +281,9 @@ impl Vehicle {
 
     /// Perceives the motion after the tick.
     fn perceive(&mut self) {
-        let (closed_loop, faults) = (&self.closed_loop, self.machines.injection.faults());
-        let stands = self.stands();
-        self.perception.step(closed_loop, self.setup.frame(), faults, stands);
+        let (closed_loop, faults) = (&self.closed_loop, self.faults());
+        let (stands, errors) = (self.stands(), &self.setup.conduct().simulated.errors);
+        self.perception.step(closed_loop, self.setup.frame(), &faults, errors, stands);
     }
 
     /// Draws the power of the tick from the battery.
@@ -333,6 +336,9 @@ fn situation<'a>(
         rotor_command_rad_s: closed_loop.rotor_command_rad_s(),
         wind_m_s: closed_loop.wind_m_s(),
         battery_remaining: machines.battery.remaining(capacity_ah),
+        battery_voltage_v: machines.battery.voltage_v(),
+        battery_resting_v: machines.battery.resting_voltage_v(),
+        battery_left_mah: 1e3 * capacity_ah * machines.battery.remaining(capacity_ah),
         armed: decided.is_armed(),
         mode: decided.mode(),
         steering: decided.steering(),

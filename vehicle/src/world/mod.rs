@@ -5,9 +5,10 @@ mod heading;
 mod local_frame;
 mod magnetic_field;
 mod wind;
+pub mod wind_drag;
 
 pub use atmosphere::{atmospheric_pressure_pa, atmospheric_temperature_degc, pressure_altitude_m};
 pub use heading::heading_deg;
 pub use local_frame::{FARTHEST_M, Geodetic, LocalFrame};
 pub use magnetic_field::earth_field_ned;
-pub use wind::{Wind, WindSettings};
+pub use wind::{Wind, WindProfile, WindSettings, WindShape};

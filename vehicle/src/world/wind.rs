@@ -19,6 +19,57 @@ pub struct WindSettings {
     pub seed: u64,
 }
 
+/// How the wind changes with height and time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct WindShape {
+    /// How steeply it blows upwards, degrees.
+    pub upwards_deg: f64,
+    /// How its speed grows with height.
+    pub profile: WindProfile,
+    /// Height at which a growing wind has its full speed, m.
+    pub full_m: f64,
+    /// How much slower a linear one is per metre below that, 1/s.
+    pub slope_per_s: f64,
+    /// Time constant with which a change takes effect, s.
+    pub change_s: f64,
+}
+
+/// How the speed of the wind grows with height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum WindProfile {
+    /// It is the same everywhere.
+    #[default]
+    Even,
+    /// With the square root of the height.
+    SquareRoot,
+    /// Linearly.
+    Linear,
+}
+
+impl Default for WindShape {
+    fn default() -> Self {
+        Self { upwards_deg: 0.0, profile: WindProfile::Even, full_m: 60.0, slope_per_s: 0.01, change_s: 5.0 }
+    }
+}
+
+impl WindShape {
+    /// The speed at a height, m, of a wind with a full speed, m/s.
+    fn speed_m_s(&self, full_m_s: f64, height_m: f64) -> f64 {
+        match self.profile {
+            WindProfile::SquareRoot if height_m < self.full_m => {
+                full_m_s * sqrt((height_m / self.full_m).max(0.0))
+            }
+            WindProfile::Linear if height_m < self.full_m => {
+                (full_m_s - (self.full_m - height_m.max(0.0)) * self.slope_per_s).max(0.0)
+            }
+            _ => full_m_s,
+        }
+    }
+}
+
+/// A wind whose speed is so near to the one that is asked for, m/s, has it.
+const SETTLED_M_S: f64 = 1e-3;
 /// How often the gusts change, µs.
 const PERIOD_US: u64 = 10_000;
 /// Air speed with which a hovering vehicle meets the turbulence at least, m/s: it sets how fast gusts pass.
@@ -35,6 +86,10 @@ const LEAST_AIRSPEED_M_S: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub struct Wind {
     settings: WindSettings,
+    shape: WindShape,
+    /// The mean speed of now, which follows that of the settings, m/s.
+    speed_m_s: f64,
+    time_us: u64,
     generator: Pcg64Mcg,
     along: f64,
     across: [f64; 2],
@@ -45,19 +100,53 @@ impl Wind {
     /// Wind that begins without a gust.
     pub fn new(settings: WindSettings) -> Self {
         let generator = Pcg64Mcg::seed_from_u64(settings.seed);
-        Self { settings, generator, along: 0.0, across: [0.0; 2], vertical: [0.0; 2] }
+        let (shape, speed_m_s) = (WindShape::default(), settings.speed_m_s);
+        Self {
+            settings,
+            shape,
+            speed_m_s,
+            time_us: 0,
+            generator,
+            along: 0.0,
+            across: [0.0; 2],
+            vertical: [0.0; 2],
+        }
+    }
+
+    /// Another wind from now on; the gusts go on.
+    pub fn change(&mut self, settings: WindSettings, shape: WindShape) {
+        (self.settings, self.shape) = (settings, shape);
+    }
+
+    /// Goes on with a change of the speed up to a time, µs.
+    fn settle(&mut self, time_us: u64) {
+        let dt_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
+        self.time_us = time_us;
+        let missing_m_s = self.settings.speed_m_s - self.speed_m_s;
+        if missing_m_s.abs() <= SETTLED_M_S || dt_s + self.shape.change_s <= 0.0 {
+            self.speed_m_s = self.settings.speed_m_s;
+        } else {
+            self.speed_m_s += missing_m_s * dt_s / (self.shape.change_s + dt_s);
+        }
     }
 
     /// Velocity of the air, NED, m/s, at `time_us` and a height above the ground, m. To be asked at growing times.
     pub fn velocity_m_s(&mut self, time_us: u64, height_m: f64) -> Vector3<f64> {
+        self.settle(time_us);
         if self.settings.gusts_m_s > 0.0 && time_us.is_multiple_of(PERIOD_US) {
             self.step(height_m);
         }
         // It blows towards the opposite of where it comes from.
         let (s, c) = (-sin(self.settings.from_rad), -cos(self.settings.from_rad));
-        let along = self.settings.speed_m_s + self.along;
-        let across = self.across[0];
-        Vector3::new(along * c - across * s, along * s + across * c, self.vertical[0])
+        let mean = self.shape.speed_m_s(self.speed_m_s, height_m);
+        let (along, across) = (mean + self.along, self.across[0]);
+        if self.shape.upwards_deg == 0.0 {
+            return Vector3::new(along * c - across * s, along * s + across * c, self.vertical[0]);
+        }
+        let upwards_rad = self.shape.upwards_deg.to_radians();
+        let level = mean * cos(upwards_rad) + self.along;
+        let down = self.vertical[0] - mean * sin(upwards_rad);
+        Vector3::new(level * c - across * s, level * s + across * c, down)
     }
 
     fn step(&mut self, height_m: f64) {

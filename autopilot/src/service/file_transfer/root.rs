@@ -5,6 +5,7 @@
 //! /@PARAM/param.pck             parameters, packed
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
+//! /metadata/events.json         events, and the modes and components that they are about
 //! /plans/mission.waypoints      the mission as a text, and fence and rally points beside it
 //! /logs/                        flights, to be read; /APM/LOGS/ is the same
 //! /files/                       what the user shares
@@ -23,7 +24,7 @@ use crate::file_store::{FileStore, LOGS, Listed};
 const MADE: [(&str, &[&str]); 4] = [
     (plan_pack::FOLDER, plan_pack::NAMES),
     ("@PARAM", &["param.pck"]),
-    ("metadata", &["general.json", "parameters.json"]),
+    ("metadata", &["general.json", "parameters.json", "events.json"]),
     ("plans", &["mission.waypoints", "fence.waypoints", "rally.waypoints"]),
 ];
 
@@ -69,6 +70,7 @@ pub fn made_file(context: &Context, path: &str) -> Option<Vec<u8>> {
         "@PARAM/param.pck" => parameter_pack::pack(context),
         "metadata/general.json" => context.parameters.metadata().general.clone(),
         "metadata/parameters.json" => context.parameters.metadata().parameters.clone(),
+        "metadata/events.json" => context.parameters.metadata().events.clone(),
         "plans/mission.waypoints" => plan_text::render(&context.vehicle, PlanKind::Mission),
         "plans/fence.waypoints" => plan_text::render(&context.vehicle, PlanKind::Fence),
         "plans/rally.waypoints" => plan_text::render(&context.vehicle, PlanKind::Rally),

@@ -1,5 +1,6 @@
 //! Telemetry: the messages that are made of the vehicle's state of now, and how often they are sent.
 
+mod actuators;
 mod attitude;
 mod estimate;
 mod navigation;

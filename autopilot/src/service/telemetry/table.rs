@@ -3,7 +3,7 @@
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 
-use super::{attitude, estimate, navigation, position, sensors, status, targets, truth};
+use super::{actuators, attitude, estimate, navigation, position, sensors, status, targets, truth};
 use crate::service::Service;
 use crate::stream::{Group, Stream};
 
@@ -43,6 +43,11 @@ const STREAMS: &[Stream] = &[
     Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int),
     Stream::new(HIGHRES_IMU_DATA::ID, [0.0, 50.0], sensors::highres_imu),
     Stream::new(SIM_STATE_DATA::ID, [0.0, 0.0], truth::sim_state),
+    Stream::new(SIMSTATE_DATA::ID, [0.0, 0.0], truth::simstate).of(Group::Extra1),
+    // As PX4's simulation streams it.
+    Stream::new(HIL_STATE_QUATERNION_DATA::ID, [0.0, 25.0], truth::hil_state_quaternion),
+    Stream::new(ACTUATOR_OUTPUT_STATUS_DATA::ID, [0.0, 0.0], actuators::actuator_output_status),
+    Stream::new(ACTUATOR_CONTROL_TARGET_DATA::ID, [0.0, 0.0], actuators::actuator_control_target),
     Stream::new(ALTITUDE_DATA::ID, [1.0, 10.0], position::altitude).of(Group::Extra3),
     Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::ExtendedStatus),
     Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status),

@@ -24,6 +24,9 @@ pub struct FailsafeSettings {
     /// What a weak battery does (COM_LOW_BAT_ACT; ArduPilot: BATT_FS_LOW_ACT, BATT_FS_CRT_ACT).
     #[serde(default)]
     pub battery: BatteryActions,
+    /// Voltages and charges below which the battery is low or critical as well.
+    #[serde(default)]
+    pub battery_limits: BatteryLimits,
     /// What the fence does (GF_ACTION).
     pub fence: Action,
     /// Whether it acts as soon as the vehicle could not stop before the fence, not only beyond it (GF_PREDICT).
@@ -82,6 +85,30 @@ impl Default for FenceParts {
     }
 }
 
+/// When a battery is low or critical beside its share of the charge (ArduPilot: BATT_LOW_VOLT, BATT_LOW_MAH and their like).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BatteryLimits {
+    /// Voltages, V; 0: any.
+    pub low_v: f64,
+    #[allow(missing_docs)] // With the one above.
+    pub critical_v: f64,
+    /// Remaining charges, mA·h; 0: any.
+    pub low_mah: f64,
+    #[allow(missing_docs)] // With the one above.
+    pub critical_mah: f64,
+    /// A voltage counts when it has been low for so long, s.
+    pub low_s: f64,
+    /// Whether the voltage is looked at without the drop that the current makes.
+    pub at_rest: bool,
+}
+
+/// No voltage, as packs have one to twelve cells; ArduPilot has 10.5 V, for three of them.
+impl Default for BatteryLimits {
+    fn default() -> Self {
+        Self { low_v: 0.0, critical_v: 0.0, low_mah: 0.0, critical_mah: 0.0, low_s: 10.0, at_rest: false }
+    }
+}
+
 /// How the fence is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FenceOptions {
@@ -136,6 +163,7 @@ impl Default for FailsafeSettings {
             battery_critical: 0.07,
             battery_emergency: 0.05,
             battery: BatteryActions::default(),
+            battery_limits: BatteryLimits::default(),
             fence: Action::Hold,
             fence_ahead: true,
             fence_enabled: true,

@@ -24,6 +24,17 @@ pub struct Failsafe {
     ground_station: Option<bool>,
     /// The wind, smoothed, m/s.
     wind_m_s: f64,
+    /// Whether the battery is low, and critical, by its voltage or charge, and since when the voltage is, µs.
+    weak: [(bool, Option<u64>); 2],
+}
+
+/// How weak a battery is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weakness {
+    /// Low.
+    Low,
+    /// Critical.
+    Critical,
 }
 
 /// How a cause has changed.
@@ -50,6 +61,23 @@ impl Failsafe {
     pub fn feel_wind(&mut self, wind_m_s: f64, dt_s: f64) {
         let share = dt_s / (WIND_TIME_CONSTANT_S + dt_s);
         self.wind_m_s += share * (wind_m_s - self.wind_m_s);
+    }
+
+    /// Whether the battery is so weak by its voltage or charge.
+    pub fn is_weak(&self, weakness: Weakness) -> bool {
+        self.weak[weakness as usize].0
+    }
+
+    /// Takes in whether it is.
+    pub fn set_weak(&mut self, weakness: Weakness, weak: bool) {
+        self.weak[weakness as usize].0 = weak;
+    }
+
+    /// Takes in whether the voltage is low at a time; returns whether it has been for so long, µs.
+    pub fn lasts(&mut self, weakness: Weakness, low: bool, time_us: u64, late_us: u64) -> bool {
+        let since = &mut self.weak[weakness as usize].1;
+        *since = if low { since.or(Some(time_us)) } else { None };
+        since.is_some_and(|since_us| time_us - since_us >= late_us)
     }
 
     /// The wind without short gusts, m/s.

@@ -2,6 +2,7 @@
 
 use quadrotor::RotorFault;
 
+use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject, joined};
 use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_reach, check_way};
 use super::super::set_point::PositionSetPoint;
@@ -13,48 +14,52 @@ const LARGEST_LEAN_RAD: f64 = 0.52;
 
 impl Vehicle {
     /// Everything that speaks against arming now; empty if nothing does.
-    pub fn arming_obstacles(&self) -> Vec<String> {
+    pub fn arming_obstacles(&self) -> Vec<ArmingObstacle> {
         let situation = self.situation();
         let mut obstacles = Vec::new();
         if !situation.landed {
-            obstacles.push("not on the ground".to_owned());
+            obstacles.push(ArmingObstacle::new(Subject::Ground, "not on the ground"));
         }
         let attitude_rad = situation.outputs.attitude_rad;
         let [lean, pitch] = [attitude_rad.x.abs(), attitude_rad.y.abs()];
         if lean.max(pitch) > LARGEST_LEAN_RAD {
-            obstacles.push(format!("tilted by {:.0} deg", lean.max(pitch).to_degrees()));
+            let text = format!("tilted by {:.0} deg", lean.max(pitch).to_degrees());
+            obstacles.push(ArmingObstacle::new(Subject::Tilt, text));
         }
         let (remaining, needed) = (situation.battery_remaining, situation.conduct.battery_to_arm);
         if remaining < needed {
-            obstacles.push(format!(
-                "battery at {:.0} %, required {:.0} %",
-                100.0 * remaining,
-                100.0 * needed
-            ));
+            let text = format!("battery at {:.0} %, required {:.0} %", 100.0 * remaining, 100.0 * needed);
+            obstacles.push(ArmingObstacle::new(Subject::Battery, text));
         }
         obstacles.extend(self.perception.obstacles(situation.mode.needs()));
-        obstacles.extend(self.throttle_obstacle());
+        obstacles.extend(self.throttle_obstacle().map(ArmingObstacle::from));
         let touched = self.machines.obstacles.touched(&situation);
-        obstacles.extend(touched.map(|obstacle| format!("touches {}", obstacle.name)));
-        obstacles.extend(self.machines.remote_id.obstacle(&situation).map(str::to_owned));
+        obstacles.extend(touched.map(|obstacle| ArmingObstacle::from(format!("touches {}", obstacle.name))));
+        let remote_id = self.machines.remote_id.obstacle(&situation).map(str::to_owned);
+        obstacles.extend(remote_id.map(ArmingObstacle::from));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
             Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
-                obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
+                let text = format!("{} mode is active", identity.mode_name(situation.mode));
+                obstacles.push(ArmingObstacle::new(Subject::Mode, text));
             }
-            Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
+            Mode::Mission if !self.has_mission() => {
+                obstacles.push(ArmingObstacle::new(Subject::Mission, "no mission"));
+            }
             Mode::Mission => {
                 let program = self.machines.mission.program();
                 let fault = check_reach(&situation, program).and(check_way(&situation, program)).err();
-                obstacles.extend(fault.map(|fault| format!("mission: {}", fault.located(identity))));
+                let text = fault.map(|fault| format!("mission: {}", fault.located(identity)));
+                obstacles.extend(text.map(|text| ArmingObstacle::new(Subject::Mission, text)));
             }
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
-                obstacles.push("no set-points".to_owned());
+                obstacles.push(ArmingObstacle::new(Subject::SetPoints, "no set-points"));
             }
             _ => {}
         }
-        obstacles.extend(self.machines.failsafe.obstacles(&situation));
+        let failsafes = self.machines.failsafe.obstacles(&situation);
+        obstacles.extend(failsafes.map(|text| ArmingObstacle::new(Subject::Failsafe, text)));
         obstacles
     }
 
@@ -68,7 +73,7 @@ impl Vehicle {
         }
         let obstacles = self.arming_obstacles();
         if !force && !obstacles.is_empty() {
-            return Err(Refusal::later(format!("Arming denied: {}", obstacles.join("; "))));
+            return Err(Refusal::later(format!("Arming denied: {}", joined(&obstacles))));
         }
         self.decided.arm();
         self.machines.receiver.arm();
@@ -104,8 +109,9 @@ impl Vehicle {
 }
 
 /// Rotors that do not answer on the ground.
-fn rotor_obstacles(faults: [Option<RotorFault>; 4]) -> impl Iterator<Item = String> {
+fn rotor_obstacles(faults: [Option<RotorFault>; 4]) -> impl Iterator<Item = ArmingObstacle> {
     let silent = |fault: Option<RotorFault>| matches!(fault, Some(RotorFault::Off | RotorFault::Stuck));
     let numbered = (1..).zip(faults);
-    numbered.filter(move |(_, fault)| silent(*fault)).map(|(number, _)| format!("rotor {number} failed"))
+    let broken = numbered.filter(move |(_, fault)| silent(*fault));
+    broken.map(|(number, _)| ArmingObstacle::new(Subject::Rotor, format!("rotor {number} failed")))
 }

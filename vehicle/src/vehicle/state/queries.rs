@@ -130,8 +130,10 @@ impl Vehicle {
     }
 
     /// Everything that is broken now.
-    pub fn faults(&self) -> &Faults {
-        self.machines.injection.faults()
+    pub fn faults(&self) -> Faults {
+        let simulated = &self.conduct().simulated;
+        let faults = simulated.errors.switches.with(*self.machines.injection.faults());
+        faults.with_weak(simulated.weak_rotors as u32, simulated.weak_share)
     }
 
     /// Home.
@@ -255,11 +257,6 @@ impl Vehicle {
     pub fn home_item(&self) -> MissionItem {
         let place = self.frame().to_geodetic(&self.home().position_m);
         MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
-    }
-
-    /// Whether it is in the air, or about to leave the ground.
-    pub fn is_flying(&self) -> bool {
-        self.situation().flies()
     }
 
     /// Whether there is something to be flown.

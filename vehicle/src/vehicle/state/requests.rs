@@ -24,6 +24,7 @@ use crate::foreign::ForeignRole;
 use crate::mode::{Leader, Mode};
 use crate::plan::step::Turn;
 use crate::plan::{ChangeSpeed, Look};
+use crate::world::wind_drag;
 
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
@@ -46,10 +47,34 @@ impl Vehicle {
     /// # Errors
     /// [`ChangeError`]; nothing has changed then.
     pub fn adopt(&mut self, kept: &Configuration, conduct: &Conduct) -> Result<(), ChangeError> {
-        if *kept != self.kept_configuration() {
-            self.reconfigure(kept)?;
+        let before = self.conduct().simulated;
+        if conduct.simulated.errors.need_readings() && self.navigation().is_none() {
+            return Err(ChangeError::IdealSensors);
+        }
+        let charge_v = conduct.simulated.battery_v.filter(|volts| before.battery_v != Some(*volts));
+        if charge_v.is_some() && kept.airframe.battery.sag {
+            return Err(ChangeError::BatteryOfPlant);
+        }
+        let mut kept = *kept;
+        let drag_n_s_m = if conduct.simulated.wind_m_s.unwrap_or(0.0) > before.wind_m_s.unwrap_or(0.0) {
+            wind_drag::provide(&mut kept)
+        } else {
+            None
+        };
+        if kept != self.kept_configuration() {
+            self.reconfigure(&kept)?;
         }
         self.setup.set_conduct(*conduct);
+        if let Some(drag) = drag_n_s_m {
+            self.decided.say(Severity::Info, wind_drag::provided(&wind_drag::NAMES, drag));
+        }
+        if let Some(volts) = charge_v {
+            let capacity_ah = self.battery_capacity_ah();
+            self.machines.battery.charge_to(volts, capacity_ah);
+        }
+        if conduct.simulated != before {
+            self.closed_loop.change_wind(self.setup.wind(), self.conduct().simulated.wind_shape);
+        }
         Ok(())
     }
 

@@ -1,0 +1,63 @@
+//! ArduPilot's names of what is simulated around the vehicle and in its instruments.
+
+use super::ConductParameter;
+use super::conduct_parameter::{bitmask, choice, chosen, real, switch, whole};
+use crate::vehicle::WIND_FROM_DEG;
+use crate::world::WindProfile;
+
+/// Parameters of the simulation, which the vehicle has when it presents itself as ArduPilot.
+#[rustfmt::skip] // One line per parameter reads as the table that it is.
+pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
+    chosen!("SIM_WIND_SPD", 0.0..=50.0, simulated.wind_m_s, 0.0, "m/s", "Mean speed of the wind"),
+    chosen!("SIM_WIND_DIR", -360.0..=360.0, simulated.wind_from_deg, WIND_FROM_DEG, "deg", "Direction that the wind comes from"),
+    real!("SIM_WIND_DIR_Z", None, -90.0..=90.0, simulated.wind_shape.upwards_deg, "deg", "How steeply the wind blows upwards"),
+    chosen!("SIM_WIND_TURB", 0.0..=20.0, simulated.gusts_m_s, 0.0, "m/s", "Standard deviation of the gusts"),
+    real!("SIM_WIND_TC", None, 0.0..=600.0, simulated.wind_shape.change_s, "s", "Time constant with which a change of the wind takes effect"),
+    choice!("SIM_WIND_T", WIND_PROFILES, simulated.wind_shape.profile, "How the wind grows with height"),
+    real!("SIM_WIND_T_ALT", None, 1.0..=10_000.0, simulated.wind_shape.full_m, "m", "Height at which a wind that grows has its full speed"),
+    real!("SIM_WIND_T_COEF", None, 0.0..=1.0, simulated.wind_shape.slope_per_s, "1/s", "How much slower a linear wind is per metre below SIM_WIND_T_ALT"),
+    chosen!("SIM_BATT_VOLTAGE", 0.0..=100.0, simulated.battery_v, 12.6, "V", "Voltage at rest that the battery is charged to when this is set"),
+    real!("SIM_BATT_CAP_AH", None, 0.01..=1000.0, battery_capacity_ah, "Ah", "Capacity of the battery; the same as BATT_CAPACITY").other(),
+    bitmask!("SIM_ENGINE_FAIL", ROTORS, simulated.weak_rotors, whole_bits, f64::from, "Rotors that make SIM_ENGINE_MUL of their thrust, in the order of SERVO_OUTPUT_RAW"),
+    real!("SIM_ENGINE_MUL", None, 0.0..=1.0, simulated.weak_share, "", "Share of the thrust that the rotors of SIM_ENGINE_FAIL make"),
+    switch!("SIM_GPS1_ENABLE", simulated.errors.switches.gps, "Whether the GPS receiver works"),
+    switch!("SIM_GPS_DISABLE", simulated.errors.switches.gps, "Whether the GPS receiver is silent; the opposite of SIM_GPS1_ENABLE", not).other(),
+    whole!("SIM_GPS1_NUMSATS", 0..=40, simulated.errors.gps_satellites, u8, "Satellites that the receiver says it uses"),
+    whole!("SIM_GPS_NUMSATS", 0..=40, simulated.errors.gps_satellites, u8, "Satellites that the receiver says it uses").other(),
+    real!("SIM_GPS1_NOISE", None, 0.0..=100.0, simulated.errors.gps_noise_m, "m", "Standard deviation of additional noise of GPS heights").also(&[("SIM_GPS_NOISE", 1.0)]),
+    real!("SIM_GPS1_GLTCH_X", None, -1.0..=1.0, simulated.errors.gps_glitch.x, "deg", "Error of the GPS latitude").also(&[("SIM_GPS_GLITCH_X", 1.0)]),
+    real!("SIM_GPS1_GLTCH_Y", None, -1.0..=1.0, simulated.errors.gps_glitch.y, "deg", "Error of the GPS longitude").also(&[("SIM_GPS_GLITCH_Y", 1.0)]),
+    real!("SIM_GPS1_GLTCH_Z", None, -10_000.0..=10_000.0, simulated.errors.gps_glitch.z, "m", "Error of the GPS height, upwards").also(&[("SIM_GPS_GLITCH_Z", 1.0)]),
+    real!("SIM_ACC1_RND", None, 0.0..=100.0, simulated.errors.accelerometer_noise_m_s2, "m/s^2", "Standard deviation of additional noise of the accelerometers").also(&[("SIM_ACC_RND", 1.0)]),
+    real!("SIM_ACC1_BIAS_X", None, -20.0..=20.0, simulated.errors.accelerometer_bias_m_s2.x, "m/s^2", "Offset of the accelerometer, forwards"),
+    real!("SIM_ACC1_BIAS_Y", None, -20.0..=20.0, simulated.errors.accelerometer_bias_m_s2.y, "m/s^2", "Offset of the accelerometer, to the right"),
+    real!("SIM_ACC1_BIAS_Z", None, -20.0..=20.0, simulated.errors.accelerometer_bias_m_s2.z, "m/s^2", "Offset of the accelerometer, down"),
+    real!("SIM_ACCEL1_FAIL", None, -100.0..=100.0, simulated.errors.accelerometer_reads_m_s2, "m/s^2", "What all accelerometers read instead of the truth; 0: the truth"),
+    switch!("SIM_ACC_FAIL_MSK", simulated.errors.switches.accelerometer_off, "Whether the accelerometers are silent"),
+    real!("SIM_GYR1_RND", None, 0.0..=1000.0, simulated.errors.gyroscope_noise_deg_s, "deg/s", "Standard deviation of additional noise of the gyroscopes").also(&[("SIM_GYR_RND", 1.0)]),
+    real!("SIM_GYR1_BIAS_X", None, -5.0..=5.0, simulated.errors.gyroscope_bias_rad_s.x, "rad/s", "Offset of the roll gyroscope"),
+    real!("SIM_GYR1_BIAS_Y", None, -5.0..=5.0, simulated.errors.gyroscope_bias_rad_s.y, "rad/s", "Offset of the pitch gyroscope"),
+    real!("SIM_GYR1_BIAS_Z", None, -5.0..=5.0, simulated.errors.gyroscope_bias_rad_s.z, "rad/s", "Offset of the yaw gyroscope"),
+    switch!("SIM_GYR_FAIL_MSK", simulated.errors.switches.gyroscope_off, "Whether the gyroscopes are silent"),
+    real!("SIM_BARO_RND", None, 0.0..=100.0, simulated.errors.barometer_noise_m, "m", "Standard deviation of additional noise of the barometer"),
+    real!("SIM_BARO_DRIFT", None, -100.0..=100.0, simulated.errors.barometer_drift_m_s, "m/s", "How fast the barometer's height drifts"),
+    real!("SIM_BARO_GLITCH", None, -10_000.0..=10_000.0, simulated.errors.barometer_glitch_m, "m", "Error of the barometer's height"),
+    switch!("SIM_BARO_DISABLE", simulated.errors.switches.barometer_off, "Whether the barometer is silent"),
+    switch!("SIM_BARO_FREEZE", simulated.errors.switches.barometer_frozen, "Whether the barometer repeats itself"),
+    real!("SIM_MAG_RND", None, 0.0..=10_000.0, simulated.errors.magnetometer_noise_mgauss, "mGauss", "Standard deviation of additional noise of the magnetometer"),
+    real!("SIM_MAG1_OFS_X", None, -2000.0..=2000.0, simulated.errors.magnetometer_offset_mgauss.x, "mGauss", "Offset of the magnetometer, forwards"),
+    real!("SIM_MAG1_OFS_Y", None, -2000.0..=2000.0, simulated.errors.magnetometer_offset_mgauss.y, "mGauss", "Offset of the magnetometer, to the right"),
+    real!("SIM_MAG1_OFS_Z", None, -2000.0..=2000.0, simulated.errors.magnetometer_offset_mgauss.z, "mGauss", "Offset of the magnetometer, down"),
+    switch!("SIM_MAG1_FAIL", simulated.errors.switches.magnetometer_off, "Whether the magnetometer is silent"),
+];
+
+const WIND_PROFILES: &[(WindProfile, i32, &str)] = &[
+    (WindProfile::Even, 1, "The same at all heights"),
+    (WindProfile::SquareRoot, 0, "With the square root of the height"),
+    (WindProfile::Linear, 2, "Linearly, by SIM_WIND_T_COEF"),
+];
+const ROTORS: &[&str] = &["Rotor 1", "Rotor 2", "Rotor 3", "Rotor 4"];
+
+fn whole_bits(value: f64) -> u32 {
+    value as u32
+}
