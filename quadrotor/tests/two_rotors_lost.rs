@@ -57,14 +57,17 @@ fn rotors_that_stop_let_it_fall_freely() {
     assert!((12.0..14.1).contains(&speed_m_s), "{speed_m_s} m/s");
 }
 
-/// At once, or the second one while the first is being flown without, when it leans and spins; in still air and in a wind.
+/// At once, or the second one while the first is being flown without, when it leans and spins; in still air and in a wind. Measured: 1.4,
+/// 7.7 and 3.0 m/s.
 #[test]
 fn two_opposite_rotors_carry_it_down() {
     for (one, other) in [(0, 2), (2, 0), (1, 3)] {
-        for (later_s, wind_m_s) in [(0.0, 0.0), (0.3, 0.0), (3.0, 0.0), (0.0, 3.0)] {
+        for (later_s, wind_m_s, most_m_s) in [(0.0, 0.0, 2.0), (3.0, 0.0, 9.0), (0.0, 3.0, 4.0)] {
             let speed_m_s = fall([(one, 1.0), (other, 1.0 + later_s)], true, wind_m_s);
-            println!("{one} {other} {later_s} s {wind_m_s} m/s: {speed_m_s:.2}");
-            assert!(speed_m_s < 20.0, "{one}, {other} {later_s} s later: {speed_m_s} m/s");
+            assert!(
+                speed_m_s < most_m_s,
+                "{one}, {other} {later_s} s later in {wind_m_s} m/s: {speed_m_s} m/s"
+            );
         }
     }
 }

@@ -144,7 +144,7 @@ fn a_flight_is_in_the_log_with_its_happenings() {
     let mut logged = Logged::new();
     logged.fly(0.5);
     logged.flight();
-    let truth = logged.bench.autopilot.vehicle().truth().clone();
+    let truth = *logged.bench.autopilot.vehicle().truth();
     let last = std::fs::read_to_string(logged.place.path().join("LASTLOG.TXT")).expect("there");
     assert_eq!(last, "1\r\n");
     let paths = logged.logs();

@@ -227,6 +227,7 @@ fn a_vehicle_that_has_fallen_is_disarmed() {
             );
         }
         bench.fly_until("disarmed", 30.0, |bench| !bench.autopilot.vehicle().is_armed());
-        println!("{identity:?} {:?}", bench.texts());
+        let texts = bench.texts();
+        assert_eq!(texts.last().map(String::as_str), Some("Disarmed: landed without rotor 1"), "{texts:?}");
     }
 }
