@@ -45,7 +45,7 @@ fn commands() -> String {
     let mut text = String::from(
         "## Commands\n\n\
          *Command* is a `COMMAND_LONG` or a `COMMAND_INT`, *item* an item of a mission, a fence or a list of rally points.\n\
-         A command that is not taken here is answered with `COMMAND_ACK` and `MAV_RESULT_UNSUPPORTED`; a plan with an item that is not taken with `MISSION_ACK` and `MAV_MISSION_UNSUPPORTED`, and a line that names it.\n\n\
+         A command that is not taken here, or that only the original has whose conventions are not followed, is answered with `COMMAND_ACK` and `MAV_RESULT_UNSUPPORTED`; a plan with an item that is not taken with `MISSION_ACK` and `MAV_MISSION_UNSUPPORTED`, and a line that names it.\n\n\
          | command | PX4 | ArduPilot | here | for |\n| --- | --- | --- | --- | --- |\n",
     );
     for row in tables::commands() {
