@@ -4,7 +4,7 @@
 use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
-use vehicle::{FlightError, Pulses, Severity, Vehicle, VehicleSettings};
+use vehicle::{FlightError, LandedState, Pulses, Severity, TICK_US, Vehicle, VehicleSettings};
 
 use crate::codec::{Frame, target_of};
 use crate::context::Context;
@@ -21,6 +21,9 @@ use crate::service::{heartbeat, parameter};
 pub struct Autopilot {
     context: Context,
     services: Registry,
+    /// How long the boots before the present one have lasted, µs.
+    before_us: u64,
+    boots: u32,
 }
 
 impl Autopilot {
@@ -54,12 +57,14 @@ impl Autopilot {
             vehicle,
             outbox: Outbox::new(system_id),
             files: Box::new(Immediate(Nothing)),
-            streams: services.streams(),
+            streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
+            reboot_us: None,
         };
+        context.parameters.statistics_mut().reset(unix_start_us / 1_000_000);
         services.start(&mut context);
-        Self { context, services }
+        Self { context, services, before_us: 0, boots: 1 }
     }
 
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
@@ -77,11 +82,51 @@ impl Autopilot {
     /// # Errors
     /// [`FlightError`]: the flight cannot go on.
     pub fn tick(&mut self) -> Result<(), FlightError> {
+        let time_us = self.context.vehicle.time_us();
+        if self.context.reboot_us.is_some_and(|due_us| time_us >= due_us) {
+            self.reboot()?;
+        }
         self.context.vehicle.tick()?;
+        self.count();
         self.services.tick(&mut self.context);
         self.services.announce(&mut self.context);
         self.services.stream(&mut self.context);
         Ok(())
+    }
+
+    /// Boots again: with its parameters, its plans and its clients' files, and nothing else.
+    fn reboot(&mut self) -> Result<(), FlightError> {
+        let context = &mut self.context;
+        let settings = context.vehicle.settings_of_reboot(context.parameters.settings());
+        let lasted_us = context.vehicle.time_us();
+        let unix_start_us = context.vehicle.unix_start_us() + lasted_us;
+        context.vehicle = Vehicle::new(&settings).map_err(FlightError::from)?;
+        context.vehicle.set_unix_start_us(unix_start_us);
+        context.reboot_us = None;
+        context.outbox.restart();
+        context.parameters.statistics_mut().boots += 1;
+        self.before_us += lasted_us;
+        self.boots += 1;
+        self.services = Registry::new();
+        self.services.start(context);
+        Ok(())
+    }
+
+    fn count(&mut self) {
+        let flies = self.context.vehicle.landed_state() != LandedState::OnGround;
+        let statistics = self.context.parameters.statistics_mut();
+        statistics.run_us += TICK_US;
+        statistics.flight_us += if flies { TICK_US } else { 0 };
+    }
+
+    /// Simulation time since the program has started, µs: that of the vehicle begins anew with each boot.
+    pub fn time_us(&self) -> u64 {
+        self.before_us + self.context.vehicle.time_us()
+    }
+
+    /// How often it has booted.
+    pub fn boots(&self) -> u32 {
+        self.boots
     }
 
     /// Tells whether a ground station is heard: that is judged by the wall clock, which is outside.
@@ -185,6 +230,11 @@ impl Autopilot {
     /// All parameters with their values, in the order of the table.
     pub fn parameters(&self) -> impl Iterator<Item = (&'static str, Value)> {
         self.context.parameters.all(&self.context.vehicle)
+    }
+
+    /// The values that parameters had at the start, in the order of the table.
+    pub fn initial_parameters(&self) -> &[Value] {
+        self.context.parameters.initial()
     }
 
     /// The parameters as the text of a file, if one has changed since the last call.

@@ -30,6 +30,8 @@ pub struct Context {
     pub capabilities: MavProtocolCapability,
     /// What each link is for, by the number of the link.
     pub links: Vec<LinkProfile>,
+    /// When the vehicle boots again, µs after its start, if it was asked to.
+    pub reboot_us: Option<u64>,
 }
 
 impl Context {

@@ -2,6 +2,8 @@
 
 /// The folder of logs in a store.
 pub const LOGS: &str = "logs";
+/// The file beside ArduPilot's logs that has the number of the latest.
+pub const LAST_LOG: &str = "LASTLOG.TXT";
 
 /// Why a file operation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -48,6 +48,11 @@ impl Outbox {
         std::mem::take(&mut self.messages)
     }
 
+    /// The clock begins anew: what was said before is not said a moment ago any more.
+    pub fn restart(&mut self) {
+        self.texts.forget();
+    }
+
     /// Lines for the pilot since the last call, as many as are remembered.
     pub fn take_lines(&mut self) -> Vec<Line> {
         self.texts.take_unlogged()

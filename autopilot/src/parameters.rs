@@ -2,7 +2,9 @@
 
 use std::sync::OnceLock;
 
-use vehicle::parameters::{Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Value};
+use vehicle::parameters::{
+    Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Statistics, Value,
+};
 use vehicle::{ChangeError, Refusal, Vehicle, VehicleSettings};
 
 use crate::codec::parameter_hash;
@@ -17,6 +19,7 @@ pub struct Parameters {
     settings: VehicleSettings,
     initial: Vec<Value>,
     changed: bool,
+    statistics: Statistics,
     /// Made when it is asked for first.
     metadata: OnceLock<ParameterMetadata>,
 }
@@ -31,6 +34,7 @@ impl Parameters {
             settings: settings.clone(),
             initial: Vec::new(),
             changed: false,
+            statistics: Statistics::default(),
             metadata: OnceLock::new(),
         };
         parameters.initial = parameters.all(vehicle).map(|(_, value)| value).collect();
@@ -62,6 +66,11 @@ impl Parameters {
         self.speed = speed;
     }
 
+    /// Their values at the start, in the order of the table.
+    pub fn initial(&self) -> &[Value] {
+        &self.initial
+    }
+
     /// Files that describe them.
     pub fn metadata(&self) -> &ParameterMetadata {
         self.metadata.get_or_init(|| ParameterMetadata::new(&self.table, &self.initial))
@@ -74,7 +83,13 @@ impl Parameters {
             conduct: *vehicle.conduct(),
             system_id: self.system_id,
             speed: self.speed,
+            statistics: self.statistics,
         }
+    }
+
+    /// What the vehicle counts.
+    pub fn statistics_mut(&mut self) -> &mut Statistics {
+        &mut self.statistics
     }
 
     /// All names with their values, in the order of the table.
@@ -98,7 +113,10 @@ impl Parameters {
     /// [`SetError`]; nothing has changed then.
     pub fn set(&mut self, name: &str, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
         let mut values = self.values(vehicle);
-        if self.table.set(name, value, &mut values)? != Change::Nothing {
+        let change = self.table.set(name, value, &mut values)?;
+        if change == Change::Statistics {
+            self.statistics.reset((vehicle.unix_start_us() + vehicle.time_us()) / 1_000_000);
+        } else if change != Change::Nothing {
             let adopted = vehicle.adopt(&values.configuration, &values.conduct);
             adopted.map_err(|source| SetError::refused(name, source))?;
             self.speed = values.speed;

@@ -53,6 +53,11 @@ impl StatusTexts {
         messages(severity, text, &mut self.next_id)
     }
 
+    /// Forgets what was said lately.
+    pub fn forget(&mut self) {
+        self.said.clear();
+    }
+
     /// Lines since the last call, as many as are remembered.
     pub fn take_unlogged(&mut self) -> Vec<Line> {
         std::mem::take(&mut self.unlogged)

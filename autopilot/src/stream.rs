@@ -71,22 +71,29 @@ pub struct Stream {
     pub group: Option<Group>,
     /// How it is made.
     pub build: Build,
+    /// Whether only ArduPilot has it.
+    pub ardupilot_only: bool,
 }
 
 impl Stream {
     /// A message made from the vehicle, with its rates on a ground station's link and on an onboard one, Hz.
     pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
-        Self { id, rates_hz, group: None, build: Build::Vehicle(build) }
+        Self { id, rates_hz, group: None, build: Build::Vehicle(build), ardupilot_only: false }
     }
 
     /// A message that is sent only when it is asked for.
     pub const fn on_request(id: u32, build: Build) -> Self {
-        Self { id, rates_hz: [0.0; 2], group: None, build }
+        Self { id, rates_hz: [0.0; 2], group: None, build, ardupilot_only: false }
     }
 
     /// Puts it into a group of REQUEST_DATA_STREAM.
     pub const fn of(self, group: Group) -> Self {
         Self { group: Some(group), ..self }
+    }
+
+    /// Only ArduPilot has it: in other identities it can neither be streamed nor asked for.
+    pub const fn of_ardupilot(self) -> Self {
+        Self { ardupilot_only: true, ..self }
     }
 
     /// Interval at the start on a link of this profile, µs; `None` if it is not sent there.

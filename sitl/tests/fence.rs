@@ -509,3 +509,59 @@ fn what_is_only_looked_at_may_lie_outside() {
         assert_eq!(result(&heard), Some(14), "{identity:?}: {heard:?}");
     }
 }
+
+/// ArduPilot stays where all inclusion zones are unless FENCE_OPTIONS says that one is enough; PX4 in any of them.
+#[test]
+fn inclusion_zones_combine_as_the_autopilot_does_it() {
+    let zones = |start: &VehicleSettings| {
+        let beside = polygon(start, true, &[[-30.0, -10.0], [-30.0, 60.0], [30.0, 60.0], [30.0, -10.0]]);
+        [square(start, 40.0), beside].concat()
+    };
+    let start = settings(Identity::ArduPilot);
+    let mut bench = Bench::hovering_with(&start);
+    assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &zones(&start))), Some(0));
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED, "in one of them only");
+    assert_eq!(go_to(&mut bench, 20.0, 20.0), 0, "{:?}", bench.texts());
+    assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 3.0), Some(3.0));
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
+    assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 0.0), Some(0.0));
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED);
+    let start = settings(Identity::Px4);
+    let mut bench = hovering(&start, zones(&start), Vec::new());
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
+}
+
+/// Many clients repeat the first vertex at the end of the ring.
+#[test]
+fn a_polygon_may_be_closed_by_its_first_vertex() {
+    let start = settings(Identity::ArduPilot);
+    let ring =
+        polygon(&start, true, &[[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0], [-20.0, -20.0]]);
+    let mut bench = Bench::hovering_with(&start);
+    assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &ring)), Some(0), "{:?}", bench.texts());
+    assert_eq!(bench.autopilot.vehicle().plans().get(PlanKind::Fence).items().len(), 5, "as it came");
+    assert_eq!((go_to(&mut bench, 25.0, 0.0), go_to(&mut bench, 15.0, 0.0)), (DENIED, 0));
+}
+
+/// Bit 0 of FENCE_OPTIONS: nobody chooses another mode before the vehicle is back from a breach.
+#[test]
+fn ardupilot_keeps_the_mode_that_comes_back_from_a_breach() {
+    const FAILED: u8 = 4;
+    for (options, chosen) in [(1.0, FAILED), (0.0, 0)] {
+        let mut start = settings(Identity::ArduPilot);
+        start.conduct.failsafe.fence_ahead = false;
+        let mut bench = Bench::hovering_with(&start);
+        assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", options), Some(options));
+        assert_eq!(go_to(&mut bench, 60.0, 0.0), 0);
+        bench.fly_until("under way", 20.0, |bench| bench.position()[0] > 20.0);
+        // A fence that it is outside of.
+        assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &square(&start, 15.0))), Some(0));
+        bench.fly_until("comes back", 5.0, |bench| bench.mode() == Mode::Return);
+        assert_eq!(bench.set_mode(Mode::Position), chosen, "{options}: {:?}", bench.texts());
+        if chosen == FAILED {
+            bench.fly_until("is inside", 60.0, |bench| bench.position()[0] < 10.0);
+            bench.fly(3.0);
+            assert_eq!(bench.set_mode(Mode::Position), 0, "{:?}", bench.texts());
+        }
+    }
+}

@@ -3,7 +3,10 @@
 mod common;
 
 use common::{Bench, settings};
-use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
+use mavlink::dialects::ardupilotmega::{
+    AttitudeTargetTypemask, COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage,
+    SET_ATTITUDE_TARGET_DATA,
+};
 use vehicle::identity::Identity;
 use vehicle::{LandedState, Mode};
 
@@ -66,6 +69,55 @@ fn nothing_happens_after_arming_disarms() {
     assert!(!bench.autopilot.vehicle().is_armed());
 }
 
+/// With the delays at zero it stays armed, before a flight and after it.
+#[test]
+fn a_delay_of_zero_never_disarms() {
+    let mut start = settings(Identity::ArduPilot);
+    start.conduct.disarm_before_takeoff_s = 0.0;
+    start.conduct.disarm_after_landing_s = 0.0;
+    let mut bench = Bench::of(&start);
+    bench.set_mode(Mode::Offboard);
+    bench.arm();
+    bench.fly(30.0);
+    assert!(bench.autopilot.vehicle().is_armed());
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0]), 0);
+    bench.fly(6.0);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, NOTHING), 0);
+    bench.fly(30.0);
+    assert!(bench.autopilot.vehicle().is_armed() && bench.position()[2].abs() < 0.02);
+}
+
+/// An attitude with next to no thrust is how offboard programs land: PX4 disarms then, too.
+#[test]
+fn attitudes_without_thrust_on_the_ground_disarm() {
+    let mut bench = Bench::new(Identity::Px4);
+    let thrust = |bench: &mut Bench, thrust: f32| {
+        bench.send(MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+            target_system: 1,
+            q: [1.0, 0.0, 0.0, 0.0],
+            type_mask: AttitudeTargetTypemask::from_bits_retain(0b111),
+            thrust,
+            ..SET_ATTITUDE_TARGET_DATA::default()
+        }));
+    };
+    thrust(&mut bench, 0.0);
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    bench.arm();
+    let airframe = bench.autopilot.vehicle().simulation().configuration().airframe;
+    let hover = (airframe.weight_n() / airframe.thrust_range_n().1) as f32;
+    // Never let off, but about to: it is not disarmed.
+    bench.stream(12.0, |bench| thrust(bench, 0.9 * hover));
+    assert!(
+        bench.autopilot.vehicle().is_armed()
+            && bench.autopilot.vehicle().landed_state() == LandedState::OnGround
+    );
+    bench.stream(0.7, |bench| thrust(bench, 1.1 * hover));
+    bench.stream(2.0, |bench| thrust(bench, 0.7 * hover));
+    assert!(bench.texts().iter().any(|text| text == "Landing detected"), "{:?}", bench.texts());
+    bench.stream(2.5, |bench| thrust(bench, 0.0));
+    assert!(!bench.autopilot.vehicle().is_armed() && bench.mode() == Mode::Offboard);
+}
+
 #[test]
 fn a_refused_arming_says_why() {
     let mut bench = Bench::new(Identity::Px4);
@@ -91,12 +143,12 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
         (
             Identity::Px4,
             9.0,
-            "Mode 0x90000 is not available; available: Position, Hold, Takeoff, Mission, Return, Land, Offboard",
+            "Mode 0x90000 is not available; available: Manual, Stabilized, Acro, Altitude, Position, Hold, Takeoff, Mission, Return, Land, Offboard, Orbit, Follow Me",
         ),
         (
             Identity::ArduPilot,
             15.0,
-            "Mode 15 is not available; available: Loiter, Brake, Auto, RTL, Land, Guided",
+            "Mode 15 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL",
         ),
     ] {
         let mut bench = Bench::new(identity);
@@ -218,6 +270,7 @@ fn sticks_fly_the_position_mode_and_their_loss_holds() {
     assert!(bench.velocity()[0].abs() < 0.05, "{:?}", bench.velocity());
     assert!(bench.texts().iter().any(|text| text.starts_with("Manual control lost")), "{:?}", bench.texts());
     // Down to the ground with the stick.
+    assert_eq!(bench.set_mode(Mode::Position), 0);
     let down = MANUAL_CONTROL_DATA { z: 0, ..forward };
     let down = MANUAL_CONTROL_DATA { x: 0, ..down };
     bench.stream(15.0, |bench| bench.send(MavMessage::MANUAL_CONTROL(down.clone())));

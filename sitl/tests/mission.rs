@@ -332,3 +332,93 @@ fn a_square_is_flown_by_instruments() {
     let passed = |[nearest, by_estimate]: &[f64; 2]| *by_estimate < 1.85 && *nearest < 1.85 + error;
     assert!(nearest.iter().all(passed) && error < 0.7 && off < 1.6, "{nearest:?} {error} {off}");
 }
+
+/// ArduPilot returns within the mission: its mode is AUTO to the end. PX4 changes to Return.
+#[test]
+fn a_return_in_a_mission_has_the_mode_of_its_autopilot() {
+    let rest = [takeoff(), waypoint([20.0, 0.0, -10.0]), simple(command::NAV_RETURN_TO_LAUNCH, [0.0; 4])];
+    let items = [&[MissionItem::home([0.0; 3])][..], &rest].concat();
+    let mut flight = Flight::of(Identity::ArduPilot, &items);
+    flight.bench.arm();
+    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+    let mut modes = std::collections::BTreeSet::new();
+    let mut landing = false;
+    while flight.bench.autopilot.vehicle().is_armed() && flight.now_s() < 120.0 {
+        flight.step();
+        let vehicle = flight.bench.autopilot.vehicle();
+        if vehicle.is_armed() {
+            modes.insert(Identity::ArduPilot.custom_mode(vehicle.mode()));
+        }
+        landing |= vehicle.landed_state() == LandedState::Landing;
+    }
+    assert_eq!(modes, [3].into(), "AUTO");
+    let [north, east, down] = flight.bench.position();
+    assert!(landing && north.hypot(east) < 0.3 && down.abs() < 0.05, "{:?}", flight.bench.position());
+    assert_eq!((flight.order(), flight.state()), (vec![1, 2, 3], MissionState::Complete));
+    assert!(flight.nearest([20.0, 0.0, -15.0]) < 1.0, "it climbs to RTL_ALT first");
+    let mut flight = Flight::new(&rest);
+    flight.fly_until("returns", 60.0, |flight| flight.bench.mode() == Mode::Return);
+}
+
+/// With a delay of zero ArduPilot waits for the time of day, UTC; PX4 goes on.
+#[test]
+fn ardupilot_waits_for_a_time_of_day() {
+    let items = [
+        MissionItem::home([0.0; 3]),
+        takeoff(),
+        simple(command::NAV_DELAY, [0.0, 12.0, 1.0, 30.0]),
+        waypoint([5.0, 0.0, -10.0]),
+    ];
+    for (identity, items) in [(Identity::ArduPilot, &items[..]), (Identity::Px4, &items[1..])] {
+        // Noon of 2 January 1970.
+        let noon_us = 129_600_000_000;
+        let mut bench = Bench::started_at(&common::settings(identity), noon_us);
+        assert_eq!(result(&upload(&mut bench, PlanKind::Mission, items)), Some(0));
+        bench.arm();
+        assert_eq!(bench.set_mode(Mode::Mission), 0);
+        bench.fly_until("waypoint", 120.0, |bench| bench.position()[0] > 1.0);
+        let time_s = bench.autopilot.vehicle().time_us() as f64 / 1e6;
+        let expected = if identity.is_ardupilot() { 90.0..96.0 } else { 1.0..30.0 };
+        assert!(expected.contains(&time_s), "{identity:?}: {time_s}");
+    }
+}
+
+/// More than a turn, relative to the present heading.
+#[test]
+fn a_relative_turn_may_be_more_than_a_circle() {
+    let items = [
+        takeoff(),
+        simple(command::CONDITION_YAW, [450.0, 0.0, 1.0, 1.0]),
+        at(command::NAV_LOITER_UNLIM, [0.0, 0.0, 0.0, NAN], [60.0, 0.0, -10.0]),
+    ];
+    let mut flight = Flight::new(&items);
+    flight.fly_until("turned", 60.0, |flight| flight.order().contains(&1));
+    let track: Vec<f64> = flight.track.iter().map(|(_, _, yaw)| *yaw).collect();
+    let turned: f64 = track.windows(2).map(|pair| (pair[1] - pair[0] + 3.0 * PI).rem_euclid(TAU) - PI).sum();
+    assert!((turned.to_degrees() - 450.0).abs() < 5.0, "{}", turned.to_degrees());
+}
+/// MPC_YAW_MODE and WP_YAW_BEHAVIOR: where the nose points on a leg that leads east, while home lies in the south-west.
+#[test]
+fn the_nose_points_as_the_parameter_says() {
+    use vehicle::HeadingPolicy::{AwayFromHome, Hold, Home, NextPlace, NextPlaceExceptReturn, Travel};
+    for (policy, expected_deg) in [
+        (NextPlace, 90.0),
+        (NextPlaceExceptReturn, 90.0),
+        (Travel, 90.0),
+        (Hold, 0.0),
+        (Home, -135.0),
+        (AwayFromHome, 45.0),
+    ] {
+        let mut settings = common::settings(Identity::Px4);
+        settings.conduct.heading_policy = policy;
+        let mut bench = Bench::of(&settings);
+        let items = [takeoff(), waypoint([60.0, 0.0, -10.0]), waypoint([60.0, 90.0, -10.0])];
+        assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+        bench.arm();
+        assert_eq!(bench.set_mode(Mode::Mission), 0);
+        bench.fly_until("on the second leg", 90.0, |bench| bench.position()[1] > 60.0);
+        let heading_deg = bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees();
+        let off_deg = (heading_deg - expected_deg + 540.0).rem_euclid(360.0) - 180.0;
+        assert!(off_deg.abs() < 6.0, "{policy:?}: {heading_deg}");
+    }
+}

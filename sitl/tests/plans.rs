@@ -231,7 +231,6 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
             MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y,
             "longitude = 181",
         ),
-        (waypoint(1.0, -3.0), MavMissionResult::MAV_MISSION_INVALID_PARAM7, "3.0 m below the ground"),
         (
             with(177, [9.0, 1.0, 0.0, 0.0]),
             MavMissionResult::MAV_MISSION_INVALID_PARAM1,
@@ -455,4 +454,63 @@ fn ardupilot_has_home_in_front() {
     assert!((home.item.position[0] - 47.397_742).abs() < 1e-6 && home.item.position[2] == 488.0, "{home:?}");
     assert_eq!(request(1).expect("an item").item, plan[1]);
     assert_eq!((home.target.system, home.target.component), GROUND_STATION);
+}
+
+/// PX4 and ArduPilot take places wherever they are, and below home; a mission that cannot be flown is not begun.
+#[test]
+fn places_are_taken_wherever_they_are_and_refused_when_they_are_to_be_flown() {
+    let far = waypoint(200_000.0, 10.0);
+    for (items, why) in [
+        ([waypoint(1.0, 10.0), far], "200 km away"),
+        ([waypoint(1.0, 10.0), waypoint(2.0, -3.0)], "3.0 m below"),
+    ] {
+        let mut client = Client::new();
+        let heard = client.upload(PlanKind::Mission, &items);
+        assert_eq!(result(&heard), Some(ACCEPTED), "{heard:?}");
+        assert!(texts(heard).contains(why), "{why}");
+        assert_eq!(client.plan(PlanKind::Mission), items);
+        client.bench.fly(1.1);
+        client.bench.heard.clear();
+        assert_eq!(client.bench.set_mode(vehicle::Mode::Mission), 2);
+        assert!(client.bench.texts().iter().any(|text| text.contains(why)), "{:?}", client.bench.texts());
+    }
+    let mut client = Client::new();
+    client.take(PlanKind::Rally, &[MissionItem { command: 5100, ..far }]);
+    let around = MissionItem { command: 5004, parameters: [20.0, 0.0, 0.0, 0.0], ..far };
+    client.take(PlanKind::Fence, &[around]);
+    client.bench.arm();
+}
+
+/// ArduPilot asks by MISSION_REQUEST whatever it is answered; its item 0 is home, also of an empty mission.
+#[test]
+fn ardupilot_asks_by_the_older_request_and_always_has_home() {
+    let mut client = Client::of(Identity::ArduPilot);
+    let home = client.send(MavMessage::MISSION_REQUEST(MISSION_REQUEST_DATA {
+        seq: 0,
+        target_system: 1,
+        target_component: 1,
+        ..MISSION_REQUEST_DATA::default()
+    }));
+    let item = home.iter().find_map(|message| match message {
+        Message::MissionItem(item) => Some(*item),
+        _ => None,
+    });
+    let item = item.expect("home").item;
+    assert_eq!(item.command, 16);
+    assert!((item.position[0] - 47.397_742).abs() < 1e-4 && item.position[2] > 400.0, "{item:?}");
+    for (identity, older) in [(Identity::ArduPilot, true), (Identity::Px4, false)] {
+        let mut client = Client::of(identity);
+        let mut heard = client.send(count_message(PlanKind::Mission, 3));
+        for sequence in 0..3 {
+            let asked = heard.iter().find_map(|message| match message {
+                Message::Typed(MavMessage::MISSION_REQUEST(request)) => Some((request.seq, true)),
+                Message::Typed(MavMessage::MISSION_REQUEST_INT(request)) => Some((request.seq, false)),
+                _ => None,
+            });
+            assert_eq!(asked, Some((sequence, older)), "{identity:?}");
+            let item = item_message(PlanKind::Mission, sequence.into(), waypoint(1.0, 10.0), true);
+            heard = client.send(item);
+        }
+        assert_eq!(result(&heard), Some(ACCEPTED));
+    }
 }

@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod absent_mode;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -33,11 +34,14 @@ pub mod radio;
 mod vehicle;
 pub mod world;
 
+pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, Home, LandedState, MissionState, MissionStatus,
-    Notice, Pilot, PositionSetPoint, Pulses, Refusal, Reposition, SetPoint, Severity, SteeringKind,
-    StickSettings, Sticks, TICK_US, TrackedAttitude, Trainer, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings,
+    HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
+    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal,
+    Reposition, ReturnGoal, ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US,
+    TargetReport, TrackedAttitude, TrailSettings, Trainer, Vehicle, VehicleSettings, YawTarget, wrapped,
 };

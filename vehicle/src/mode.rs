@@ -27,6 +27,14 @@ pub enum Mode {
     Land,
     /// Follows set-points (ArduPilot: guided).
     Offboard,
+    /// Follows attitudes that are set from outside, and no places (ArduPilot: guided without GPS).
+    GuidedAttitude,
+    /// Flies around a centre (ArduPilot: circle).
+    Orbit,
+    /// Follows a target that moves.
+    Follow,
+    /// Flies back along its own way and lands.
+    SmartReturn,
 }
 
 /// Who leads the vehicle in a mode.
@@ -61,8 +69,15 @@ impl Mode {
             | Self::Stabilize
             | Self::Manual
             | Self::Acro => Leader::Sticks,
-            Self::Offboard => Leader::SetPoints,
-            Self::Takeoff | Self::Hold | Self::Return | Self::Mission | Self::Land => Leader::Vehicle,
+            Self::Offboard | Self::GuidedAttitude => Leader::SetPoints,
+            Self::Takeoff
+            | Self::Hold
+            | Self::Return
+            | Self::SmartReturn
+            | Self::Mission
+            | Self::Land
+            | Self::Orbit
+            | Self::Follow => Leader::Vehicle,
         }
     }
 
@@ -75,13 +90,13 @@ impl Mode {
     pub fn needs(self) -> Needs {
         match self {
             Self::Stabilize | Self::Manual | Self::Acro => Needs::Attitude,
-            Self::Altitude => Needs::Height,
+            Self::Altitude | Self::GuidedAttitude => Needs::Height,
             _ => Needs::Place,
         }
     }
 
     /// Whether it ends on the ground: then it is not one to be armed in.
     pub fn ends_on_the_ground(self) -> bool {
-        matches!(self, Self::Land | Self::Return | Self::Takeoff | Self::Mission)
+        matches!(self, Self::Land | Self::Return | Self::SmartReturn | Self::Takeoff | Self::Mission)
     }
 }

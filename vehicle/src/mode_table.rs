@@ -56,6 +56,10 @@ const MODES: &[Row] = &[
     row(Mode::Return, known(px4(4, 5), "Return"), known(6, "RTL")),
     row(Mode::Land, known(px4(4, 6), "Land"), known(9, "Land")),
     row(Mode::Offboard, known(px4(6, 0), "Offboard"), known(4, "Guided")),
+    row(Mode::GuidedAttitude, None, known(20, "Guided NoGPS")),
+    row(Mode::Orbit, known(px4(3, 1), "Orbit"), known(7, "Circle")),
+    row(Mode::Follow, known(px4(4, 8), "Follow Me"), known(23, "Follow")),
+    row(Mode::SmartReturn, None, known(21, "Smart RTL")),
 ];
 
 /// Other numbers that mean a mode: PX4's automatic mode without a sub-mode is the one that waits.

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use vehicle::fence::{Fence, Polygon, Progress, RouteSearch, Shape, Zone, Zones};
+use vehicle::fence::{Fence, Inclusions, Polygon, Progress, RouteSearch, Shape, Zone, Zones};
 
 type Place = [f64; 2];
 
@@ -18,7 +18,13 @@ fn polygon(corners: &[Place], inclusion: bool) -> Zone {
 }
 
 fn fence(zones: &Zones) -> Fence<'_> {
-    Fence { zones: Some(zones), home_m: Vector3::zeros(), radius_m: 0.0, height_m: 0.0 }
+    Fence {
+        zones: Some(zones),
+        inclusions: Inclusions::Any,
+        home_m: Vector3::zeros(),
+        radius_m: 0.0,
+        height_m: 0.0,
+    }
 }
 
 /// The way and how many slices of 50,000 sides it took.
@@ -173,6 +179,34 @@ fn a_detour_stays_within_the_greatest_distance() {
     let within = |radius_m: f64| Fence { radius_m, ..fence(&zones) };
     assert!(searched(&within(40.0), [0.0, 0.0], [24.0, 0.0]).0.is_some());
     assert_eq!(searched(&within(24.5), [0.0, 0.0], [24.0, 0.0]).0, None);
+}
+
+/// Where all inclusion areas are: the way keeps to the overlap, around an obstacle in it, and there is none where they do not meet.
+#[test]
+fn a_way_keeps_to_where_all_areas_are() {
+    let square = |half_m: f64, [x, y]: Place| {
+        polygon(
+            &[
+                [x - half_m, y - half_m],
+                [x - half_m, y + half_m],
+                [x + half_m, y + half_m],
+                [x + half_m, y - half_m],
+            ],
+            true,
+        )
+    };
+    let zones = Zones {
+        zones: vec![square(40.0, [0.0, 0.0]), square(40.0, [0.0, 50.0]), circle([0.0, 25.0], 5.0, false)],
+        return_m: None,
+    };
+    let any = fence(&zones);
+    let all = Fence { inclusions: Inclusions::All, ..any };
+    let (start, goal) = ([-20.0, 25.0], [20.0, 25.0]);
+    let way = searched(&all, start, goal).0.expect("there is one");
+    assert!(way.len() > 1 && breach(&all, start, &way).is_none(), "{way:?}");
+    let (start, goal) = ([0.0, -20.0], [0.0, 70.0]);
+    assert!(searched(&any, start, goal).0.is_some());
+    assert_eq!(searched(&all, start, goal).0, None, "the goal is in one of them only");
 }
 
 /// As many areas as a fence can have: far away, with gaps, with narrow ones, with none so that the way leads around all of them, and

@@ -54,7 +54,7 @@ impl Command {
             }
             id::COMMAND_INT => {
                 let kind = CommandKind::Int { frame: payload.u8(32) };
-                let scale = if is_local(payload.u8(32)) { 1e4 } else { 1e7 };
+                let scale = scale(payload.u8(32));
                 let real = |offset| match payload.i32(offset) {
                     // The integer that stands for "not given".
                     i32::MAX => f64::NAN,
@@ -72,11 +72,30 @@ impl Command {
         n.checked_sub(1).and_then(|index| self.parameters.get(index)).copied().unwrap_or(f64::NAN)
     }
 
+    /// Parameter `n` of 1 to 7 of a command that names no place: COMMAND_INT carries the fifth and the sixth as they are.
+    pub fn integer(&self, n: usize) -> f64 {
+        let scale = match self.kind {
+            CommandKind::Long { .. } => 1.0,
+            CommandKind::Int { frame } => scale(frame),
+        };
+        match n {
+            5 => libm::round(self.x * scale),
+            6 => libm::round(self.y * scale),
+            7 => self.z,
+            _ => self.parameter(n),
+        }
+    }
+
     /// A parameter that counts something: `None` unless it is a whole number that is not negative.
     pub fn whole(&self, n: usize) -> Option<u32> {
         let value = self.parameter(n);
         (value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value)).then_some(value as u32)
     }
+}
+
+/// How many integers of COMMAND_INT are a degree or, in a local frame, a metre.
+fn scale(frame: u8) -> f64 {
+    if is_local(frame) { 1e4 } else { 1e7 }
 }
 
 /// MAV_FRAME with metres instead of degrees.

@@ -8,7 +8,7 @@ use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
 use super::command::{global_frame, told_frame, told_place};
 use super::{CommandEntry, Outcome, Progress, Service, parameter};
-use crate::codec::{Command, command_name};
+use crate::codec::{Command, CommandKind, command_name};
 use crate::context::Context;
 use crate::envelope::Origin;
 
@@ -16,10 +16,12 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 17] = [
+const ACTIONS: [(MavCmd, CarryOut); 19] = [
+    (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
     (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
     (MavCmd::MAV_CMD_NAV_TAKEOFF, take_off),
+    (MavCmd::MAV_CMD_DO_LAND_START, begin_landing),
     (MavCmd::MAV_CMD_CONDITION_YAW, turn),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED, change_speed),
     (MavCmd::MAV_CMD_DO_SET_HOME, set_home),
@@ -46,8 +48,9 @@ const COMMANDS: [CommandEntry; ACTIONS.len()] = {
     commands
 };
 
-/// The number that arms or disarms whatever speaks against it.
+/// The number that arms or disarms whatever speaks against it, and another one of ArduPilot's that only arms.
 const FORCE: f64 = 21196.0;
+const FORCE_ARMING: f64 = 2989.0;
 
 /// Hands commands on to the vehicle.
 #[derive(Clone, Copy, Debug)]
@@ -75,8 +78,38 @@ impl Service for Actions {
     }
 }
 
+/// Holds where it is: ArduPilot in its loiter mode.
+fn loiter(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
+    let mode = if context.identity().is_ardupilot() { Mode::Position } else { Mode::Hold };
+    context.vehicle.set_mode(mode)
+}
+
+/// Goes on with the mission where its landing begins.
+fn begin_landing(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    let items = vehicle.plans().get(PlanKind::Mission).items();
+    let begins = items.iter().position(|item| item.command == MavCmd::MAV_CMD_DO_LAND_START as u16);
+    let Some(index) = begins else {
+        return Err(Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned()));
+    };
+    if !vehicle.is_flying() {
+        return Err(Refusal::Failed("Landing rejected: not flying".to_owned()));
+    }
+    vehicle.start_mission(Some(index))
+}
+
+/// ArduPilot takes no speed that is not above zero; PX4 returns to the parameter's by it, and −1 keeps what there is.
 fn change_speed(context: &mut Context, command: &Command) -> Result<(), Refusal> {
-    use_speed(&mut context.vehicle, command.parameter(1), command.parameter(2))
+    const KEEP: f64 = -1.0;
+    const BY_PARAMETER: f64 = -2.0;
+    let (kind, speed_m_s) = (command.parameter(1), command.parameter(2));
+    if speed_m_s > 0.0 || speed_m_s == KEEP && !context.identity().is_ardupilot() {
+        return use_speed(&mut context.vehicle, kind, speed_m_s);
+    }
+    if context.identity().is_ardupilot() {
+        return Err(Refusal::denied(format!("Speed {speed_m_s} m/s rejected: it must be above 0")));
+    }
+    use_speed(&mut context.vehicle, kind, BY_PARAMETER)
 }
 
 /// SPEED_TYPE, and a speed.
@@ -95,19 +128,31 @@ fn terminate(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 
 fn pause(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    if command.parameter(1) == 0.0 { vehicle.pause() } else { vehicle.continue_mission() }
+    match command.parameter(1) {
+        0.0 => vehicle.pause(),
+        1.0 => vehicle.continue_mission(),
+        other => Err(Refusal::denied(format!("Invalid value {other}: 0 pauses, 1 continues"))),
+    }
+}
+
+/// A command as an item of a mission.
+fn item_of(command: &Command, frame: u8) -> MissionItem {
+    MissionItem {
+        frame,
+        command: command.number,
+        parameters: command.parameters,
+        position: [command.x, command.y, command.z],
+        autocontinue: true,
+    }
 }
 
 /// The same as an item of a mission.
 fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    let item = MissionItem {
-        frame: told_frame(command),
-        command: command.number,
-        parameters: command.parameters,
-        position: [command.x, command.y, command.z],
-        autocontinue: true,
-    };
+    // A COMMAND_LONG has no frame: ArduPilot means it above home, PX4 above sea level.
+    let relative = vehicle.identity().is_ardupilot() && matches!(command.kind, CommandKind::Long { .. });
+    let frame = if relative { plan::frame::GLOBAL_RELATIVE } else { told_frame(command) };
+    let item = item_of(command, frame);
     let items = vehicle.plans().get(PlanKind::Mission).items();
     let look = compile::look(&item, items, &vehicle.site()).map_err(|fault| match fault.code {
         FaultCode::Unsupported => {
@@ -124,7 +169,7 @@ fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
     let force = command.parameter(2) == FORCE;
     match command.parameter(1) {
-        1.0 => vehicle.arm(force),
+        1.0 => vehicle.arm(force || command.parameter(2) == FORCE_ARMING),
         0.0 => vehicle.disarm(force),
         other => Err(Refusal::denied(format!("Invalid value {other}: 1 arms, 0 disarms"))),
     }
@@ -157,6 +202,11 @@ fn check(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// ArduPilot answers whatever it cannot do now by a failure.
+fn failed(refusal: Refusal) -> Refusal {
+    Refusal::Failed(refusal.to_string())
+}
+
 /// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
 fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
@@ -164,7 +214,14 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
         return vehicle.take_off(None);
     }
     if vehicle.identity().is_ardupilot() {
-        return vehicle.take_off(Some(command.z));
+        let frame =
+            if let CommandKind::Int { frame } = command.kind { frame } else { plan::frame::GLOBAL_RELATIVE };
+        if !matches!(frame, plan::frame::GLOBAL_RELATIVE | plan::frame::GLOBAL_RELATIVE_INT) {
+            return Err(Refusal::denied(format!(
+                "Takeoff denied: frame {frame}; allowed 3 and 6, above home"
+            )));
+        }
+        return vehicle.take_off(Some(command.z)).map_err(failed);
     }
     let down_m = vehicle.site().down_m(global_frame(command)?, command.z);
     let height_m = vehicle.home().position_m.z - down_m;
@@ -178,17 +235,12 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     vehicle.take_off(Some(height_m))
 }
 
-/// To an angle, degrees, from north or (parameter 4) from the present heading, in a direction if there is one.
+/// The same as an item of a mission: angle, rate, direction, relative or not.
 fn turn(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    let angle_rad = command.parameter(1).to_radians();
-    if !angle_rad.is_finite() {
-        return Err(Refusal::denied("CONDITION_YAW requires an angle"));
-    }
-    let direction = if command.parameter(3) < 0.0 { -1.0 } else { 1.0 };
-    let relative = command.parameter(4) == 1.0;
-    let goal = if relative { vehicle.outputs().attitude_rad.z + direction * angle_rad } else { angle_rad };
-    vehicle.turn_to(goal)
+    let turn = compile::turn(&item_of(command, plan::frame::MISSION), &vehicle.site())
+        .map_err(|fault| Refusal::denied(format!("Turn denied: {}", fault.reason)))?;
+    vehicle.turn(&turn)
 }
 
 fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {

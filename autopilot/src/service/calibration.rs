@@ -21,8 +21,15 @@ const STILL_RAD_S: f64 = 0.1;
 const STILL_M_S: f64 = 0.1;
 
 /// Parameters of the command, and what they calibrate.
-const UNITS: [(usize, f64, &str); 5] =
-    [(1, 1.0, "gyro"), (2, 1.0, "mag"), (3, 1.0, "baro"), (5, 1.0, "accel"), (5, 2.0, "level")];
+const UNITS: [(usize, f64, &str); 6] = [
+    (1, 1.0, "gyro"),
+    (2, 1.0, "mag"),
+    (3, 1.0, "baro"),
+    (5, 1.0, "accel"),
+    (5, 2.0, "level"),
+    // ArduPilot's simple calibration, on level ground.
+    (5, 4.0, "accel"),
+];
 
 /// A calibration that is under way.
 #[derive(Clone, Copy, Debug)]

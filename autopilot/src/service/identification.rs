@@ -37,14 +37,30 @@ impl Service for Identification {
     }
 }
 
-/// AUTOPILOT_VERSION. It names no other autopilot's version, and no commit.
+/// Versions of the autopilots whose conventions are kept: what clients ask for before they use them. The last byte is that of a release.
+const PX4_CONVENTIONS: u32 = u32::from_be_bytes([1, 16, 0, RELEASE]);
+const ARDUPILOT_CONVENTIONS: u32 = u32::from_be_bytes([4, 6, 0, RELEASE]);
+const RELEASE: u8 = 255;
+
+/// The version of an autopilot that a client may take this one for.
+fn conventions(identity: Identity) -> u32 {
+    match identity {
+        Identity::Px4 => PX4_CONVENTIONS,
+        Identity::ArduPilot => ARDUPILOT_CONVENTIONS,
+        Identity::Generic => version(),
+    }
+}
+
+/// AUTOPILOT_VERSION. The flight software's version is that of the conventions, by which clients judge what they may ask for; the
+/// middleware's is this program's, and vendor, product and commit are nobody else's.
 fn autopilot_version(component: &Component<'_>) -> MavMessage {
     MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
         capabilities: component.capabilities,
         uid: u64::from(VENDOR_ID) << 48
             | u64::from(PRODUCT_ID) << 32
             | u64::from(component.parameters.system_id()),
-        flight_sw_version: version(),
+        flight_sw_version: conventions(component.vehicle.identity()),
+        middleware_sw_version: version(),
         vendor_id: VENDOR_ID,
         product_id: PRODUCT_ID,
         ..AUTOPILOT_VERSION_DATA::default()

@@ -12,18 +12,16 @@ use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 
 const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
-const REQUEST_MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
 const REQUEST_PROTOCOL_VERSION: u16 = MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION as u16;
 const REQUEST_AUTOPILOT_CAPABILITIES: u16 = MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16;
 
 const COMMANDS: &[CommandEntry] = &[
     CommandEntry::question(GET_HOME_POSITION),
-    CommandEntry::question(REQUEST_MESSAGE),
     CommandEntry::question(REQUEST_PROTOCOL_VERSION),
     CommandEntry::question(REQUEST_AUTOPILOT_CAPABILITIES),
 ];
 
-/// Sends any message of the table: MAV_CMD_REQUEST_MESSAGE, and the older commands for one message each.
+/// The older commands for one message each; MAV_CMD_REQUEST_MESSAGE belongs to the service of the intervals, which knows one more.
 #[derive(Clone, Copy, Debug)]
 pub struct MessageRequests;
 
@@ -37,23 +35,28 @@ impl Service for MessageRequests {
     }
 
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
-        let (id, number) = match command.number {
-            GET_HOME_POSITION => (HOME_POSITION_DATA::ID, 0),
-            REQUEST_PROTOCOL_VERSION => (PROTOCOL_VERSION_DATA::ID, 0),
-            REQUEST_AUTOPILOT_CAPABILITIES => (AUTOPILOT_VERSION_DATA::ID, 0),
-            _ => {
-                let id = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
-                (id, command.whole(2).unwrap_or(0))
-            }
+        let id = match command.number {
+            GET_HOME_POSITION => HOME_POSITION_DATA::ID,
+            REQUEST_PROTOCOL_VERSION => PROTOCOL_VERSION_DATA::ID,
+            _ => AUTOPILOT_VERSION_DATA::ID,
         };
-        let stream = context.streams.get(id);
-        let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
-        if messages.is_empty() {
-            return Err(Refusal::Unsupported(format!("Message {id} is not available")));
-        }
-        for message in messages {
-            context.outbox.send(Destination::Peer(origin.peer), message);
-        }
+        send_once(context, origin, id, 0)?;
         Ok(Progress::Done)
     }
+}
+
+/// Sends a message of the table to who has asked for it; `number` chooses one where there are several.
+///
+/// # Errors
+/// [`Refusal::Unsupported`] for a message that there is not.
+pub fn send_once(context: &mut Context, origin: &Origin, id: u32, number: u32) -> Result<(), Refusal> {
+    let stream = context.streams.get(id);
+    let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
+    if messages.is_empty() {
+        return Err(Refusal::Unsupported(format!("Message {id} is not available")));
+    }
+    for message in messages {
+        context.outbox.send(Destination::Peer(origin.peer), message);
+    }
+    Ok(())
 }

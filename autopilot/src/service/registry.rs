@@ -27,7 +27,12 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::custom_mode::CustomModes),
         Box::new(super::standard_mode::StandardModes),
         Box::new(super::action::Actions),
+        Box::new(super::orbit::Orbits::default()),
+        Box::new(super::follow::Follow::default()),
         Box::new(super::set_point::SetPoints),
+        Box::new(super::reboot::Reboots),
+        Box::new(super::motor_test::MotorTests),
+        Box::new(super::magnetometer_calibration::MagnetometerCalibrations::default()),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),
@@ -68,9 +73,10 @@ impl Registry {
         self.services.iter().map(|service| service.as_ref())
     }
 
-    /// The table of all messages that the services make.
-    pub fn streams(&self) -> StreamTable {
-        StreamTable::new(self.services.iter().flat_map(|service| service.streams()))
+    /// The table of all messages that the services make in an identity.
+    pub fn streams(&self, identity: Identity) -> StreamTable {
+        let streams = self.services.iter().flat_map(|service| service.streams());
+        StreamTable::new(streams.filter(|stream| !stream.ardupilot_only || identity.is_ardupilot()))
     }
 
     /// What the services can do together.
@@ -181,7 +187,7 @@ mod tests {
         let registry = Registry::new();
         let capabilities = registry.capabilities(settings.identity);
         let component = Component { vehicle: &vehicle, parameters: &parameters, capabilities };
-        for stream in registry.streams().iter() {
+        for stream in registry.streams(Identity::ArduPilot).iter() {
             let messages = stream.messages(&component, 0);
             assert!(!messages.is_empty(), "{}", stream.id);
             assert!(messages.iter().all(|message| message.message_id() == stream.id), "{}", stream.id);

@@ -7,7 +7,7 @@
 //! | LOCAL_OFFSET_NED | position relative to the vehicle (an extension) | the same |
 //! | BODY_NED | velocity and acceleration, turned by the heading | offset turned by the heading, yaw relative |
 //! | BODY_OFFSET_NED | offset turned by the heading, yaw relative (an extension) | the same |
-//! | other frames, FORCE_SET, nothing but yaw | refused | stop |
+//! | other frames, FORCE_SET with an acceleration, nothing but yaw | refused | stop |
 //! | NaN | the axis is ignored | stop |
 
 use mavlink::dialects::ardupilotmega::MavProtocolCapability;
@@ -102,11 +102,14 @@ fn take(context: &mut Context, resolved: Result<SetPoint, Refusal>) {
 
 /// A set-point in the local frame.
 fn resolve(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<PositionSetPoint, Refusal> {
-    if target.type_mask & FORCE_SET != 0 {
-        return Err(Refusal::denied("Set-point rejected: force is not supported"));
-    }
     let ardupilot = vehicle.identity().is_ardupilot();
     let mut given = Given::read(target, ardupilot);
+    // Without an acceleration the bit says nothing.
+    if target.type_mask & FORCE_SET != 0 && given.acceleration.contains(&true) {
+        return Err(Refusal::denied(
+            "Set-point rejected: force is not supported; send an acceleration, or ignore it",
+        ));
+    }
     let outputs = vehicle.outputs();
     let heading = outputs.attitude_rad.z;
     let mut position = match target.position {

@@ -56,6 +56,7 @@ fn standard(mode: Mode) -> MavStandardMode {
         Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
         Mode::Mission => MavStandardMode::MAV_STANDARD_MODE_MISSION,
         Mode::Takeoff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
+        Mode::Orbit => MavStandardMode::MAV_STANDARD_MODE_ORBIT,
         _ => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
     }
 }

@@ -1,6 +1,6 @@
 //! Flight on the three rotors that are left: the thrust axis is steered, the heading is given up.
 
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{RowVector5, Vector3, Vector6};
 
 use crate::design::reduced_attitude::{LEAN_RAD, ReducedAttitudeDesign};
 use crate::plant::rotor_layout::RotorsAround;
@@ -20,6 +20,11 @@ const VERTICAL_M_S2: f64 = 2.0;
 const STEERABLE_SPIN_RAD_S: [f64; 2] = [0.5, 1.5];
 /// … or from where the opposite rotor has so much of the weight to take back.
 const STEERABLE_THRUST: f64 = 0.1;
+/// A rotor that makes less than this share of the least that it is ever commanded to make does not turn any more: this law always lets
+/// rotors idle at least.
+const STANDING_SHARE: f64 = 0.25;
+/// Thrust carries the vehicle while the vertical part of its axis is more than this.
+const UPRIGHT: f64 = 0.5;
 /// Range of the whole thrust, as a multiple of the weight.
 const THRUST_RANGE: [f64; 2] = [0.3, 1.5];
 
@@ -72,6 +77,14 @@ impl RotorLossLaw {
         let weight = airframe.weight_n();
         let (_, hovering) = self.trim(airframe, weight, lost, spin);
         let takeable = (hovering - weakest) / (STEERABLE_THRUST * weight);
+        let stands = |thrust: f64| thrust < STANDING_SHARE * weakest;
+        if stands(right) || stands(left) {
+            return self.body_rotors(&[0.0, weakest, weakest, weakest].map(|newton| libm::sqrt(newton / k1)));
+        }
+        if stands(opposite) {
+            let thrusts = self.pair_n(airframe, body, &rate, reference, left - right);
+            return self.body_rotors(&thrusts.map(|newton| libm::sqrt(newton / k1)));
+        }
         let [from, to] = STEERABLE_SPIN_RAD_S;
         let steerable = ((libm::fabs(spin) - from) / (to - from)).max(takeable).clamp(0.0, 1.0);
         let wanted = wanted_acceleration_m_s2(body, reference, steerable);
@@ -100,6 +113,30 @@ impl RotorLossLaw {
         let half = (command.y / 2.0).clamp(-room, room);
         let thrusts = [0.0, side - half, opposite, side + half];
         self.body_rotors(&thrusts.map(|newton| libm::sqrt(newton / k1)))
+    }
+
+    /// Thrusts, N, when the opposite rotor is lost, too: the two that are left carry the vehicle down. Both drive the spin, which nothing
+    /// brakes but the air; the thrust axis is righted by their difference, which the spin turns about all axes (Mueller and D'Andrea
+    /// 2014), and places are given up.
+    fn pair_n(
+        &self,
+        airframe: &Airframe,
+        body: &RigidBody,
+        rate_rad_s: &Vector3<f64>,
+        reference: &PositionReference,
+        difference_n: f64,
+    ) -> [f64; 4] {
+        let (weakest, strongest) = airframe.thrust_range_n();
+        let (weakest, strongest) = (weakest / 4.0, strongest / 4.0);
+        let up = self.turned(&(body.rotation().inverse() * Vector3::z()), false);
+        let wanted = GRAVITY_M_S2 - wanted_acceleration_m_s2(body, reference, 0.0).z;
+        // Lying on its side or on its back it is not carried.
+        let share = if up.z > UPRIGHT { 1.0 / up.z } else { 0.0 };
+        let side = (airframe.mass_kg * wanted * share / 2.0).clamp(weakest, strongest);
+        let state = RowVector5::new(up.x, up.y, rate_rad_s.x, rate_rad_s.y, difference_n);
+        let room = (side - weakest).min(strongest - side);
+        let half = (self.design.pair_command_n(rate_rad_s.z, &state) / 2.0).clamp(-room, room);
+        [0.0, side - half, 0.0, side + half]
     }
 
     /// Lean towards the lost rotor, rad, and thrust of the opposite one, N, in equilibrium: it leans so that the opposite

@@ -10,6 +10,10 @@ use crate::{Limits, PositionReference};
 
 /// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
 const STRAIGHT: [f64; 2] = [0.98, 0.198];
+/// Least share of a limit of speed across the line: the less moves across, the more is left along it.
+const LEAST_ACROSS: f64 = 0.01;
+/// How much more than the speed across the line that share is.
+const ROOM_ACROSS: f64 = 2.0;
 /// Both when the motion is not along that line: the largest square inside the circle.
 const TURNING: [f64; 2] = [core::f64::consts::FRAC_1_SQRT_2; 2];
 
@@ -77,7 +81,23 @@ impl WayPlan {
         let limit =
             |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
 
-        let max_velocity = limit(limits.speed_horizontal_m_s, limits.speed_down_m_s);
+        let speed_shares = if straight {
+            // The speed across when its acceleration has been taken back, and that at the goal.
+            let (acceleration, jerk) =
+                (local(&from.acceleration_m_s2)[1], STRAIGHT[1] * limits.jerk_horizontal_m_s3);
+            let settled_m_s = local(&from.velocity_m_s)[1].abs() + acceleration * acceleration / (2.0 * jerk);
+            let most_m_s = settled_m_s.max(local(&goal.velocity_m_s)[1].abs());
+            let share =
+                (ROOM_ACROSS * most_m_s / limits.speed_horizontal_m_s).clamp(LEAST_ACROSS, STRAIGHT[1]);
+            [libm::sqrt(1.0 - share * share), share]
+        } else {
+            TURNING
+        };
+        let max_velocity = [
+            speed_shares[0] * limits.speed_horizontal_m_s,
+            speed_shares[1] * limits.speed_horizontal_m_s,
+            limits.speed_down_m_s,
+        ];
         let mut min_velocity = max_velocity.map(|speed| -speed);
         min_velocity[2] = -limits.speed_up_m_s;
         let target_velocity = local(&goal.velocity_m_s);

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use vehicle::Conduct;
 use vehicle::identity::Identity;
-use vehicle::parameters::{ParameterTable, ParameterValues, Speed};
+use vehicle::parameters::{ParameterTable, ParameterValues, Speed, Statistics};
 
 use super::suggestion::nearest;
 use super::text_file::read_text;
@@ -113,6 +113,7 @@ fn values_of(configuration: &Configuration) -> ParameterValues {
         conduct: Conduct::new(false),
         system_id: 1,
         speed: Speed::Factor(1.0),
+        statistics: Statistics::default(),
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::ValueEnum;
 use quadrotor::ValueRange;
 use serde_json::{Value as Json, json};
-use vehicle::parameters::{Entry, ParameterTable, ParameterValues, Value};
+use vehicle::parameters::{Entry, ParameterTable, ParameterValues, Statistics, Value};
 
 use super::{MemberSettings, Settings};
 
@@ -54,6 +54,7 @@ fn rows(settings: &Settings, own: &MemberSettings) -> Vec<(Entry, Value)> {
         conduct: own.vehicle.conduct,
         system_id: own.system_id,
         speed: settings.speed,
+        statistics: Statistics::default(),
     };
     let table = ParameterTable::new(own.vehicle.identity);
     let value = |index| table.value(index, &values);

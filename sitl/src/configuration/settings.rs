@@ -17,6 +17,7 @@ use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 use super::start_parameters::set_parameters;
 use super::{AirframeChoice, Arguments, Clocks, Ports, fmu, read_plans, wind_drag, wind_hold};
 use crate::failure::Failure;
+use crate::files::kept_plans;
 use crate::fleet::{LockstepPhase, LockstepSettings};
 use crate::flight_log::LogSettings;
 use crate::fmu::FmuChoice;
@@ -302,10 +303,14 @@ pub(super) fn vehicle(
     let drag_n_s_m = if windy { wind_drag::provide(&mut vehicle.configuration) } else { None };
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
     let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
-    if let Some(path) = mission_of(arguments, system_id) {
-        let frame = LocalFrame::new(vehicle.origin);
-        let home_m = Vector3::from(vehicle.configuration.initial.position_m);
-        vehicle.plans = read_plans(path, &Site { identity, frame, home_m })?;
+    let home_m = Vector3::from(vehicle.configuration.initial.position_m);
+    let site = Site { identity, frame: LocalFrame::new(vehicle.origin), home_m };
+    match (mission_of(arguments, system_id), parameters) {
+        (Some(path), _) => vehicle.plans = read_plans(path, &site)?,
+        (None, Some(parameters)) => {
+            vehicle.plans = kept_plans(parameters, &site)?.unwrap_or_default();
+        }
+        (None, None) => {}
     }
     Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
 }

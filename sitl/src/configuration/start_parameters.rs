@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use quadrotor::StabilityWarning;
-use vehicle::parameters::{ParameterTable, ParameterValues, SetError, Speed, parse};
+use vehicle::parameters::{ParameterTable, ParameterValues, SetError, Speed, Statistics, parse};
 use vehicle::{Notice, Severity, VehicleSettings};
 
 use super::text_file::read_text;
@@ -48,6 +48,7 @@ pub(super) fn set_parameters(
         conduct: settings.conduct,
         system_id: 1,
         speed: Speed::Factor(1.0),
+        statistics: Statistics::default(),
     };
     values.check()?;
     if let Some((path, text)) = &text {

@@ -6,10 +6,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use autopilot::file_store::LAST_LOG;
+
 use crate::failure::Failure;
 
 const PREFIX: &str = "flight_";
 const SUFFIX: &str = ".ulg";
+/// ArduPilot's names are the number alone.
+const NUMBERED_SUFFIX: &str = ".BIN";
+const NUMBERED_DIGITS: usize = 8;
 /// Files that may get the next number before it is this program's.
 const MOST_TAKEN: u32 = 1000;
 
@@ -30,8 +35,11 @@ pub struct LogFolder {
     state: Arc<Mutex<State>>,
 }
 
-/// The number of a log: `flight_00042_id1.ulg` is the 42nd.
+/// The number of a log: `flight_00042_id1.ulg` is the 42nd, and so is `00000042.BIN`.
 fn number(name: &str) -> Option<u32> {
+    if let Some(digits) = name.strip_suffix(NUMBERED_SUFFIX) {
+        return digits.parse().ok().filter(|_| digits.len() == NUMBERED_DIGITS);
+    }
     let (number, id) = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?.split_once("_id")?;
     id.parse::<u8>().ok()?;
     number.parse().ok()
@@ -71,6 +79,23 @@ impl LogFolder {
     /// # Errors
     /// When there is no place for it.
     pub fn create(&self, system_id: u8, most: usize) -> io::Result<(String, File)> {
+        self.create_named(most, |number| format!("{PREFIX}{number:05}_id{system_id}{SUFFIX}"))
+    }
+
+    /// The same with one of ArduPilot's names; its number is the content of LASTLOG.TXT.
+    ///
+    /// # Errors
+    /// When there is no place for it.
+    pub fn create_numbered(&self, most: usize) -> io::Result<(String, File)> {
+        let (name, file) = self.create_named(most, |number| format!("{number:08}{NUMBERED_SUFFIX}"))?;
+        let last = number(&name).unwrap_or(0);
+        if let Err(error) = std::fs::write(self.path.join(LAST_LOG), format!("{last}\r\n")) {
+            tracing::warn!("{LAST_LOG} not written: {error}");
+        }
+        Ok((name, file))
+    }
+
+    fn create_named(&self, most: usize, named: impl Fn(u32) -> String) -> io::Result<(String, File)> {
         self.with(|state| {
             let mut logs: Vec<(u32, String)> =
                 self.names()?.into_iter().filter_map(|name| Some((number(&name)?, name))).collect();
@@ -79,7 +104,7 @@ impl LogFolder {
             let over = logs.iter().filter(|(_, name)| !state.current.contains(name));
             remove(over.take(surplus).map(|(_, name)| self.path.join(name)).collect())?;
             for _ in 0..MOST_TAKEN {
-                let name = format!("{PREFIX}{:05}_id{system_id}{SUFFIX}", state.next);
+                let name = named(state.next);
                 state.next = state.next.saturating_add(1);
                 match OpenOptions::new().write(true).create_new(true).open(self.path.join(&name)) {
                     Ok(file) => {

@@ -12,6 +12,7 @@
 //! No file ends a flight: what cannot be written is announced, tried again each second, and named at the end with exit code 4.
 
 mod disk;
+mod kept_plans;
 mod lock;
 mod log_folder;
 mod mount;
@@ -22,6 +23,7 @@ mod usage;
 mod worker;
 
 pub use disk::Disk;
+pub use kept_plans::{kept_plans, plans_beside, render_plans};
 pub use lock::FileLock;
 pub use log_folder::LogFolder;
 pub use mount::Mount;

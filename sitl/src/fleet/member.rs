@@ -7,13 +7,14 @@ use autopilot::Autopilot;
 use autopilot::codec::{Frame, id};
 use autopilot::file_work::FileWorker;
 use vehicle::foreign::ForeignModel;
-use vehicle::parameters::Speed;
+use vehicle::parameters::{FileFormat, Speed};
 use vehicle::{FlightError, Mode, Vehicle};
 
+use super::kept_file::KeptFile;
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::loss::Loss;
-use super::parameter_file::ParameterFile;
 use crate::failure::Failure;
+use crate::files::render_plans;
 use crate::flight_log::FlightLog;
 use crate::radio_port::RadioPort;
 use crate::record::{Digest, Participant};
@@ -38,7 +39,10 @@ pub struct Member {
     /// When a ground station was heard last, and what the vehicle knows of it.
     ground_station: Option<(Instant, bool)>,
     digest: Digest,
-    parameters: Option<ParameterFile>,
+    parameters: Option<KeptFile>,
+    plans: Option<KeptFile>,
+    /// Boot and revision of the plans that are kept.
+    kept_revision: (u32, u32),
     log: Option<FlightLog>,
     started: Instant,
     /// Turns so far, and those that are left now.
@@ -57,7 +61,6 @@ impl Member {
         model: Option<Box<dyn ForeignModel>>,
         speed: Speed,
         hub: usize,
-        parameters: Option<ParameterFile>,
         unix_start_us: u64,
     ) -> Result<Self, Failure> {
         let Participant { system_id, links, vehicle } = participant;
@@ -76,7 +79,9 @@ impl Member {
             radio: None,
             ground_station: None,
             digest: Digest::default(),
-            parameters,
+            parameters: None,
+            plans: None,
+            kept_revision: (1, 0),
             log: None,
             started: Instant::now(),
             turns: 0,
@@ -104,6 +109,12 @@ impl Member {
         self.radio.as_ref().and_then(RadioPort::address)
     }
 
+    /// Keeps its parameters and its plans in files.
+    pub(super) fn remember(mut self, parameters: Option<KeptFile>, plans: Option<KeptFile>) -> Self {
+        (self.parameters, self.plans) = (parameters, plans);
+        self
+    }
+
     /// Lets its simulation time wait for set-points.
     pub(super) fn keep_step(mut self, settings: Option<LockstepSettings>) -> Self {
         self.lockstep = settings.map(Lockstep::new);
@@ -114,7 +125,7 @@ impl Member {
     pub(super) fn circumstances(&self) -> Circumstances {
         let vehicle = self.autopilot.vehicle();
         Circumstances {
-            time_us: vehicle.time_us(),
+            time_us: self.time_us(),
             armed: vehicle.is_armed(),
             offboard: vehicle.mode() == Mode::Offboard,
             paused: self.autopilot.speed() == Speed::Paused,
@@ -131,9 +142,9 @@ impl Member {
         self.hub
     }
 
-    /// Its simulation time, µs.
+    /// Its simulation time, µs: it goes on over reboots.
     pub fn time_us(&self) -> u64 {
-        self.autopilot.vehicle().time_us()
+        self.autopilot.time_us()
     }
 
     /// Digest of its flight so far.
@@ -147,7 +158,12 @@ impl Member {
     /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
     pub(super) fn tick(&mut self, now: Instant) -> Result<(), FlightError> {
         set_simulation_time(self.time_us());
+        let boots = self.autopilot.boots();
         self.autopilot.tick()?;
+        if self.autopilot.boots() != boots {
+            // The vehicle that has booted knows of nobody.
+            self.ground_station = None;
+        }
         self.digest.update(self.autopilot.vehicle());
         if let Some(log) = &mut self.log {
             log.tick(&mut self.autopilot, now);
@@ -210,7 +226,8 @@ impl Member {
             log.finish(&mut self.autopilot);
             lacking.append(&mut log.take_lacking());
         }
-        lacking.extend(self.parameters.take().and_then(|mut file| file.finish()));
+        let kept = [self.parameters.take(), self.plans.take()];
+        lacking.extend(kept.into_iter().flatten().filter_map(|mut file| file.finish()));
         lacking
     }
 
@@ -220,10 +237,22 @@ impl Member {
         slow && now.saturating_duration_since(self.last_heartbeat) > HEARTBEAT
     }
 
+    /// Writes its plans into their file, if one has changed.
+    pub(super) fn save_plans(&mut self, now: Instant) {
+        let Some(file) = &mut self.plans else { return };
+        let vehicle = self.autopilot.vehicle();
+        let revision = (self.autopilot.boots(), vehicle.plans_revision());
+        let changed = std::mem::replace(&mut self.kept_revision, revision) != revision;
+        let text = changed.then(|| render_plans(vehicle.identity(), vehicle.plans()));
+        if let Some((severity, text)) = file.save(text, now) {
+            self.autopilot.announce(severity, &text);
+        }
+    }
+
     /// Writes its parameters into their file, if one has changed.
     pub(super) fn save_parameters(&mut self, now: Instant) {
         let Some(file) = &mut self.parameters else { return };
-        let changed = self.autopilot.take_changed_parameters(file.format());
+        let changed = self.autopilot.take_changed_parameters(FileFormat::of(file.path()));
         if let Some((severity, text)) = file.save(changed, now) {
             self.autopilot.announce(severity, &text);
         }

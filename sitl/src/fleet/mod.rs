@@ -12,10 +12,10 @@
 mod books;
 mod clock;
 mod held;
+mod kept_file;
 mod lockstep;
 mod loss;
 mod member;
-mod parameter_file;
 mod reception;
 mod roster;
 mod signing_keeper;

@@ -10,13 +10,13 @@ use vehicle::foreign::ForeignModel;
 
 use super::Member;
 use super::books::Books;
+use super::kept_file::KeptFile;
 use super::lockstep::{Lockstep, Step};
-use super::parameter_file::ParameterFile;
 use super::reception::Reception;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
 use crate::failure::Failure;
-use crate::files::{Disk, FileLock, FileThread, LogFolder};
+use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
 use crate::link::Links;
@@ -76,13 +76,16 @@ impl Fleet {
         let members = (0..)
             .zip(participants.iter().zip(&settings.vehicles))
             .map(|(number, (participant, own))| {
-                let parameters = own.parameters.as_deref().map(ParameterFile::open).transpose()?;
+                let parameters = own.parameters.as_deref().map(KeptFile::of_parameters).transpose()?;
+                let plans = own.parameters.as_deref().map(|path| KeptFile::of_plans(&plans_beside(path)));
                 let model = models.next().flatten();
-                let member =
-                    Member::new(participant, model, settings.speed, own.hub, parameters, unix_start_us)?;
+                let member = Member::new(participant, model, settings.speed, own.hub, unix_start_us)?;
                 let log = folder.clone().map(|folder| FlightLog::new(folder, settings.logs.clone()));
                 let member = member.hear_radio(own.rc_port.map(RadioPort::open).transpose()?);
-                Ok(member.keep(files.desk(number), log).keep_step(settings.lockstep))
+                Ok(member
+                    .keep(files.desk(number), log)
+                    .remember(parameters, plans)
+                    .keep_step(settings.lockstep))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Self {
@@ -189,6 +192,7 @@ impl Fleet {
             return false;
         }
         member.save_parameters(now);
+        member.save_plans(now);
         let Some(links) = self.hubs.get_mut(member.hub) else { return false };
         let all = member.autopilot.take_outgoing();
         let any = !all.is_empty();

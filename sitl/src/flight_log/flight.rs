@@ -4,22 +4,21 @@ use std::fs::File;
 use std::time::Instant;
 
 use autopilot::Autopilot;
-use autopilot::service::version;
 use vehicle::parameters::Value;
 
+use super::LogSource;
+use super::format::{LogFormat, LogWriter};
 use super::log_file::LogFile;
-use super::row::Row;
-use super::settings::{LogSettings, LogStart};
-use super::topics::{GRID_US, LogSource, TOPICS};
-use super::ulog::{self, Definitions};
+use super::settings::{GRID_US, LogSettings, LogStart};
 use crate::files::{LogFolder, Notice, Upkeep, WRITE_PERIOD};
 
 /// How often data reach the disk in simulation time, µs; by the wall clock it is at least each [`WRITE_PERIOD`].
 const FLUSH_US: u64 = 1_000_000;
 /// What pilots call it.
 const NAME: &str = "Flight log";
-/// A flight's log goes on for this long after it, µs.
+/// A flight's log goes on for this long after it, µs; ArduPilot's for longer.
 const AFTERMATH_US: u64 = 1_000_000;
+const ARDUPILOT_AFTERMATH_US: u64 = 15_000_000;
 
 /// A log that is being written.
 #[derive(Debug)]
@@ -28,8 +27,9 @@ struct Current {
     file: LogFile<File>,
     /// Parameters as the log has them.
     parameters: Vec<Value>,
-    /// What was logged last of each topic that is watched.
-    last: Vec<Row>,
+    writer: Box<dyn LogWriter>,
+    /// Whether nothing is written between two flights.
+    rests: bool,
     flushed_us: u64,
     flushed: Instant,
     upkeep: Upkeep,
@@ -51,6 +51,8 @@ pub struct FlightLog {
     retry_us: Option<u64>,
     /// What is missing from the logs, a sentence each.
     lacking: Vec<String>,
+    /// Boots of the vehicle that it has seen.
+    boots: u32,
 }
 
 impl FlightLog {
@@ -66,26 +68,33 @@ impl FlightLog {
             messages: Vec::new(),
             retry_us: None,
             lacking: Vec::new(),
+            boots: 1,
         }
     }
 
     /// Takes a tick of the vehicle in.
     pub fn tick(&mut self, autopilot: &mut Autopilot, now: Instant) {
-        let (time_us, armed) = (autopilot.vehicle().time_us(), autopilot.vehicle().is_armed());
-        let wanted = armed || self.settings.start == LogStart::Boot;
+        if std::mem::replace(&mut self.boots, autopilot.boots()) != autopilot.boots() {
+            // The vehicle that the log was of is no more.
+            self.finish(autopilot);
+            self.wanted = false;
+        }
+        let time_us = autopilot.vehicle().time_us();
+        let habits = Habits::of(autopilot);
+        let armed = autopilot.vehicle().is_armed();
+        let wanted = armed || habits.always || self.settings.start == LogStart::Boot;
         let again = self.retry_us.is_some_and(|retry_us| time_us >= retry_us);
         if wanted && (!self.wanted || again) {
-            self.finish(autopilot);
-            self.begin(autopilot, now);
+            self.begin_or_go_on(autopilot, now);
         }
         if self.wanted && !wanted {
-            self.until_us = Some(time_us + AFTERMATH_US);
+            self.until_us = Some(time_us + habits.aftermath_us);
             self.retry_us = None;
         }
         self.until_us = self.until_us.filter(|_| !wanted);
         // Arming and disarming are on it, whatever comes next.
         let edge = std::mem::replace(&mut self.wanted, wanted) != wanted;
-        if self.current.is_none() {
+        if self.current.as_ref().is_none_or(|current| current.rests) {
             return;
         }
         self.write_texts(autopilot);
@@ -95,10 +104,26 @@ impl FlightLog {
         self.sample(autopilot);
         let over = self.until_us.is_some_and(|until_us| time_us >= until_us);
         let due = self.current.as_ref().is_some_and(|current| time_us >= current.flushed_us + FLUSH_US);
-        if over {
+        if over && habits.rests {
+            self.flush(autopilot, now);
+            self.until_us = None;
+            self.current.iter_mut().for_each(|current| current.rests = true);
+        } else if over {
             self.finish(autopilot);
         } else if due {
             self.flush(autopilot, now);
+        }
+    }
+
+    /// Begins a log, or goes on with one that rests.
+    fn begin_or_go_on(&mut self, autopilot: &mut Autopilot, now: Instant) {
+        let rests = Habits::of(autopilot).rests;
+        match self.current.as_mut().filter(|_| rests && self.retry_us.is_none()) {
+            Some(current) => current.rests = false,
+            None => {
+                self.finish(autopilot);
+                self.begin(autopilot, now);
+            }
         }
     }
 
@@ -115,7 +140,7 @@ impl FlightLog {
         (self.until_us, self.retry_us) = (None, None);
         let Some(mut current) = self.current.take() else { return };
         let time_us = autopilot.vehicle().time_us();
-        announce(autopilot, current.upkeep.judge(current.file.flush(time_us)));
+        announce(autopilot, current.upkeep.judge(current.file.flush(time_us, &*current.writer)));
         let dropped_s = current.file.dropped_us(time_us) as f64 / 1e6;
         if dropped_s > 0.0 {
             self.lacking.push(current.upkeep.lacks(&format!("lacks {dropped_s:.1} s of data")));
@@ -131,15 +156,29 @@ impl FlightLog {
     }
 
     fn begin(&mut self, autopilot: &mut Autopilot, now: Instant) {
-        match self.folder.create(autopilot.system_id(), self.settings.most_files) {
+        let format = LogFormat::of(autopilot.identity());
+        let created = match format {
+            LogFormat::ULog => self.folder.create(autopilot.system_id(), self.settings.most_files),
+            LogFormat::DataFlash => self.folder.create_numbered(self.settings.most_files),
+        };
+        match created {
             Ok((name, file)) => {
                 tracing::info!("logging to {}", self.folder.path().join(&name).display());
                 let parameters = parameters(autopilot);
-                let file = LogFile::new(file, &definitions(autopilot, &parameters));
-                let (last, time_us) = (vec![Row::default(); TOPICS.len()], autopilot.vehicle().time_us());
+                let mut writer = format.writer();
+                let file = LogFile::new(file, &writer.begin(autopilot, &parameters));
+                let time_us = autopilot.vehicle().time_us();
                 let upkeep = Upkeep::new(NAME, &self.folder.path().join(&name));
-                self.current =
-                    Some(Current { name, file, parameters, last, flushed_us: time_us, flushed: now, upkeep });
+                self.current = Some(Current {
+                    name,
+                    file,
+                    parameters,
+                    writer,
+                    rests: false,
+                    flushed_us: time_us,
+                    flushed: now,
+                    upkeep,
+                });
                 announce(autopilot, self.folder_upkeep.judge(Ok(())));
                 self.flush(autopilot, now);
             }
@@ -162,7 +201,7 @@ impl FlightLog {
         // What was said while there was no log belongs to none, but for what it began with.
         let texts = autopilot.take_texts().into_iter();
         for (when_us, severity, text) in texts.filter(|(when_us, ..)| when_us + FLUSH_US >= time_us) {
-            ulog::text(&mut self.messages, severity.level(), when_us, &text);
+            current.writer.text(&mut self.messages, when_us, severity, &text);
         }
         if !self.messages.is_empty() {
             current.file.append(time_us, &self.messages);
@@ -174,22 +213,7 @@ impl FlightLog {
         let source = LogSource::of(autopilot);
         let time_us = source.vehicle.time_us();
         self.messages.clear();
-        let mut row = Row::default();
-        for ((number, topic), last) in (0..).zip(TOPICS).zip(&mut current.last) {
-            let due = time_us.is_multiple_of(topic.period_us);
-            // The first sample of all topics stands at the beginning.
-            if !due && !topic.on_change && !last.0.is_empty() {
-                continue;
-            }
-            row.0.clear();
-            row.u64(time_us);
-            (topic.sample)(&source, &mut row);
-            const TIMESTAMP: usize = 8;
-            if due || last.0.get(TIMESTAMP..) != row.0.get(TIMESTAMP..) {
-                ulog::data(&mut self.messages, number, &row.0);
-                last.0.clone_from(&row.0);
-            }
-        }
+        current.writer.sample(&mut self.messages, &source);
         current.file.append(time_us, &self.messages);
     }
 
@@ -201,14 +225,14 @@ impl FlightLog {
         let entries = autopilot.parameter_table().entries();
         for ((entry, value), logged) in entries.iter().zip(&present).zip(&current.parameters) {
             if value != logged {
-                ulog::parameter(&mut self.messages, entry.id, *value);
+                current.writer.parameter(&mut self.messages, time_us, entry.id, *value);
             }
         }
         current.parameters = present;
         current.file.append(time_us, &self.messages);
         (current.flushed_us, current.flushed) = (time_us, now);
         let full = current.file.bytes() >= self.settings.most_bytes;
-        announce(autopilot, current.upkeep.judge(current.file.flush(time_us)));
+        announce(autopilot, current.upkeep.judge(current.file.flush(time_us, &*current.writer)));
         // A disk that takes no more data takes no new file, either.
         if full && !current.upkeep.is_failing() {
             let until_us = self.until_us;
@@ -229,22 +253,27 @@ fn parameters(autopilot: &Autopilot) -> Vec<Value> {
     autopilot.parameters().map(|(_, value)| value).collect()
 }
 
-/// PX4's number of the meaning of topics: from 2 on, readers look for places of the GPS receiver in degrees.
-const DATA_FORMAT: u32 = 2;
+/// When logs begin and end.
+#[derive(Clone, Copy, Debug)]
+struct Habits {
+    /// Whether it is written while disarmed, too.
+    always: bool,
+    /// Whether one log serves all flights of a boot.
+    rests: bool,
+    /// How long it goes on after a flight, µs.
+    aftermath_us: u64,
+}
 
-fn definitions(autopilot: &Autopilot, parameters: &[Value]) -> Vec<u8> {
-    let mut definitions = Definitions::new(autopilot.vehicle().time_us());
-    definitions.information("sys_name", "lmpc-sitl");
-    definitions.information("ver_hw", "LMPC_SITL");
-    definitions.information("ver_sw", concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION")));
-    definitions.number("ver_data_format", DATA_FORMAT);
-    definitions.number("ver_sw_release", version());
-    definitions.information("sys_uuid", &format!("lmpc-sitl-{:03}", autopilot.system_id()));
-    for topic in TOPICS {
-        definitions.topic(topic.name, &format!("uint64_t timestamp;{}", topic.fields));
+impl Habits {
+    fn of(autopilot: &Autopilot) -> Self {
+        let log = &autopilot.vehicle().conduct().log;
+        match LogFormat::of(autopilot.identity()) {
+            LogFormat::ULog => Self { always: false, rests: false, aftermath_us: AFTERMATH_US },
+            LogFormat::DataFlash => Self {
+                always: log.disarmed != 0,
+                rests: !log.rotates,
+                aftermath_us: if log.rotates { AFTERMATH_US } else { ARDUPILOT_AFTERMATH_US },
+            },
+        }
     }
-    for (entry, value) in autopilot.parameter_table().entries().iter().zip(parameters) {
-        definitions.parameter(entry.id, *value);
-    }
-    definitions.finish()
 }

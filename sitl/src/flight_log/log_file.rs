@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::ulog;
+use super::format::LogWriter;
 use crate::files::Spool;
 
 /// A file that is written to when it is told to. When it cannot take more, data wait, then are dropped, and the log says
@@ -46,15 +46,12 @@ impl<W: Write> LogFile<W> {
     ///
     /// # Errors
     /// What the file says. What is not written waits.
-    pub fn flush(&mut self, time_us: u64) -> io::Result<()> {
+    pub fn flush(&mut self, time_us: u64, writer: &dyn LogWriter) -> io::Result<()> {
         self.spool.flush()?;
         let mut marks = Vec::new();
-        if let Some(since_us) = self.dropping_since_us.take() {
-            let dropped_us = time_us.saturating_sub(since_us);
-            ulog::dropout(&mut marks, dropped_us / 1000);
-            self.dropped_us += dropped_us;
-        }
-        ulog::sync(&mut marks);
+        let dropped_us = self.dropping_since_us.take().map(|since_us| time_us.saturating_sub(since_us));
+        self.dropped_us += dropped_us.unwrap_or(0);
+        writer.mark(&mut marks, time_us, dropped_us);
         // The spool has just been emptied.
         let _taken = self.spool.append(&marks);
         self.spool.flush()
@@ -65,23 +62,25 @@ impl<W: Write> LogFile<W> {
 mod tests {
     use super::LogFile;
     use crate::files::SmallDisk;
+    use crate::flight_log::LogFormat;
 
     #[test]
     fn a_full_disk_costs_data_but_no_order_and_the_log_says_so() {
         let disk = SmallDisk::default();
         let mut file = LogFile::new(disk.clone(), b"begin");
+        let writer = LogFormat::ULog.writer();
         disk.set_room(3);
-        assert!(file.flush(0).is_err());
+        assert!(file.flush(0, &*writer).is_err());
         file.append(1_000_000, &[7; 1 << 19]);
         file.append(2_000_000, &[8; (1 << 19) - 100]);
         file.append(3_000_000, &[0x55; 200]);
         file.append(4_000_000, &[0x55; 20]);
-        assert!(file.flush(4_500_000).is_err());
+        assert!(file.flush(4_500_000, &*writer).is_err());
         assert_eq!(file.dropped_us(4_500_000), 1_500_000);
         disk.set_room(usize::MAX);
-        file.flush(5_500_000).expect("there is room");
+        file.flush(5_500_000, &*writer).expect("there is room");
         file.append(6_000_000, b"end");
-        file.flush(6_000_000).expect("there is room");
+        file.flush(6_000_000, &*writer).expect("there is room");
         assert_eq!(file.dropped_us(6_000_000), 2_500_000);
         let content = &disk.content();
         assert_eq!(content.len() as u64, file.bytes());

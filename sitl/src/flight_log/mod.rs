@@ -1,8 +1,9 @@
-//! The log of a flight, in PX4's ULog format, which Flight Review, PlotJuggler and pyulog read.
+//! The log of a flight: in PX4's ULog format, or in ArduPilot's DataFlash format where that autopilot is shown.
 //!
 //! ```text
-//!    Vehicle ──► topics ──► ulog (bytes) ──► LogFile (flushed each second) ──► LogFolder (numbers, how many; in files/)
-//!                  └──────────── FlightLog: when one begins and ends ───────────────┘
+//!    Vehicle ──► source ─┬─► ulog: topics ───────────────┐
+//!                        └─► dataflash: messages ────────┴─► LogFile (flushed each second) ──► LogFolder (numbers, how many; in files/)
+//!                  FlightLog: when one begins, rests and ends ──────┘
 //! ```
 //!
 //! A crash of the program, even SIGKILL, loses at most the last second: what is flushed is the system's by then. It is not
@@ -11,14 +12,17 @@
 //!
 //! Logging reads the vehicle and changes nothing of it: with it or without, the flight is the same.
 
+mod dataflash;
 mod flight;
+mod format;
 mod log_file;
-mod row;
 mod settings;
-mod topics;
+mod source;
 mod ulog;
 
+pub use dataflash::{Field, MESSAGES, Message};
 pub use flight::FlightLog;
-pub use row::Row;
+pub use format::LogFormat;
 pub use settings::{LogSettings, LogStart};
-pub use topics::{LogSource, TOPICS, Topic};
+pub use source::LogSource;
+pub use ulog::{Row, TOPICS, Topic};

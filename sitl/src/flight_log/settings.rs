@@ -3,6 +3,9 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+/// All sampling times of logs are multiples of it, µs.
+pub const GRID_US: u64 = 10_000;
+
 /// When a log begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LogStart {

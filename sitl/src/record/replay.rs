@@ -183,18 +183,18 @@ struct Flown {
 
 impl Flown {
     fn fly_to(&mut self, time_us: u64, progress: &mut Progress) -> Result<(), Failure> {
-        while self.autopilot.vehicle().time_us() + TICK_US <= time_us {
-            let begin_us = self.autopilot.vehicle().time_us();
+        while self.autopilot.time_us() + TICK_US <= time_us {
+            let begin_us = self.autopilot.time_us();
             for _ in 0..TICKS {
-                if self.autopilot.vehicle().time_us() + TICK_US > time_us {
+                if self.autopilot.time_us() + TICK_US > time_us {
                     break;
                 }
-                set_simulation_time(self.autopilot.vehicle().time_us());
+                set_simulation_time(self.autopilot.time_us());
                 self.autopilot.tick()?;
                 self.digest.update(self.autopilot.vehicle());
                 drop(self.autopilot.take_outgoing());
             }
-            let flown_us = self.autopilot.vehicle().time_us() - begin_us;
+            let flown_us = self.autopilot.time_us() - begin_us;
             if let Some(line) = progress.add(flown_us, Instant::now()) {
                 tracing::info!("{line}");
             }
@@ -227,7 +227,7 @@ impl Flown {
 
     /// The tick in which the recorded simulation failed.
     fn fail(&mut self) -> Result<(), Failure> {
-        let (system_id, time_us) = (self.system_id, self.autopilot.vehicle().time_us());
+        let (system_id, time_us) = (self.system_id, self.autopilot.time_us());
         let Err(error) = self.autopilot.tick() else {
             return Err(Failure::FliesOn { system_id, time_us });
         };
@@ -246,7 +246,7 @@ impl Flown {
     }
 
     fn finish(self) -> Replayed {
-        let time_us = self.autopilot.vehicle().time_us();
+        let time_us = self.autopilot.time_us();
         let flight = Flight { system_id: self.system_id, time_us, digest: self.digest.value() };
         Replayed { flight, end: self.end, verified_us: self.verified_us }
     }

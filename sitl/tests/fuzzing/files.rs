@@ -8,7 +8,7 @@ use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use sitl::configuration::{Addressed, Arguments, Settings};
 use sitl::record::{Digest, Header, Reader, Recorder};
 use sitl::signing::{Kept, SecretKey};
-use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, render};
+use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, Statistics, render};
 
 use super::bytes::Bytes;
 use super::seal::sealed;
@@ -119,7 +119,17 @@ fn parameters(format: FileFormat) -> String {
     let vehicle = &settings.vehicles[0].vehicle;
     let table = ParameterTable::new(vehicle.identity);
     let (configuration, conduct) = (vehicle.configuration, vehicle.conduct);
-    render(format, &table, &ParameterValues { configuration, conduct, system_id: 1, speed: Speed::Max })
+    render(
+        format,
+        &table,
+        &ParameterValues {
+            configuration,
+            conduct,
+            system_id: 1,
+            speed: Speed::Max,
+            statistics: Statistics::default(),
+        },
+    )
 }
 
 /// A short record.

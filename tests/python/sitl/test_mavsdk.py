@@ -56,7 +56,8 @@ def test_takeoff_goto_return(fly):
     assert telemetry.health().is_armable
     version = info.get_version()
     version = version[1] if isinstance(version, tuple) else version
-    assert (version.flight_sw_major, version.flight_sw_minor) == (0, 1)
+    # The conventions that are kept.
+    assert (version.flight_sw_major, version.flight_sw_minor) == (1, 16)
 
     action.set_takeoff_altitude(4.0)
     action.arm()

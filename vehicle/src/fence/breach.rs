@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::Zones;
+use super::{Inclusions, Zones};
 
 /// What of the fence forbids a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub enum Breach {
     Height(f64),
     /// Farther from home than this, m.
     Distance(f64),
-    /// Outside of all areas to stay in.
+    /// Outside of the areas to stay in.
     Outside,
     /// Inside of the area to stay out of with this number.
     Inside(usize),
@@ -38,6 +38,8 @@ impl fmt::Display for Breach {
 pub struct Fence<'a> {
     /// Areas.
     pub zones: Option<&'a Zones>,
+    /// How several areas to stay in combine.
+    pub inclusions: Inclusions,
     /// What the distance and the height are from, NED, m.
     pub home_m: Vector3<f64>,
     /// Greatest distance, m; 0: any.
@@ -54,8 +56,6 @@ impl Fence<'_> {
     }
 
     /// What forbids a place, NED, m, if anything does.
-    ///
-    /// Several areas to stay in are one: it is enough to be in one of them.
     pub fn breach(&self, place_m: &Vector3<f64>) -> Option<Breach> {
         let Self { home_m, radius_m, height_m, .. } = *self;
         if height_m > 0.0 && home_m.z - place_m.z > height_m {
@@ -69,9 +69,8 @@ impl Fence<'_> {
         if let Some(number) = zones.iter().position(|zone| !zone.inclusion && zone.forbids(point)) {
             return Some(Breach::Inside(number));
         }
-        let mut inclusions = zones.iter().filter(|zone| zone.inclusion).peekable();
-        let bounded = inclusions.peek().is_some();
-        (bounded && inclusions.all(|zone| zone.forbids(point))).then_some(Breach::Outside)
+        let outside = zones.iter().filter(|zone| zone.inclusion).map(|zone| zone.forbids(point));
+        self.inclusions.forbid(outside).then_some(Breach::Outside)
     }
 
     /// The area to stay out of that the straight way between two places, NED, m, leads through. One that it begins in does not

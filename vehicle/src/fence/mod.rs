@@ -6,12 +6,14 @@
 //! ```
 
 mod breach;
+mod inclusions;
 mod polygon;
 mod route;
 mod zone;
 mod zones;
 
 pub use breach::{Breach, Fence};
+pub use inclusions::Inclusions;
 pub use polygon::{Polygon, PolygonFault};
 pub use route::{Progress, RouteSearch};
 pub use zone::{Shape, Zone};

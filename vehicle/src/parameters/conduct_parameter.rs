@@ -54,7 +54,7 @@ macro_rules! real {
     ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $unit:literal, $text:literal) => {
         real!($id, $ardupilot, $minimum..=$maximum, $($field).+, 1.0, $unit, $text)
     };
-    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:literal, $unit:literal, $text:literal) => {
+    ($id:literal, $ardupilot:expr, $minimum:literal..=$maximum:literal, $($field:ident).+, $scale:expr, $unit:literal, $text:literal) => {
         ConductParameter {
             id: $id,
             ardupilot: $ardupilot,
@@ -165,4 +165,30 @@ macro_rules! bitmask {
     };
 }
 
-pub(super) use {bitmask, choice, real, switch};
+/// A whole number: identifier, range, field, its type, text.
+macro_rules! whole {
+    ($id:literal, $minimum:literal..=$maximum:literal, $($field:ident).+, $kind:ty, $text:literal) => {
+        ConductParameter {
+            id: $id,
+            ardupilot: None,
+            also: &[],
+            integer: true,
+            minimum: $minimum as f64,
+            maximum: $maximum as f64,
+            get: |conduct| f64::from(conduct.$($field).+),
+            set: |conduct, value| {
+                let whole = value.fract() == 0.0 && ($minimum as f64..=$maximum as f64).contains(&value);
+                if whole {
+                    conduct.$($field).+ = value as $kind;
+                }
+                whole
+            },
+            unit: "",
+            text: $text,
+            names: Vec::new,
+            bits: &[],
+        }
+    };
+}
+
+pub(super) use {bitmask, choice, real, switch, whole};

@@ -4,7 +4,7 @@ use quadrotor::{Access, Mutability, Parameter, ValueRange};
 
 use super::entry::Source;
 use super::named_value::SWITCH;
-use super::{ConductParameter, Entry, NamedValue};
+use super::{ConductParameter, Entry, NamedValue, Statistic};
 
 /// A parameter in words.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +78,16 @@ impl Entry {
                 group: "Airframe",
                 needs_restart: false,
                 read_only: true,
+            },
+            Source::Statistic(statistic) => Description {
+                text: statistic.text().to_owned(),
+                range: ValueRange { minimum: 0.0, maximum: f64::from(i32::MAX), unit: statistic.unit() },
+                whole: true,
+                names: statistic.choices().iter().map(|(value, name)| NamedValue::new(*value, name)).collect(),
+                bits: &[],
+                group: "Statistics",
+                needs_restart: false,
+                read_only: statistic != Statistic::Reset,
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),

@@ -4,7 +4,7 @@ use quadrotor::Parameter;
 
 use super::loop_access::read;
 use super::loop_names::LoopName;
-use super::{ConductParameter, ParameterValues, Value};
+use super::{ConductParameter, ParameterValues, Statistic, Value};
 
 /// Where a parameter lives.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(super) enum Source {
     Speed,
     /// Thrust in hover as a share of the largest, calculated from the airframe.
     HoverThrust,
+    /// What the vehicle counts.
+    Statistic(Statistic),
 }
 
 /// A parameter with its names.
@@ -67,7 +69,7 @@ impl Entry {
         match self.source {
             Source::SystemId => Some("--system-id"),
             Source::Speed => Some("--speed"),
-            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust => None,
+            Source::Loop(_) | Source::Conduct(..) | Source::HoverThrust | Source::Statistic(_) => None,
         }
     }
 
@@ -90,6 +92,9 @@ impl Entry {
             }
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
+            Source::Statistic(statistic) => {
+                Value::Integer(i32::try_from(statistic.of(&values.statistics)).unwrap_or(i32::MAX))
+            }
             Source::HoverThrust => Value::Real(values.configuration.airframe.hover_thrust_share() as f32),
         }
     }

@@ -1,7 +1,7 @@
 //! What only PX4 has, or what ArduPilot has with other numbers.
 
 use super::ConductParameter;
-use super::conduct_parameter::choice;
+use super::conduct_parameter::{choice, real, whole};
 use super::conduct_parameters::FENCE_ACTIONS;
 use crate::vehicle::{Action, BatteryActions};
 
@@ -11,7 +11,16 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
     choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery, "Action when the battery is critical; 3 returns, then lands when the battery is almost empty"),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+    real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES, "deg", "Roll that counts as a failure; 0 disables it"),
+    real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES, "deg", "Pitch that counts as a failure; 0 disables it"),
+    real!("FD_FAIL_R_TTRI", None, 0.02..=5.0, crash.roll_s, "s", "Time that the roll must last to count as a failure"),
+    real!("FD_FAIL_P_TTRI", None, 0.02..=5.0, crash.pitch_s, "s", "Time that the pitch must last to count as a failure"),
+    real!("COM_LKDOWN_TKO", None, -1.0..=5.0, crash.lockdown_s, "s", "Time from arming in which a failure stops the rotors"),
+    whole!("CBRK_FLIGHTTERM", 0..=121_212, crash.circuit_breaker, u32, "Circuit breaker of flight termination; 121212: a failure in flight is only reported"),
 ];
+
+/// Of a radian.
+const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 
 const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::None, 0, "Nothing"),

@@ -26,6 +26,9 @@ pub enum SetError {
     /// It is set at the start.
     #[error("{0} is read-only: restart with --system-id")]
     ReadOnly(String),
+    /// The vehicle counts it.
+    #[error("{0} is counted by the vehicle (read-only); set STAT_RESET to 0 to begin anew")]
+    Counted(String),
     /// It follows from other parameters.
     #[error("{0} is calculated from mass and rotors (read-only); set those instead")]
     Calculated(String),

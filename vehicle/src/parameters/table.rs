@@ -6,11 +6,14 @@ use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
 use super::loop_access::write;
 use super::loop_names::loop_name;
+use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
 use super::suggestion::suggestion;
 use super::value::within;
-use super::{CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Value};
+use super::{
+    CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Statistic, Statistics, Value,
+};
 use crate::identity::Identity;
 use crate::vehicle::Conduct;
 
@@ -28,6 +31,8 @@ pub enum Change {
     Conduct,
     /// The pace of its time.
     Speed,
+    /// What it counts begins anew.
+    Statistics,
 }
 
 /// All parameters, in alphabetical order: the order of their indices.
@@ -43,15 +48,21 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
-        let own = if ardupilot { ARDUPILOT_PARAMETERS } else { PX4_PARAMETERS };
+        let (own, of_modes) = if ardupilot {
+            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
+        } else {
+            (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
+        };
         let of_conduct =
-            CONDUCT_PARAMETERS.iter().chain(own).chain(radio_parameters(ardupilot)).flat_map(|parameter| {
-                let names = parameter.names_in(identity);
-                names.map(|(id, scale, is_other)| Entry {
-                    is_other,
-                    ..Entry::new(id, Source::Conduct(parameter, scale))
-                })
-            });
+            CONDUCT_PARAMETERS.iter().chain(own).chain(of_modes).chain(radio_parameters(ardupilot)).flat_map(
+                |parameter| {
+                    let names = parameter.names_in(identity);
+                    names.map(|(id, scale, is_other)| Entry {
+                        is_other,
+                        ..Entry::new(id, Source::Conduct(parameter, scale))
+                    })
+                },
+            );
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
         let others = [
@@ -59,7 +70,10 @@ impl ParameterTable {
             Entry::new(system, Source::SystemId),
             Entry::new(SPEED_PARAMETER, Source::Speed),
         ];
-        let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).collect();
+        let counted = if ardupilot { &Statistic::ALL[..] } else { &[] };
+        let of_statistics =
+            counted.iter().map(|(id, statistic)| Entry::new(id, Source::Statistic(*statistic)));
+        let mut entries: Vec<Entry> = of_loop.chain(of_conduct).chain(others).chain(of_statistics).collect();
         entries.sort_by_key(|entry| entry.id);
         Self { entries }
     }
@@ -123,6 +137,11 @@ impl ParameterTable {
             }
             Source::SystemId => return Err(SetError::ReadOnly(name.to_owned())),
             Source::HoverThrust => return Err(SetError::Calculated(name.to_owned())),
+            Source::Statistic(Statistic::Reset) => (value == 0.0).then(|| {
+                values.statistics = Statistics::default();
+                Change::Statistics
+            }),
+            Source::Statistic(_) => return Err(SetError::Counted(name.to_owned())),
             Source::Speed => Speed::from_parameter(value).map(|speed| {
                 values.speed = speed;
                 Change::Speed
@@ -209,12 +228,18 @@ mod tests {
 
     use super::{Change, ParameterTable};
     use crate::identity::Identity;
-    use crate::parameters::{FileFormat, ParameterValues, SetError, Speed, Value, parse, render};
+    use crate::parameters::{FileFormat, ParameterValues, SetError, Speed, Statistics, Value, parse, render};
     use crate::vehicle::Conduct;
 
     fn defaults() -> (ParameterTable, ParameterValues) {
         let (configuration, conduct) = (Configuration::default(), Conduct::new(false));
-        let values = ParameterValues { configuration, conduct, system_id: 7, speed: Speed::Factor(1.0) };
+        let values = ParameterValues {
+            configuration,
+            conduct,
+            system_id: 7,
+            speed: Speed::Factor(1.0),
+            statistics: Statistics::default(),
+        };
         (ParameterTable::new(Identity::Px4), values)
     }
 

@@ -2,7 +2,7 @@
 
 use quadrotor::{Configuration, ConfigurationError, StabilityReport};
 
-use super::Speed;
+use super::{Speed, Statistics};
 use crate::vehicle::Conduct;
 
 /// Everything that parameters are read from and written into. A running vehicle fills it from its state, and takes a changed
@@ -17,6 +17,8 @@ pub struct ParameterValues {
     pub system_id: u8,
     /// Pace of simulation time.
     pub speed: Speed,
+    /// What it has counted.
+    pub statistics: Statistics,
 }
 
 impl ParameterValues {

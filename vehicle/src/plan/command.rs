@@ -82,6 +82,8 @@ const WIDEST_M: f64 = 1000.0;
 const TURNS: f64 = 1000.0;
 /// An angle, degrees.
 const ANGLE: (f64, f64) = (-360.0, 360.0);
+/// Largest angle of a turn, degrees: as many turns as a circle.
+const TURNED: f64 = TURNS * 360.0;
 /// Highest number of an item.
 const LAST: f64 = u16::MAX as f64;
 
@@ -109,7 +111,7 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
     MissionCommand { number: CONDITION_DISTANCE, step: |source| Step::Condition(Condition::Distance(source.value(1))),
         place: PlaceRule::None, needed: &[1], whole: &[], ranges: &[(1, "distance", 0.0, 1e5)] },
     MissionCommand { number: CONDITION_YAW, step: turn, place: PlaceRule::None, needed: &[1], whole: &[], ranges: &[
-        (1, "angle", ANGLE.0, ANGLE.1), (2, "rate", 0.0, 360.0), (3, "direction", -1.0, 1.0),
+        (1, "angle", -TURNED, TURNED), (2, "rate", 0.0, 360.0), (3, "direction", -1.0, 1.0),
         (4, "relative", 0.0, 1.0)] },
     MissionCommand { number: DO_JUMP, step: jump, place: PlaceRule::None, needed: &[1, 2], whole: &[1, 2], ranges: &[
         (1, "item", 0.0, LAST), (2, "repeats", -1.0, LAST)] },
@@ -222,12 +224,16 @@ fn takeoff(source: &Source<'_>) -> Step {
     Step::Navigate(Navigate::Takeoff { place: source.place(), travels })
 }
 
-/// A delay of −1 stands for the time of day behind it.
+/// A delay of −1 stands for the time of day behind it. ArduPilot's zero does, too, unless that is all zeros as well, as clients leave
+/// them.
 fn delay(source: &Source<'_>) -> Step {
     let delay_s = source.value(1);
-    Step::Navigate(Navigate::Delay(if delay_s < 0.0 {
-        let part = |number: usize| Some(source.item.parameter_or(number, -1.0)).filter(|value| *value >= 0.0);
-        Delay::Until(TimeOfDay([2, 3, 4].map(|number| part(number).map(|value| value as u64))))
+    let part = |number: usize| Some(source.item.parameter_or(number, -1.0)).filter(|value| *value >= 0.0);
+    let time = [2, 3, 4].map(part);
+    let named = time != [None; 3] && time != [Some(0.0); 3];
+    let until = delay_s < 0.0 || delay_s == 0.0 && named && source.site.identity.is_ardupilot();
+    Step::Navigate(Navigate::Delay(if until {
+        Delay::Until(TimeOfDay(time.map(|part| part.map(|value| value as u64))))
     } else {
         Delay::For(delay_s)
     }))

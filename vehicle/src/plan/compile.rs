@@ -1,7 +1,7 @@
 //! Plans made from items: in SI units and the local frame.
 
 use super::command::{self, Source, mission_command};
-use super::step::{Do, Step};
+use super::step::{Condition, Do, Step, Turn};
 use super::{FaultCode, Look, MissionItem, Place, PlanFault, PlanKind, Program, ProgramStep, Site, check};
 
 /// The steps of a mission whose items were checked. The first item of ArduPilot's convention is home, and never checked: what
@@ -47,6 +47,20 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
             let reason = "not supported".to_owned();
             Err(PlanFault::of_item(index, FaultCode::Unsupported, reason))
         }
+    }
+}
+
+/// The turn that CONDITION_YAW asks for.
+///
+/// # Errors
+/// [`PlanFault`] of what is no turn.
+pub fn turn(item: &MissionItem, site: &Site) -> Result<Turn, PlanFault> {
+    // As any item but home.
+    let index = usize::from(site.identity.is_ardupilot());
+    check::item(PlanKind::Mission, index, item, site)?;
+    match step(item, &[], site) {
+        Step::Condition(Condition::Yaw(turn)) => Ok(turn),
+        _ => Err(PlanFault::of_item(index, FaultCode::Unsupported, "not supported")),
     }
 }
 

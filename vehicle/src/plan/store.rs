@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{MissionItem, PlanKind};
+use super::{MissionItem, PlanFault, PlanKind, Site, check};
 
 /// A plan that was taken.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -50,6 +50,18 @@ impl Plans {
             PlanKind::Fence => &self.fence,
             PlanKind::Rally => &self.rally,
         }
+    }
+
+    /// Checks what was kept elsewhere, as if it were uploaded to a vehicle at a site.
+    ///
+    /// # Errors
+    /// [`PlanFault`] of the first item that is wrong.
+    pub fn check(&self, site: &Site) -> Result<(), PlanFault> {
+        let kinds = [PlanKind::Mission, PlanKind::Fence, PlanKind::Rally];
+        let plans = kinds.into_iter().map(|kind| (kind, self.get(kind).items()));
+        plans
+            .filter(|(_, items)| !items.is_empty())
+            .try_for_each(|(kind, items)| check::plan(kind, items, site))
     }
 
     /// Replaces the plan of a kind.

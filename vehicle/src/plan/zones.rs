@@ -75,6 +75,10 @@ fn polygon(first: usize, count: usize, items: &[MissionItem], site: &Site) -> Re
         };
         corners.push(point(index, item, site)?);
     }
+    // Many clients close the ring by its first corner.
+    if corners.len() > 3 && corners.first() == corners.last() {
+        corners.pop();
+    }
     let polygon = Polygon::new(corners).map_err(|fault| {
         PlanFault::of_item(first, FaultCode::Invalid, format!("invalid polygon: {fault}"))
     })?;

@@ -1,10 +1,17 @@
 //! How the vehicle conducts itself: its own parameters, beside those of the closed loop.
 
-use super::battery_pack::BatteryPack;
 use serde::{Deserialize, Serialize};
 
+use super::battery_pack::BatteryPack;
+use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
+use super::follow_settings::FollowSettings;
+use super::heading_policy::HeadingPolicy;
+use super::log_conduct::LogConduct;
+use super::orbit_request::OrbitSettings;
+use super::return_settings::ReturnSettings;
 use super::stick_settings::StickSettings;
+use super::trail::TrailSettings;
 use crate::radio::RadioSettings;
 
 /// Parameters of the vehicle's behaviour.
@@ -22,9 +29,9 @@ pub struct Conduct {
     pub return_near_m: f64,
     /// Sink rate near the ground, m/s.
     pub land_speed_m_s: f64,
-    /// Disarms this long after touch-down, s; negative: never.
+    /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
-    /// Disarms when not taken off this long after arming, s; negative: never.
+    /// Disarms when not taken off this long after arming, s; not positive: never.
     pub disarm_before_takeoff_s: f64,
     /// Horizontal speed of a full stick, m/s.
     pub stick_speed_m_s: f64,
@@ -41,9 +48,33 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// The way home beside its height.
+    #[serde(default)]
+    pub return_home: ReturnSettings,
+    /// Where the nose points on a way that names no heading.
+    #[serde(default)]
+    pub heading_policy: HeadingPolicy,
+    /// Orbits.
+    #[serde(default)]
+    pub orbit: OrbitSettings,
+    /// Options of ArduPilot's guided mode, as the parameter adds them up.
+    #[serde(default = "thrust_as_thrust")]
+    pub guided_options: u8,
+    /// How a target is followed.
+    #[serde(default)]
+    pub follow: FollowSettings,
+    /// The trail that leads back.
+    #[serde(default)]
+    pub trail: TrailSettings,
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
+    /// When it counts as crashed.
+    #[serde(default)]
+    pub crash: CrashSettings,
+    /// What is logged, in ArduPilot's convention.
+    #[serde(default)]
+    pub log: LogConduct,
     /// How the sticks are flown.
     #[serde(default)]
     pub sticks: StickSettings,
@@ -57,18 +88,33 @@ fn yes() -> bool {
     true
 }
 
+/// Of the options of the guided mode: the thrust of an attitude is one, and no climb rate. Records of before there were climb rates
+/// have it.
+const THRUST_AS_THRUST: u8 = 8;
+
+fn thrust_as_thrust() -> u8 {
+    THRUST_AS_THRUST
+}
+
 /// | parameter | default | reason |
 /// | --- | --- | --- |
 /// | takeoff height | 2.5 m | PX4's |
 /// | set-point timeout | 1 s; ArduPilot 3 s | theirs |
 /// | return height | 30 m (ArduPilot 15 m), near 5 m | theirs |
+/// | way home | PX4: 30 m to wait at, a cone of 45°; ArduPilot: 5 s above home, a cone of slope 3 | theirs |
+/// | heading on the way | to the next place, ArduPilot not on the way home | theirs |
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | PX4's, within our limits of speed |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 3 s) | PX4's, within our limits of speed; the times are theirs |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
+    /// Whether the thrust of attitudes is one in ArduPilot's guided mode, and no climb rate.
+    pub fn thrust_is_asked_for(&self) -> bool {
+        self.guided_options & THRUST_AS_THRUST != 0
+    }
+
     /// The defaults, which differ by convention.
     pub fn new(ardupilot: bool) -> Self {
         Self {
@@ -87,7 +133,19 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            return_home: ReturnSettings::new(ardupilot),
+            heading_policy: if ardupilot {
+                HeadingPolicy::NextPlaceExceptReturn
+            } else {
+                HeadingPolicy::NextPlace
+            },
+            orbit: OrbitSettings::default(),
+            guided_options: 0,
+            follow: FollowSettings::default(),
+            trail: TrailSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
+            crash: CrashSettings::default(),
+            log: LogConduct::default(),
             sticks: StickSettings::new(ardupilot),
             radio: RadioSettings::new(ardupilot),
         }

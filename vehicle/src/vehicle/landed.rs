@@ -29,7 +29,7 @@ const SETTLED_US: u64 = 300_000;
 /// A reference this far below the vehicle, m, presses it on the ground.
 const PRESSED_M: f64 = 0.2;
 /// Below this share of the weight the rotors do not carry it.
-const UNLOADED: f64 = 0.75;
+pub(super) const UNLOADED: f64 = 0.75;
 
 /// Detects touch-down and lift-off on flat ground at z = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

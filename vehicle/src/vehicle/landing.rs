@@ -1,6 +1,6 @@
 //! Touch-down, lift-off, and what follows on the ground: rotors that idle, and stop after a while.
 
-use super::landed::LandedDetector;
+use super::landed::{LandedDetector, UNLOADED};
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::situation::Situation;
@@ -79,23 +79,39 @@ impl Landing {
         }
     }
 
-    /// Stops the rotors of an armed vehicle that has idled on the ground for long enough.
+    /// Stops the rotors of an armed vehicle that has idled on the ground for long enough, or has been led by attitudes that ask for
+    /// next to no thrust.
     pub fn wait(&mut self, situation: &Situation, proposal: &mut Proposal) {
         if !self.is_landed() {
             self.grounded_since_us = situation.time_us;
             return;
         }
-        if proposal.steering().kind() != SteeringKind::Idle || situation.mission_goes_on {
+        if situation.mission_goes_on {
             return;
+        }
+        match proposal.steering().kind() {
+            SteeringKind::Idle => {}
+            SteeringKind::Attitude if !is_loaded(situation) => {}
+            // Who asks for thrust is about to take off.
+            SteeringKind::Attitude => {
+                self.grounded_since_us = situation.time_us;
+                return;
+            }
+            SteeringKind::Position | SteeringKind::Descent => return,
         }
         let conduct = situation.conduct;
         let wait_s =
             if self.flown { conduct.disarm_after_landing_s } else { conduct.disarm_before_takeoff_s };
         let waited_s = (situation.time_us - self.grounded_since_us) as f64 / 1e6;
-        if wait_s >= 0.0 && waited_s >= wait_s {
+        if wait_s > 0.0 && waited_s >= wait_s {
             proposal.stop_rotors(if self.flown { "Disarmed after landing" } else { "Disarmed: no takeoff" });
         }
     }
+}
+
+/// Whether the rotors carry most of the weight.
+fn is_loaded(situation: &Situation) -> bool {
+    situation.outputs.thrust_n >= UNLOADED * situation.configuration.airframe.weight_n()
 }
 
 #[cfg(test)]
@@ -162,8 +178,10 @@ mod tests {
         let mut going_on = landing;
         let stop = Request::StopRotors("Disarmed: no takeoff".to_owned());
         assert_eq!(wait(&mut landing, &mut scene), [stop]);
-        scene.conduct.disarm_before_takeoff_s = -1.0;
-        assert!(wait(&mut going_on, &mut scene).is_empty(), "never");
+        for never in [-1.0, 0.0] {
+            scene.conduct.disarm_before_takeoff_s = never;
+            assert!(wait(&mut going_on, &mut scene).is_empty(), "never");
+        }
     }
 
     #[test]

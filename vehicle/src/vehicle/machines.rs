@@ -2,17 +2,23 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
 use super::mission::Mission;
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
 use super::pilot_watch::PilotWatch;
 use super::receiver::Receiver;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
@@ -34,10 +40,16 @@ pub struct Machines {
     pub rotors: RotorWatch,
     /// Whether the position can be held.
     pub hold: HoldWatch,
+    /// Crashes.
+    pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// Tests of single rotors.
+    pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
+    /// The turn that a command asks for.
+    pub turn: CommandedTurn,
     /// What is received of the pilot.
     pub receiver: Receiver,
     /// What the pilot asks for by switches and gestures.
@@ -48,6 +60,12 @@ pub struct Machines {
     pub offboard: Offboard,
     /// The way home.
     pub return_home: Return,
+    /// The trail, and the way back on it.
+    pub smart_return: SmartReturn,
+    /// Orbits.
+    pub orbit: Orbit,
+    /// The target that is followed.
+    pub follow: Follow,
     /// The mission.
     pub mission: Mission,
     /// Speeds that hold instead of the parameters'.

@@ -55,6 +55,11 @@ impl Motion {
         (self.set_point, self.since_us) = (set_point, time_us);
     }
 
+    /// What it is asked for.
+    pub fn set_point(&self) -> PositionSetPoint {
+        self.set_point
+    }
+
     /// Whether it is asked to rise above z, m.
     pub fn leads_up(&self, z_m: f64) -> bool {
         self.set_point.leads_up(z_m)

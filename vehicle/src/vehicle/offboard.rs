@@ -1,11 +1,12 @@
 //! Set-points from outside.
 
+use super::attitude_flight::AttitudeFlight;
 use super::failsafe::Cause;
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
 use super::situation::Situation;
-use super::steering::SteeringKind;
+use super::steering::{Steering, SteeringKind};
 use crate::mode::Mode;
 
 /// What has come of set-points.
@@ -17,12 +18,43 @@ pub struct Offboard {
     applied: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
     expired: bool,
+    /// What a pause has interrupted.
+    paused: Option<Steering>,
+    /// Attitudes whose thrust asks for a climb rate.
+    attitude: AttitudeFlight,
 }
 
 impl Offboard {
     /// Takes a set-point that came at a time, µs.
     pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
-        *self = Self { latest: Some((set_point, time_us)), applied: false, expired: false };
+        if matches!(set_point, SetPoint::Position(_)) {
+            self.attitude.forget();
+        }
+        (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
+    }
+
+    /// Holds the place until [`resume`](Self::resume), whatever set-points come.
+    pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.paused.is_none() {
+            self.paused = Some(*proposal.steering());
+            proposal.follow(situation, &PositionSetPoint::HOLD);
+            proposal.say(Severity::Info, "Paused: holding");
+        }
+    }
+
+    /// Goes on to where the pause has interrupted it, or with what was asked for meanwhile.
+    pub fn resume(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let waits = self.latest.is_some() && !self.applied;
+        match self.paused.take() {
+            Some(Steering::Goal(goal)) if !waits => proposal.steer(Steering::Goal(goal)),
+            Some(Steering::Motion(motion)) if !waits => proposal.follow(situation, &motion.set_point()),
+            _ => {}
+        }
+    }
+
+    /// Whether it is paused.
+    pub fn is_paused(&self) -> bool {
+        self.paused.is_some()
     }
 
     /// Forgets all set-points: something else has been asked for.
@@ -32,7 +64,8 @@ impl Offboard {
 
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
-        self.applied = false;
+        (self.applied, self.paused) = (false, None);
+        self.attitude.forget();
     }
 
     /// Whether the latest set-point has been steered to.
@@ -48,6 +81,10 @@ impl Offboard {
 
     /// One tick of the offboard mode.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.is_paused() || situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal)
+        {
+            return;
+        }
         if !situation.set_points_are_recent {
             match situation.identity.is_ardupilot() {
                 true => self.guided_without_news(situation, proposal),
@@ -73,6 +110,25 @@ impl Offboard {
             }
         }
         self.applied = true;
+    }
+
+    /// ArduPilot: flies an attitude whose thrust asks for a climb rate, and in the mode that takes attitudes only what comes instead
+    /// of one. Returns whether that is flown.
+    fn climbs_by_thrust(&mut self, situation: &Situation, proposal: &mut Proposal) -> bool {
+        let latest = self.latest.filter(|_| situation.set_points_are_recent);
+        match latest {
+            Some((SetPoint::Attitude(asked), _)) if !situation.conduct.thrust_is_asked_for() => {
+                self.attitude.step(Some(&asked), situation, proposal);
+                self.applied = true;
+                true
+            }
+            Some((SetPoint::Attitude(_), _)) => false,
+            _ if situation.mode == Mode::GuidedAttitude => {
+                self.attitude.step(None, situation, proposal);
+                true
+            }
+            _ => false,
+        }
     }
 
     /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds

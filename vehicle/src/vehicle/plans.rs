@@ -8,6 +8,7 @@ use crate::plan::step::Navigate;
 use crate::plan::{
     FaultCode, MissionItem, Place, Plan, PlanFault, PlanKind, Plans, Program, Site, compile, zones,
 };
+use crate::world::FARTHEST_M;
 
 /// The plans as they were uploaded, and what the flight needs of fence and rally points. The steps of the mission are the
 /// mission's own.
@@ -17,6 +18,8 @@ pub struct KnownPlans {
     /// Of the fence plan, as they were when it was taken.
     zones: Zones,
     rally_points: Vec<Place>,
+    /// How often one of them has been replaced.
+    revision: u32,
 }
 
 impl KnownPlans {
@@ -24,12 +27,22 @@ impl KnownPlans {
     pub fn new(plans: Plans, site: &Site) -> Self {
         let zones = zones(plans.get(PlanKind::Fence).items(), site).unwrap_or_default();
         let rally_points = compile::rally_points(plans.get(PlanKind::Rally).items(), site);
-        Self { plans, zones, rally_points }
+        Self { plans, zones, rally_points, revision: 0 }
     }
 
     /// As they were uploaded.
     pub fn plans(&self) -> &Plans {
         &self.plans
+    }
+
+    /// A number that changes with each plan that is replaced.
+    pub fn revision(&self) -> u32 {
+        self.revision
+    }
+
+    fn set(&mut self, kind: PlanKind, items: Vec<MissionItem>) {
+        self.plans.set(kind, Plan::new(items));
+        self.revision = self.revision.wrapping_add(1);
     }
 
     /// The zones of the fence.
@@ -48,19 +61,19 @@ impl KnownPlans {
     /// [`PlanFault`]; the old one stays then.
     pub fn take_fence(&mut self, items: Vec<MissionItem>, site: &Site) -> Result<(), PlanFault> {
         self.zones = zones(&items, site)?;
-        self.plans.set(PlanKind::Fence, Plan::new(items));
+        self.set(PlanKind::Fence, items);
         Ok(())
     }
 
     /// Replaces the rally points.
     pub fn take_rally_points(&mut self, items: Vec<MissionItem>, points: Vec<Place>) {
         self.rally_points = points;
-        self.plans.set(PlanKind::Rally, Plan::new(items));
+        self.set(PlanKind::Rally, items);
     }
 
     /// Replaces the items of the mission.
     pub fn take_mission(&mut self, items: Vec<MissionItem>) {
-        self.plans.set(PlanKind::Mission, Plan::new(items));
+        self.set(PlanKind::Mission, items);
     }
 }
 
@@ -80,6 +93,36 @@ pub fn check_way(situation: &Situation, program: &Program) -> Result<(), PlanFau
         let breach = situation.breach_at(&place_m).or_else(way);
         before_m = place_m;
         refuse(index, breach)?;
+    }
+    Ok(())
+}
+
+/// Refuses a mission that cannot be flown to its end: places that are too far away, or below the ground.
+///
+/// # Errors
+/// [`PlanFault`] that names the item.
+pub fn check_reach(situation: &Situation, program: &Program) -> Result<(), PlanFault> {
+    for index in program.first()..program.len() {
+        let Some(step) = program.navigate(index) else { continue };
+        let Some(place) = step.place() else { continue };
+        if let Some([north, east]) = place.horizontal_m {
+            let distance_m = libm::hypot(north, east);
+            if distance_m > FARTHEST_M {
+                let reason = format!(
+                    "the place is {:.0} km away; allowed up to {:.0} km: move it, or start the vehicle nearer to it",
+                    distance_m / 1e3,
+                    FARTHEST_M / 1e3
+                );
+                let parameter = if north.abs() > east.abs() { 5 } else { 6 };
+                return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(parameter), reason));
+            }
+        }
+        // A landing ends where the ground is.
+        let below_m = place.down_m(situation.home.position_m.z).filter(|down_m| *down_m > 0.0);
+        if let Some(below_m) = below_m.filter(|_| !matches!(step, Navigate::Land { .. })) {
+            let reason = format!("the place is {below_m:.1} m below the ground: raise it");
+            return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(7), reason));
+        }
     }
     Ok(())
 }

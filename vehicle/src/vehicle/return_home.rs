@@ -1,14 +1,24 @@
-//! The way home: climb, travel, descend.
+//! The way home: climb, travel, wait, descend.
+//!
+//! ```text
+//!  Climb ─► Travel ─┬─────────────────────────────► Descend
+//!                   ├─► Lower ─► Wait ─────────────► Descend   PX4 with RTL_LAND_DELAY
+//!                   └─► Wait ─┬────────────────────► Descend   ArduPilot
+//!                             └─► Stay, at RTL_ALT_FINAL
+//! ```
 
 use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 
 use super::descent::descend;
+use super::heading_policy::{HeadingPolicy, Purpose};
+use super::motion::wrapped;
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
+use super::speeds::SpeedChange;
 use super::steering::Steering;
 use crate::fence::{Progress, RouteSearch};
 
@@ -20,6 +30,12 @@ enum Phase {
     Climb,
     /// Above the place to land at.
     Travel,
+    /// Down to the height at which it waits.
+    Lower,
+    /// Above the place until a time, µs, or for ever.
+    Wait(Option<u64>),
+    /// Down to where it stays.
+    Stay,
     /// Down.
     Descend,
 }
@@ -27,6 +43,11 @@ enum Phase {
 /// So near to a goal, m, and so slow, m/s, the next phase begins.
 const REACHED_M: f64 = 0.5;
 const SLOW_M_S: f64 = 0.5;
+/// So near to its heading, rad, ArduPilot lands.
+const TURNED_RAD: f64 = 0.035;
+/// ArduPilot's lowest height of the way, m, and its shallowest cone.
+const LOWEST_M: f64 = 0.3;
+const SHALLOWEST: f64 = 0.5;
 
 /// So many sides of the fence are looked at in one tick to find the way: a fraction of a millisecond.
 const WORK_PER_TICK: u64 = 10_000;
@@ -41,27 +62,32 @@ pub struct Return {
     search: Option<RouteSearch>,
     /// What is left of the way: north and east, m, the place to land at last. Empty until it is found.
     way_m: VecDeque<[f64; 2]>,
+    /// Height of the way, z, m.
+    way_z_m: f64,
 }
 
 impl Return {
     /// Begins the way home.
     pub fn begin(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let goals_m = safe_points_m(situation);
-        let near = goals_m.front().is_some_and(|goal| is_near(situation, *goal));
-        *self = Self { goals_m, ..Self::default() };
+        let way_z_m = way_z_m(situation, goals_m.front().copied());
+        *self = Self { goals_m, way_z_m, ..Self::default() };
+        let speed_m_s = situation.conduct.return_home.speed_m_s;
+        if situation.identity.is_ardupilot() && speed_m_s > 0.0 {
+            proposal.change_speeds(SpeedChange::Return(Some(speed_m_s)));
+        }
         self.search_next(situation, proposal);
         self.search_on(situation, proposal);
-        if near && self.phase == Phase::Climb && self.way_m.len() == 1 {
-            self.phase = Phase::Descend;
-            proposal.say(Severity::Info, "Return point is near: landing");
-        } else if self.phase == Phase::Climb {
-            go_at_return_height(situation, proposal, situation.outputs.setpoint.position_m.xy().into());
+        if self.phase == Phase::Climb {
+            // The heading stays on the way up.
+            self.go_above(situation.outputs.setpoint.position_m.xy().into(), situation, proposal);
         }
     }
 
     /// One tick of the way home.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        if self.phase != Phase::Descend && self.fence_has_changed(situation) {
+        let travels = matches!(self.phase, Phase::Climb | Phase::Travel);
+        if travels && self.fence_has_changed(situation) {
             self.begin(situation, proposal);
         }
         self.search_on(situation, proposal);
@@ -76,11 +102,18 @@ impl Return {
                 self.way_m.pop_front();
                 self.travel(situation, proposal);
             }
-            Phase::Travel if reached() => {
-                self.phase = Phase::Descend;
-                proposal.say(Severity::Info, "Above the return point: landing");
+            Phase::Travel if reached() => self.arrive(situation, proposal),
+            Phase::Travel => turn_on_the_way(situation, proposal),
+            Phase::Lower if reached() => self.wait(situation, proposal),
+            Phase::Wait(Some(until_us)) if situation.time_us >= until_us && has_turned(situation) => {
+                self.go_down(situation, proposal);
             }
-            Phase::Descend => descend(situation, proposal, self.way_m.back().copied()),
+            Phase::Descend => {
+                descend(situation, proposal, self.way_m.back().copied());
+                if !situation.identity.is_ardupilot() && !situation.landed {
+                    proposal.turn_on(Some((situation.home.yaw_rad, 0.0)));
+                }
+            }
             _ => {}
         }
     }
@@ -124,19 +157,91 @@ impl Return {
 
     fn travel(&self, situation: &Situation, proposal: &mut Proposal) {
         if let Some(next) = self.way_m.front() {
-            go_at_return_height(situation, proposal, *next);
+            self.go_above(*next, situation, proposal);
+            turn_on_the_way(situation, proposal);
         }
+    }
+
+    /// To a place at the height of the way; the heading goes on.
+    fn go_above(&self, place: [f64; 2], situation: &Situation, proposal: &mut Proposal) {
+        go_to(place, self.way_z_m, situation, proposal);
+    }
+
+    /// It is above the place.
+    fn arrive(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let settings = &situation.conduct.return_home;
+        if situation.identity.is_ardupilot() {
+            self.wait(situation, proposal);
+            if turns_home(situation) {
+                proposal.turn_on(Some((situation.home.yaw_rad, 0.0)));
+            }
+        } else if settings.wait_s == 0.0 {
+            self.go_down(situation, proposal);
+        } else {
+            self.phase = Phase::Lower;
+            let z_m = self.way_z_m.max(situation.home.position_m.z - settings.wait_height_m);
+            if let Some(place) = self.way_m.back() {
+                go_to(*place, z_m, situation, proposal);
+                proposal.turn_on(Some((situation.home.yaw_rad, 0.0)));
+            }
+        }
+    }
+
+    fn wait(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let wait_s = situation.conduct.return_home.wait_s;
+        if wait_s < 0.0 {
+            proposal.say(Severity::Info, "Above the return point: holding");
+        }
+        self.phase = Phase::Wait((wait_s >= 0.0).then(|| situation.after_us(wait_s)));
+        if wait_s == 0.0 && has_turned(situation) {
+            self.go_down(situation, proposal);
+        }
+    }
+
+    /// It lands, or goes down to where it stays.
+    fn go_down(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let final_m = situation.conduct.return_home.final_height_m;
+        if situation.identity.is_ardupilot() && final_m > 0.0 {
+            self.phase = Phase::Stay;
+            let z_m = situation.home.position_m.z - final_m;
+            if let Some(place) = self.way_m.back() {
+                go_to(*place, z_m, situation, proposal);
+            }
+            return;
+        }
+        self.phase = Phase::Descend;
+        proposal.say(Severity::Info, "Above the return point: landing");
     }
 }
 
-fn go_at_return_height(situation: &Situation, proposal: &mut Proposal, [x, y]: [f64; 2]) {
-    let home_z = situation.home.position_m.z;
-    let mut z = situation.outputs.position_m.z.min(home_z - situation.conduct.return_height_m);
-    if let Some(ceiling_z) = situation.fence_ceiling_z_m() {
-        z = z.max(ceiling_z);
-    }
-    let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)];
+/// To a place and a height, z, m; the heading goes on.
+fn go_to([x, y]: [f64; 2], z_m: f64, situation: &Situation, proposal: &mut Proposal) {
+    let axes = [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z_m)];
     proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+}
+
+/// Turns the nose as the parameter says.
+fn turn_on_the_way(situation: &Situation, proposal: &mut Proposal) {
+    /// Nearer than this, m, the goal has no direction.
+    const TOO_NEAR_M: f64 = 1.0;
+    let Steering::Goal(goal) = proposal.steering() else { return };
+    let way = (goal.position_m - situation.outputs.setpoint.position_m).xy();
+    let next_rad = if way.norm() > TOO_NEAR_M { libm::atan2(way.y, way.x) } else { goal.yaw_rad };
+    let heading_rad = HeadingPolicy::of(situation).heading_rad(Purpose::Return, next_rad, situation);
+    if let Some(heading_rad) = heading_rad.filter(|heading_rad| *heading_rad != goal.yaw_rad) {
+        proposal.turn_on(Some((heading_rad, 0.0)));
+    }
+}
+
+/// Whether ArduPilot turns to the heading of home before it lands.
+fn turns_home(situation: &Situation) -> bool {
+    !matches!(HeadingPolicy::of(situation), HeadingPolicy::Hold | HeadingPolicy::NextPlaceExceptReturn)
+}
+
+/// Whether it points where it is to point before it lands.
+fn has_turned(situation: &Situation) -> bool {
+    let off_rad = wrapped(situation.outputs.attitude_rad.z - situation.home.yaw_rad).abs();
+    !situation.identity.is_ardupilot() || !turns_home(situation) || off_rad <= TURNED_RAD
 }
 
 /// Whether the vehicle has come to rest at the goal of the shaper.
@@ -146,17 +251,65 @@ fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
     (outputs.position_m - goal.position_m).norm() < REACHED_M && outputs.velocity_m_s.norm() < SLOW_M_S
 }
 
+/// Height of the way to a place, z, m: never lower than the vehicle is, and not above the fence.
+fn way_z_m(situation: &Situation, goal: Option<[f64; 2]>) -> f64 {
+    let home_z_m = situation.home.position_m.z;
+    let here_m = home_z_m - situation.outputs.position_m.z;
+    let distance_m = goal.map_or(f64::INFINITY, |goal| distance_m(situation, goal));
+    let wanted_m = if situation.identity.is_ardupilot() {
+        ardupilot_height_m(situation, here_m, distance_m)
+    } else {
+        px4_height_m(situation, distance_m)
+    };
+    let mut z_m = situation.outputs.position_m.z.min(home_z_m - wanted_m);
+    if let Some(ceiling_z_m) = situation.fence_ceiling_z_m() {
+        z_m = z_m.max(ceiling_z_m);
+    }
+    z_m
+}
+
+/// At least a climb, and near home not above a cone that widens with the height.
+fn ardupilot_height_m(situation: &Situation, here_m: f64, distance_m: f64) -> f64 {
+    let settings = &situation.conduct.return_home;
+    let least_m = LOWEST_M.max(here_m + settings.least_climb_m.max(0.0));
+    let height_m = situation.conduct.return_height_m.max(least_m);
+    if settings.cone_slope < SHALLOWEST {
+        return height_m;
+    }
+    height_m.min((distance_m * settings.cone_slope).max(least_m))
+}
+
+/// Near the place it stays below the full height, within a cone, and never so low that it touches the ground on the way.
+fn px4_height_m(situation: &Situation, distance_m: f64) -> f64 {
+    let conduct = situation.conduct;
+    let (height_m, cone_rad) = (conduct.return_height_m, conduct.return_home.cone_rad);
+    if distance_m <= conduct.acceptance_radius_m {
+        return 2.0 * distance_m;
+    }
+    let near = distance_m <= conduct.return_near_m && cone_rad > 0.0;
+    let wanted_m = if near { height_m.min(distance_m / libm::tan(cone_rad)) } else { height_m };
+    wanted_m.max(2.0 * conduct.acceptance_radius_m)
+}
+
 /// Where a return may go: home, the rally points and the fence's return point, as far as the fence allows them, the nearest
 /// first. North and east, m.
 fn safe_points_m(situation: &Situation) -> VecDeque<[f64; 2]> {
     let home = situation.home.position_m;
+    let is_free = |[x, y]: &[f64; 2]| situation.breach_at(&Vector3::new(*x, *y, home.z)).is_none();
     let rally = situation.rally_points.iter().filter_map(|place| place.horizontal_m);
-    let mut points: Vec<[f64; 2]> = core::iter::once([home.x, home.y])
-        .chain(rally)
-        .chain(situation.zones.return_m)
-        .filter(|[x, y]| situation.breach_at(&Vector3::new(*x, *y, home.z)).is_none())
-        .collect();
-    points.sort_by(|one, other| distance_m(situation, *one).total_cmp(&distance_m(situation, *other)));
+    let rally: Vec<[f64; 2]> = rally.filter(is_free).collect();
+    let by_distance = |points: &mut Vec<[f64; 2]>| {
+        points.sort_by(|one, other| distance_m(situation, *one).total_cmp(&distance_m(situation, *other)));
+    };
+    let others = core::iter::once([home.x, home.y]).chain(situation.zones.return_m).filter(is_free);
+    if situation.conduct.return_home.goal.prefers_rally_points() {
+        let (mut first, mut then) = (rally, others.collect());
+        by_distance(&mut first);
+        by_distance(&mut then);
+        return first.into_iter().chain(then).collect();
+    }
+    let mut points: Vec<[f64; 2]> = others.chain(rally).collect();
+    by_distance(&mut points);
     points.into()
 }
 
@@ -166,14 +319,14 @@ fn distance_m(situation: &Situation, [x, y]: [f64; 2]) -> f64 {
     libm::hypot(x - here.x, y - here.y)
 }
 
-fn is_near(situation: &Situation, place: [f64; 2]) -> bool {
-    distance_m(situation, place) < situation.conduct.return_near_m
-}
-
 #[cfg(test)]
 mod tests {
     use super::Return;
     use crate::fence::{Shape, Zone};
+    use crate::identity::Identity;
+    use crate::plan::Place;
+    use crate::vehicle::conduct::Conduct;
+    use crate::vehicle::return_settings::ReturnGoal;
     use crate::vehicle::scene::{Scene, said};
     use crate::vehicle::steering::{Steering, SteeringKind};
 
@@ -203,13 +356,81 @@ mod tests {
         assert!(matches!(scene.steering, Steering::Motion(_)), "{:?}", scene.steering);
     }
 
-    #[test]
-    fn near_home_it_lands_at_once() {
-        let mut scene = Scene::hovering_at([3.0, 0.0, -10.0]);
+    /// Goes from place to place until it descends or stays; the heights above home that it was led to, m.
+    fn heights(mut scene: Scene) -> Vec<f64> {
         let mut way_home = Return::default();
-        let requests = scene.show(|situation, proposal| way_home.begin(situation, proposal));
-        assert_eq!(said(&requests), ["Return point is near: landing"]);
-        assert!(way_home.descends());
+        scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        let mut heights: Vec<f64> = Vec::new();
+        for _ in 0..40 {
+            let Some(goal) = scene.goal_m() else { break };
+            let height = (-goal[2] * 100.0).round() / 100.0;
+            if heights.last() != Some(&height) {
+                heights.push(height);
+            }
+            scene.come_to(goal, [0.0; 3]);
+            scene.wait_us(1_000_000);
+            step(&mut way_home, &mut scene);
+        }
+        heights
+    }
+
+    #[test]
+    fn near_home_it_need_not_climb_as_high() {
+        // PX4: within RTL_MIN_DIST in a cone of 45°, and at least twice the acceptance radius.
+        assert_eq!(heights(Scene::hovering_at([4.5, 0.0, -1.0])), [4.5]);
+        assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -1.0])), [4.0]);
+        assert_eq!(heights(Scene::hovering_at([1.0, 0.0, -1.5])), [2.0]);
+        assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -10.0])), [10.0]);
+        assert_eq!(heights(Scene::hovering_at([6.0, 0.0, -10.0])), [30.0]);
+        let mut wide = Scene::hovering_at([4.5, 0.0, -1.0]);
+        wide.conduct.return_home.cone_rad = 0.0;
+        assert_eq!(heights(wide), [30.0]);
+    }
+
+    fn ardupilot(position_m: [f64; 3]) -> Scene {
+        let mut scene = Scene::hovering_at(position_m);
+        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        scene
+    }
+
+    #[test]
+    fn ardupilot_climbs_by_its_cone_and_its_least_climb() {
+        // RTL_ALT is 15 m, the cone's slope 3.
+        assert_eq!(heights(ardupilot([40.0, 0.0, -5.0])), [15.0]);
+        assert_eq!(heights(ardupilot([3.0, 0.0, -5.0])), [9.0]);
+        assert_eq!(heights(ardupilot([1.0, 0.0, -5.0])), [5.0]);
+        let mut scene = ardupilot([40.0, 0.0, -14.0]);
+        scene.conduct.return_home.least_climb_m = 4.0;
+        assert_eq!(heights(scene), [18.0]);
+        let mut scene = ardupilot([1.0, 0.0, -5.0]);
+        scene.conduct.return_home.cone_slope = 0.0;
+        assert_eq!(heights(scene), [15.0]);
+    }
+
+    #[test]
+    fn ardupilot_stays_at_its_final_height_and_px4_waits_at_its_own() {
+        let mut scene = ardupilot([40.0, 0.0, -5.0]);
+        scene.conduct.return_home.final_height_m = 3.0;
+        assert_eq!(heights(scene), [15.0, 3.0]);
+        for wait_s in [2.0, -1.0] {
+            let mut scene = Scene::hovering_at([40.0, 0.0, -5.0]);
+            scene.conduct.return_home.wait_s = wait_s;
+            scene.conduct.return_home.wait_height_m = 12.0;
+            assert_eq!(heights(scene), [30.0, 12.0]);
+        }
+    }
+
+    #[test]
+    fn rally_points_go_first_if_they_are_to() {
+        let mut scene = Scene::hovering_at([4.0, 0.0, -30.0]);
+        let horizontal_m = Some([50.0, 0.0]);
+        scene.rally_points = vec![Place { horizontal_m, altitude: None }];
+        let mut goal = |goal| {
+            scene.conduct.return_home.goal = goal;
+            super::safe_points_m(&scene.situation()).front().copied()
+        };
+        assert_eq!(goal(ReturnGoal::Nearest), Some([0.0, 0.0]));
+        assert_eq!(goal(ReturnGoal::RallyPoint), Some([50.0, 0.0]));
     }
 
     #[test]
@@ -288,6 +509,10 @@ mod tests {
         let mut scene = Scene::hovering_at([1.0, 0.0, -10.0]);
         let mut way_home = Return::default();
         scene.show(|situation, proposal| way_home.begin(situation, proposal));
+        while !way_home.descends() {
+            scene.come_to(scene.goal_m().unwrap(), [0.0; 3]);
+            step(&mut way_home, &mut scene);
+        }
         scene.validity.horizontal_position = false;
         step(&mut way_home, &mut scene);
         let Steering::Attitude { set_point, .. } = scene.steering else { panic!("{:?}", scene.steering) };

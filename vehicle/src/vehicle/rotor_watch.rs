@@ -32,7 +32,7 @@ struct Loss {
     /// North and east, m, of where it descends.
     place_m: Option<[f64; 2]>,
     touching_since_us: Option<u64>,
-    /// Whether another one is lost, too: then nothing can be held.
+    /// Whether another one is lost, too: then no place can be held, and it sinks at once.
     falls: bool,
 }
 
@@ -110,6 +110,14 @@ impl RotorWatch {
         loss.touching_since_us = if touching { loss.touching_since_us.or(Some(time_us)) } else { None };
         if loss.touching_since_us.is_some_and(|since_us| time_us - since_us >= TOUCHED_US) {
             proposal.stop_rotors(format!("Disarmed: landed without rotor {}", loss.rotor + 1));
+            return;
+        }
+        if loss.falls {
+            let reference = PositionReference {
+                velocity_m_s: Vector3::new(0.0, 0.0, FASTEST_SINK_M_S),
+                ..at_rest(now.position_m, now.attitude_rad.z)
+            };
+            proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
             return;
         }
         let reference = match loss.place_m {

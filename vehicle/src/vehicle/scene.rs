@@ -160,12 +160,13 @@ impl Scene {
             set_points_are_recent: self.set_points_are_recent,
             set_point_is_applied: false,
             pilot: self.pilot,
+            has_trail: false,
             mission_goes_on: self.mission_goes_on,
         }
     }
 
     /// Shows the situation to a machine and steers as it asks. Returns its requests.
-    pub fn show(&mut self, ask: impl FnOnce(&Situation, &mut Proposal)) -> Vec<Request> {
+    pub fn show<T>(&mut self, ask: impl FnOnce(&Situation, &mut Proposal) -> T) -> Vec<Request> {
         let situation = self.situation();
         let mut proposal = Proposal::new(&situation);
         ask(&situation, &mut proposal);

@@ -140,3 +140,13 @@ pub enum SetPoint {
     /// Attitude and thrust.
     Attitude(AttitudeSetPoint),
 }
+
+impl SetPoint {
+    /// Whether it asks for a heading.
+    pub fn turns(&self) -> bool {
+        match self {
+            Self::Position(position) => position.yaw != YawTarget::Hold,
+            Self::Attitude(_) => true,
+        }
+    }
+}

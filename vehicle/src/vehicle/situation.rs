@@ -81,6 +81,8 @@ pub struct Situation<'a> {
     pub set_point_is_applied: bool,
     /// The pilot.
     pub pilot: Pilot,
+    /// Whether there is a way back that it came.
+    pub has_trail: bool,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
 }
@@ -104,6 +106,12 @@ impl<'a> Situation<'a> {
     /// Whether there is a flight that could be ended, or flown otherwise.
     pub fn flies(&self) -> bool {
         self.armed && self.steering.kind() != SteeringKind::Idle
+    }
+
+    /// Whether commands and set-points may lead it although its rotors idle: in ArduPilot's identity a takeoff that has just been asked
+    /// for.
+    pub fn may_be_led(&self) -> bool {
+        self.armed && self.mode == Mode::Takeoff && self.identity.is_ardupilot()
     }
 
     /// Whether the mode leaves the heading to the vehicle.
@@ -204,6 +212,7 @@ impl<'a> Situation<'a> {
         let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
         Fence {
             zones: parts.zones.then_some(self.zones),
+            inclusions: settings.fence_inclusions(),
             home_m: self.home.position_m,
             radius_m: of(parts.distance, settings.fence_radius_m),
             height_m: of(parts.height, settings.fence_height_m),

@@ -16,6 +16,8 @@ pub enum SpeedChange {
     ForgetMission,
     /// With the flight ends what commands have asked for.
     ForgetCommands,
+    /// The way home has a horizontal speed of its own, m/s, until another command or its end.
+    Return(Option<f64>),
 }
 
 /// Limits of speed, m/s: horizontally, up, down.
@@ -25,6 +27,8 @@ pub struct Speeds {
     kept_m_s: [f64; 3],
     by_command_m_s: [Option<f64>; 3],
     by_mission_m_s: [Option<f64>; 3],
+    /// Of the way home, horizontally.
+    by_return_m_s: Option<f64>,
     /// Whether the mission is flown.
     in_mission: bool,
 }
@@ -32,7 +36,13 @@ pub struct Speeds {
 impl Speeds {
     /// The parameters' alone.
     pub fn new(limits: &Limits) -> Self {
-        Self { kept_m_s: of(limits), by_command_m_s: [None; 3], by_mission_m_s: [None; 3], in_mission: false }
+        Self {
+            kept_m_s: of(limits),
+            by_command_m_s: [None; 3],
+            by_mission_m_s: [None; 3],
+            by_return_m_s: None,
+            in_mission: false,
+        }
     }
 
     /// Limits of the parameters, m/s.
@@ -44,7 +54,8 @@ impl Speeds {
     pub fn in_force(&self) -> [f64; 3] {
         core::array::from_fn(|axis| {
             let by_mission = self.by_mission_m_s[axis].filter(|_| self.in_mission);
-            by_mission.or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
+            let by_return = self.by_return_m_s.filter(|_| axis == 0);
+            by_mission.or(by_return).or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
         })
     }
 
@@ -70,6 +81,7 @@ impl Speeds {
             SpeedChange::InMission(in_mission) => self.in_mission = in_mission,
             SpeedChange::ForgetMission => self.by_mission_m_s = [None; 3],
             SpeedChange::ForgetCommands => self.by_command_m_s = [None; 3],
+            SpeedChange::Return(speed_m_s) => self.by_return_m_s = speed_m_s,
         }
         self
     }
@@ -79,6 +91,7 @@ impl Speeds {
         if let Some((axis, limit_m_s)) = asked(change) {
             self.by_command_m_s[axis] = limit_m_s;
             self.by_mission_m_s[axis] = self.by_mission_m_s[axis].filter(|_| !self.in_mission);
+            self.by_return_m_s = self.by_return_m_s.filter(|_| axis != 0);
         }
         self
     }

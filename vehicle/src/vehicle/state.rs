@@ -6,6 +6,7 @@ mod pilot;
 mod plan_requests;
 mod plan_start;
 mod queries;
+mod reboot;
 mod requests;
 
 use nalgebra::Vector3;
@@ -14,10 +15,13 @@ use quadrotor::ConfigurationError;
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah};
 use super::closed_loop::{ClosedLoop, Conditions};
+use super::commanded_turn::CommandedTurn;
+use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
@@ -25,8 +29,10 @@ use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
-use super::mission::Mission;
+use super::mission::{Helm, Mission};
+use super::motor_test::MotorTests;
 use super::offboard::Offboard;
+use super::orbit::Orbit;
 use super::perception::Perception;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
@@ -36,6 +42,7 @@ use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
+use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
@@ -96,13 +103,19 @@ impl Vehicle {
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
             hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
+            motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
+            turn: CommandedTurn::default(),
             receiver: Receiver::default(),
             pilot_watch: PilotWatch::default(),
             stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
+            smart_return: SmartReturn::default(),
+            orbit: Orbit::default(),
+            follow: Follow::default(),
             mission: Mission::new(program),
             speeds: Speeds::new(&configuration.limits),
         };
@@ -146,10 +159,12 @@ impl Vehicle {
         if self.decided.is_armed() {
             self.fly();
         }
+        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
+        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         Ok(())
@@ -199,14 +214,26 @@ impl Vehicle {
             Mode::Stabilize | Mode::Manual | Mode::Acro => {
                 parts.stick_flight.step_by_thrust(situation, proposal);
             }
-            Mode::Offboard => parts.offboard.step(situation, proposal),
-            Mode::Mission => parts.mission.step(situation, proposal),
+            Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
+            Mode::Mission => match parts.mission.step(situation, proposal) {
+                Helm::Mission => {}
+                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
+                Helm::Return => parts.return_home.step(situation, proposal),
+            },
             Mode::Land => descend(situation, proposal, None),
             Mode::Return => parts.return_home.step(situation, proposal),
+            Mode::SmartReturn => parts.smart_return.step(situation, proposal),
+            Mode::Orbit => parts.orbit.step(situation, proposal),
+            Mode::Follow => parts.follow.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
             parts.offboard.hold_without_news(situation, proposal);
-            if situation.chooses_its_heading() {
+            if situation.mode != Mode::SmartReturn {
+                parts.smart_return.watch(situation, proposal);
+            }
+            if parts.turn.is_on() {
+                parts.turn.step(proposal);
+            } else if situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
@@ -222,7 +249,14 @@ impl Vehicle {
             rotor_faults: self.machines.injection.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
         };
-        self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US)
+        let test = self.machines.motor_tests.steering(conditions.outputs, conditions.rotor_faults);
+        match test {
+            Some((mut steering, rotor_faults)) => {
+                let conditions = Conditions { armed: true, rotor_faults, ..conditions };
+                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+            }
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+        }
     }
 
     /// Perceives the motion after the tick.
@@ -294,6 +328,7 @@ fn situation<'a>(
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_is_applied: machines.offboard.is_applied(),
         pilot: *machines.receiver.pilot(),
+        has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }

@@ -76,6 +76,11 @@ impl Steering {
         }
     }
 
+    /// Whether it is asked for body rates, and for no attitude.
+    pub(super) fn is_by_rates(&self) -> bool {
+        matches!(self, Self::Attitude { set_point, .. } if set_point.attitude.is_none())
+    }
+
     fn lost_rotor(&self) -> Option<usize> {
         match self {
             Self::Descent { lost_rotor, .. } => Some(*lost_rotor),
@@ -155,7 +160,9 @@ impl Steering {
             let AttitudeSetPoint { body_rate_rad_s, thrust, .. } = *set_point;
             return TrackedAttitude { attitude: *reference, body_rate_rad_s, thrust };
         }
-        let [phi, theta] = outputs.tilt_reference_rad;
+        let level = [0.0; 2];
+        let idle = matches!(self, Self::Idle { .. });
+        let [phi, theta] = if idle { level } else { outputs.tilt_reference_rad };
         TrackedAttitude {
             attitude: UnitQuaternion::from_euler_angles(phi, theta, outputs.setpoint.yaw_rad),
             body_rate_rad_s: Vector3::zeros(),

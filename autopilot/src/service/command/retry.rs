@@ -1,6 +1,6 @@
 //! Commands that were carried out lately: a repeated one is answered again, not carried out again.
 
-use mavlink::dialects::ardupilotmega::MavResult;
+use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
 
 use crate::codec::{Command, CommandKind};
 use crate::envelope::Origin;
@@ -9,6 +9,9 @@ use crate::envelope::Origin;
 const REMEMBERED: usize = 32;
 /// For this long, µs of simulation time.
 const REMEMBERED_US: u64 = 10_000_000;
+
+/// It changes nothing of the flight.
+const SET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16;
 
 #[derive(Clone, Debug)]
 struct Done {
@@ -24,7 +27,8 @@ struct Done {
 pub struct Retries(Vec<Done>);
 
 impl Retries {
-    /// The answer to give again, if this is a retry (its sender says so) or a duplicate (the same frame once more).
+    /// The answer to give again, if this is a retry (its sender says so) or a duplicate (the same frame once more). Behind another
+    /// command, whoever sent it, it is no retry: what it had asked for may be undone.
     pub fn answer(
         &self,
         origin: &Origin,
@@ -32,17 +36,20 @@ impl Retries {
         sequence: u8,
         time_us: u64,
     ) -> Option<MavResult> {
-        let retry = matches!(command.kind, CommandKind::Long { confirmation } if confirmation > 0);
-        self.0
-            .iter()
-            .rev()
-            .find(|done| {
-                done.sender == (origin.system, origin.component)
-                    && time_us.saturating_sub(done.time_us) < REMEMBERED_US
-                    && same(&done.command, command)
-                    && (retry || done.sequence == sequence)
-            })
-            .map(|done| done.result)
+        let repeats = matches!(command.kind, CommandKind::Long { confirmation } if confirmation > 0);
+        let mut overtaken = false;
+        for done in self.0.iter().rev() {
+            if !same(&done.command, command) {
+                overtaken |= done.command.number != SET_MESSAGE_INTERVAL;
+                continue;
+            }
+            let own = done.sender == (origin.system, origin.component)
+                && time_us.saturating_sub(done.time_us) < REMEMBERED_US;
+            if own && (repeats && !overtaken || done.sequence == sequence) {
+                return Some(done.result);
+            }
+        }
+        None
     }
 
     /// Remembers what was answered.

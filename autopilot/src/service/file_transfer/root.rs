@@ -6,7 +6,7 @@
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
 //! /plans/mission.waypoints      the mission as a text, and fence and rally points beside it
-//! /logs/                        flights, to be read
+//! /logs/                        flights, to be read; /APM/LOGS/ is the same
 //! /files/                       what the user shares
 //! ```
 
@@ -17,7 +17,7 @@ use super::parameter_pack;
 use super::plan_pack;
 use super::plan_text;
 use crate::context::Context;
-use crate::file_store::{FileStore, Listed};
+use crate::file_store::{FileStore, LOGS, Listed};
 
 /// Folders of files that are made, and their files.
 const MADE: [(&str, &[&str]); 4] = [
@@ -27,13 +27,19 @@ const MADE: [(&str, &[&str]); 4] = [
     ("plans", &["mission.waypoints", "fence.waypoints", "rally.waypoints"]),
 ];
 
+/// Where ArduPilot's clients look for logs: the same as the folder of the store.
+const ARDUPILOT_LOGS: &str = "APM/LOGS";
+const ARDUPILOT: &str = "APM";
+
 /// The path in its plain form. Nothing leads up: a path with `..` is no path.
 pub fn plain(path: &str) -> Result<String, Nak> {
     let names: Vec<&str> = path.split('/').filter(|name| !matches!(*name, "" | ".")).collect();
     if names.iter().any(|name| *name == ".." || name.contains('\\') || name.contains('\0')) {
         return Err(Nak::FileNotFound);
     }
-    Ok(names.join("/"))
+    let path = names.join("/");
+    let below = path.strip_prefix(ARDUPILOT_LOGS).filter(|rest| rest.is_empty() || rest.starts_with('/'));
+    Ok(below.map(|rest| format!("{LOGS}{rest}")).unwrap_or(path))
 }
 
 /// Whether a path is one of the made files or folders, or the root.
@@ -73,6 +79,9 @@ pub fn made_file(context: &Context, path: &str) -> Option<Vec<u8>> {
 /// The entries of a folder of such files, if the path is that of one.
 pub fn made_folder(context: &Context, path: &str) -> Option<Vec<Vec<u8>>> {
     let path = plain(path).ok()?;
+    if path == ARDUPILOT {
+        return Some(vec![b"DLOGS\0".to_vec()]);
+    }
     let (folder, names) = MADE.iter().find(|(folder, _)| *folder == path)?;
     let entry = |name: &&str| {
         let size = made_file(context, &format!("{folder}/{name}")).map_or(0, |bytes| bytes.len());

@@ -3,7 +3,7 @@
 use std::sync::mpsc::Sender;
 
 use crate::envelope::Origin;
-use crate::file_store::{Access, FileError, FileStore, LOGS, Listed, OpenFile};
+use crate::file_store::{Access, FileError, FileStore, LAST_LOG, LOGS, Listed, OpenFile};
 use crate::file_work::{FileJob, JobStep};
 
 /// Bytes that are read at once.
@@ -38,7 +38,7 @@ pub struct ListJob(pub Sender<Answer>);
 impl FileJob for ListJob {
     fn advance(&mut self, store: &mut dyn FileStore) -> JobStep {
         let mut listed = store.list(LOGS).unwrap_or_default();
-        listed.retain(|log| log.size.is_some());
+        listed.retain(|log| log.size.is_some() && log.name != LAST_LOG);
         // Nobody waits for it any more if it cannot be sent; so for all jobs.
         let _gone = self.0.send(Answer::Listed(listed));
         JobStep::Done

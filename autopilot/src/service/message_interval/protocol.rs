@@ -1,5 +1,6 @@
 //! Requests for messages that a link gets regularly.
 
+use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
 use vehicle::Refusal;
 
@@ -7,14 +8,19 @@ use super::schedule::Schedule;
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
+use crate::service::message_request::send_once;
 use crate::service::{CommandEntry, Outcome, Progress, Service};
 use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;
+const REQUEST_MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
 const SET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL as u16;
 
-const COMMANDS: &[CommandEntry] =
-    &[CommandEntry::question(GET_MESSAGE_INTERVAL), CommandEntry::action(SET_MESSAGE_INTERVAL)];
+const COMMANDS: &[CommandEntry] = &[
+    CommandEntry::question(GET_MESSAGE_INTERVAL),
+    CommandEntry::question(REQUEST_MESSAGE),
+    CommandEntry::action(SET_MESSAGE_INTERVAL),
+];
 
 /// Messages per second of simulation that a link carries at most.
 const MOST_PER_S: f64 = 4_000.0;
@@ -56,7 +62,8 @@ impl Service for MessageIntervals {
 
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         match command.number {
-            GET_MESSAGE_INTERVAL => self.get(context, origin, command)?,
+            GET_MESSAGE_INTERVAL => self.get(context, origin, command.whole(1))?,
+            REQUEST_MESSAGE => self.request(context, origin, command)?,
             _ => self.set(context, origin, command)?,
         }
         Ok(Progress::Done)
@@ -110,8 +117,8 @@ impl MessageIntervals {
 
     /// MAV_CMD_GET_MESSAGE_INTERVAL: MESSAGE_INTERVAL, 0 for a message that there is not, −1 for one that the link does
     /// not get.
-    fn get(&self, context: &mut Context, origin: &Origin, command: &Command) -> Result<(), Refusal> {
-        let Some(Ok(message_id)) = command.whole(1).map(u16::try_from) else {
+    fn get(&self, context: &mut Context, origin: &Origin, number: Option<u32>) -> Result<(), Refusal> {
+        let Some(Ok(message_id)) = number.map(u16::try_from) else {
             return Err(Refusal::denied("Message number must be from 0 to 65535"));
         };
         let number = u32::from(message_id);
@@ -126,6 +133,15 @@ impl MessageIntervals {
         let message = MavMessage::MESSAGE_INTERVAL(MESSAGE_INTERVAL_DATA { interval_us, message_id });
         context.outbox.send(Destination::Peer(origin.peer), message);
         Ok(())
+    }
+
+    /// MAV_CMD_REQUEST_MESSAGE: any message of the table, or the interval of the one that parameter 2 names.
+    fn request(&self, context: &mut Context, origin: &Origin, command: &Command) -> Result<(), Refusal> {
+        let id = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
+        match id {
+            MESSAGE_INTERVAL_DATA::ID => self.get(context, origin, command.whole(2)),
+            _ => send_once(context, origin, id, command.whole(2).unwrap_or(0)),
+        }
     }
 
     /// REQUEST_DATA_STREAM, the old way: one group or all of them.

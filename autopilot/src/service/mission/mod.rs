@@ -14,6 +14,7 @@
 
 mod answer;
 mod download;
+mod guided_item;
 mod progress;
 mod protocol;
 mod reservation;

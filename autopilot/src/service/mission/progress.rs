@@ -59,12 +59,18 @@ impl MissionProgress {
     }
 }
 
-/// MAV_CMD_MISSION_START: first item; zero or less begins where the mission is. PX4 arms for it, ArduPilot wants to be armed.
+/// MAV_CMD_MISSION_START: first item; zero or less begins where the mission is. PX4 arms for it. ArduPilot begins where the mission is
+/// and takes no other item; disarmed it only changes its mode, and flies when it is armed.
 pub fn start(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let first = command.whole(1).filter(|first| *first > 0).map(|first| first as usize);
     let vehicle = &mut context.vehicle;
-    if !vehicle.is_armed() && vehicle.identity().is_ardupilot() {
-        return Err(Refusal::Failed("Mission rejected: not armed".to_owned()));
+    if vehicle.identity().is_ardupilot() {
+        if command.parameter(1) != 0.0 || command.parameter(2) != 0.0 {
+            return Err(Refusal::denied(
+                "Mission denied: first and last item must be 0; use DO_SET_MISSION_CURRENT",
+            ));
+        }
+        return vehicle.start_mission(None).map_err(|refusal| Refusal::Failed(refusal.to_string()));
     }
     vehicle.start_mission(first)?;
     vehicle.arm(false)

@@ -8,6 +8,7 @@ use vehicle::parameters::Speed;
 use vehicle::plan::{FaultCode, MissionItem, PlanFault, PlanKind, check};
 
 use super::answer;
+use super::guided_item;
 use super::reservation::Reservation;
 use crate::codec::{Frame, MissionItemMessage};
 use crate::context::Context;
@@ -17,7 +18,7 @@ use crate::envelope::{Destination, Origin};
 const RETRY_US: f64 = 250_000.0;
 /// So often; PX4 waits for as long in all.
 const MOST_RETRIES: u32 = 20;
-/// A client that has never answered MISSION_REQUEST_INT after so many may know only the older MISSION_REQUEST.
+/// A client that has never answered MISSION_REQUEST_INT after so many may know only the older MISSION_REQUEST, and the other way round.
 const OLDER_AFTER: u32 = 4;
 /// Pace that is counted on when time runs as fast as it can.
 const FULL_SPEED: f64 = 100.0;
@@ -201,9 +202,12 @@ impl Uploads {
     /// Asks for the next item. Clients differ in which of the two requests they understand.
     fn ask(&mut self, context: &mut Context) {
         let time_us = context.vehicle.time_us();
+        let ardupilot = context.identity().is_ardupilot();
         let Some(upload) = &mut self.receiving else { return };
         upload.asked_us = time_us;
         let older = match upload.int {
+            // ArduPilot asks like this whatever it is answered; who knows the newer request only is asked by it in the end.
+            _ if ardupilot => upload.retries < OLDER_AFTER || upload.retries % 2 == 0,
             Some(true) => false,
             // Some answer either request with the older item.
             Some(false) => upload.retries % 2 == 0,
@@ -225,6 +229,10 @@ impl Uploads {
     /// MISSION_ITEM_INT or MISSION_ITEM.
     pub fn item(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         let Some(message) = MissionItemMessage::read(frame) else { return };
+        if context.identity().is_ardupilot() && guided_item::is_one(&message) {
+            guided_item::take(context, origin, &message);
+            return;
+        }
         let sequence = usize::from(message.sequence);
         let own = self.receiving.as_mut().filter(|upload| upload.origin == *origin);
         let Some(upload) = own else {

@@ -1,6 +1,8 @@
 //! How good the estimate is.
 
-use mavlink::dialects::ardupilotmega::{ESTIMATOR_STATUS_DATA, EstimatorStatusFlags, MavMessage};
+use mavlink::dialects::ardupilotmega::{
+    EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EkfStatusFlags, EstimatorStatusFlags, MavMessage,
+};
 use vehicle::Vehicle;
 use vehicle::estimation::TestRatios;
 
@@ -37,5 +39,34 @@ pub fn estimator_status(vehicle: &Vehicle) -> MavMessage {
         pos_vert_accuracy: estimate.map_or(0.0, |estimate| estimate.vertical_accuracy_m as f32),
         flags,
         ..ESTIMATOR_STATUS_DATA::default()
+    })
+}
+
+/// EKF_STATUS_REPORT: the same in ArduPilot's terms. Its variances are innovations as shares of what is still accepted.
+pub fn ekf_status_report(vehicle: &Vehicle) -> MavMessage {
+    let validity = vehicle.validity();
+    let ratios = vehicle.estimate().map_or_else(TestRatios::default, |estimate| estimate.test_ratios);
+    let (horizontal, attitude) = (validity.horizontal_position, validity.tilt && validity.heading);
+    let flags = [
+        (attitude, EkfStatusFlags::EKF_ATTITUDE),
+        (validity.horizontal_velocity, EkfStatusFlags::EKF_VELOCITY_HORIZ),
+        (validity.vertical_velocity, EkfStatusFlags::EKF_VELOCITY_VERT),
+        (horizontal, EkfStatusFlags::EKF_POS_HORIZ_REL),
+        (horizontal, EkfStatusFlags::EKF_POS_HORIZ_ABS),
+        (validity.vertical_position, EkfStatusFlags::EKF_POS_VERT_ABS),
+        (validity.vertical_position, EkfStatusFlags::EKF_POS_VERT_AGL),
+        (attitude && !horizontal, EkfStatusFlags::EKF_CONST_POS_MODE),
+        (horizontal, EkfStatusFlags::EKF_PRED_POS_HORIZ_REL),
+        (horizontal, EkfStatusFlags::EKF_PRED_POS_HORIZ_ABS),
+        (!attitude, EkfStatusFlags::EKF_UNINITIALIZED),
+    ];
+    let flags = flags.into_iter().filter(|(set, _)| *set).map(|(_, flag)| flag).collect();
+    MavMessage::EKF_STATUS_REPORT(EKF_STATUS_REPORT_DATA {
+        velocity_variance: ratios.velocity as f32,
+        pos_horiz_variance: ratios.horizontal_position as f32,
+        pos_vert_variance: ratios.height as f32,
+        compass_variance: ratios.heading as f32,
+        flags,
+        ..EKF_STATUS_REPORT_DATA::default()
     })
 }

@@ -3,7 +3,8 @@
 use mavlink::dialects::ardupilotmega::{
     BATTERY_STATUS_DATA, EXTENDED_SYS_STATE_DATA, FENCE_STATUS_DATA, FenceBreach, FenceMitigate,
     MavBatteryChargeState, MavBatteryFault, MavBatteryFunction, MavBatteryType, MavLandedState, MavMessage,
-    MavSysStatusSensor, MavSysStatusSensorExtended, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavSysStatusSensor, MavSysStatusSensorExtended, MavVtolState, SERVO_OUTPUT_RAW_DATA, SYS_STATUS_DATA,
+    SYSTEM_TIME_DATA,
 };
 use vehicle::fence::Breach;
 use vehicle::{LandedState, Vehicle};
@@ -151,7 +152,12 @@ pub fn extended_sys_state(vehicle: &Vehicle) -> MavMessage {
             LandedState::TakingOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
             LandedState::Landing => MavLandedState::MAV_LANDED_STATE_LANDING,
         },
-        ..EXTENDED_SYS_STATE_DATA::default()
+        // ArduPilot's copters say that they are one; PX4 says so only of a vehicle that could be something else.
+        vtol_state: if vehicle.identity().is_ardupilot() {
+            MavVtolState::MAV_VTOL_STATE_MC
+        } else {
+            MavVtolState::MAV_VTOL_STATE_UNDEFINED
+        },
     })
 }
 

@@ -47,6 +47,9 @@ const STREAMS: &[Stream] = &[
     Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::ExtendedStatus),
     Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status),
     Stream::new(ESTIMATOR_STATUS_DATA::ID, [0.5, 1.0], estimate::estimator_status),
+    Stream::new(EKF_STATUS_REPORT_DATA::ID, [1.0, 2.0], estimate::ekf_status_report)
+        .of(Group::Extra3)
+        .of_ardupilot(),
     Stream::new(VIBRATION_DATA::ID, [0.1, 0.5], sensors::vibration).of(Group::Extra3),
     Stream::new(HOME_POSITION_DATA::ID, [0.5, 0.5], position::home_position).of(Group::ExtendedStatus),
     Stream::new(EXTENDED_SYS_STATE_DATA::ID, [1.0, 5.0], status::extended_sys_state)

@@ -1,7 +1,7 @@
 //! Where a straight way may lead.
 
 use super::super::polygon::Side;
-use super::super::{Fence, Shape, Zone};
+use super::super::{Fence, Inclusions, Shape, Zone};
 
 /// Share of the distance of the two ends to an area that ways keep from it, if they are nearer than the clearance.
 const NEAR_SHARE: f64 = 0.9;
@@ -13,8 +13,10 @@ const KEPT_SHARE: f64 = 0.99;
 pub(super) struct Ground {
     /// Areas to stay out of.
     pub obstacles: Vec<Obstacle>,
-    /// Areas to stay in: in any of them.
+    /// Areas to stay in.
     pub inclusions: Vec<Zone>,
+    /// How they combine.
+    combined: Inclusions,
     /// Centre, north and east, and radius, m, of a circle to stay in beside that.
     within: Option<([f64; 2], f64)>,
     start: [f64; 2],
@@ -52,15 +54,20 @@ impl Ground {
         };
         let room_m = |place: [f64; 2]| {
             let around = inclusions.iter().filter(|zone| !zone.forbids(place));
-            around.map(|zone| zone.shape.distance_m(place)).fold(0.0, f64::max)
+            let room_m = around.map(|zone| zone.shape.distance_m(place));
+            match fence.inclusions {
+                Inclusions::Any => room_m.fold(0.0, f64::max),
+                Inclusions::All => room_m.fold(f64::INFINITY, f64::min),
+            }
         };
-        let outside = inclusions.iter().all(|zone| zone.forbids(start));
+        let outside = fence.inclusions.forbid(inclusions.iter().map(|zone| zone.forbids(start)));
         let room_m = room_m(goal).min(if outside { f64::INFINITY } else { room_m(start) });
         let radius_m = Some(fence.radius_m).filter(|radius_m| *radius_m > 0.0);
         Self {
             obstacles: exclusions.into_iter().map(obstacle).collect(),
             border_margin_m: margin_m(room_m),
             inclusions: inclusions.into_iter().cloned().collect(),
+            combined: fence.inclusions,
             within: radius_m.map(|radius_m| ([fence.home_m.x, fence.home_m.y], radius_m)),
             start,
             goal,
@@ -83,9 +90,8 @@ impl Ground {
         if self.inclusions.is_empty() {
             return true;
         }
-        let enters = way.0 == self.start && self.inclusions.iter().all(|zone| zone.forbids(way.0));
-        if enters {
-            return self.inclusions.iter().any(|zone| !zone.forbids(way.1));
+        if way.0 == self.start && self.is_outside(way.0) {
+            return !self.is_outside(way.1);
         }
         let (dx, dy) = (way.1[0] - way.0[0], way.1[1] - way.0[1]);
         let length_m = libm::hypot(dx, dy).max(1e-9);
@@ -97,25 +103,45 @@ impl Ground {
         })
     }
 
-    /// Whether each point of a way is in one of the areas to stay in.
-    fn is_covered(&self, way: &Side, work: &mut u64) -> bool {
-        /// Shares of the way.
-        const ROUNDING: f64 = 1e-9;
-        let mut inside = Vec::new();
-        for zone in &self.inclusions {
-            *work = work.saturating_sub(zone.shape.side_count());
-            zone.shape.parts_inside(way, &mut inside);
-        }
-        inside.sort_by(|one: &(f64, f64), other| one.0.total_cmp(&other.0));
-        let mut covered = 0.0;
-        for (from, to) in inside {
-            if from > covered + ROUNDING {
-                return false;
-            }
-            covered = to.max(covered);
-        }
-        covered >= 1.0 - ROUNDING
+    /// Whether a place is where the areas to stay in do not allow it.
+    fn is_outside(&self, place: [f64; 2]) -> bool {
+        self.combined.forbid(self.inclusions.iter().map(|zone| zone.forbids(place)))
     }
+
+    /// Whether each point of a way is where the areas to stay in allow it.
+    fn is_covered(&self, way: &Side, work: &mut u64) -> bool {
+        let mut parts_inside = |zone: &Zone, inside: &mut Vec<(f64, f64)>| {
+            *work = work.saturating_sub(zone.shape.side_count());
+            zone.shape.parts_inside(way, inside);
+        };
+        match self.combined {
+            Inclusions::Any => {
+                let mut inside = Vec::new();
+                self.inclusions.iter().for_each(|zone| parts_inside(zone, &mut inside));
+                covers(inside)
+            }
+            Inclusions::All => self.inclusions.iter().all(|zone| {
+                let mut inside = Vec::new();
+                parts_inside(zone, &mut inside);
+                covers(inside)
+            }),
+        }
+    }
+}
+
+/// Whether parts of a way, as shares of it from one to another, are all of it together.
+fn covers(mut parts: Vec<(f64, f64)>) -> bool {
+    /// Shares of the way.
+    const ROUNDING: f64 = 1e-9;
+    parts.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut covered = 0.0;
+    for (from, to) in parts {
+        if from > covered + ROUNDING {
+            return false;
+        }
+        covered = to.max(covered);
+    }
+    covered >= 1.0 - ROUNDING
 }
 
 impl Obstacle {

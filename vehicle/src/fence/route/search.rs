@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::super::{Fence, Zones};
+use super::super::{Fence, Inclusions, Zones};
 use super::corners::{Corner, around, inside};
 use super::graph::Graph;
 use super::ground::Ground;
@@ -45,14 +45,21 @@ pub enum Progress {
 #[derive(Clone, Debug, PartialEq)]
 struct OwnFence {
     zones: Zones,
+    inclusions: Inclusions,
     home_m: Vector3<f64>,
     radius_m: f64,
 }
 
 impl OwnFence {
     fn fence(&self) -> Fence<'_> {
-        let Self { zones, home_m, radius_m } = self;
-        Fence { zones: Some(zones), home_m: *home_m, radius_m: *radius_m, height_m: 0.0 }
+        let Self { zones, inclusions, home_m, radius_m } = self;
+        Fence {
+            zones: Some(zones),
+            inclusions: *inclusions,
+            home_m: *home_m,
+            radius_m: *radius_m,
+            height_m: 0.0,
+        }
     }
 }
 
@@ -63,7 +70,8 @@ impl RouteSearch {
     /// outside of all areas to stay in: it has to be left, and they have to be entered, anyway.
     pub fn new(fence: &Fence, start: [f64; 2], goal: [f64; 2]) -> Self {
         let zones = fence.zones.cloned().unwrap_or_default();
-        let own = OwnFence { zones, home_m: fence.home_m, radius_m: fence.radius_m };
+        let own =
+            OwnFence { zones, inclusions: fence.inclusions, home_m: fence.home_m, radius_m: fence.radius_m };
         let ends = [start, goal];
         let ground = Ground::new(&own.fence(), start, goal, CLEARANCES_M[0]);
         let joined = vec![false; ground.obstacles.len()];
@@ -74,12 +82,14 @@ impl RouteSearch {
 
     /// Whether the way is around this fence, as far as it matters.
     pub fn is_around(&self, fence: &Fence) -> bool {
-        let OwnFence { zones, home_m, radius_m } = &self.fence;
+        let OwnFence { zones, inclusions, home_m, radius_m } = &self.fence;
         let same = match fence.zones {
             Some(others) => zones.zones == others.zones,
             None => zones.zones.is_empty(),
         };
-        same && *radius_m == fence.radius_m && (*radius_m == 0.0 || *home_m == fence.home_m)
+        same && *inclusions == fence.inclusions
+            && *radius_m == fence.radius_m
+            && (*radius_m == 0.0 || *home_m == fence.home_m)
     }
 
     /// Goes on by about `work` sides looked at: less than 10 ns each.

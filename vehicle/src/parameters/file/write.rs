@@ -43,12 +43,18 @@ mod tests {
 
     use super::{FileFormat, render};
     use crate::identity::Identity;
-    use crate::parameters::{ParameterTable, ParameterValues, Speed, parse};
+    use crate::parameters::{ParameterTable, ParameterValues, Speed, Statistics, parse};
     use crate::vehicle::Conduct;
 
     fn values(system_id: u8) -> ParameterValues {
         let (configuration, conduct) = (Configuration::default(), Conduct::new(false));
-        ParameterValues { configuration, conduct, system_id, speed: Speed::Factor(1.0) }
+        ParameterValues {
+            configuration,
+            conduct,
+            system_id,
+            speed: Speed::Factor(1.0),
+            statistics: Statistics::default(),
+        }
     }
 
     /// As QGroundControl saves them from system 3: every parameter, floats with 18 digits, those of a camera among them.

@@ -77,14 +77,7 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
     if !named {
         return Ok(());
     }
-    let place = place(item, site)?;
-    match place.down_m(site.home_m.z) {
-        Some(down_m) if rule == PlaceRule::Goal && down_m > 0.0 => {
-            let reason = format!("altitude = {} m is {down_m:.1} m below the ground", item.position[2]);
-            Err((FaultCode::InvalidParameter(7), reason))
-        }
-        _ => Ok(()),
-    }
+    place(item, site).map(drop)
 }
 
 /// Checks how the items belong together: a jump goes to an item that there is.

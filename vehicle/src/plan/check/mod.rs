@@ -7,6 +7,10 @@ mod rally;
 use super::{FaultCode, MissionItem, PlanFault, PlanKind, Site, frame};
 use crate::world::FARTHEST_M;
 
+/// No latitude and longitude is farther from another one than this in a local frame, m. How far a place may be to be flown to counts when
+/// a mission begins.
+const AROUND_M: f64 = 30_000_000.0;
+
 /// Checks an item by itself.
 ///
 /// # Errors
@@ -45,7 +49,7 @@ pub fn plan(kind: PlanKind, items: &[MissionItem], site: &Site) -> Result<(), Pl
 /// What is wrong with an item.
 type ItemFault = (FaultCode, String);
 
-/// Checks the place of an item: its frame, latitude and longitude, and that it is not too far away.
+/// Checks the place of an item: its frame, latitude and longitude.
 fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
     if !Site::knows(item.frame) {
         let reason = format!("frame {} is not supported; allowed 0, 1, 3, 5, 6, 10, 11", item.frame);
@@ -70,12 +74,12 @@ fn place(item: &MissionItem, site: &Site) -> Result<super::Place, ItemFault> {
     };
     if let Some([north, east]) = place.horizontal_m {
         let distance_m = libm::hypot(north, east);
-        if distance_m > FARTHEST_M {
+        if distance_m > AROUND_M {
             let parameter = if north.abs() > east.abs() { 5 } else { 6 };
             let reason = format!(
-                "the place is {:.0} km away; allowed up to {:.0} km: move it, or start the vehicle nearer to it",
+                "the place is {:.0} km away, which is nowhere on the earth; allowed up to {:.0} km",
                 distance_m / 1e3,
-                FARTHEST_M / 1e3
+                AROUND_M / 1e3
             );
             return Err((FaultCode::InvalidParameter(parameter), reason));
         }

@@ -57,7 +57,7 @@ impl Action {
     /// The action that a mode is already: a return is not called off to hold, a landing not to return.
     pub fn of_mode(mode: Mode) -> Self {
         match mode {
-            Mode::Return => Self::Return,
+            Mode::Return | Mode::SmartReturn => Self::Return,
             Mode::Land => Self::Land,
             _ => Self::None,
         }

@@ -17,5 +17,5 @@ mod state;
 
 pub use action::Action;
 pub use cause::Cause;
-pub use settings::{BatteryActions, FailsafeSettings, FenceParts};
+pub use settings::{BatteryActions, FailsafeSettings, FenceOptions, FenceParts};
 pub use state::{Change, Failsafe};

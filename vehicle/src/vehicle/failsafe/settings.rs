@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Action, Cause};
+use crate::fence::Inclusions;
 use crate::radio::RadioLossAction;
 
 /// Thresholds and actions; the parameters are PX4's.
@@ -34,6 +35,9 @@ pub struct FailsafeSettings {
     /// What of it (ArduPilot: FENCE_TYPE).
     #[serde(default)]
     pub fence_parts: FenceParts,
+    /// How it is taken (ArduPilot: FENCE_OPTIONS).
+    #[serde(default)]
+    pub fence_options: FenceOptions,
     /// Farthest from home, m; 0: anywhere (GF_MAX_HOR_DIST).
     pub fence_radius_m: f64,
     /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
@@ -75,6 +79,22 @@ pub struct FenceParts {
 impl Default for FenceParts {
     fn default() -> Self {
         Self { height: true, distance: true, zones: true }
+    }
+}
+
+/// How the fence is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FenceOptions {
+    /// Whether no other mode can be chosen while the vehicle comes back from a breach.
+    pub keeps_mode: bool,
+    /// Whether it is enough to be in one of several zones to stay in; else the vehicle stays where all of them are.
+    pub union: bool,
+}
+
+/// PX4's.
+impl Default for FenceOptions {
+    fn default() -> Self {
+        Self { keeps_mode: false, union: true }
     }
 }
 
@@ -120,6 +140,7 @@ impl Default for FailsafeSettings {
             fence_ahead: true,
             fence_enabled: true,
             fence_parts: FenceParts::default(),
+            fence_options: FenceOptions::default(),
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
             wind_m_s: -1.0,
@@ -132,10 +153,24 @@ impl Default for FailsafeSettings {
 }
 
 impl FailsafeSettings {
-    /// The defaults, which differ by convention: ArduPilot returns at the fence, and misses its ground station after 5 s.
+    /// The defaults, which differ by convention: ArduPilot returns at the fence and lets nobody choose another mode until it is back, stays
+    /// where all inclusion zones are, and misses its ground station after 5 s.
     pub fn new(ardupilot: bool) -> Self {
         let px4 = Self::default();
-        if ardupilot { Self { fence: Action::Return, ground_station_timeout_s: 5.0, ..px4 } } else { px4 }
+        if !ardupilot {
+            return px4;
+        }
+        Self {
+            fence: Action::Return,
+            fence_options: FenceOptions { keeps_mode: true, union: false },
+            ground_station_timeout_s: 5.0,
+            ..px4
+        }
+    }
+
+    /// How several zones to stay in combine.
+    pub fn fence_inclusions(&self) -> Inclusions {
+        if self.fence_options.union { Inclusions::Any } else { Inclusions::All }
     }
 
     /// What is done for a cause.

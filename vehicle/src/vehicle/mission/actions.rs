@@ -10,9 +10,9 @@ use super::super::region::RegionOfInterest;
 use super::super::situation::Situation;
 use super::super::speeds::SpeedChange;
 use super::super::tick::TICK_S;
+use super::super::turning::Turning;
 use super::leg::Leg;
-use super::turning::Turning;
-use crate::plan::step::{Condition, Do, Step};
+use crate::plan::step::{Condition, Do, Step, Turn};
 use crate::plan::{Place, Program};
 
 /// What is still to be done on the way.
@@ -101,11 +101,16 @@ impl Actions {
             Condition::Delay(time_s) => Waiting::Until(situation.after_us(*time_s)),
             Condition::Distance(distance_m) => Waiting::Within(*distance_m),
             Condition::Yaw(turn) => {
-                let fastest_rad_s = situation.limits().yaw_rate_rad_s;
-                self.turning = Some(Turning::new(turn, situation.outputs.setpoint.yaw_rad, fastest_rad_s));
+                self.turn_to(turn, situation);
                 Waiting::Turned
             }
         }
+    }
+
+    /// Turns from the present heading on.
+    pub fn turn_to(&mut self, turn: &Turn, situation: &Situation) {
+        let fastest_rad_s = situation.limits().yaw_rate_rad_s;
+        self.turning = Some(Turning::new(turn, situation.outputs.setpoint.yaw_rad, fastest_rad_s));
     }
 }
 

@@ -27,6 +27,8 @@ pub struct Course {
     anchor_m: Vector3<f64>,
     /// Heading of the present step, rad.
     heading_rad: f64,
+    /// Whether the step asks for that heading itself.
+    heading_is_asked: bool,
 }
 
 impl Course {
@@ -43,6 +45,11 @@ impl Course {
         }
     }
 
+    /// Whether the way home is flown.
+    pub fn returns(&self) -> bool {
+        matches!(self.task, Some(Task::Return))
+    }
+
     /// Whether it climbs from the ground or descends to it.
     pub fn is_vertical(&self) -> (bool, bool) {
         (matches!(self.task, Some(Task::Climb { .. })), matches!(self.task, Some(Task::Descend(_))))
@@ -51,6 +58,11 @@ impl Course {
     /// Heading of the present step, rad.
     pub fn heading_rad(&self) -> f64 {
         self.heading_rad
+    }
+
+    /// Whether the step asks for that heading itself: otherwise it is that of its way.
+    pub fn heading_is_asked(&self) -> bool {
+        self.heading_is_asked
     }
 
     /// Gives up what is being done, to be begun again; the next leg may take a turn over.
@@ -63,6 +75,7 @@ impl Course {
         self.turn = None;
         self.anchor_m = proposal.steering().present(situation.outputs).position_m;
         self.heading_rad = situation.outputs.attitude_rad.z;
+        self.heading_is_asked = true;
         proposal.hold(situation);
     }
 
@@ -101,7 +114,11 @@ impl Course {
             Navigate::Takeoff { place, .. } => {
                 return self.begin_takeoff(step, place, route, situation, proposal);
             }
-            Navigate::ReturnToLaunch => return TaskProgress::Done(None),
+            // ArduPilot returns within the mission's mode, the others change to that of the return.
+            Navigate::ReturnToLaunch if grounded || !situation.identity.is_ardupilot() => {
+                return TaskProgress::Done(None);
+            }
+            Navigate::ReturnToLaunch => Task::Return,
             Navigate::Land { .. } if grounded => return TaskProgress::Done(None),
             Navigate::Delay(delay) => {
                 proposal.hold(situation);
@@ -143,6 +160,7 @@ impl Course {
             Steering::Goal(goal) => goal.yaw_rad,
             _ => situation.outputs.attitude_rad.z,
         };
+        self.heading_is_asked = true;
         proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Angle(self.heading_rad) });
         self.anchor_m = Vector3::new(here.x, here.y, z_m);
         Task::Climb { z_m, takeoff }
@@ -210,6 +228,7 @@ impl Course {
                 (Then::Wait(0.0), None)
             }
         };
+        self.heading_is_asked = asked_rad.is_some();
         if let Some(heading_rad) = asked_rad.or_else(|| leg.bearing_rad()) {
             self.heading_rad = heading_rad;
         }
@@ -244,12 +263,12 @@ impl Course {
                 self.task = Some(Task::Circle(circle));
                 TaskProgress::Going
             }
-            Task::Descend(_) if situation.landed => TaskProgress::Done(None),
+            Task::Descend(_) | Task::Return if situation.landed => TaskProgress::Done(None),
             Task::Descend(above) => {
                 descend(situation, proposal, above);
                 TaskProgress::Going
             }
-            Task::Climb { .. } | Task::Wait(_) => TaskProgress::Going,
+            Task::Climb { .. } | Task::Wait(_) | Task::Return => TaskProgress::Going,
         }
     }
 

@@ -1,7 +1,8 @@
 //! The mission as a machine: which step is flown, and what becomes of it.
 
+use super::super::heading_policy::{HeadingPolicy, Purpose};
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::check_way;
+use super::super::plans::{check_reach, check_way};
 use super::super::proposal::Proposal;
 use super::super::set_point::PositionSetPoint;
 use super::super::situation::Situation;
@@ -12,10 +13,10 @@ use super::course::Course;
 use super::jumps::Jumps;
 use super::leg::{Leg, Turn};
 use super::route::Route;
-use super::task::TaskProgress;
+use super::task::{Helm, TaskProgress};
 use crate::mode::Mode;
 use crate::plan::Program;
-use crate::plan::step::{Navigate, Step};
+use crate::plan::step::{Navigate, Step, Turn as StepTurn};
 
 /// Steps that are begun within one tick; more wait for the next.
 const STEPS_PER_TICK: usize = 16;
@@ -91,6 +92,16 @@ impl Mission {
         self.course.leg()
     }
 
+    /// Whether the way home is flown as a part of it.
+    pub fn returns(&self) -> bool {
+        self.course.returns()
+    }
+
+    /// Turns as a command asks; the rest goes on.
+    pub fn turn_by_command(&mut self, turn: &StepTurn, situation: &Situation) {
+        self.actions.turn_to(turn, situation);
+    }
+
     /// Whether it climbs from the ground or descends to it.
     pub fn is_vertical(&self) -> (bool, bool) {
         self.course.is_vertical()
@@ -109,7 +120,8 @@ impl Mission {
         if !self.program.is_flown() {
             return Err(Refusal::later("Mission rejected: no mission uploaded"));
         }
-        check_way(situation, &self.program)
+        check_reach(situation, &self.program)
+            .and_then(|()| check_way(situation, &self.program))
             .map_err(|fault| fault.located(situation.identity))
             .map_err(|reason| Refusal::denied(format!("Mission rejected: {reason}")))?;
         if let Some(first) = first {
@@ -223,12 +235,13 @@ impl Mission {
         self.course.replan(&route, situation);
     }
 
-    /// One tick in its mode.
-    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    /// One tick in its mode. Returns who steers.
+    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) -> Helm {
         if self.paused || self.progress == Progress::Complete {
             proposal.turn_to_region(situation);
-            return;
+            return Helm::Mission;
         }
+        let returned = self.course.returns();
         // An attitude that was left behind, or a stick: the mission flies by position.
         if proposal.steering().kind() == SteeringKind::Attitude {
             proposal.follow(situation, &PositionSetPoint::HOLD);
@@ -236,8 +249,13 @@ impl Mission {
         self.progress = Progress::Started;
         if self.fly(situation, proposal) {
             self.act(situation, proposal);
-            self.turn(situation, proposal);
+            match (returned, self.course.returns()) {
+                (_, false) => self.turn(situation, proposal),
+                (false, true) => return Helm::ReturnBegins,
+                (true, true) => return Helm::Return,
+            }
         }
+        Helm::Mission
     }
 
     /// Flies one step after the other, as far as they are done. Returns whether the mission goes on.
@@ -287,7 +305,7 @@ impl Mission {
         self.reach(index);
         if *step == Navigate::ReturnToLaunch {
             self.complete(situation, proposal);
-            if proposal.steering().kind() != SteeringKind::Idle {
+            if !situation.identity.is_ardupilot() && proposal.steering().kind() != SteeringKind::Idle {
                 proposal.enter(Mode::Return);
             }
             return false;
@@ -341,7 +359,12 @@ impl Mission {
                 // What is too near to be looked at does not turn the vehicle.
                 region.heading(&situation.outputs.setpoint, next_m).unwrap_or((yaw_rad, 0.0))
             }
-            (None, None) => (self.course.heading_rad(), 0.0),
+            (None, None) if self.course.heading_is_asked() => (self.course.heading_rad(), 0.0),
+            (None, None) => {
+                let policy = HeadingPolicy::of(situation);
+                let heading_rad = policy.heading_rad(Purpose::Mission, self.course.heading_rad(), situation);
+                (heading_rad.unwrap_or(yaw_rad), 0.0)
+            }
         };
         proposal.turn_on(Some(heading));
     }

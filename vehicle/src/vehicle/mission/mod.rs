@@ -15,7 +15,7 @@
 //! `actions` what is done on the way, `jumps` how often each jump was made. They look at a situation and ask in a proposal.
 
 mod actions;
-mod circle;
+mod circle_turns;
 mod course;
 mod jumps;
 mod leg;
@@ -26,7 +26,10 @@ mod status;
 mod task;
 #[cfg(test)]
 mod tests;
-mod turning;
 
+pub use course::Course;
+pub use jumps::Jumps;
 pub use machine::Mission;
+pub use route::Route;
 pub use status::{MissionState, MissionStatus};
+pub use task::{Helm, TaskProgress};

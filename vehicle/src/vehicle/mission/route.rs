@@ -6,7 +6,7 @@ use quadrotor::Limits;
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::trajectory::Blend;
-use super::circle::Circle;
+use super::circle_turns::CircleTurns;
 use super::jumps::Jumps;
 use super::leg::{Leg, Turn, is_at_rest};
 use super::path::{Corner, Start, Stop, first_corner};
@@ -66,8 +66,8 @@ impl<'a> Route<'a> {
     }
 
     /// The turns of a vehicle that comes from a place, NED, m.
-    pub fn circle(&self, turns: &Turns, from_m: &Vector3<f64>) -> Circle {
-        Circle::new(self.place_m(&turns.place, from_m), from_m, turns)
+    pub fn circle(&self, turns: &Turns, from_m: &Vector3<f64>) -> CircleTurns {
+        CircleTurns::new(self.place_m(&turns.place, from_m), from_m, turns)
     }
 
     /// A place, NED, m; what it leaves open is that of another one.

@@ -1,6 +1,6 @@
 //! What is being done for a step.
 
-use super::circle::Circle;
+use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
 
 /// A task.
@@ -19,9 +19,22 @@ pub enum Task {
     /// Until a time, µs, or for ever.
     Wait(Option<u64>),
     /// Around a place.
-    Circle(Circle),
+    Circle(CircleTurns),
+    /// Home, which is flown by the machine for that.
+    Return,
     /// Down, above a place if there is one.
     Descend(Option<[f64; 2]>),
+}
+
+/// Who steers in a tick of the mission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Helm {
+    /// The mission itself.
+    Mission,
+    /// From now on the return.
+    ReturnBegins,
+    /// The return, which is under way.
+    Return,
 }
 
 /// What comes at the end of a leg.
@@ -32,7 +45,7 @@ pub enum Then {
     /// Nothing.
     Stay,
     /// Turns.
-    Circle(Circle),
+    Circle(CircleTurns),
     /// A landing.
     Land([f64; 2]),
 }

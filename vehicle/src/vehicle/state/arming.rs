@@ -3,7 +3,7 @@
 use quadrotor::RotorFault;
 
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::check_way;
+use super::super::plans::{check_reach, check_way};
 use super::super::set_point::PositionSetPoint;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -37,12 +37,13 @@ impl Vehicle {
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
-            Mode::Land | Mode::Return => {
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
                 obstacles.push(format!("{} mode is active", identity.mode_name(situation.mode)));
             }
             Mode::Mission if !self.has_mission() => obstacles.push("no mission".to_owned()),
             Mode::Mission => {
-                let fault = check_way(&situation, self.machines.mission.program()).err();
+                let program = self.machines.mission.program();
+                let fault = check_reach(&situation, program).and(check_way(&situation, program)).err();
                 obstacles.extend(fault.map(|fault| format!("mission: {}", fault.located(identity))));
             }
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
@@ -70,6 +71,7 @@ impl Vehicle {
         self.machines.receiver.arm();
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
+            parts.smart_return.arm(situation);
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }

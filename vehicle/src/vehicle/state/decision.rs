@@ -58,6 +58,11 @@ impl Vehicle {
 
     /// Changes to a mode, whatever speaks against it.
     pub(super) fn enter(&mut self, mode: Mode) {
+        // Without a trail it returns as it always does.
+        let mode = match mode {
+            Mode::SmartReturn if self.machines.smart_return.may_begin().is_err() => Mode::Return,
+            _ => mode,
+        };
         let before = self.decided.mode();
         if mode != before {
             let name = self.setup.identity().mode_name(mode);
@@ -66,8 +71,12 @@ impl Vehicle {
         if before == Mode::Mission && mode != Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
+        if before == Mode::Return {
+            self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::Return(None)));
+        }
         self.decided.switch_to(mode);
         self.machines.takeoff.forget();
+        self.machines.turn.forget();
         self.machines.offboard.begin();
         self.machines.stick_flight.forget();
         self.consult(|parts, situation, proposal| match mode {
@@ -76,6 +85,15 @@ impl Vehicle {
             Mode::Mission => parts.mission.enter(situation, proposal),
             Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
                 parts.return_home.begin(situation, proposal);
+            }
+            Mode::SmartReturn if proposal.steering().kind() != SteeringKind::Idle => {
+                parts.smart_return.begin(situation, proposal);
+            }
+            Mode::Orbit => parts.orbit.begin(situation, proposal),
+            Mode::Follow => parts.follow.begin(situation, proposal),
+            Mode::GuidedAttitude => {
+                parts.offboard.forget();
+                proposal.hold(situation);
             }
             _ => {}
         });
@@ -96,7 +114,9 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
-        self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::ForgetCommands));
+        self.machines.turn.forget();
+        let speeds = self.machines.speeds.after(SpeedChange::Return(None));
+        self.use_speeds_or_say(speeds.after(SpeedChange::ForgetCommands));
         self.consult(|_, situation, proposal| {
             proposal.look_at(None);
             proposal.idle(situation);

@@ -87,6 +87,10 @@ impl Vehicle {
     /// [`Refusal`] of a mode that there is not, or that cannot be flown now.
     pub fn set_custom_mode(&mut self, custom_mode: u32) -> Result<(), Refusal> {
         let identity = self.identity();
+        if let Some(absent) = identity.absent_mode(custom_mode) {
+            let reason = format!("{} mode is not available: {}", absent.name, absent.instead);
+            return Err(Refusal::Unsupported(reason));
+        }
         let Some(mode) = identity.mode(custom_mode) else {
             let names: Vec<_> = identity.selectable_modes().map(|known| identity.mode_name(known)).collect();
             // PX4's main and sub-modes are bytes of the number.

@@ -1,7 +1,7 @@
 //! What may be asked about plans: to replace one, and to fly the mission.
 
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::{check_rally_points, check_way};
+use super::super::plans::{check_rally_points, check_reach, check_way};
 use super::Vehicle;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
@@ -46,6 +46,10 @@ impl Vehicle {
         let program = compile::mission(&items, site);
         check_way(&self.situation(), &program)?;
         self.plans.take_mission(items);
+        if let Err(fault) = check_reach(&self.situation(), &program) {
+            self.decided
+                .say(Severity::Warning, format!("Mission cannot be flown: {}", fault.located(site.identity)));
+        }
         self.consult(|parts, situation, proposal| {
             parts.mission.replace(situation, proposal, program, amended);
         });
@@ -66,23 +70,42 @@ impl Vehicle {
         })
     }
 
-    /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's.
+    /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's mode or the guided one.
     ///
     /// # Errors
     /// [`Refusal`] when it cannot hold now.
     pub fn pause(&mut self) -> Result<(), Refusal> {
-        if self.mode() != Mode::Mission || !self.identity().is_ardupilot() {
+        if !self.identity().is_ardupilot() {
             return self.set_mode(Mode::Hold);
         }
-        self.consult(|parts, situation, proposal| parts.mission.pause(situation, proposal));
-        Ok(())
+        match self.mode() {
+            Mode::Mission => {
+                self.consult(|parts, situation, proposal| parts.mission.pause(situation, proposal));
+                Ok(())
+            }
+            Mode::Offboard | Mode::Takeoff if self.situation().flies() => {
+                self.leave_takeoff();
+                self.consult(|parts, situation, proposal| parts.offboard.pause(situation, proposal));
+                Ok(())
+            }
+            mode => {
+                let name = self.identity().mode_name(mode);
+                Err(Refusal::Failed(format!(
+                    "Pause rejected in {name} mode: only Auto and Guided, in flight"
+                )))
+            }
+        }
     }
 
-    /// Goes on with the item at which the mission was left.
+    /// Goes on with what was paused: in ArduPilot's guided mode the way to its goal, else the item at which the mission was left.
     ///
     /// # Errors
     /// [`Refusal`] when nothing was paused.
     pub fn continue_mission(&mut self) -> Result<(), Refusal> {
+        if self.mode() == Mode::Offboard && self.machines.offboard.is_paused() {
+            self.consult(|parts, situation, proposal| parts.offboard.resume(situation, proposal));
+            return Ok(());
+        }
         self.machines.mission.may_continue()?;
         self.start_mission(None)
     }

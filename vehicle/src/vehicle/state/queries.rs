@@ -10,6 +10,7 @@ use super::super::fence_watch::FenceRecord;
 use super::super::home::Home;
 use super::super::landed::LandedState;
 use super::super::mission::MissionStatus;
+use super::super::orbit_request::OrbitStatus;
 use super::super::speeds::with_speeds;
 use super::super::steering::{SteeringKind, TrackedAttitude};
 use super::Vehicle;
@@ -148,6 +149,11 @@ impl Vehicle {
         self.decided.is_terminated()
     }
 
+    /// Whether its last flight has ended in a crash.
+    pub fn has_crashed(&self) -> bool {
+        self.machines.crash.has_crashed()
+    }
+
     /// The mode.
     pub fn mode(&self) -> Mode {
         self.decided.mode()
@@ -186,9 +192,13 @@ impl Vehicle {
             _ if self.machines.landing.is_landed() => LandedState::OnGround,
             Mode::Mission if climbs => LandedState::TakingOff,
             Mode::Mission if descends => LandedState::Landing,
+            Mode::Mission if self.machines.mission.returns() && self.machines.return_home.descends() => {
+                LandedState::Landing
+            }
             Mode::Takeoff => LandedState::TakingOff,
             Mode::Land => LandedState::Landing,
             Mode::Return if self.machines.return_home.descends() => LandedState::Landing,
+            Mode::SmartReturn if self.machines.smart_return.descends() => LandedState::Landing,
             _ => LandedState::InAir,
         }
     }
@@ -208,6 +218,11 @@ impl Vehicle {
         self.situation().whole_fence().bounds()
     }
 
+    /// The orbit that is flown.
+    pub fn orbit_status(&self) -> Option<OrbitStatus> {
+        self.machines.orbit.status().filter(|_| self.mode() == Mode::Orbit)
+    }
+
     /// What of the fence forbids a place, NED, m.
     pub fn breach_at(&self, place_m: &Vector3<f64>) -> Option<Breach> {
         self.situation().breach_at(place_m)
@@ -218,6 +233,11 @@ impl Vehicle {
         self.plans.plans()
     }
 
+    /// A number that changes with each plan that is replaced.
+    pub fn plans_revision(&self) -> u32 {
+        self.plans.revision()
+    }
+
     /// What the places of plans refer to.
     pub fn site(&self) -> Site {
         self.situation().site()
@@ -225,17 +245,21 @@ impl Vehicle {
 
     /// An item as a download shows it: in ArduPilot's convention the first one of a mission is home.
     pub fn plan_item(&self, kind: PlanKind, index: usize) -> Option<MissionItem> {
-        let item = *self.plans().get(kind).items().get(index)?;
-        if kind != PlanKind::Mission || index > 0 || !self.identity().is_ardupilot() {
-            return Some(item);
+        if kind == PlanKind::Mission && index == 0 && self.identity().is_ardupilot() {
+            return Some(self.home_item());
         }
-        Some(self.home_item())
+        self.plans().get(kind).items().get(index).copied()
     }
 
     /// Home as an item of a plan.
     pub fn home_item(&self) -> MissionItem {
         let place = self.frame().to_geodetic(&self.home().position_m);
         MissionItem::home([place.latitude_deg, place.longitude_deg, place.altitude_m])
+    }
+
+    /// Whether it is in the air, or about to leave the ground.
+    pub fn is_flying(&self) -> bool {
+        self.situation().flies()
     }
 
     /// Whether there is something to be flown.

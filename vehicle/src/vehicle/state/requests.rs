@@ -7,16 +7,22 @@ use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::follow::Follow;
+use super::super::motor_test::MotorTest;
 use super::super::notice::{Notice, Refusal, Severity};
+use super::super::orbit_request::OrbitRequest;
 use super::super::proposal::check_distance;
 use super::super::region::RegionOfInterest;
 use super::super::reposition::Reposition;
 use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
+use super::super::situation::Situation;
 use super::super::steering::{Steering, SteeringKind};
+use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
 use crate::foreign::ForeignRole;
 use crate::mode::{Leader, Mode};
+use crate::plan::step::Turn;
 use crate::plan::{ChangeSpeed, Look};
 
 /// Takeoffs end between these heights above home, m.
@@ -87,6 +93,22 @@ impl Vehicle {
         Ok(())
     }
 
+    /// Turns rotors on the ground, one after the other.
+    ///
+    /// # Errors
+    /// [`Refusal`] in the air, while armed, for a rotor that there is not, and while what flies is from elsewhere.
+    pub fn test_motors(&mut self, test: &MotorTest) -> Result<(), Refusal> {
+        if let Some(model) = self.foreign() {
+            return Err(Refusal::Unsupported(format!("Motor Test: the rotors are those of {}", model.name)));
+        }
+        self.consult(|parts, situation, proposal| parts.motor_tests.begin(situation, proposal, test))
+    }
+
+    /// Ends a test of rotors.
+    pub fn end_motor_test(&mut self) {
+        self.consult(|parts, _, proposal| parts.motor_tests.end(proposal));
+    }
+
     /// Whether a user may choose a mode now.
     ///
     /// # Errors
@@ -116,6 +138,8 @@ impl Vehicle {
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
+            Mode::Follow => Follow::may_begin(&situation)?,
+            Mode::SmartReturn => self.machines.smart_return.may_begin()?,
             Mode::Land | Mode::Return if situation.armed && !flying => {
                 return Err(Refusal::later(format!(
                     "{} mode rejected: on the ground",
@@ -123,6 +147,12 @@ impl Vehicle {
                 )));
             }
             _ => {}
+        }
+        if self.returns_from_fence(&situation) {
+            return Err(Refusal::Failed(format!(
+                "{} mode rejected: returning from a fence breach; FENCE_OPTIONS allows it",
+                identity.mode_name(mode)
+            )));
         }
         // Asked again it goes on as it does.
         self.machines.failsafe.release();
@@ -132,6 +162,15 @@ impl Vehicle {
             self.consult(|_, situation, proposal| proposal.hold(situation));
         }
         Ok(())
+    }
+
+    /// Whether the fence's failsafe flies back from a breach, and nobody is to stop that.
+    fn returns_from_fence(&self, situation: &Situation) -> bool {
+        let acts = self.machines.failsafe.engaged().is_some_and(|(cause, _)| cause == Cause::Fence);
+        let crossed = situation.breach.is_some() && !situation.fence_is_ahead;
+        let keeps =
+            situation.conduct.failsafe.fence_options.keeps_mode && situation.conduct.failsafe.fence_enabled;
+        keeps && acts && crossed && situation.armed && !situation.landed
     }
 
     /// Refuses a mode in which sticks lean the vehicle, if something else flies it or it would leap off the ground.
@@ -201,7 +240,7 @@ impl Vehicle {
     pub fn reposition(&mut self, goal: &Reposition) -> Result<(), Refusal> {
         let situation = self.situation();
         situation.refuse_without_rotor()?;
-        if situation.steering.kind() == SteeringKind::Idle {
+        if situation.steering.kind() == SteeringKind::Idle && !situation.may_be_led() {
             return Err(Refusal::later("Reposition rejected: not flying"));
         }
         let mode = situation.holding_mode();
@@ -236,17 +275,59 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Turns to a heading, rad, where it is.
+    /// Flies around a centre.
+    ///
+    /// # Errors
+    /// [`Refusal`] on the ground, and for a circle that the fence forbids.
+    pub fn orbit(&mut self, request: &OrbitRequest) -> Result<(), Refusal> {
+        let situation = self.situation();
+        situation.refuse_without_rotor()?;
+        if situation.steering.kind() == SteeringKind::Idle {
+            return Err(Refusal::later("Orbit rejected: not flying"));
+        }
+        self.may_enter(Mode::Orbit)?;
+        if let (Some([x, y]), z) = (request.centre_m, request.down_m.unwrap_or_default()) {
+            check_distance(&Vector3::new(x, y, z))?;
+        }
+        self.machines.orbit.check(&situation, request)?;
+        self.machines.failsafe.release();
+        if self.mode() != Mode::Orbit {
+            self.enter(Mode::Orbit);
+        }
+        self.consult(|parts, situation, proposal| parts.orbit.ask(request, situation, proposal));
+        Ok(())
+    }
+
+    /// Hears from the target of the follow mode.
+    pub fn hear_target(&mut self, report: &TargetReport) {
+        self.consult(|parts, situation, _| parts.follow.hear(report, situation));
+    }
+
+    /// Turns, and keeps the heading until something else asks for one. The way that it flies goes on.
     ///
     /// # Errors
     /// [`Refusal`] on the ground and in modes that turn by themselves.
-    pub fn turn_to(&mut self, yaw_rad: f64) -> Result<(), Refusal> {
+    pub fn turn(&mut self, turn: &Turn) -> Result<(), Refusal> {
         let situation = self.situation();
-        if situation.mode != situation.holding_mode() {
-            let name = situation.identity.mode_name(situation.mode);
+        situation.refuse_without_rotor()?;
+        if situation.steering.kind() == SteeringKind::Idle && !situation.may_be_led() {
+            return Err(Refusal::later("Turn rejected: not flying"));
+        }
+        let mode = situation.mode;
+        if mode == Mode::Mission {
+            self.consult(|parts, situation, _| parts.mission.turn_by_command(turn, situation));
+            return Ok(());
+        }
+        if mode != Mode::Takeoff && mode != situation.holding_mode() {
+            let name = situation.identity.mode_name(mode);
             return Err(Refusal::later(format!("Turn rejected in {name} mode")));
         }
-        self.reposition(&Reposition { yaw_rad: Some(yaw_rad), ..Reposition::default() })
+        // A heading that is asked for goes before what was looked at.
+        self.consult(|parts, situation, proposal| {
+            proposal.look_at(None);
+            parts.turn.begin(turn, situation);
+        });
+        Ok(())
     }
 
     /// Takes a set-point. It proves that its sender is alive in every mode, and is flown in the offboard mode.
@@ -256,11 +337,17 @@ impl Vehicle {
     pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
         let situation = self.situation();
         if situation.identity.is_ardupilot() {
-            if situation.mode != Mode::Offboard {
-                return Err(Refusal::later("Set-point ignored: not in Guided mode"));
-            }
             let position = matches!(set_point, SetPoint::Position(_));
-            if position && situation.steering.kind() == SteeringKind::Idle {
+            match situation.mode {
+                Mode::Offboard | Mode::Takeoff => {}
+                Mode::GuidedAttitude if !position => {}
+                Mode::GuidedAttitude => {
+                    let reason = "Guided NoGPS takes attitudes only; use Guided for places and velocities";
+                    return Err(Refusal::denied(format!("Set-point denied: {reason}")));
+                }
+                _ => return Err(Refusal::later("Set-point ignored: not in Guided mode")),
+            }
+            if position && situation.steering.kind() == SteeringKind::Idle && !situation.may_be_led() {
                 return Err(Refusal::later("Set-point ignored: take off first"));
             }
         }
@@ -273,9 +360,23 @@ impl Vehicle {
             check_set_point(&situation, position)?;
         }
         self.see(Cause::SetPointsLost, false);
+        self.leave_takeoff();
+        if set_point.turns() {
+            self.machines.turn.forget();
+        }
         let time_us = self.time_us();
         self.machines.offboard.take(set_point, time_us);
         Ok(())
+    }
+
+    /// ArduPilot takes off in its guided mode: what is asked for there takes over from the takeoff.
+    pub(super) fn leave_takeoff(&mut self) {
+        if self.identity().is_ardupilot() && self.mode() == Mode::Takeoff {
+            self.consult(|parts, _, proposal| {
+                parts.takeoff.forget();
+                proposal.go_on_in(Mode::Offboard);
+            });
+        }
     }
 
     /// Changes a limit of speed until the rotors stop. In a mission it goes before the mission's own, until that changes it again.
@@ -297,7 +398,8 @@ impl Vehicle {
 
     /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
     pub fn look(&mut self, look: Option<&Look>) {
-        self.consult(|_, situation, proposal| {
+        self.consult(|parts, situation, proposal| {
+            parts.turn.forget();
             let (here_m, home_z_m) = (situation.outputs.position_m, situation.home.position_m.z);
             proposal.look_at(look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m)));
             if look.is_none() && situation.chooses_its_heading() {

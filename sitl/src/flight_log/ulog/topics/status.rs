@@ -3,22 +3,17 @@
 use quadrotor::ControllerActivity;
 use vehicle::{LandedState, MissionState, Mode};
 
-use super::LogSource;
-use crate::flight_log::Row;
+use super::super::row::Row;
+use crate::flight_log::LogSource;
 
-/// Speed as a share of the fastest, squared: the share of the thrust. NaN where there is no rotor.
+/// Shares of the thrust. NaN where there is no rotor.
 pub fn actuator_motors(source: &LogSource<'_>, row: &mut Row) {
-    let vehicle = source.vehicle;
-    let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
-    let shares = vehicle.outputs().rotor_speed_rad_s.map(|speed| (speed / fastest) * (speed / fastest));
-    row.reals(shares).floats([f32::NAN; 8]);
+    row.reals(source.motor_shares()).floats([f32::NAN; 8]);
 }
 
 /// As pulses, µs.
 pub fn actuator_outputs(source: &LogSource<'_>, row: &mut Row) {
-    let vehicle = source.vehicle;
-    let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
-    let pulses = vehicle.outputs().rotor_speed_rad_s.map(|speed| 1000.0 + 1000.0 * speed / fastest);
+    let pulses = source.pulses_us();
     row.u32(pulses.len() as u32).reals(pulses).floats([0.0; 12]);
 }
 
@@ -62,6 +57,11 @@ fn nav_state(mode: Mode) -> u8 {
         Mode::Offboard => 14,
         Mode::Takeoff => 17,
         Mode::Land => 18,
+        Mode::Follow => 19,
+        Mode::Orbit => 21,
+        // PX4 has no such modes; the nearest ones.
+        Mode::SmartReturn => 5,
+        Mode::GuidedAttitude => 14,
     }
 }
 

@@ -10,4 +10,4 @@ mod table;
 mod topic;
 
 pub use table::TOPICS;
-pub use topic::{GRID_US, LogSource, Topic};
+pub use topic::Topic;

@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use super::super::motion::wrapped;
+use super::motion::wrapped;
 use crate::plan::step::{Turn, TurnDirection, TurnTo};
 
 /// A turn that is made.

@@ -1,37 +1,46 @@
-//! The file that a vehicle's parameters are kept in.
+//! A file that something of a vehicle is kept in over restarts: its parameters, its plans.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use vehicle::parameters::FileFormat;
-
 use crate::failure::Failure;
 use crate::files::{FileLock, Notice, Readers, Upkeep, replace};
 
-/// Keeps changed parameters: at once, or as soon as the disk lets.
+/// Keeps what has changed: at once, or as soon as the disk lets.
 #[derive(Debug)]
-pub struct ParameterFile {
+pub struct KeptFile {
     path: PathBuf,
+    /// What is missing from it while it cannot be written.
+    lacks: &'static str,
     upkeep: Upkeep,
     /// What the file should hold and does not.
     unsaved: Option<String>,
     _lock: Option<FileLock>,
 }
 
-impl ParameterFile {
-    /// Of a path, for this process alone.
+impl KeptFile {
+    /// Of parameters, for this process alone.
     ///
     /// # Errors
     /// As [`FileLock::claim`].
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    pub fn of_parameters(path: &Path) -> Result<Self, Failure> {
         let lock = FileLock::claim(path)?;
-        let upkeep = Upkeep::new("Parameters", path);
-        Ok(Self { path: path.to_owned(), upkeep, unsaved: None, _lock: lock })
+        Ok(Self { _lock: lock, ..Self::new(path, "Parameters", "lacks the latest changes of parameters") })
     }
 
-    /// The form in which it is written.
-    pub fn format(&self) -> FileFormat {
-        FileFormat::of(&self.path)
+    /// Of plans, beside the file of parameters, which is this process's already.
+    pub fn of_plans(path: &Path) -> Self {
+        Self::new(path, "Plans", "lacks the latest plans")
+    }
+
+    fn new(path: &Path, name: &'static str, lacks: &'static str) -> Self {
+        let upkeep = Upkeep::new(name, path);
+        Self { path: path.to_owned(), lacks, upkeep, unsaved: None, _lock: None }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Saves what has changed, or tries again what could not be saved, each second. Returns what to announce.
@@ -49,7 +58,7 @@ impl ParameterFile {
     pub fn finish(&mut self) -> Option<String> {
         let text = self.unsaved.as_ref()?;
         let _told_below = self.upkeep.judge(replace(&self.path, text.as_bytes(), Readers::All));
-        self.upkeep.is_failing().then(|| self.upkeep.lacks("lacks the latest changes of parameters"))
+        self.upkeep.is_failing().then(|| self.upkeep.lacks(self.lacks))
     }
 }
 
@@ -57,7 +66,7 @@ impl ParameterFile {
 mod tests {
     use std::time::{Duration, Instant};
 
-    use super::ParameterFile;
+    use super::KeptFile;
 
     #[test]
     fn what_cannot_be_saved_is_saved_later_and_the_last_change_counts() {
@@ -65,7 +74,7 @@ mod tests {
         let folder = place.path().join("gone");
         std::fs::create_dir(&folder).expect("a folder");
         let path = folder.join("a.params");
-        let mut file = ParameterFile::open(&path).expect("free");
+        let mut file = KeptFile::of_parameters(&path).expect("free");
         let start = Instant::now();
         let after = |ms| start + Duration::from_millis(ms);
         assert_eq!(file.save(Some("one".to_owned()), after(0)), None);

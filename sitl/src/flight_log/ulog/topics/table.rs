@@ -1,10 +1,11 @@
 //! The table of all topics.
 
+use super::super::row::Row;
 use super::motion;
 use super::sensors::{self, IMU_US};
 use super::status;
-use super::topic::{LogSource, Topic};
-use crate::flight_log::Row;
+use super::topic::Topic;
+use crate::flight_log::LogSource;
 
 const fn topic(
     name: &'static str,

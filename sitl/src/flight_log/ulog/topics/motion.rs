@@ -4,9 +4,8 @@ use quadrotor::Outputs;
 use vehicle::SteeringKind;
 use vehicle::estimation::Validity;
 
-use super::LogSource;
-use super::sensors::stepped;
-use crate::flight_log::Row;
+use super::super::row::Row;
+use crate::flight_log::LogSource;
 
 /// Quaternion, FRD into NED.
 pub fn attitude(source: &LogSource<'_>, row: &mut Row) {
@@ -62,16 +61,13 @@ pub fn local_position_setpoint(source: &LogSource<'_>, row: &mut Row) {
     }
     row.reals(reference.position_m.data.0[0]).reals(reference.velocity_m_s.data.0[0]);
     row.reals(reference.acceleration_m_s2.data.0[0]);
-    let (_, strongest_n) = vehicle.simulation().configuration().airframe.thrust_range_n();
-    row.reals([0.0, 0.0, -vehicle.outputs().thrust_n / strongest_n]);
+    row.reals([0.0, 0.0, -vehicle.outputs().thrust_n / source.strongest_n()]);
     row.reals([reference.yaw_rad, reference.yaw_rate_rad_s]);
 }
 
-/// In steps of 1e-7° and mm, as clients are told it: readers compare the two.
 pub fn global_position(source: &LogSource<'_>, row: &mut Row) {
-    let place = source.vehicle.frame().to_geodetic(&source.vehicle.outputs().position_m);
-    row.f64(stepped(place.latitude_deg, 1e7)).f64(stepped(place.longitude_deg, 1e7));
-    row.reals([stepped(place.altitude_m, 1e3)]);
+    let place = source.place(source.vehicle.outputs());
+    row.f64(place.latitude_deg).f64(place.longitude_deg).reals([place.altitude_m]);
 }
 
 pub fn true_global_position(source: &LogSource<'_>, row: &mut Row) {

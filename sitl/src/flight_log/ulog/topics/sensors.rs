@@ -1,11 +1,9 @@
 //! What the instruments show, and how good the estimate is.
 
-use vehicle::estimation::TestRatios;
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
-use vehicle::world::heading_deg;
 
-use super::LogSource;
-use crate::flight_log::Row;
+use super::super::row::Row;
+use crate::flight_log::LogSource;
 
 /// How often the inertial sensors are sampled, µs.
 pub const IMU_US: u64 = 20_000;
@@ -14,31 +12,21 @@ pub const IMU_US: u64 = 20_000;
 const NO_FIX: u8 = 1;
 const FIX_3D: u8 = 3;
 
-/// A value in steps of which so many are a unit: receivers tell no finer ones. Never −0.
-pub fn stepped(value: f64, steps: f64) -> f64 {
-    (value * steps).round() / steps + 0.0
-}
-
-/// The latest fix in the resolution of a receiver: 1e-7°, mm, cm/s and, of the course, 0.01°.
 pub fn gps_position(source: &LogSource<'_>, row: &mut Row) {
     let vehicle = source.vehicle;
     row.u64(vehicle.unix_start_us() + vehicle.time_us());
-    let Some(fix) = vehicle.readings().gps.filter(|fix| fix.is_fresh(vehicle.time_us())) else {
+    let Some(fix) = source.fix() else {
         // A place and accuracies of zero would be the best of all.
         row.f64(0.0).f64(0.0).f64(0.0).f64(0.0).floats([f32::NAN; 6]).u8(NO_FIX).u8(0);
         return;
     };
-    let place = vehicle.frame().to_geodetic(&fix.position_m);
-    let altitude_m = stepped(place.altitude_m, 1e3);
-    row.f64(stepped(place.latitude_deg, 1e7)).f64(stepped(place.longitude_deg, 1e7));
+    row.f64(fix.place.latitude_deg).f64(fix.place.longitude_deg);
     // The ellipsoid is the sea level.
-    row.f64(altitude_m).f64(altitude_m);
-    row.reals([fix.horizontal_accuracy_m, fix.vertical_accuracy_m].map(|metres| stepped(metres, 1e3)));
+    row.f64(fix.place.altitude_m).f64(fix.place.altitude_m);
+    row.reals([fix.horizontal_accuracy_m, fix.vertical_accuracy_m]);
     row.reals([HORIZONTAL_DILUTION, VERTICAL_DILUTION]);
-    let ground_m_s = fix.velocity_m_s.xy();
-    row.reals([stepped(ground_m_s.norm(), 1e2)]);
-    let course_deg = heading_deg(libm::atan2(ground_m_s.y, ground_m_s.x));
-    row.f32((((course_deg * 1e2).floor() / 1e2) as f32).to_radians()).u8(FIX_3D).u8(fix.satellites);
+    row.reals([fix.speed_m_s]);
+    row.f32((fix.course_deg as f32).to_radians()).u8(FIX_3D).u8(fix.satellites);
 }
 
 /// Both are told with the time that they are integrated over.
@@ -48,15 +36,11 @@ pub fn sensor_combined(source: &LogSource<'_>, row: &mut Row) {
     row.reals(inertial.specific_force_m_s2.data.0[0]).u32(IMU_US as u32);
 }
 
-/// The rigid body has no vibration, so that ideal accelerometers do not shake.
 pub fn imu_status(source: &LogSource<'_>, row: &mut Row) {
-    let navigation = source.vehicle.navigation();
-    let clipped = navigation.map(|navigation| navigation.clipped()).unwrap_or_default();
-    let level = navigation.map(|navigation| navigation.vibration().level_m_s2()).unwrap_or_default();
-    for times in clipped {
+    for times in source.clipped() {
         row.u32(times);
     }
-    let level = level.data.0[0].map(|axis| axis as f32);
+    let level = source.vibration_m_s2().map(|axis| axis as f32);
     row.f32(level.iter().map(|axis| axis * axis).sum::<f32>().sqrt());
 }
 
@@ -69,7 +53,7 @@ fn bits<const N: usize>(set: [(bool, u16); N]) -> u16 {
 /// valid, with PX4's numbers, and health and timeouts: velocity, position, height.
 pub fn estimator_status(source: &LogSource<'_>, row: &mut Row) {
     let (validity, estimate) = (source.vehicle.validity(), source.vehicle.estimate());
-    let exact = estimate.map_or_else(TestRatios::default, |estimate| estimate.test_ratios);
+    let exact = source.test_ratios();
     let ratios = [exact.velocity, exact.horizontal_position, exact.height, exact.heading];
     let ratios = ratios.map(|ratio| ratio as f32);
     row.floats(ratios);
@@ -103,14 +87,11 @@ pub fn estimator_status(source: &LogSource<'_>, row: &mut Row) {
 }
 
 pub fn magnetometer(source: &LogSource<'_>, row: &mut Row) {
-    let reading = source.vehicle.readings().magnetometer;
-    row.reals(reading.map_or([0.0; 3], |reading| reading.field_gauss.data.0[0]));
+    row.reals(source.field_gauss());
 }
 
+/// The pressure is rounded in hPa, as clients are told it: readers compare the two.
 pub fn air_data(source: &LogSource<'_>, row: &mut Row) {
-    let reading = source.vehicle.readings().barometer;
-    row.reals([reading.map_or(0.0, |reading| reading.altitude_m())]);
-    // Rounded in hPa, as clients are told it: readers compare the two.
-    let pressure_hpa = reading.map_or(0.0, |reading| (reading.pressure_pa / 100.0) as f32);
-    row.f32(pressure_hpa * 100.0);
+    let (altitude_m, pressure_hpa) = source.barometer();
+    row.reals([altitude_m]).f32(pressure_hpa * 100.0);
 }

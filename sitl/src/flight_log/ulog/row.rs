@@ -2,7 +2,7 @@
 
 /// Bytes of a sample.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Row(pub(super) Vec<u8>);
+pub struct Row(pub(in crate::flight_log) Vec<u8>);
 
 impl Row {
     /// uint64_t

@@ -1,0 +1,127 @@
+//! What the instruments show.
+
+use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
+
+use super::field::{Field, field, instance};
+use crate::flight_log::LogSource;
+use crate::flight_log::source::LoggedFix;
+
+/// ArduPilot's numbers of the kinds of a fix.
+const NO_FIX: f64 = 1.0;
+const FIX_3D: f64 = 3.0;
+/// From 1970 to the begin of GPS time, with the leap seconds since then, s.
+const GPS_EPOCH_S: u64 = 315_964_800 - 18;
+const WEEK_MS: u64 = 7 * 24 * 3600 * 1000;
+
+/// A value of the fix; 0 without one.
+fn of_fix(source: &LogSource<'_>, value: fn(&LoggedFix) -> f64) -> f64 {
+    source.fix().as_ref().map_or(0.0, value)
+}
+
+/// Time of GPS, ms.
+fn gps_ms(source: &LogSource<'_>) -> u64 {
+    let now_us = source.vehicle.unix_start_us() + source.vehicle.time_us();
+    (now_us / 1000).saturating_sub(GPS_EPOCH_S * 1000)
+}
+
+fn time_ms(source: &LogSource<'_>) -> f64 {
+    (source.vehicle.time_us() / 1000) as f64
+}
+
+fn inertial(source: &LogSource<'_>) -> ([f64; 3], [f64; 3]) {
+    let reading = source.vehicle.readings().inertial;
+    (reading.body_rate_rad_s.into(), reading.specific_force_m_s2.into())
+}
+
+/// The receiver.
+pub const GPS: &[Field] = &[
+    instance("I"),
+    field("Status", 'B', '-', '-', |source| if source.fix().is_some() { FIX_3D } else { NO_FIX }),
+    field("GMS", 'I', 's', 'C', |source| (gps_ms(source) % WEEK_MS) as f64),
+    field("GWk", 'H', '-', '-', |source| (gps_ms(source) / WEEK_MS) as f64),
+    field("NSats", 'B', 'S', '0', |source| of_fix(source, |fix| f64::from(fix.satellites))),
+    field("HDop", 'c', '-', 'B', |_| HORIZONTAL_DILUTION),
+    field("Lat", 'L', 'D', 'G', |source| of_fix(source, |fix| fix.place.latitude_deg)),
+    field("Lng", 'L', 'U', 'G', |source| of_fix(source, |fix| fix.place.longitude_deg)),
+    field("Alt", 'e', 'm', 'B', |source| of_fix(source, |fix| fix.place.altitude_m)),
+    field("Spd", 'f', 'n', '0', |source| of_fix(source, |fix| fix.speed_m_s)),
+    field("GCrs", 'f', 'h', '0', |source| of_fix(source, |fix| fix.course_deg)),
+    field("VZ", 'f', 'n', '0', |source| of_fix(source, |fix| fix.sink_m_s)),
+    field("Yaw", 'f', 'h', '0', |_| 0.0),
+    field("U", 'B', '-', '-', |_| 1.0),
+];
+
+/// How accurate the receiver is.
+pub const GPA: &[Field] = &[
+    instance("I"),
+    field("VDop", 'C', '-', 'B', |_| VERTICAL_DILUTION),
+    field("HAcc", 'C', 'm', 'B', |source| of_fix(source, |fix| fix.horizontal_accuracy_m)),
+    field("VAcc", 'C', 'm', 'B', |source| of_fix(source, |fix| fix.vertical_accuracy_m)),
+    field("SAcc", 'C', 'n', 'B', |source| of_fix(source, |fix| fix.velocity_accuracy_m_s)),
+    field("YAcc", 'f', 'd', '0', |_| 0.0),
+    field("VV", 'B', '-', '-', |source| if source.fix().is_some() { 1.0 } else { 0.0 }),
+    field("SMS", 'I', 's', 'C', time_ms),
+    field("Delta", 'H', 's', 'C', |_| 200.0),
+];
+
+/// The inertial unit.
+pub const IMU: &[Field] = &[
+    instance("I"),
+    field("GyrX", 'f', 'E', '0', |source| inertial(source).0[0]),
+    field("GyrY", 'f', 'E', '0', |source| inertial(source).0[1]),
+    field("GyrZ", 'f', 'E', '0', |source| inertial(source).0[2]),
+    field("AccX", 'f', 'o', '0', |source| inertial(source).1[0]),
+    field("AccY", 'f', 'o', '0', |source| inertial(source).1[1]),
+    field("AccZ", 'f', 'o', '0', |source| inertial(source).1[2]),
+    field("EG", 'I', '-', '-', |_| 0.0),
+    field("EA", 'I', '-', '-', |_| 0.0),
+    field("T", 'f', 'O', '0', |_| 25.0),
+    field("GH", 'B', '-', '-', |source| f64::from(u8::from(source.vehicle.instrument_health().gyroscope))),
+    field("AH", 'B', '-', '-', |source| {
+        f64::from(u8::from(source.vehicle.instrument_health().accelerometer))
+    }),
+    field("GHz", 'H', 'z', '0', |_| 1000.0),
+    field("AHz", 'H', 'z', '0', |_| 1000.0),
+];
+
+/// Vibration.
+pub const VIBE: &[Field] = &[
+    instance("IMU"),
+    field("VibeX", 'f', 'o', '0', |source| source.vibration_m_s2()[0]),
+    field("VibeY", 'f', 'o', '0', |source| source.vibration_m_s2()[1]),
+    field("VibeZ", 'f', 'o', '0', |source| source.vibration_m_s2()[2]),
+    field("Clip", 'I', '-', '-', |source| f64::from(source.clipped().iter().sum::<u32>())),
+];
+
+/// The barometer.
+pub const BARO: &[Field] = &[
+    instance("I"),
+    field("Alt", 'f', 'm', '0', |source| source.barometer().0 - source.vehicle.frame().origin().altitude_m),
+    field("Press", 'f', 'P', '0', |source| f64::from(source.barometer().1) * 100.0),
+    field("Temp", 'c', 'O', 'B', |_| 25.0),
+    field("CRt", 'f', 'n', '0', |source| -source.vehicle.outputs().velocity_m_s.z),
+    field("SMS", 'I', 's', 'C', time_ms),
+    field("Offset", 'f', 'm', '0', |_| 0.0),
+    field("GndTemp", 'f', 'O', '0', |_| 25.0),
+    field("Health", 'B', '-', '-', |source| {
+        f64::from(u8::from(source.vehicle.instrument_health().barometer))
+    }),
+];
+
+/// The magnetometer, mGauss.
+pub const MAG: &[Field] = &[
+    instance("I"),
+    field("MagX", 'h', 'G', 'C', |source| 1e3 * source.field_gauss()[0]),
+    field("MagY", 'h', 'G', 'C', |source| 1e3 * source.field_gauss()[1]),
+    field("MagZ", 'h', 'G', 'C', |source| 1e3 * source.field_gauss()[2]),
+    field("OfsX", 'h', 'G', 'C', |_| 0.0),
+    field("OfsY", 'h', 'G', 'C', |_| 0.0),
+    field("OfsZ", 'h', 'G', 'C', |_| 0.0),
+    field("MOX", 'h', 'G', 'C', |_| 0.0),
+    field("MOY", 'h', 'G', 'C', |_| 0.0),
+    field("MOZ", 'h', 'G', 'C', |_| 0.0),
+    field("Health", 'B', '-', '-', |source| {
+        f64::from(u8::from(source.vehicle.instrument_health().magnetometer))
+    }),
+    field("S", 'I', 's', 'F', |source| source.vehicle.time_us() as f64),
+];

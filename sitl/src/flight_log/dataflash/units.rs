@@ -1,0 +1,50 @@
+//! The letters of units and multipliers, as ArduPilot gives them.
+
+/// Letter and unit.
+pub const UNITS: [(char, &str); 27] = [
+    ('-', ""),
+    ('?', "UNKNOWN"),
+    ('A', "A"),
+    ('a', "Ah"),
+    ('d', "deg"),
+    ('b', "B"),
+    ('k', "deg/s"),
+    ('D', "deglatitude"),
+    ('E', "rad/s"),
+    ('G', "Gauss"),
+    ('h', "degheading"),
+    ('m', "m"),
+    ('n', "m/s"),
+    ('o', "m/s/s"),
+    ('O', "degC"),
+    ('%', "%"),
+    ('S', "satellites"),
+    ('s', "s"),
+    ('r', "rad"),
+    ('U', "deglongitude"),
+    ('v', "V"),
+    ('P', "Pa"),
+    ('w', "Ohm"),
+    ('X', "W.h"),
+    ('Y', "us"),
+    ('z', "Hz"),
+    ('#', "instance"),
+];
+
+/// Letter and factor.
+pub const MULTIPLIERS: [(char, f64); 14] = [
+    ('-', 0.0),
+    ('?', 1.0),
+    ('2', 1e2),
+    ('1', 1e1),
+    ('0', 1e0),
+    ('A', 1e-1),
+    ('B', 1e-2),
+    ('C', 1e-3),
+    ('D', 1e-4),
+    ('E', 1e-5),
+    ('F', 1e-6),
+    ('G', 1e-7),
+    ('I', 1e-9),
+    ('!', 3.6),
+];

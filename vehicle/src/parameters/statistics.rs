@@ -1,0 +1,79 @@
+//! What a vehicle counts over its boots: ArduPilot's STAT parameters.
+
+/// Seconds from 1970 to 2016, where STAT_RESET counts from.
+const RESET_EPOCH_S: u64 = 1_451_606_400;
+
+/// Counts since they were reset. A reboot keeps them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// How often the vehicle has booted.
+    pub boots: u32,
+    /// Time in the air, µs.
+    pub flight_us: u64,
+    /// Time that it was switched on, µs.
+    pub run_us: u64,
+    /// When the counts were reset, s since 1970.
+    pub reset_unix_s: u64,
+}
+
+/// One of the counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statistic {
+    /// How often the vehicle has booted.
+    Boots,
+    /// Time in the air, s.
+    FlightTime,
+    /// Time that it was switched on, s.
+    RunTime,
+    /// When the counts were reset, s since 2016; setting it to 0 resets them.
+    Reset,
+}
+
+impl Statistic {
+    /// All of them with their names.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("STAT_BOOTCNT", Self::Boots),
+        ("STAT_FLTTIME", Self::FlightTime),
+        ("STAT_RESET", Self::Reset),
+        ("STAT_RUNTIME", Self::RunTime),
+    ];
+
+    /// What it means.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Boots => "Number of boots since the statistics were reset (read-only)",
+            Self::FlightTime => "Time in the air since the statistics were reset (read-only)",
+            Self::RunTime => "Time switched on since the statistics were reset (read-only)",
+            Self::Reset => {
+                "Time of the last reset of the statistics, in seconds since 2016; set it to 0 to reset them"
+            }
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        if self == Self::Boots { "" } else { "s" }
+    }
+
+    /// What it may be set to.
+    pub fn choices(self) -> &'static [(i32, &'static str)] {
+        if self == Self::Reset { &[(0, "Reset all")] } else { &[] }
+    }
+
+    /// Its value.
+    pub fn of(self, statistics: &Statistics) -> u64 {
+        match self {
+            Self::Boots => u64::from(statistics.boots),
+            Self::FlightTime => statistics.flight_us / 1_000_000,
+            Self::RunTime => statistics.run_us / 1_000_000,
+            Self::Reset => statistics.reset_unix_s.saturating_sub(RESET_EPOCH_S),
+        }
+    }
+}
+
+impl Statistics {
+    /// All counts from now, s since 1970.
+    pub fn reset(&mut self, unix_s: u64) {
+        *self = Self { boots: 1, reset_unix_s: unix_s, ..Self::default() };
+    }
+}
