@@ -6,7 +6,7 @@ use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
 use vehicle::{FlightError, LandedState, Pulses, Severity, TICK_US, Vehicle, VehicleSettings};
 
-use crate::codec::{Frame, target_of};
+use crate::codec::{Frame, Message, target_of};
 use crate::context::Context;
 use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 use crate::file_store::Nothing;
@@ -14,7 +14,7 @@ use crate::file_work::{FileWorker, Immediate};
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::registry::Registry;
-use crate::service::{heartbeat, parameter};
+use crate::service::{heartbeat, parameter, traffic};
 
 /// A vehicle with its services.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl Autopilot {
         let mut context = Context {
             parameters: Parameters::new(settings, &vehicle, system_id, speed),
             vehicle,
-            outbox: Outbox::new(system_id),
+            outbox: Outbox::new(system_id).with_voice(settings.equipment),
             files: Box::new(Immediate(Nothing)),
             streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
@@ -70,10 +70,8 @@ impl Autopilot {
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
         self.services.hear(&mut self.context, origin);
-        if !target_of(frame).is_autopilot(self.system_id()) {
-            return;
-        }
-        self.services.receive(&mut self.context, origin, frame);
+        let Some(asked) = target_of(frame).speaker(self.system_id()) else { return };
+        self.services.receive(&mut self.context, origin, frame, asked);
         self.services.announce(&mut self.context);
     }
 
@@ -157,6 +155,11 @@ impl Autopilot {
         if let Some(message) = stream.and_then(|stream| stream.message(&self.context.component())) {
             self.context.outbox.send(Destination::Peer(to), message);
         }
+    }
+
+    /// What its transponder tells to other vehicles.
+    pub fn transponder_report(&self) -> Message {
+        traffic::own_report(&self.context.vehicle, self.system_id()).into()
     }
 
     /// Lines for the pilot since the last call, with their times, µs.

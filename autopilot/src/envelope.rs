@@ -42,6 +42,8 @@ pub struct Outgoing {
     pub to: Destination,
     /// What.
     pub message: Message,
+    /// Which component of the vehicle says it.
+    pub component: u8,
 }
 
 /// What a link is for: it decides the rates of its messages.

@@ -1,9 +1,11 @@
 //! What is on its way out: messages, and lines for the pilot.
 
 use vehicle::Severity;
+use vehicle::equipment::EquipmentVoice;
 
 use crate::codec::Message;
 use crate::envelope::{Destination, Outgoing};
+use crate::speaker::Speaker;
 use crate::status_text::{Line, StatusTexts};
 
 /// Messages in the order in which they are to be sent.
@@ -11,23 +13,54 @@ use crate::status_text::{Line, StatusTexts};
 pub struct Outbox {
     messages: Vec<Outgoing>,
     texts: StatusTexts,
+    voice: EquipmentVoice,
+    /// Who was asked, and answers.
+    asked: Speaker,
 }
 
 impl Outbox {
     /// The empty outbox of a system.
     pub fn new(system_id: u8) -> Self {
-        Self { messages: Vec::new(), texts: StatusTexts::new(system_id) }
+        Self {
+            messages: Vec::new(),
+            texts: StatusTexts::new(system_id),
+            voice: EquipmentVoice::default(),
+            asked: Speaker::Autopilot,
+        }
     }
 
-    /// Puts a message behind all others.
+    /// Lets camera and gimbal speak for themselves, or the autopilot for them.
+    pub fn with_voice(self, voice: EquipmentVoice) -> Self {
+        Self { voice, ..self }
+    }
+
+    /// Who speaks for camera and gimbal.
+    pub fn voice(&self) -> EquipmentVoice {
+        self.voice
+    }
+
+    /// From now on somebody answers who was asked.
+    pub fn answer_as(&mut self, asked: Speaker) {
+        self.asked = asked;
+    }
+
+    /// Puts a message behind all others: from the autopilot, or from who was asked.
     pub fn send(&mut self, to: Destination, message: impl Into<Message>) {
-        self.messages.push(Outgoing { to, message: message.into() });
+        let component = self.asked.id();
+        self.messages.push(Outgoing { to, message: message.into(), component });
+    }
+
+    /// Puts a message of a component behind all others.
+    pub fn send_as(&mut self, speaker: Speaker, to: Destination, message: impl Into<Message>) {
+        let own = self.voice == EquipmentVoice::Own || self.asked == speaker;
+        let component = if own { speaker.id() } else { Speaker::Autopilot.id() };
+        self.messages.push(Outgoing { to, message: message.into(), component });
     }
 
     /// Sends a line for the pilot to everyone, unless it was said a moment ago. `time_us` is the simulation time, µs.
     pub fn say(&mut self, time_us: u64, severity: Severity, text: &str) {
         for message in self.texts.say(time_us, severity, text) {
-            self.send(Destination::Everyone, message);
+            self.send_as(Speaker::Autopilot, Destination::Everyone, message);
         }
     }
 

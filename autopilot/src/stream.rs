@@ -5,6 +5,7 @@ use vehicle::Vehicle;
 
 use crate::envelope::LinkProfile;
 use crate::parameters::Parameters;
+use crate::speaker::Speaker;
 
 /// Groups of REQUEST_DATA_STREAM (MAV_DATA_STREAM).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,6 +57,8 @@ pub enum Build {
     Vehicle(fn(&Vehicle) -> MavMessage),
     /// From the vehicle, its parameters and its capabilities.
     Component(fn(&Component<'_>) -> MavMessage),
+    /// None, one or several, as there is something to tell.
+    Several(fn(&Component<'_>) -> Vec<MavMessage>),
     /// One or several, chosen by parameter 2 of MAV_CMD_REQUEST_MESSAGE. It is sent on request only.
     Numbered(fn(&Vehicle, u32) -> Vec<MavMessage>),
 }
@@ -71,6 +74,8 @@ pub struct Stream {
     pub group: Option<Group>,
     /// How it is made.
     pub build: Build,
+    /// Who says it.
+    pub speaker: Speaker,
     /// Whether only ArduPilot has it.
     pub ardupilot_only: bool,
 }
@@ -78,17 +83,41 @@ pub struct Stream {
 impl Stream {
     /// A message made from the vehicle, with its rates on a ground station's link and on an onboard one, Hz.
     pub const fn new(id: u32, rates_hz: [f64; 2], build: fn(&Vehicle) -> MavMessage) -> Self {
-        Self { id, rates_hz, group: None, build: Build::Vehicle(build), ardupilot_only: false }
+        Self {
+            id,
+            rates_hz,
+            group: None,
+            build: Build::Vehicle(build),
+            speaker: Speaker::Autopilot,
+            ardupilot_only: false,
+        }
+    }
+
+    /// A message that is sent when there is something to tell, with its rates.
+    pub const fn when(id: u32, rates_hz: [f64; 2], build: Build) -> Self {
+        Self { id, rates_hz, group: None, build, speaker: Speaker::Autopilot, ardupilot_only: false }
     }
 
     /// A message that is sent only when it is asked for.
     pub const fn on_request(id: u32, build: Build) -> Self {
-        Self { id, rates_hz: [0.0; 2], group: None, build, ardupilot_only: false }
+        Self {
+            id,
+            rates_hz: [0.0; 2],
+            group: None,
+            build,
+            speaker: Speaker::Autopilot,
+            ardupilot_only: false,
+        }
     }
 
     /// Puts it into a group of REQUEST_DATA_STREAM.
     pub const fn of(self, group: Group) -> Self {
         Self { group: Some(group), ..self }
+    }
+
+    /// Lets a component say it.
+    pub const fn from(self, speaker: Speaker) -> Self {
+        Self { speaker, ..self }
     }
 
     /// Only ArduPilot has it: in other identities it can neither be streamed nor asked for.
@@ -106,12 +135,12 @@ impl Stream {
         (rate > 0.0).then(|| (1e6 / rate).round() as u64)
     }
 
-    /// The message, from the present state; `None` for numbered ones.
+    /// The message, from the present state; `None` for those that may be several.
     pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
         match self.build {
             Build::Vehicle(build) => Some(build(component.vehicle)),
             Build::Component(build) => Some(build(component)),
-            Build::Numbered(_) => None,
+            Build::Several(_) | Build::Numbered(_) => None,
         }
     }
 
@@ -119,6 +148,7 @@ impl Stream {
     pub fn messages(&self, component: &Component<'_>, number: u32) -> Vec<MavMessage> {
         match self.build {
             Build::Numbered(build) => build(component.vehicle, number),
+            Build::Several(build) => build(component),
             _ => self.message(component).into_iter().collect(),
         }
     }

@@ -54,8 +54,13 @@ fn the_page_is_what_the_vehicle_claims() {
 #[test]
 fn commands_are_answered_as_the_table_says() {
     // What these ask for decides whether it is supported.
-    const ASKED: &[(u16, [f32; 3])] =
-        &[(176, [1.0, 3.0, 0.0]), (218, [18.0, 0.0, 0.0]), (262, [1.0, 0.0, 0.0]), (420, [0.0, 0.0, 0.0])];
+    const ASKED: &[(u16, [f32; 3])] = &[
+        (176, [1.0, 3.0, 0.0]),
+        (218, [18.0, 0.0, 0.0]),
+        (246, [1.0, 0.0, 0.0]),
+        (262, [1.0, 0.0, 0.0]),
+        (420, [0.0, 0.0, 0.0]),
+    ];
     for identity in [Identity::Px4, Identity::ArduPilot] {
         for (row, sequence) in commands().iter().zip((0..=u8::MAX).cycle()) {
             let asked = ASKED.iter().find(|(number, _)| *number == row.number);

@@ -1,5 +1,7 @@
 //! Commands that navigate at once, by COMMAND_LONG and COMMAND_INT, as PX4 and ArduPilot take them.
 
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
 mod common;
 
 use autopilot::codec::Message;
@@ -138,6 +140,21 @@ fn a_region_of_interest_is_looked_at_wherever_its_altitude_is_from() {
         bench.fly(8.0);
         let heading_deg = bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees();
         assert!((heading_deg - 90.0).abs() < 3.0, "{identity:?}: {heading_deg}");
+        if !identity.is_ardupilot() {
+            continue;
+        }
+        // ArduPilot keeps looking while set-points without a heading lead it past the place.
+        bench.stream(20.0, |bench| {
+            bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+                target_system: 1,
+                coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+                type_mask: PositionTargetTypemask::from_bits_retain(0x0fc7),
+                vx: 2.5,
+                ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+            }));
+        });
+        let heading_deg = bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees();
+        assert!((heading_deg - 135.0).abs() < 6.0, "{heading_deg}");
     }
 }
 

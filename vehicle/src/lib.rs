@@ -8,6 +8,8 @@
 //!  radio        how a pilot's radio is read
 //!  plan         missions, fences and rally points: items, their checks and files, and the typed steps made from them
 //!  fault        what is broken
+//!  surroundings what stands and flies around
+//!  equipment    servos, relays, gripper, camera and gimbal
 //!  estimation   instruments and the estimator
 //!  mode         flight modes; mode_table has their numbers and names
 //!  identity     whose conventions the vehicle follows: PX4's, ArduPilot's or none
@@ -20,6 +22,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod absent_mode;
+pub mod equipment;
 pub mod estimation;
 pub mod fault;
 pub mod fence;
@@ -31,6 +34,7 @@ mod mode_table;
 pub mod parameters;
 pub mod plan;
 pub mod radio;
+pub mod surroundings;
 mod vehicle;
 pub mod world;
 
@@ -38,10 +42,12 @@ pub use absent_mode::AbsentMode;
 pub use flight_error::FlightError;
 pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
-    Action, AttitudeSetPoint, AxisTarget, Battery, BatteryActions, BatteryPack, Cause, ChangeError, Conduct,
-    Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight, FollowSettings,
-    HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
-    OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot, PositionSetPoint, Pulses, Refusal,
-    Reposition, ReturnGoal, ReturnSettings, SetPoint, Severity, SteeringKind, StickSettings, Sticks, TICK_US,
-    TargetReport, TrackedAttitude, TrailSettings, Trainer, Vehicle, VehicleSettings, YawTarget, wrapped,
+    Action, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions, BatteryPack, Cause, ChangeError,
+    Conduct, Encounter, Failsafe, FailsafeSettings, FenceParts, FenceRecord, FollowHeading, FollowHeight,
+    FollowSettings, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest,
+    Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
+    Pilot, PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings,
+    SelfId, SetPoint, Severity, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
+    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle,
+    VehicleSettings, YawTarget, wrapped,
 };

@@ -22,6 +22,8 @@ pub enum CommandKind {
 pub struct Command {
     /// MAV_CMD; any number.
     pub number: u16,
+    /// Component that it is for; 0: all of them.
+    pub component: u8,
     /// How it came.
     pub kind: CommandKind,
     /// Parameters 1 to 4.
@@ -38,13 +40,14 @@ impl Command {
     /// Reads either message.
     pub fn read(frame: &Frame) -> Option<Self> {
         let payload = frame.payload();
-        let number = payload.u16(28);
+        let (number, component) = (payload.u16(28), payload.u8(31));
         let parameters = payload.reals(0);
         match frame.message_id() {
             id::COMMAND_LONG => {
                 let [x, y, z] = payload.reals(16);
                 Some(Self {
                     number,
+                    component,
                     kind: CommandKind::Long { confirmation: payload.u8(32) },
                     parameters,
                     x,
@@ -61,7 +64,7 @@ impl Command {
                     value => f64::from(value) / scale,
                 };
                 let z = f64::from(payload.f32(24));
-                Some(Self { number, kind, parameters, x: real(16), y: real(20), z })
+                Some(Self { number, component, kind, parameters, x: real(16), y: real(20), z })
             }
             _ => None,
         }

@@ -4,6 +4,7 @@ use mavlink::Message as _;
 use mavlink::dialects::ardupilotmega::{MavComponent, MavMessage};
 
 use super::{Frame, id};
+use crate::speaker::Speaker;
 
 /// Component id of an autopilot.
 pub const COMPONENT: u8 = MavComponent::MAV_COMP_ID_AUTOPILOT1 as u8;
@@ -20,6 +21,11 @@ pub struct Target {
 impl Target {
     /// All systems and components.
     pub const ALL: Self = Self { system: 0, component: 0 };
+
+    /// Which component of this system is meant, if it is one of ours.
+    pub fn speaker(self, system: u8) -> Option<Speaker> {
+        (self.system == 0 || self.system == system).then(|| Speaker::of(self.component)).flatten()
+    }
 
     /// Whether the autopilot of this system is meant.
     pub fn is_autopilot(self, system: u8) -> bool {
@@ -41,6 +47,9 @@ pub fn target_of(frame: &Frame) -> Target {
         id::COMMAND_CANCEL => at(2),
         id::PARAM_SET => at(4),
         id::SET_ATTITUDE_TARGET => at(36),
+        id::GIMBAL_MANAGER_SET_ATTITUDE => at(32),
+        id::GIMBAL_MANAGER_SET_PITCHYAW => at(20),
+        id::GIMBAL_DEVICE_SET_ATTITUDE => at(30),
         id::SET_POSITION_TARGET_LOCAL_NED | id::SET_POSITION_TARGET_GLOBAL_INT => at(50),
         id::SET_MODE => Target { system: payload.u8(4), component: 0 },
         id::MANUAL_CONTROL => Target { system: payload.u8(10), component: 0 },

@@ -9,6 +9,7 @@ use vehicle::identity::Identity;
 use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::envelope::{Origin, PeerId};
+use crate::speaker::Speaker;
 use crate::stream::Stream;
 
 /// How a command that arrives twice is taken.
@@ -69,9 +70,19 @@ pub trait Service: Debug + Send {
         &[]
     }
 
+    /// Messages of other systems that it looks at, too: another service may take them.
+    fn listens(&self) -> &'static [u32] {
+        &[]
+    }
+
     /// Commands that it takes. No two services take the same.
     fn commands(&self) -> &'static [CommandEntry] {
         &[]
+    }
+
+    /// Components whose messages and commands it takes.
+    fn speakers(&self) -> &'static [Speaker] {
+        &[Speaker::Autopilot]
     }
 
     /// Messages that clients can get from it, once or regularly. No two services have the same.
@@ -95,7 +106,7 @@ pub trait Service: Debug + Send {
     /// Called for every received frame, whoever it is for, before it is handed to its service.
     fn hear(&mut self, _context: &mut Context, _origin: &Origin) {}
 
-    /// Takes in one of the messages that it claims.
+    /// Takes in one of the messages that it claims, or listens to.
     fn receive(&mut self, _context: &mut Context, _origin: &Origin, _frame: &Frame) {}
 
     /// Carries out one of the commands that it claims. The acknowledgement is sent for it, ahead of everything that it sends here.

@@ -4,6 +4,7 @@
 //! Nobody can turn a simulated vehicle by hand: the calibration goes on as if somebody did, and finds the offsets that the magnetometer
 //! has, which are none.
 
+use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
     MAG_CAL_PROGRESS_DATA, MAG_CAL_REPORT_DATA, MagCalStatus, MavCmd, MavMessage, MavSensorOrientation,
 };
@@ -57,15 +58,19 @@ pub struct MagnetometerCalibrations {
 }
 
 impl Service for MagnetometerCalibrations {
+    fn summary(&self) -> &'static str {
+        "Calibration of the magnetometer, as if somebody turned the vehicle"
+    }
+
+    fn answers(&self) -> &'static [u32] {
+        &[MAG_CAL_PROGRESS_DATA::ID, MAG_CAL_REPORT_DATA::ID]
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
-        if !context.identity().is_ardupilot() {
-            let text = "Magnetometer: calibrate with PREFLIGHT_CALIBRATION, parameter 2 = 1";
-            return Err(Refusal::Unsupported(text.to_owned()));
-        }
         if command.number == FIXED_YAW {
             return fix_by_yaw(context, command).map(|()| Progress::Done);
         }

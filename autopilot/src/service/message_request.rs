@@ -10,6 +10,7 @@ use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::Command;
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
+use crate::speaker::Speaker;
 
 const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
 const REQUEST_PROTOCOL_VERSION: u16 = MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION as u16;
@@ -34,29 +35,43 @@ impl Service for MessageRequests {
         COMMANDS
     }
 
+    fn speakers(&self) -> &'static [Speaker] {
+        &Speaker::ALL
+    }
+
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         let id = match command.number {
             GET_HOME_POSITION => HOME_POSITION_DATA::ID,
             REQUEST_PROTOCOL_VERSION => PROTOCOL_VERSION_DATA::ID,
             _ => AUTOPILOT_VERSION_DATA::ID,
         };
-        send_once(context, origin, id, 0)?;
+        send_once(context, origin, Speaker::of(command.component).unwrap_or_default(), id, 0)?;
         Ok(Progress::Done)
     }
 }
 
-/// Sends a message of the table to who has asked for it; `number` chooses one where there are several.
+/// Sends a message of the table to who has asked for it; `number` chooses one where there are several. The autopilot answers for camera and
+/// gimbal, and each of them for itself.
 ///
 /// # Errors
 /// [`Refusal::Unsupported`] for a message that there is not.
-pub fn send_once(context: &mut Context, origin: &Origin, id: u32, number: u32) -> Result<(), Refusal> {
+pub fn send_once(
+    context: &mut Context,
+    origin: &Origin,
+    asked: Speaker,
+    id: u32,
+    number: u32,
+) -> Result<(), Refusal> {
     let stream = context.streams.get(id);
-    let messages = stream.map(|stream| stream.messages(&context.component(), number)).unwrap_or_default();
-    if messages.is_empty() {
+    let stream = stream.filter(|stream| asked == Speaker::Autopilot || stream.speaker == asked);
+    let Some((stream, messages)) = stream
+        .map(|stream| (stream, stream.messages(&context.component(), number)))
+        .filter(|(_, all)| !all.is_empty())
+    else {
         return Err(Refusal::Unsupported(format!("Message {id} is not available")));
-    }
+    };
     for message in messages {
-        context.outbox.send(Destination::Peer(origin.peer), message);
+        context.outbox.send_as(stream.speaker, Destination::Peer(origin.peer), message);
     }
     Ok(())
 }

@@ -25,6 +25,10 @@ const PULSES_US: core::ops::RangeInclusive<f64> = 800.0..=2200.0;
 pub struct MotorTests;
 
 impl Service for MotorTests {
+    fn summary(&self) -> &'static str {
+        "Tests of single motors on the ground"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
@@ -63,7 +67,7 @@ fn test_motor(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 fn test_actuator(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let function = command.integer(5);
     if function.fract() != 0.0 || !(1.0..=12.0).contains(&function) {
-        return Err(Refusal::Unsupported("Actuator test: only motors can be tested".to_owned()));
+        return Err(Refusal::denied("Actuator test: only motors can be tested, output functions 1–4"));
     }
     if context.vehicle.is_armed() {
         return Err(Refusal::later("Actuator test rejected: disarm first"));

@@ -25,6 +25,10 @@ const DELAY_US: u64 = 200_000;
 pub struct Reboots;
 
 impl Service for Reboots {
+    fn summary(&self) -> &'static str {
+        "Reboot; shutting down is refused"
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }

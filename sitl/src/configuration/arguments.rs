@@ -8,10 +8,12 @@ use vehicle::estimation::SensorModel;
 use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
+use super::equipment::EquipmentChoice;
 use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
-    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports, WindFrom,
+    Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports,
+    TrafficChoice, WindFrom,
 };
 use super::{Conventions, LogFilter};
 use crate::fleet::LockstepPhase;
@@ -151,6 +153,16 @@ pub struct Arguments {
     )]
     pub autostart: Option<bool>,
 
+    /// Who speaks for camera and gimbal [default: autopilot]
+    ///
+    /// With `own`, the camera (component 100) and the gimbal (component 154) send heartbeats and messages of their own, as MAVLink
+    /// cameras and gimbals do. With `autopilot` no heartbeats but the autopilot's are sent, so that clients that take every
+    /// heartbeat for the autopilot's are not misled; requests to both components are answered all the same.
+    #[arg(
+        long, env = "LMPC_SITL_EQUIPMENT", value_name = "autopilot|own", help_heading = VEHICLE, hide_possible_values = true
+    )]
+    pub equipment: Option<EquipmentChoice>,
+
     /// Number of vehicles, 1 to 250 [default: 1]
     ///
     /// Their system ids count up from --system-id. Each has its own seed for gusts and noise.
@@ -243,6 +255,24 @@ pub struct Arguments {
         default_missing_value = "true", help_heading = SIMULATION, hide_short_help = true
     )]
     pub kalman: Option<bool>,
+
+    /// Obstacles around the vehicles (TOML)
+    ///
+    /// Boxes, cylinders and walls: see "Obstacles and traffic" in the book. A lidar and a downward rangefinder measure them, and
+    /// a vehicle that touches one ends its flight.
+    #[arg(long, env = "LMPC_SITL_WORLD", value_name = "FILE.toml", help_heading = SIMULATION, hide_short_help = true)]
+    pub world: Option<PathBuf>,
+
+    /// Aircraft around the vehicles: a flight, a file or `fleet`
+    ///
+    /// NORTH,EAST,HEIGHT,SPEED,COURSE[,CLIMB] flies straight on, from a place in metres, with m/s and degrees. FILE.toml has
+    /// several, with tracks. `fleet` makes the vehicles of this run see one another. Repeat it for more.
+    #[arg(
+        long, env = "LMPC_SITL_TRAFFIC", value_name = "AIRCRAFT", value_delimiter = ';', allow_hyphen_values = true,
+        help_heading = SIMULATION, hide_short_help = true,
+        value_parser = OsStringValueParser::new().try_map(TrafficChoice::of)
+    )]
+    pub traffic: Option<Vec<TrafficChoice>>,
 
     /// Fault to inject, such as 12.5:rotor1=off
     ///
@@ -379,10 +409,13 @@ impl Arguments {
             seed: self.seed.or(file.seed),
             set: self.set.or(file.set),
             fault: self.fault.or(file.fault),
+            world: self.world.or(file.world),
+            traffic: self.traffic.or(file.traffic),
             parameters: self.parameters.or(file.parameters),
             list_parameters: self.list_parameters.or(file.list_parameters),
             mission: self.mission.or(file.mission),
             autostart: self.autostart.or(file.autostart),
+            equipment: self.equipment.or(file.equipment),
             record: self.record.or(file.record),
             record_size: self.record_size.or(file.record_size),
             replay: self.replay.or(file.replay),

@@ -31,6 +31,7 @@ impl HilSettings {
             ("fault", arguments.fault.is_some()),
             ("mission", arguments.mission.is_some()),
             ("autostart", arguments.autostart.is_some()),
+            ("equipment", arguments.equipment.is_some()),
             ("signing-key", arguments.signing_key.is_some()),
             ("accept-signing-setup", arguments.accept_signing_setup.is_some()),
             ("rc-port", arguments.rc_port.is_some()),

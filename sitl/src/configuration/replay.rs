@@ -36,7 +36,10 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         parameters,
         list_parameters,
         mission,
+        world,
+        traffic,
         autostart,
+        equipment,
         record,
         record_size,
         replay: _,
@@ -85,7 +88,10 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("parameters", parameters.is_some()),
         ("list-parameters", list_parameters.is_some()),
         ("mission", mission.is_some()),
+        ("world", world.is_some()),
+        ("traffic", traffic.is_some()),
         ("autostart", autostart.is_some()),
+        ("equipment", equipment.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
         ("fmu", fmu.is_some()),
@@ -145,7 +151,9 @@ mod tests {
         ("list-parameters", "json"),
         ("log", "warn"),
         ("autostart", "true"),
+        ("equipment", "own"),
         ("lockstep", "always"),
+        ("traffic", "fleet"),
     ];
 
     #[test]

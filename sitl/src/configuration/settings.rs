@@ -11,11 +11,15 @@ use vehicle::fault::ScheduledFault;
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::plan::{Plans, Site};
+use vehicle::surroundings::Surroundings;
 use vehicle::world::{LocalFrame, WindSettings};
 use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
-use super::{AirframeChoice, Arguments, Clocks, Ports, fmu, read_plans, wind_drag, wind_hold};
+use super::{
+    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, fmu, read_plans, read_world, wind_drag,
+    wind_hold,
+};
 use crate::failure::Failure;
 use crate::files::kept_plans;
 use crate::fleet::{LockstepPhase, LockstepSettings};
@@ -48,6 +52,8 @@ pub struct Settings {
     pub tlog: Option<PathBuf>,
     /// Flight logs, and sizes and numbers of files of the traffic log.
     pub logs: LogSettings,
+    /// Whether the vehicles see one another as traffic.
+    pub fleet_traffic: bool,
     /// Folder that clients see, and whether they may change it.
     pub ftp_root: Option<(PathBuf, bool)>,
     /// Key to sign with.
@@ -120,6 +126,7 @@ impl Settings {
             record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
             logs: log_settings(arguments)?,
+            fleet_traffic: arguments.traffic.iter().flatten().any(|choice| *choice == TrafficChoice::Fleet),
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
             fmu,
@@ -287,7 +294,9 @@ pub(super) fn vehicle(
         battery: BatteryPack::default(),
         plans: Plans::default(),
         autostart: arguments.autostart.unwrap_or(false),
+        surroundings: surroundings(arguments)?,
         foreign: None,
+        equipment: arguments.equipment.unwrap_or_default().into(),
     };
     let chosen = airframe_of(arguments, system_id).map(AirframeChoice::choose).transpose()?;
     let airframe_note = chosen.map(|chosen| {
@@ -313,6 +322,24 @@ pub(super) fn vehicle(
         (None, None) => {}
     }
     Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
+}
+
+/// What stands and flies around every vehicle.
+fn surroundings(arguments: &Arguments) -> Result<Surroundings, Failure> {
+    let obstacles = arguments.world.as_deref().map(read_world).transpose()?.unwrap_or_default();
+    let mut aircraft = Vec::new();
+    for choice in arguments.traffic.iter().flatten() {
+        aircraft.append(&mut choice.aircraft(aircraft.len())?);
+    }
+    let mut ids: Vec<u32> = aircraft.iter().map(|one| one.id).collect();
+    ids.sort_unstable();
+    if let Some(id) =
+        ids.iter().zip(ids.iter().skip(1)).find_map(|(one, other)| (one == other).then_some(one))
+    {
+        let reason = format!("two aircraft have the address {id}; give each an `icao` of its own");
+        return Err(Failure::Value { name: "--traffic".to_owned(), reason });
+    }
+    Ok(Surroundings { obstacles, aircraft })
 }
 
 /// Parameters that flags name: those of the noise, then `--set`.

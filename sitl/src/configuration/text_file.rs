@@ -27,6 +27,15 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
     Ok(text.to_owned())
 }
 
+/// A mistake in the form of a TOML text: the line that it is in, and what is wrong there.
+pub(super) fn toml_mistake(text: &str, error: &toml::de::Error) -> String {
+    let start = error.span().map_or(0, |span| span.start);
+    let line = text.get(..start).unwrap_or_default().matches('\n').count();
+    let content = text.lines().nth(line).unwrap_or_default().trim();
+    let reason = error.message().lines().collect::<Vec<_>>().join(" ");
+    format!("line {}, `{content}`: {reason}", line + 1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::read_text;

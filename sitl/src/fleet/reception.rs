@@ -168,7 +168,7 @@ impl Fleet {
     }
 
     /// A message takes effect on a vehicle.
-    fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
+    pub(super) fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
         let Some(member) = self.members.get_mut(number) else { return };
         self.books.received(number, member.time_us(), received);
         member.autopilot.receive(&received.origin, &received.frame);

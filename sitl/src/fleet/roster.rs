@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use autopilot::codec::id;
-use autopilot::envelope::{Destination, Outgoing};
+use autopilot::COMPONENT;
+use autopilot::codec::{Frame, Version, id};
+use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
 use vehicle::Severity;
 use vehicle::foreign::ForeignModel;
 
@@ -19,7 +20,7 @@ use crate::failure::Failure;
 use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
-use crate::link::Links;
+use crate::link::{Links, Received};
 use crate::radio_port::RadioPort;
 use crate::record::Participant;
 
@@ -39,6 +40,8 @@ pub struct Fleet {
     pub(super) reception: Reception,
     /// Does the work of clients on files.
     _files: FileThread,
+    /// Whether the vehicles see one another as traffic.
+    shares_traffic: bool,
     /// The vehicle whose long answers go on next.
     next_transfer: usize,
     /// The key's files are those of this process.
@@ -96,6 +99,7 @@ impl Fleet {
             reception: Reception::new(hubs.len()),
             hubs,
             _files: files,
+            shares_traffic: settings.fleet_traffic,
             next_transfer: 0,
             _key_lock: key_lock,
         })
@@ -173,8 +177,29 @@ impl Fleet {
                     self.books.keep_size(&self.members);
                 }
                 self.send(number, now);
+                self.share_traffic(number, now);
             }
             Err(error) => self.lose(number, error, now),
+        }
+    }
+
+    /// Once a second the others hear the transponder of a vehicle, as if it had been received: records hold it.
+    fn share_traffic(&mut self, number: usize, now: Instant) {
+        const PERIOD_US: u64 = 1_000_000;
+        let Some(member) = self.members.get(number).filter(|_| self.shares_traffic) else { return };
+        if !member.time_us().is_multiple_of(PERIOD_US) {
+            return;
+        }
+        let system = member.autopilot.system_id();
+        let sequence = (member.time_us() / PERIOD_US) as u8;
+        let report = member.autopilot.transponder_report();
+        let Some(frame) = Frame::encode(&report, Version::Two, sequence, (system, COMPONENT)) else { return };
+        let peer = PeerId { link: 0, number: u64::MAX };
+        let received = Received { origin: Origin { peer, system, component: COMPONENT }, frame };
+        for other in (0..self.members.len()).filter(|other| *other != number) {
+            if self.members.get(other).is_some_and(|member| member.loss().is_none()) {
+                self.take_in(other, &received, now);
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! All links: receiving in turns, sending, and forwarding from one peer to the others.
 
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 use autopilot::COMPONENT;
@@ -59,6 +59,8 @@ const STRANGERS: u64 = 0;
 pub struct Links {
     /// Our systems.
     systems: Vec<u8>,
+    /// Those of their components that speak.
+    senders: BTreeSet<(u8, u8)>,
     links: Vec<Link>,
     turns: Turns<PeerId>,
     /// Number of pieces that have come, which says what came first.
@@ -108,6 +110,7 @@ impl Links {
 
     fn of(links: Vec<Link>, systems: Vec<u8>) -> Self {
         Self {
+            senders: systems.iter().map(|system| (*system, COMPONENT)).collect(),
             systems,
             links,
             turns: Turns::default(),
@@ -306,7 +309,8 @@ impl Links {
 
     /// Whether a frame is one of ours that has come back.
     fn is_own(&self, received: &Received) -> bool {
-        received.origin.component == COMPONENT && self.systems.contains(&received.origin.system)
+        let Origin { system, component, .. } = received.origin;
+        self.senders.contains(&(system, component))
     }
 
     /// Passes a frame on to the peers that lead to its target, unless it is for one of ours alone.
@@ -335,7 +339,8 @@ impl Links {
 
     /// Sends a message of one of our systems and returns it as one of its frames, for a log.
     pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<Frame> {
-        let sender = (system, COMPONENT);
+        let sender = (system, outgoing.component);
+        self.senders.insert(sender);
         let essential = matches!(outgoing.to, Destination::Peer(_)) || outgoing.message.id() == id::HEARTBEAT;
         let mut sent = None;
         for (index, link) in self.links.iter_mut().enumerate() {
@@ -351,7 +356,7 @@ impl Links {
                 // MAVLink 1 has no signatures.
                 let version = if self.signing.is_on() { Version::Two } else { peer.version() };
                 // Messages beyond number 255 do not exist in MAVLink 1.
-                let sequence = peer.sequences.entry(system).or_default();
+                let sequence = peer.sequences.entry(sender).or_default();
                 if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
                     if !peer.allowance.spend(frame.bytes().len(), essential) {
                         continue;
@@ -396,7 +401,7 @@ mod tests {
     use crate::link::transport::{Event, Transport};
     use crate::link::{SetupRefusal, SetupRules, SigningSetup};
     use crate::signing::{SecretKey, Signing};
-    use autopilot::codec::{Frame, Message, Version};
+    use autopilot::codec::{COMPONENT, Frame, Message, Version};
     use autopilot::envelope::{Destination, Outgoing, PeerId};
 
     /// What the clock shows.
@@ -484,6 +489,10 @@ mod tests {
         Frame::encode(&message.into(), Version::Two, 0, (system, 190)).expect("a message of MAVLink 2")
     }
 
+    fn everyone(message: Message) -> Outgoing {
+        Outgoing { to: Destination::Everyone, message, component: COMPONENT }
+    }
+
     fn heartbeat(system: u8) -> Frame {
         frame(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()), system)
     }
@@ -541,7 +550,7 @@ mod tests {
         let attitude = Message::from(MavMessage::ATTITUDE(ATTITUDE_DATA::default()));
         for message in [heartbeat, attitude] {
             for _ in 0..1000 {
-                links.send(&Outgoing { to: Destination::Everyone, message: message.clone() }, 1);
+                links.send(&everyone(message.clone()), 1);
             }
         }
     }
@@ -677,7 +686,7 @@ mod tests {
         // Ours: signed, each link under its number, never in MAVLink 1.
         near.1.lock().expect("one thread").clear();
         let message = Message::from(MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()));
-        links.send(&Outgoing { to: Destination::Everyone, message }, 1);
+        links.send(&everyone(message), 1);
         let sent = [near, far].map(|end| {
             let frame =
                 Frame::parse(end.1.lock().expect("one thread").last().expect("sent")).expect("a frame");

@@ -20,8 +20,8 @@ pub struct Peer {
     pub inbox: Inbox,
     /// Whether it is gone, and only what it sent before is left to be looked at.
     pub departed: bool,
-    /// Number of the next frame to it, from each of our systems: each peer sees flows of its own.
-    pub sequences: BTreeMap<u8, u8>,
+    /// Number of the next frame to it, from each component of each of our systems: each peer sees flows of its own.
+    pub sequences: BTreeMap<(u8, u8), u8>,
     /// What it may be sent.
     pub allowance: Allowance,
     old_frames: u8,

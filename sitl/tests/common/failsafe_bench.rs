@@ -4,7 +4,8 @@ use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 use vehicle::parameters::{
-    ARDUPILOT_PARAMETERS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS, radio_parameters,
+    ARDUPILOT_PARAMETERS, ARDUPILOT_SURROUNDINGS, CONDUCT_PARAMETERS, ConductParameter, PX4_PARAMETERS,
+    PX4_SURROUNDINGS, radio_parameters,
 };
 use vehicle::{Action, Cause, Conduct, Mode};
 
@@ -39,7 +40,13 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
 /// Those of both identities.
 fn known_parameters() -> impl Iterator<Item = &'static ConductParameter> {
     let radio = radio_parameters(false).chain(radio_parameters(true));
-    CONDUCT_PARAMETERS.iter().chain(PX4_PARAMETERS).chain(ARDUPILOT_PARAMETERS).chain(radio)
+    CONDUCT_PARAMETERS
+        .iter()
+        .chain(PX4_PARAMETERS)
+        .chain(ARDUPILOT_PARAMETERS)
+        .chain(PX4_SURROUNDINGS)
+        .chain(ARDUPILOT_SURROUNDINGS)
+        .chain(radio)
 }
 
 /// The parameter of a cause.

@@ -15,7 +15,7 @@ for name in ("MutableMapping", "Mapping", "Callable"):
 from dronekit import Command, LocationGlobal, LocationGlobalRelative, VehicleMode, connect  # noqa: E402
 from pymavlink import mavutil  # noqa: E402
 
-SPEED = 8
+SPEED = 16
 
 
 def wait(condition, what: str, timeout: float = 30.0):

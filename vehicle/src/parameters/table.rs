@@ -10,6 +10,7 @@ use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
 use super::suggestion::suggestion;
+use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
 use super::{
     CONDUCT_PARAMETERS, ConductParameter, ParameterValues, SetError, Speed, Statistic, Statistics, Value,
@@ -53,16 +54,20 @@ impl ParameterTable {
         } else {
             (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
         };
-        let of_conduct =
-            CONDUCT_PARAMETERS.iter().chain(own).chain(of_modes).chain(radio_parameters(ardupilot)).flat_map(
-                |parameter| {
-                    let names = parameter.names_in(identity);
-                    names.map(|(id, scale, is_other)| Entry {
-                        is_other,
-                        ..Entry::new(id, Source::Conduct(parameter, scale))
-                    })
-                },
-            );
+        let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
+        let of_conduct = CONDUCT_PARAMETERS
+            .iter()
+            .chain(own)
+            .chain(of_modes)
+            .chain(radio_parameters(ardupilot))
+            .chain(around)
+            .flat_map(|parameter| {
+                let names = parameter.names_in(identity);
+                names.map(|(id, scale, is_other)| Entry {
+                    is_other,
+                    ..Entry::new(id, Source::Conduct(parameter, scale))
+                })
+            });
         let system = if ardupilot { "SYSID_THISMAV" } else { "MAV_SYS_ID" };
         let hover = if ardupilot { "MOT_THST_HOVER" } else { "MPC_THR_HOVER" };
         let others = [

@@ -1,7 +1,10 @@
 //! The commands of plans: their numbers (MAV_CMD), and for those of missions what is taken and the step that is made of it. A new
 //! command of missions begins here.
 
+use super::equipment_commands::EQUIPMENT_COMMANDS;
 use super::step::{Condition, Delay, Do, Jump, Navigate, Step, Turn, TurnDirection, TurnTo, Turns, Waypoint};
+use nalgebra::Vector3;
+
 use super::{ChangeSpeed, Look, MissionItem, Place, Site, TimeOfDay, frame};
 
 pub const NAV_WAYPOINT: u16 = 16;
@@ -11,23 +14,70 @@ pub const NAV_LOITER_TIME: u16 = 19;
 pub const NAV_RETURN_TO_LAUNCH: u16 = 20;
 pub const NAV_LAND: u16 = 21;
 pub const NAV_TAKEOFF: u16 = 22;
+pub const NAV_LOITER_TO_ALT: u16 = 31;
+pub const NAV_SPLINE_WAYPOINT: u16 = 82;
+pub const NAV_GUIDED_ENABLE: u16 = 92;
 pub const NAV_DELAY: u16 = 93;
+pub const NAV_PAYLOAD_PLACE: u16 = 94;
 pub const CONDITION_DELAY: u16 = 112;
 pub const CONDITION_DISTANCE: u16 = 114;
 pub const CONDITION_YAW: u16 = 115;
 pub const DO_JUMP: u16 = 177;
 pub const DO_CHANGE_SPEED: u16 = 178;
 pub const DO_SET_HOME: u16 = 179;
+pub const DO_SET_RELAY: u16 = 181;
+pub const DO_REPEAT_RELAY: u16 = 182;
+pub const DO_SET_SERVO: u16 = 183;
+pub const DO_REPEAT_SERVO: u16 = 184;
+pub const DO_SET_ACTUATOR: u16 = 187;
+pub const DO_RETURN_PATH_START: u16 = 188;
+pub const DO_LAND_START: u16 = 189;
+pub const DO_SET_REVERSE: u16 = 194;
 pub const DO_SET_ROI_LOCATION: u16 = 195;
 pub const DO_SET_ROI_WPNEXT_OFFSET: u16 = 196;
 pub const DO_SET_ROI_NONE: u16 = 197;
+pub const DO_CONTROL_VIDEO: u16 = 200;
 pub const DO_SET_ROI: u16 = 201;
+pub const DO_DIGICAM_CONFIGURE: u16 = 202;
+pub const DO_DIGICAM_CONTROL: u16 = 203;
+pub const DO_MOUNT_CONFIGURE: u16 = 204;
+pub const DO_MOUNT_CONTROL: u16 = 205;
+pub const DO_SET_CAM_TRIGG_DIST: u16 = 206;
+pub const DO_FENCE_ENABLE: u16 = 207;
+pub const DO_PARACHUTE: u16 = 208;
+pub const DO_INVERTED_FLIGHT: u16 = 210;
+pub const DO_GRIPPER: u16 = 211;
+pub const DO_AUTOTUNE_ENABLE: u16 = 212;
+pub const DO_SET_CAM_TRIGG_INTERVAL: u16 = 214;
+pub const DO_SET_RESUME_REPEAT_DIST: u16 = 215;
+pub const DO_SPRAYER: u16 = 216;
+pub const DO_SEND_SCRIPT_MESSAGE: u16 = 217;
+pub const DO_AUX_FUNCTION: u16 = 218;
+pub const DO_GUIDED_LIMITS: u16 = 222;
+pub const DO_ENGINE_CONTROL: u16 = 223;
+pub const OBLIQUE_SURVEY: u16 = 260;
+pub const SET_CAMERA_MODE: u16 = 530;
+pub const SET_CAMERA_ZOOM: u16 = 531;
+pub const SET_CAMERA_FOCUS: u16 = 532;
+pub const SET_CAMERA_SOURCE: u16 = 534;
+pub const JUMP_TAG: u16 = 600;
+pub const DO_JUMP_TAG: u16 = 601;
+pub const DO_GIMBAL_MANAGER_PITCHYAW: u16 = 1000;
+pub const DO_GIMBAL_MANAGER_CONFIGURE: u16 = 1001;
+pub const IMAGE_START_CAPTURE: u16 = 2000;
+pub const IMAGE_STOP_CAPTURE: u16 = 2001;
+pub const DO_TRIGGER_CONTROL: u16 = 2003;
+pub const VIDEO_START_CAPTURE: u16 = 2500;
+pub const VIDEO_STOP_CAPTURE: u16 = 2501;
+pub const DO_VTOL_TRANSITION: u16 = 3000;
 pub const NAV_FENCE_RETURN_POINT: u16 = 5000;
 pub const NAV_FENCE_POLYGON_VERTEX_INCLUSION: u16 = 5001;
 pub const NAV_FENCE_POLYGON_VERTEX_EXCLUSION: u16 = 5002;
 pub const NAV_FENCE_CIRCLE_INCLUSION: u16 = 5003;
 pub const NAV_FENCE_CIRCLE_EXCLUSION: u16 = 5004;
 pub const NAV_RALLY_POINT: u16 = 5100;
+pub const NAV_SCRIPT_TIME: u16 = 42702;
+pub const DO_WINCH: u16 = 42600;
 
 /// What is known of a command of missions.
 pub(super) struct MissionCommand {
@@ -104,6 +154,16 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
         (4, "yaw", ANGLE.0, ANGLE.1)] },
     MissionCommand { number: NAV_TAKEOFF, step: takeoff, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[
         (4, "yaw", ANGLE.0, ANGLE.1)] },
+    MissionCommand { number: NAV_LOITER_TO_ALT, step: |source| Step::Navigate(Navigate::LoiterToAltitude { place: source.place() }),
+        place: PlaceRule::Goal, needed: &[7], whole: &[], ranges: &[(2, "radius", -WIDEST_M, WIDEST_M)] },
+    MissionCommand { number: NAV_SPLINE_WAYPOINT, step: spline, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[
+        (1, "hold time", 0.0, LONGEST_S)] },
+    MissionCommand { number: NAV_GUIDED_ENABLE, step: |_| Step::Do(Do::Mark), place: PlaceRule::None, needed: &[], whole: &[],
+        ranges: &[(1, "enable (guided control within a mission is not supported: switch to Guided mode instead)", 0.0, 0.0)] },
+    MissionCommand { number: NAV_PAYLOAD_PLACE, step: place_payload, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[
+        (1, "descent", 0.0, 1e4)] },
+    MissionCommand { number: NAV_SCRIPT_TIME, step: |source| Step::Navigate(Navigate::Delay(Delay::For(source.value(2)))),
+        place: PlaceRule::None, needed: &[2], whole: &[], ranges: &[(2, "timeout", 0.1, LONGEST_S)] },
     MissionCommand { number: NAV_DELAY, step: delay, place: PlaceRule::None, needed: &[1], whole: &[2, 3, 4], ranges: &[
         (1, "delay", -1.0, LONGEST_S), (2, "hour", -1.0, 23.0), (3, "minute", -1.0, 59.0), (4, "second", -1.0, 59.0)] },
     MissionCommand { number: CONDITION_DELAY, step: |source| Step::Condition(Condition::Delay(source.value(1))),
@@ -115,6 +175,8 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
         (4, "relative", 0.0, 1.0)] },
     MissionCommand { number: DO_JUMP, step: jump, place: PlaceRule::None, needed: &[1, 2], whole: &[1, 2], ranges: &[
         (1, "item", 0.0, LAST), (2, "repeats", -1.0, LAST)] },
+    MissionCommand { number: DO_JUMP_TAG, step: jump_to_tag, place: PlaceRule::None, needed: &[1, 2], whole: &[1, 2], ranges: &[
+        (1, "tag", 0.0, LAST), (2, "repeats", -1.0, LAST)] },
     MissionCommand { number: DO_CHANGE_SPEED, step: change_speed, place: PlaceRule::None, needed: &[2], whole: &[1], ranges: &[
         (1, "kind of speed", 0.0, 3.0), (2, "speed", -2.0, FASTEST_M_S)] },
     MissionCommand { number: DO_SET_HOME, step: set_home, place: PlaceRule::Mark, needed: &[], whole: &[], ranges: &[
@@ -146,7 +208,24 @@ pub(super) const FENCE_COMMANDS: [u16; 5] = [
 
 /// The command of missions with a number.
 pub(super) fn mission_command(number: u16) -> Option<&'static MissionCommand> {
-    MISSION_COMMANDS.iter().find(|command| command.number == number)
+    MISSION_COMMANDS.iter().chain(EQUIPMENT_COMMANDS).find(|command| command.number == number)
+}
+
+/// Number of the item that has a tag, if there is one.
+pub fn tagged_item(items: &[MissionItem], tag: f64) -> Option<usize> {
+    items.iter().position(|item| item.command == JUMP_TAG && item.parameter(1) == tag)
+}
+
+/// Number of the item at which a landing begins that is nearest to a place, NED, m: the place of DO_LAND_START counts, or else that of
+/// the next item that has one.
+pub fn landing_start(items: &[MissionItem], site: &Site, near_m: &Vector3<f64>) -> Option<usize> {
+    let place = |index: usize| {
+        let places = items.iter().skip(index).filter_map(|item| site.place(item)?.horizontal_m);
+        places.map(|[x, y]| (x - near_m.x).hypot(y - near_m.y)).next().unwrap_or(f64::INFINITY)
+    };
+    let starts =
+        (0..items.len()).filter(|index| items.get(*index).is_some_and(|item| item.command == DO_LAND_START));
+    starts.min_by(|one, other| place(*one).total_cmp(&place(*other)))
 }
 
 impl MissionItem {
@@ -170,12 +249,12 @@ impl MissionItem {
 
 impl Source<'_> {
     /// A parameter; zero if it was not given.
-    fn value(&self, number: usize) -> f64 {
+    pub(super) fn value(&self, number: usize) -> f64 {
         self.item.parameter_or(number, 0.0)
     }
 
     /// A parameter in degrees as rad, if it was given.
-    fn angle_rad(&self, number: usize) -> Option<f64> {
+    pub(super) fn angle_rad(&self, number: usize) -> Option<f64> {
         Some(self.item.parameter(number).to_radians()).filter(|angle_rad| angle_rad.is_finite())
     }
 
@@ -255,6 +334,23 @@ fn turn(source: &Source<'_>) -> Step {
     };
     let rate_rad_s = source.angle_rad(2).filter(|rate_rad_s| *rate_rad_s > 0.0);
     Step::Condition(Condition::Yaw(Turn { to, rate_rad_s }))
+}
+
+fn spline(source: &Source<'_>) -> Step {
+    Step::Navigate(Navigate::Spline { place: source.place(), hold_s: source.value(1) })
+}
+
+/// NAV_PAYLOAD_PLACE: how far it may descend below its altitude; 0: to the ground.
+fn place_payload(source: &Source<'_>) -> Step {
+    let descent_m = Some(source.value(1)).filter(|descent_m| *descent_m > 0.0);
+    Step::Navigate(Navigate::PlacePayload { place: source.place(), descent_m })
+}
+
+/// DO_JUMP_TAG: as DO_JUMP, to the item behind a tag.
+fn jump_to_tag(source: &Source<'_>) -> Step {
+    let Some(to) = tagged_item(source.items, source.value(1)) else { return Step::Pass };
+    let repeats = source.value(2);
+    Step::Jump(Jump { to, repeats: if repeats < 0.0 { None } else { Some(repeats as u32) } })
 }
 
 fn jump(source: &Source<'_>) -> Step {
@@ -383,6 +479,26 @@ mod tests {
                 AT,
                 Step::Navigate(Navigate::Takeoff { place: place(AT), travels: true }),
             ),
+            (
+                NAV_LOITER_TO_ALT,
+                [0.0, 25.0, 0.0, 0.0],
+                AT,
+                Step::Navigate(Navigate::LoiterToAltitude { place: place(AT) }),
+            ),
+            (
+                NAV_SPLINE_WAYPOINT,
+                [3.0, 0.0, 0.0, 0.0],
+                AT,
+                Step::Navigate(Navigate::Spline { place: place(AT), hold_s: 3.0 }),
+            ),
+            (
+                NAV_PAYLOAD_PLACE,
+                [4.0, 0.0, 0.0, 0.0],
+                AT,
+                Step::Navigate(Navigate::PlacePayload { place: place(AT), descent_m: Some(4.0) }),
+            ),
+            (NAV_GUIDED_ENABLE, [0.0; 4], [0.0; 3], Step::Do(Do::Mark)),
+            (NAV_SCRIPT_TIME, [1.0, 20.0, 0.0, 0.0], [0.0; 3], delay(Delay::For(20.0))),
             (NAV_DELAY, [3.5, -1.0, -1.0, -1.0], [0.0; 3], delay(Delay::For(3.5))),
             (
                 NAV_DELAY,
@@ -450,8 +566,14 @@ mod tests {
             let item = item(*command, *parameters, *position);
             assert_eq!(step(&item, &site), *expected, "{item:?}");
         }
-        let tested = |number| cases.iter().any(|(command, ..)| *command == number);
-        let known = (0..=u16::MAX).filter(|number| mission_command(*number).is_some());
+        let items = [item(JUMP_TAG, [7.0, 0.0, 0.0, 0.0], AT), item(DO_JUMP_TAG, [7.0, 2.0, 0.0, 0.0], AT)];
+        check::plan(PlanKind::Mission, &items, &site).unwrap();
+        let source = Source { item: &items[1], items: &items, site: &site };
+        assert_eq!(jump_to_tag(&source), Step::Jump(Jump { to: 0, repeats: Some(2) }));
+        let fault = check::plan(PlanKind::Mission, &items[1..], &site).unwrap_err();
+        assert_eq!(fault.reason, "no item has tag 7");
+        let tested = |number| number == DO_JUMP_TAG || cases.iter().any(|(command, ..)| *command == number);
+        let known = MISSION_COMMANDS.iter().map(|command| command.number);
         let untested: Vec<u16> = known.filter(|number| !tested(*number)).collect();
         assert!(untested.is_empty(), "commands without a case: {untested:?}");
     }

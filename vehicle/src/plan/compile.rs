@@ -50,18 +50,41 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
     }
 }
 
+/// What is done at once for a command that is no part of a mission.
+///
+/// # Errors
+/// [`PlanFault`] of what is not done at once.
+pub fn action(item: &MissionItem, site: &Site) -> Result<Do, PlanFault> {
+    match alone(item, site)? {
+        Step::Do(action) => Ok(action),
+        _ => Err(unsupported(site)),
+    }
+}
+
 /// The turn that CONDITION_YAW asks for.
 ///
 /// # Errors
 /// [`PlanFault`] of what is no turn.
 pub fn turn(item: &MissionItem, site: &Site) -> Result<Turn, PlanFault> {
-    // As any item but home.
-    let index = usize::from(site.identity.is_ardupilot());
-    check::item(PlanKind::Mission, index, item, site)?;
-    match step(item, &[], site) {
+    match alone(item, site)? {
         Step::Condition(Condition::Yaw(turn)) => Ok(turn),
-        _ => Err(PlanFault::of_item(index, FaultCode::Unsupported, "not supported")),
+        _ => Err(unsupported(site)),
     }
+}
+
+/// The number of an item that is no part of a mission: as any item but home.
+fn alone_index(site: &Site) -> usize {
+    usize::from(site.identity.is_ardupilot())
+}
+
+/// The step of an item that is no part of a mission, once it has been checked.
+fn alone(item: &MissionItem, site: &Site) -> Result<Step, PlanFault> {
+    check::item(PlanKind::Mission, alone_index(site), item, site)?;
+    Ok(step(item, &[], site))
+}
+
+fn unsupported(site: &Site) -> PlanFault {
+    PlanFault::of_item(alone_index(site), FaultCode::Unsupported, "not supported")
 }
 
 fn step(item: &MissionItem, items: &[MissionItem], site: &Site) -> Step {

@@ -17,6 +17,7 @@ pub mod check;
 #[allow(missing_docs)] // The names of the numbers are their documentation.
 pub mod command;
 pub mod compile;
+mod equipment_commands;
 mod fault;
 pub mod file;
 mod file_fault;

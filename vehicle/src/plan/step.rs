@@ -1,6 +1,7 @@
 //! The steps of a mission, in SI units.
 
 use super::{ChangeSpeed, Look, Place, TimeOfDay};
+use crate::equipment::Operation;
 
 /// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +55,25 @@ pub enum Navigate {
         /// Whether it goes to the place then: ArduPilot only climbs.
         travels: bool,
     },
+    /// To a place at the present height, and there to another height.
+    LoiterToAltitude {
+        /// The place with that height.
+        place: Place,
+    },
+    /// To a place, along a curve through it and those before and behind it.
+    Spline {
+        /// The place.
+        place: Place,
+        /// How long the vehicle stays, s; 0: it need not stop.
+        hold_s: f64,
+    },
+    /// To a place, down to the ground there, where the gripper releases, and up again.
+    PlacePayload {
+        /// The place.
+        place: Place,
+        /// How far it may descend, m; `None`: to the ground.
+        descent_m: Option<f64>,
+    },
     /// Wait where the vehicle is.
     Delay(Delay),
 }
@@ -67,6 +87,9 @@ impl Navigate {
             | Self::Loiter { place, .. }
             | Self::LoiterTime { place, .. }
             | Self::Land { place, .. }
+            | Self::LoiterToAltitude { place }
+            | Self::Spline { place, .. }
+            | Self::PlacePayload { place, .. }
             | Self::Takeoff { place, .. } => Some(place),
             Self::ReturnToLaunch | Self::Delay(_) => None,
         }
@@ -155,6 +178,14 @@ pub enum Do {
     SetHome(Option<Place>),
     /// Looks at something; `None`: at nothing any more.
     Look(Option<Look>),
+    /// Asks something of the equipment.
+    Operate(Operation),
+    /// Switches the fence on or off.
+    EnableFence(bool),
+    /// Passes something by that the vehicle does not have.
+    Absent(&'static str),
+    /// Nothing: other commands find their way by it.
+    Mark,
 }
 
 /// A jump.

@@ -11,6 +11,7 @@ use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::return_settings::ReturnSettings;
 use super::stick_settings::StickSettings;
+use super::surroundings_settings::SurroundingsSettings;
 use super::trail::TrailSettings;
 use crate::radio::RadioSettings;
 
@@ -48,6 +49,9 @@ pub struct Conduct {
     /// Whether clients may break units.
     #[serde(default = "yes")]
     pub failure_injection: bool,
+    /// What it does about obstacles, traffic and remote identification.
+    #[serde(default)]
+    pub surroundings: SurroundingsSettings,
     /// The way home beside its height.
     #[serde(default)]
     pub return_home: ReturnSettings,
@@ -106,7 +110,7 @@ fn thrust_as_thrust() -> u8 {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 3 s) | PX4's, within our limits of speed; the times are theirs |
+/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | PX4's, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
 impl Conduct {
@@ -133,6 +137,7 @@ impl Conduct {
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
             failure_injection: true,
+            surroundings: SurroundingsSettings::new(ardupilot),
             return_home: ReturnSettings::new(ardupilot),
             heading_policy: if ardupilot {
                 HeadingPolicy::NextPlaceExceptReturn

@@ -12,16 +12,20 @@ use super::injection::Injection;
 use super::landing::Landing;
 use super::mission::Mission;
 use super::motor_test::MotorTests;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::pilot_watch::PilotWatch;
 use super::receiver::Receiver;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
+use super::traffic_watch::TrafficWatch;
+use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -68,6 +72,14 @@ pub struct Machines {
     pub follow: Follow,
     /// The mission.
     pub mission: Mission,
+    /// What stands around.
+    pub obstacles: ObstacleWatch,
+    /// What flies around.
+    pub traffic: TrafficWatch,
+    /// What it tells of itself.
+    pub remote_id: RemoteId,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
+    /// What it carries.
+    pub equipment: Equipment,
 }

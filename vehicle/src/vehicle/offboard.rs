@@ -68,9 +68,9 @@ impl Offboard {
         self.attitude.forget();
     }
 
-    /// Whether the latest set-point has been steered to.
-    pub fn is_applied(&self) -> bool {
-        self.applied
+    /// Whether the set-point that is steered to asks for a heading.
+    pub fn turns(&self) -> bool {
+        self.applied && self.latest.is_some_and(|(set_point, _)| set_point.turns())
     }
 
     /// Whether the latest set-point is not older than a timeout, s, at a time, µs.
@@ -189,7 +189,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, -10.0]), scene.outputs.time_us);
         assert!(step(&mut offboard, &mut scene).is_empty());
-        assert!(offboard.is_applied() && scene.goal_m() == Some([5.0, 0.0, -10.0]));
+        assert!(offboard.applied && scene.goal_m() == Some([5.0, 0.0, -10.0]));
         // What another part does with the steering meanwhile stays.
         scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
         step(&mut offboard, &mut scene);
@@ -207,7 +207,7 @@ mod tests {
         let mut offboard = Offboard::default();
         offboard.take(place([5.0, 0.0, 0.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
-        assert!(!offboard.is_applied() && scene.steering.kind() == SteeringKind::Idle);
+        assert!(!offboard.applied && scene.steering.kind() == SteeringKind::Idle);
         offboard.take(place([5.0, 0.0, -2.0]), scene.outputs.time_us);
         step(&mut offboard, &mut scene);
         assert_eq!(scene.goal_m(), Some([5.0, 0.0, -2.0]));

@@ -15,6 +15,7 @@ use super::situation::Situation;
 use super::speeds::SpeedChange;
 use super::steering::Steering;
 use super::trajectory::PieceFlight;
+use crate::equipment::Operation;
 use crate::mode::Mode;
 use crate::world::FARTHEST_M;
 
@@ -31,6 +32,10 @@ pub enum Request {
     ChangeSpeeds(SpeedChange),
     /// The failsafe is to take in whether a cause is there.
     See(Cause, bool),
+    /// Something is asked of the equipment.
+    Operate(Operation),
+    /// The fence is to be switched on or off.
+    EnableFence(bool),
     /// The rotors are to stop; the text says why.
     StopRotors(String),
     /// The flight is to end at once.
@@ -249,6 +254,16 @@ impl<'a> Proposal<'a> {
     /// Tells the failsafe whether a cause is there.
     pub fn see(&mut self, cause: Cause, present: bool) {
         self.requests.push(Request::See(cause, present));
+    }
+
+    /// Asks something of the equipment.
+    pub fn operate(&mut self, operation: Operation) {
+        self.requests.push(Request::Operate(operation));
+    }
+
+    /// Asks that the fence is switched on or off.
+    pub fn enable_fence(&mut self, enabled: bool) {
+        self.requests.push(Request::EnableFence(enabled));
     }
 
     /// Asks that the rotors stop and says why.

@@ -158,7 +158,7 @@ impl Scene {
             breach: None,
             fence_is_ahead: false,
             set_points_are_recent: self.set_points_are_recent,
-            set_point_is_applied: false,
+            set_point_turns: false,
             pilot: self.pilot,
             has_trail: false,
             mission_goes_on: self.mission_goes_on,

@@ -5,11 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
+use crate::equipment::EquipmentVoice;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
 use crate::identity::Identity;
 use crate::plan::Plans;
+use crate::surroundings::Surroundings;
 use crate::world::{Geodetic, WindSettings};
 
 /// Everything that a vehicle is made from.
@@ -42,9 +44,15 @@ pub struct VehicleSettings {
     /// Whether it arms and starts its mission by itself as soon as it can.
     #[serde(default)]
     pub autostart: bool,
+    /// What stands and flies around it.
+    #[serde(default)]
+    pub surroundings: Surroundings,
     /// What flies in place of our plant or closed loop, if anything does.
     #[serde(default)]
     pub foreign: Option<ForeignDescription>,
+    /// Who speaks for camera and gimbal.
+    #[serde(default)]
+    pub equipment: EquipmentVoice,
 }
 
 impl VehicleSettings {
@@ -62,7 +70,9 @@ impl VehicleSettings {
             sensors: SensorSettings::default(),
             plans: Plans::default(),
             autostart: false,
+            surroundings: Surroundings::default(),
             foreign: None,
+            equipment: EquipmentVoice::default(),
         }
     }
 

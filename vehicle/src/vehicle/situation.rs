@@ -77,8 +77,8 @@ pub struct Situation<'a> {
     pub fence_is_ahead: bool,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
-    /// Whether the latest set-point has been steered to.
-    pub set_point_is_applied: bool,
+    /// Whether the set-point that is steered to asks for a heading.
+    pub set_point_turns: bool,
     /// The pilot.
     pub pilot: Pilot,
     /// Whether there is a way back that it came.
@@ -118,8 +118,8 @@ impl<'a> Situation<'a> {
     pub fn chooses_its_heading(&self) -> bool {
         match self.mode {
             Mode::Hold | Mode::Takeoff => true,
-            // ArduPilot's guided mode, before set-points steer it.
-            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_is_applied,
+            // ArduPilot's guided mode, unless a set-point has a heading of its own.
+            Mode::Offboard => self.identity.is_ardupilot() && !self.set_point_turns,
             _ => false,
         }
     }

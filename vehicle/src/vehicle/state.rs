@@ -2,12 +2,14 @@
 
 mod arming;
 mod decision;
+mod equipment;
 mod pilot;
 mod plan_requests;
 mod plan_start;
 mod queries;
 mod reboot;
 mod requests;
+mod surroundings;
 
 use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
@@ -31,12 +33,14 @@ use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
 use super::mission::{Helm, Mission};
 use super::motor_test::MotorTests;
+use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::perception::Perception;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
 use super::receiver::Receiver;
+use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
@@ -47,7 +51,9 @@ use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::tick::{TICK_S, TICK_US};
+use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
+use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
 use crate::mode::Mode;
@@ -117,7 +123,11 @@ impl Vehicle {
             orbit: Orbit::default(),
             follow: Follow::default(),
             mission: Mission::new(program),
+            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
+            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
+            remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
+            equipment: Equipment::default(),
         };
         let mut vehicle = Self {
             setup: Setup::new(settings.identity, settings.conduct, frame),
@@ -162,16 +172,22 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         self.advance()?;
         self.perceive();
+        self.consult(|parts, situation, proposal| {
+            parts.obstacles.measure(situation);
+            parts.obstacles.watch_contact(situation, proposal);
+        });
         self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
+        self.step_equipment();
         Ok(())
     }
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
         let easing = self.closed_loop.simulation().control().state().is_easing();
         if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
@@ -237,6 +253,7 @@ impl Vehicle {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);
+            parts.obstacles.keep_distance(situation, proposal);
         });
     }
 
@@ -326,7 +343,7 @@ fn situation<'a>(
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
-        set_point_is_applied: machines.offboard.is_applied(),
+        set_point_turns: machines.offboard.turns(),
         pilot: *machines.receiver.pilot(),
         has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),

@@ -76,6 +76,18 @@ impl Steering {
         }
     }
 
+    /// What it is asked for by position, axis by axis.
+    pub(super) fn asked(&self) -> Option<PositionSetPoint> {
+        match self {
+            Self::Goal(goal) => Some(PositionSetPoint {
+                axes: goal.position_m.data.0[0].map(AxisTarget::Position),
+                yaw: YawTarget::Angle(goal.yaw_rad),
+            }),
+            Self::Motion(motion) => Some(motion.set_point()),
+            Self::Idle { .. } | Self::Path(_) | Self::Attitude { .. } | Self::Descent { .. } => None,
+        }
+    }
+
     /// Whether it is asked for body rates, and for no attitude.
     pub(super) fn is_by_rates(&self) -> bool {
         matches!(self, Self::Attitude { set_point, .. } if set_point.attitude.is_none())

@@ -79,5 +79,6 @@ fn same(one: &Command, other: &Command) -> bool {
         (CommandKind::Long { .. }, CommandKind::Long { .. }) => true,
         (one, other) => one == other,
     };
-    kind && one.number == other.number && numbers(one) == numbers(other)
+    let asked = (one.number, one.component) == (other.number, other.component);
+    kind && asked && numbers(one) == numbers(other)
 }

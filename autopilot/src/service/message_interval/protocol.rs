@@ -10,6 +10,7 @@ use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
 use crate::service::message_request::send_once;
 use crate::service::{CommandEntry, Outcome, Progress, Service};
+use crate::speaker::Speaker;
 use crate::stream::{Component, Group, Stream};
 
 const GET_MESSAGE_INTERVAL: u16 = MavCmd::MAV_CMD_GET_MESSAGE_INTERVAL as u16;
@@ -46,6 +47,10 @@ impl Service for MessageIntervals {
 
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
+    }
+
+    fn speakers(&self) -> &'static [Speaker] {
+        &Speaker::ALL
     }
 
     /// Each link begins with the rates of its profile.
@@ -85,7 +90,11 @@ impl Service for MessageIntervals {
         for (link, schedule) in self.links.iter_mut().enumerate() {
             schedule.due(time_us, |stream| {
                 if let Some(message) = stream.message(&component) {
-                    outbox.send(Destination::Link(link), message);
+                    outbox.send_as(stream.speaker, Destination::Link(link), message);
+                } else {
+                    for message in stream.messages(&component, 0) {
+                        outbox.send_as(stream.speaker, Destination::Link(link), message);
+                    }
                 }
             });
         }
@@ -140,7 +149,10 @@ impl MessageIntervals {
         let id = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
         match id {
             MESSAGE_INTERVAL_DATA::ID => self.get(context, origin, command.whole(2)),
-            _ => send_once(context, origin, id, command.whole(2).unwrap_or(0)),
+            _ => {
+                let asked = Speaker::of(command.component).unwrap_or_default();
+                send_once(context, origin, asked, id, command.whole(2).unwrap_or(0))
+            }
         }
     }
 

@@ -1,8 +1,8 @@
 //! One vehicle and its clients.
 
+use autopilot::Autopilot;
 use autopilot::codec::{Frame, Version};
 use autopilot::envelope::{Destination, LinkProfile};
-use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::ardupilotmega::MISSION_ITEM_INT_DATA;
 use sitl::configuration::MemberSettings;
 use sitl::flight_log::{LogSource, Row, TOPICS};
@@ -92,7 +92,7 @@ impl Site {
             });
             for outgoing in self.autopilot.take_outgoing() {
                 self.sequence = self.sequence.wrapping_add(1);
-                let sender = (self.autopilot.system_id(), COMPONENT);
+                let sender = (self.autopilot.system_id(), outgoing.component);
                 let frame = Frame::encode(&outgoing.message, Version::Two, self.sequence, sender);
                 let frame = frame.expect("a message of MAVLink 2");
                 figures.messages.bytes(frame.bytes());

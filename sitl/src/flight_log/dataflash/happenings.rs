@@ -136,9 +136,9 @@ fn subsystem(cause: Cause) -> Option<f64> {
         Cause::RotorFailure => Some(THRUST_LOSS),
         Cause::PositionLost => Some(FAILSAFE_ESTIMATOR),
         Cause::BatteryEmergency | Cause::BatteryCritical | Cause::BatteryLow => Some(FAILSAFE_BATTERY),
+        Cause::PilotLost => Some(FAILSAFE_RADIO),
         Cause::Fence => Some(FAILSAFE_FENCE),
         Cause::GroundStationLost => Some(FAILSAFE_GROUND_STATION),
-        Cause::PilotLost => Some(FAILSAFE_RADIO),
         Cause::HighWind | Cause::SetPointsLost => None,
     }
 }

@@ -83,6 +83,10 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
 /// Checks how the items belong together: a jump goes to an item that there is.
 pub fn whole(items: &[MissionItem]) -> Result<(), PlanFault> {
     for (index, item) in items.iter().enumerate() {
+        if item.command == command::DO_JUMP_TAG && command::tagged_item(items, item.parameter(1)).is_none() {
+            let reason = format!("no item has tag {}", item.parameter(1));
+            return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
+        }
         let target = match item.command {
             command::DO_JUMP => Some((1, item.parameter(1))),
             command::DO_SET_ROI if item.parameter(1) == ROI_ITEM => Some((2, item.parameter(2))),

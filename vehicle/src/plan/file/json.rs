@@ -1,4 +1,4 @@
-//! QGroundControl's `.plan`: mission of simple items, fence and rally points.
+//! QGroundControl's `.plan`: mission of simple items, surveys and corridor scans, fence and rally points.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -108,8 +108,8 @@ fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
     }
     let mut items = Vec::new();
     let mut jump_ids = Vec::new();
-    for (index, value) in mission.items.iter().enumerate() {
-        let simple = simple(value).map_err(|reason| format!("item {}: {reason}", index + 1))?;
+    for (value, place) in mission.items.iter().enumerate().flat_map(|(index, value)| parts(index, value)) {
+        let simple = simple(value).map_err(|reason| format!("{place}: {reason}"))?;
         let [one, two, three, four, x, y, z] = simple.params.map(|value| value.unwrap_or(f64::NAN));
         jump_ids.push(simple.do_jump_id);
         let item = MissionItem {
@@ -119,7 +119,7 @@ fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
             position: [x, y, z],
             autocontinue: simple.auto_continue,
         };
-        items.push((item, format!("item {}", index + 1)));
+        items.push((item, place));
     }
     // In the file a jump names the id of its target.
     for (item, place) in &mut items {
@@ -128,6 +128,18 @@ fn items(mission: &Mission) -> Result<Vec<(MissionItem, String)>, String> {
         *target = index.ok_or_else(|| format!("{place}: no item has doJumpId {target}"))? as f64;
     }
     Ok(items)
+}
+
+/// The simple items of an item, with their places: a survey or a corridor scan has those that the ground station made of it.
+fn parts(index: usize, value: &Value) -> Vec<(&Value, String)> {
+    let place = format!("item {}", index + 1);
+    match value.pointer("/TransectStyleComplexItem/Items").and_then(Value::as_array) {
+        Some(parts) => {
+            let part = |(number, part): (usize, _)| (part, format!("{place}, part {}", number + 1));
+            parts.iter().enumerate().map(part).collect()
+        }
+        None => vec![(value, place)],
+    }
 }
 
 fn simple(value: &Value) -> Result<Simple, String> {

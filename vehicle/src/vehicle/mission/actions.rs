@@ -118,6 +118,10 @@ fn carry_out(action: &Do, situation: &Situation, proposal: &mut Proposal) {
     match action {
         Do::ChangeSpeed(change) => proposal.change_speeds(SpeedChange::Mission(*change)),
         Do::SetHome(place) => set_home(place.as_ref(), situation, proposal),
+        Do::Operate(operation) => proposal.operate(*operation),
+        Do::EnableFence(enabled) => proposal.enable_fence(*enabled),
+        Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: passed by")),
+        Do::Mark => {}
         Do::Look(look) => {
             let home_z_m = proposal.home().position_m.z;
             let here_m = situation.outputs.position_m;

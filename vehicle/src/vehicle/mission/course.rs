@@ -11,9 +11,11 @@ use super::super::situation::Situation;
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
-use super::leg::{Guide, Leg, LegProgress, Turn, is_settling};
+use super::leg::{Guide, Leg, LegProgress, Turn, is_at_rest, is_settling};
 use super::route::Route;
-use super::task::{Task, TaskProgress, Then};
+use super::spline::{Onward, Spline};
+use super::task::{Lowering, Task, TaskProgress, Then};
+use crate::equipment::Operation;
 use crate::plan::Place;
 use crate::plan::step::{Delay, Navigate};
 
@@ -29,6 +31,8 @@ pub struct Course {
     heading_rad: f64,
     /// Whether the step asks for that heading itself.
     heading_is_asked: bool,
+    /// How the next piece of a curve begins.
+    onward: Option<Onward>,
 }
 
 impl Course {
@@ -52,7 +56,10 @@ impl Course {
 
     /// Whether it climbs from the ground or descends to it.
     pub fn is_vertical(&self) -> (bool, bool) {
-        (matches!(self.task, Some(Task::Climb { .. })), matches!(self.task, Some(Task::Descend(_))))
+        (
+            matches!(self.task, Some(Task::Climb { .. })),
+            matches!(self.task, Some(Task::Descend(_) | Task::Lower(_))),
+        )
     }
 
     /// Heading of the present step, rad.
@@ -131,6 +138,10 @@ impl Course {
                 let z_m = end_m.map_or(least_z_m, |end_m| end_m.z);
                 self.begin_climb(z_m.min(least_z_m), false, situation, proposal)
             }
+            Navigate::Spline { hold_s, .. } => match self.begin_spline(*hold_s, route, situation) {
+                Some(task) => task,
+                None => return TaskProgress::Going,
+            },
             // A leg begins at rest, after a turn or in full motion.
             _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
                 return TaskProgress::Going;
@@ -145,6 +156,71 @@ impl Course {
         };
         self.task = Some(task);
         TaskProgress::Going
+    }
+
+    /// A curve goes on from the piece before it, or begins at rest.
+    fn begin_spline(&mut self, hold_s: f64, route: &Route, situation: &Situation) -> Option<Task> {
+        let onward = self.onward.take().filter(|onward| onward.time_us == situation.time_us);
+        let reference = &situation.outputs.setpoint;
+        if onward.is_none() && !is_at_rest(reference) {
+            return None;
+        }
+        let from_m = onward.map_or(reference.position_m, |onward| onward.position_m);
+        let spline = Spline::new(from_m, onward, &route.curve_m(&from_m), situation.limits())?;
+        Some(Task::Spline(spline, hold_s))
+    }
+
+    fn fly_spline(
+        &mut self,
+        mut spline: Spline,
+        hold_s: f64,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+            proposal.follow(situation, &set_point);
+            self.task = Some(Task::Spline(spline, hold_s));
+            return TaskProgress::Going;
+        }
+        self.anchor_m = spline.end_m();
+        self.heading_rad = spline.end_heading_rad().unwrap_or(self.heading_rad);
+        self.onward = spline.onward(situation.time_us);
+        if self.onward.is_some() {
+            return TaskProgress::Done(None);
+        }
+        proposal.steer(Steering::Goal(at_rest(self.anchor_m, self.heading_rad)));
+        if hold_s == 0.0 {
+            return TaskProgress::Done(None);
+        }
+        self.task = Some(Task::Wait(Some(situation.after_us(hold_s))));
+        TaskProgress::Going
+    }
+
+    /// Down with what the gripper holds: on the ground it is released, and without a ground it is taken back.
+    fn lower(&mut self, lowering: Lowering, situation: &Situation, proposal: &mut Proposal) -> TaskProgress {
+        let (z_m, sinks_m_s) = (situation.outputs.position_m.z, situation.outputs.velocity_m_s.z.max(0.0));
+        // It is still sinking when it turns: v² / (2 a) with half of the acceleration, for the jerk.
+        let ends_z_m = z_m + sinks_m_s * sinks_m_s / situation.limits().acceleration_vertical_m_s2;
+        if situation.landed {
+            proposal.say(Severity::Info, "Payload placed");
+            proposal.operate(Operation::Grip { grabs: false });
+        } else if ends_z_m >= lowering.lowest_z_m {
+            proposal.say(Severity::Warning, "Payload not placed: no ground within the descent");
+        } else {
+            descend(situation, proposal, Some(lowering.above_m));
+            return TaskProgress::Going;
+        }
+        self.task = Some(self.begin_rise(lowering.back_z_m, situation, proposal));
+        TaskProgress::Going
+    }
+
+    /// To another height, with the present heading.
+    fn begin_rise(&mut self, z_m: f64, situation: &Situation, proposal: &mut Proposal) -> Task {
+        let [x, y] = [self.anchor_m.x, self.anchor_m.y];
+        let axes = [x, y, z_m].map(AxisTarget::Position);
+        proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Angle(self.heading_rad) });
+        self.anchor_m.z = z_m;
+        Task::Rise(z_m)
     }
 
     fn begin_climb(
@@ -224,9 +300,14 @@ impl Course {
                 (Then::Circle(circle), Some(circle.heading_rad()))
             }
             Navigate::Land { heading_rad, .. } => (Then::Land([end_m.x, end_m.y]), *heading_rad),
-            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => {
-                (Then::Wait(0.0), None)
+            Navigate::LoiterToAltitude { place } => (Then::Rise(route.down_m(place, end_m.z)), None),
+            Navigate::PlacePayload { descent_m, .. } => {
+                (Then::Lower(descent_m.unwrap_or(f64::INFINITY)), None)
             }
+            Navigate::Takeoff { .. }
+            | Navigate::ReturnToLaunch
+            | Navigate::Spline { .. }
+            | Navigate::Delay(_) => (Then::Wait(0.0), None),
         };
         self.heading_is_asked = asked_rad.is_some();
         if let Some(heading_rad) = asked_rad.or_else(|| leg.bearing_rad()) {
@@ -268,7 +349,10 @@ impl Course {
                 descend(situation, proposal, above);
                 TaskProgress::Going
             }
-            Task::Climb { .. } | Task::Wait(_) | Task::Return => TaskProgress::Going,
+            Task::Rise(z_m) if is_slow_near(situation.outputs, z_m) => TaskProgress::Done(None),
+            Task::Spline(spline, hold_s) => self.fly_spline(spline, hold_s, situation, proposal),
+            Task::Lower(lowering) => self.lower(lowering, situation, proposal),
+            Task::Climb { .. } | Task::Rise(_) | Task::Wait(_) | Task::Return => TaskProgress::Going,
         }
     }
 
@@ -301,6 +385,12 @@ impl Course {
             Then::Stay => (Task::Wait(None), TaskProgress::Staying),
             Then::Circle(circle) => (Task::Circle(circle), TaskProgress::Going),
             Then::Land(above) => (Task::Descend(Some(above)), TaskProgress::Going),
+            Then::Rise(z_m) => (self.begin_rise(z_m, situation, proposal), TaskProgress::Going),
+            Then::Lower(descent_m) => {
+                let [x, y, z] = self.anchor_m.data.0[0];
+                let (above_m, lowest_z_m) = ([x, y], z + descent_m);
+                (Task::Lower(Lowering { above_m, lowest_z_m, back_z_m: z }), TaskProgress::Going)
+            }
         };
         self.task = Some(task);
         progress

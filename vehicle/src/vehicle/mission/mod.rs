@@ -22,6 +22,7 @@ mod leg;
 mod machine;
 mod path;
 mod route;
+mod spline;
 mod status;
 mod task;
 #[cfg(test)]

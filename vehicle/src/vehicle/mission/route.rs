@@ -59,6 +59,14 @@ impl<'a> Route<'a> {
             | Navigate::Loiter { place, .. }
             | Navigate::LoiterTime { place, .. } => Some(self.place_m(place, from_m)),
             Navigate::LoiterTurns(turns) => Some(self.circle(turns, from_m).position_m()),
+            Navigate::Spline { place, .. } | Navigate::PlacePayload { place, .. } => {
+                Some(self.place_m(place, from_m))
+            }
+            // At the present height; the other one comes then.
+            Navigate::LoiterToAltitude { place } => {
+                let end_m = self.place_m(place, from_m);
+                Some(Vector3::new(end_m.x, end_m.y, from_m.z))
+            }
             // Down it goes only there.
             Navigate::Land { place, .. } => place.horizontal_m.map(|[x, y]| Vector3::new(x, y, from_m.z)),
             Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => None,
@@ -74,6 +82,28 @@ impl<'a> Route<'a> {
     fn place_m(&self, place: &Place, open_m: &Vector3<f64>) -> Vector3<f64> {
         let [x, y] = place.horizontal_m.unwrap_or([open_m.x, open_m.y]);
         Vector3::new(x, y, place.down_m(self.home_z_m).unwrap_or(open_m.z))
+    }
+
+    /// The places of the present step and of those behind it that are flown along one curve, up to the first at which the vehicle rests.
+    pub fn curve_m(&self, from_m: &Vector3<f64>) -> Vec<Vector3<f64>> {
+        let mut jumps = self.jumps.clone();
+        let (mut next, mut from_m) = (Some(self.current), *from_m);
+        let mut places_m = Vec::new();
+        while let Some(index) = next.filter(|_| places_m.len() < AHEAD) {
+            let Some(Navigate::Spline { place, hold_s }) = self.program.navigate(index) else { break };
+            from_m = self.place_m(&place, &from_m);
+            places_m.push(from_m);
+            if hold_s > 0.0 || !self.program.continues_after(index) {
+                break;
+            }
+            next = jumps.next(self.program, index + 1).navigation;
+        }
+        places_m
+    }
+
+    /// z of a place, m; that of another one where it leaves it open.
+    pub fn down_m(&self, place: &Place, open_z_m: f64) -> f64 {
+        place.down_m(self.home_z_m).unwrap_or(open_z_m)
     }
 
     /// A leg of the present step from place to place, NED, m, with its corner.
@@ -140,12 +170,16 @@ impl<'a> Route<'a> {
         while let Some(index) = next.filter(|_| stops.len() < AHEAD) {
             let Some(step) = self.program.navigate(index) else { break };
             let Some(position_m) = self.leg_end_m(&step, &from_m) else { break };
-            let rests = self.rests_at(index, &step);
+            let follows = jumps.next(self.program, index + 1).navigation;
+            // A curve begins at rest.
+            let curve = follows.and_then(|index| self.program.navigate(index));
+            let curves = matches!(curve, Some(Navigate::Spline { .. }));
+            let rests = curves || self.rests_at(index, &step);
             stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
             if rests {
                 break;
             }
-            next = jumps.next(self.program, index + 1).navigation;
+            next = follows;
             from_m = position_m;
         }
         stops

@@ -2,6 +2,7 @@
 
 use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
+use super::spline::Spline;
 
 /// A task.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,23 @@ pub enum Task {
     Return,
     /// Down, above a place if there is one.
     Descend(Option<[f64; 2]>),
+    /// To another height, z, m, where it is.
+    Rise(f64),
+    /// Along a curve; then it stays for a time, s.
+    Spline(Spline, f64),
+    /// Down to the ground with what the gripper holds, and back.
+    Lower(Lowering),
+}
+
+/// A descent with what the gripper holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lowering {
+    /// North and east, m.
+    pub above_m: [f64; 2],
+    /// How low it may get, z, m.
+    pub lowest_z_m: f64,
+    /// Where it goes back to, z, m.
+    pub back_z_m: f64,
 }
 
 /// Who steers in a tick of the mission.
@@ -48,6 +66,10 @@ pub enum Then {
     Circle(CircleTurns),
     /// A landing.
     Land([f64; 2]),
+    /// Another height, z, m.
+    Rise(f64),
+    /// A descent of so far, m, with what the gripper holds.
+    Lower(f64),
 }
 
 /// How a task goes on.

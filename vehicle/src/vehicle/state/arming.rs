@@ -34,6 +34,9 @@ impl Vehicle {
         }
         obstacles.extend(self.perception.obstacles(situation.mode.needs()));
         obstacles.extend(self.throttle_obstacle());
+        let touched = self.machines.obstacles.touched(&situation);
+        obstacles.extend(touched.map(|obstacle| format!("touches {}", obstacle.name)));
+        obstacles.extend(self.machines.remote_id.obstacle(&situation).map(str::to_owned));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {

@@ -32,6 +32,9 @@ impl Vehicle {
             self.decided.steer(steering);
         }
         self.decided.move_home(outcome.home);
+        if outcome.region.is_some() && outcome.region != self.decided.region() {
+            self.machines.equipment.track();
+        }
         self.decided.look_at(outcome.region);
         for request in outcome.requests {
             match request {
@@ -43,6 +46,12 @@ impl Vehicle {
                 }
                 Request::ChangeSpeeds(change) => self.use_speeds_or_say(self.machines.speeds.after(change)),
                 Request::See(cause, present) => self.see(cause, present),
+                Request::Operate(operation) => {
+                    if let Err(refusal) = self.operate(&operation) {
+                        self.decided.say(Severity::Warning, format!("Mission: {refusal}"));
+                    }
+                }
+                Request::EnableFence(enabled) => self.enable_fence(enabled),
                 Request::StopRotors(why) => self.stop_rotors(&why),
                 Request::Terminate => self.terminate(),
             }
@@ -71,7 +80,7 @@ impl Vehicle {
         if before == Mode::Mission && mode != Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if before == Mode::Return {
+        if before != mode && matches!(before, Mode::Return | Mode::Mission) {
             self.consult(|_, _, proposal| proposal.change_speeds(SpeedChange::Return(None)));
         }
         self.decided.switch_to(mode);

@@ -4,7 +4,7 @@ use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_rally_points, check_reach, check_way};
 use super::Vehicle;
 use crate::mode::Mode;
-use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile};
+use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, command, compile};
 
 impl Vehicle {
     /// Replaces a plan.
@@ -108,6 +108,30 @@ impl Vehicle {
         }
         self.machines.mission.may_continue()?;
         self.start_mission(None)
+    }
+
+    /// Goes on with the item behind a tag.
+    ///
+    /// # Errors
+    /// [`Refusal`] without such a tag, and as [`Vehicle::set_mission_item`].
+    pub fn jump_to_tag(&mut self, tag: f64) -> Result<(), Refusal> {
+        let items = self.plans().get(PlanKind::Mission).items();
+        let index = command::tagged_item(items, tag)
+            .ok_or_else(|| Refusal::Failed(format!("Jump rejected: no item has tag {tag}")))?;
+        self.set_mission_item(index, false)
+    }
+
+    /// Goes on with the nearest landing of the mission: what follows DO_LAND_START.
+    ///
+    /// # Errors
+    /// [`Refusal`] without such a landing, and as [`Vehicle::start_mission`].
+    pub fn start_landing(&mut self) -> Result<(), Refusal> {
+        let (site, here_m) = (self.site(), self.outputs().position_m);
+        let items = self.plans().get(PlanKind::Mission).items();
+        let index = command::landing_start(items, &site, &here_m).ok_or_else(|| {
+            Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned())
+        })?;
+        self.start_mission(Some(index))
     }
 
     /// Makes an item the current one; with `reset` the jumps count anew.

@@ -1,0 +1,120 @@
+"""MAVSDK's camera and gimbal plugins, as its examples use them: photos, mode, storage, zoom; control, angles, rates and a region of interest."""
+
+import math
+import time
+
+import pytest
+from mavsdk import ComponentType, Configuration, Mavsdk
+from mavsdk.plugins.camera import Camera, CameraError, Mode
+from mavsdk.plugins.gimbal import ControlMode, Gimbal, GimbalMode, SendMode
+from mavsdk.plugins.gripper import Gripper
+from pymavlink.dialects.v20 import common as mavlink
+
+from client import Client
+from test_mavsdk import eventually, free_port
+
+
+@pytest.fixture
+def connect(start):
+    """Starts a vehicle and connects MAVSDK to it."""
+    made = []
+
+    def make(*arguments):
+        port = free_port()
+        vehicle = start(*arguments, links=(f"udpout:127.0.0.1:{port},onboard",))
+        mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
+        made.append(mavsdk)
+        mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
+        system = mavsdk.first_autopilot(10.0)
+        assert system is not None, vehicle.output()
+        return system
+
+    yield make
+    for mavsdk in made:
+        mavsdk.destroy()
+
+
+@pytest.mark.parametrize("arguments", [(), ("--equipment", "own"), ("--autopilot", "ardupilot")], ids=" ".join)
+def test_photos(connect, arguments):
+    camera = Camera(connect(*arguments))
+    eventually("a camera", lambda: camera.camera_list().cameras)
+    [found] = camera.camera_list().cameras
+    assert found.model_name == "Simulated camera" and found.horizontal_resolution_px == 4000
+    own = "own" in arguments
+    assert found.component_id == (100 if own else 1)
+    images = []
+    camera.subscribe_capture_info(lambda image, _: images.append(image))
+    camera.set_mode(found.component_id, Mode.PHOTO)
+    camera.take_photo(found.component_id)
+    eventually("an image", lambda: len(images) == 1)
+    assert images[0].is_success and images[0].index == 0
+    camera.start_photo_interval(found.component_id, 0.2)
+    eventually("more images", lambda: len(images) >= 4)
+    camera.stop_photo_interval(found.component_id)
+    count = len(images)
+    camera.set_mode(found.component_id, Mode.VIDEO)
+    assert camera.get_mode(found.component_id) == Mode.VIDEO
+    camera.start_video(found.component_id)
+    camera.stop_video(found.component_id)
+    camera.zoom_range(found.component_id, 30.0)
+    camera.format_storage(found.component_id, 1)
+    with pytest.raises(CameraError):
+        camera.track_point(found.component_id, 0.5, 0.5, 0.1)
+    assert len(images) <= count + 1
+    camera.destroy()
+
+
+def test_gimbal(connect):
+    gimbal = Gimbal(connect())
+    eventually("a gimbal", lambda: gimbal.gimbal_list().gimbals)
+    [found] = gimbal.gimbal_list().gimbals
+    gimbal_id = found.gimbal_id
+    assert found.model_name == "Simulated gimbal"
+
+    def points(what, pitch, yaw, frame="euler_angle_forward"):
+        def there():
+            angles = getattr(gimbal.get_attitude(gimbal_id), frame)
+            return abs(angles.pitch_deg - pitch) < 1 and abs(angles.yaw_deg - yaw) < 1
+        eventually(what, there)
+
+    eventually("an attitude", lambda: not math.isnan(gimbal.get_attitude(gimbal_id).euler_angle_forward.pitch_deg))
+    gimbal.take_control(gimbal_id, ControlMode.PRIMARY)
+    eventually("control", lambda: gimbal.get_control_status(gimbal_id).control_mode == ControlMode.PRIMARY)
+    gimbal.set_angles(gimbal_id, 0, -90, 0, GimbalMode.YAW_FOLLOW, SendMode.ONCE)
+    points("down", -90, gimbal.get_attitude(gimbal_id).euler_angle_forward.yaw_deg)
+    gimbal.set_angles(gimbal_id, 0, -30, 45, GimbalMode.YAW_FOLLOW, SendMode.ONCE)
+    points("right", -30, 45)
+    gimbal.set_angles(gimbal_id, 0, 0, -90, GimbalMode.YAW_LOCK, SendMode.ONCE)
+    points("west", 0, -90, "euler_angle_north")
+    gimbal.set_angular_rates(gimbal_id, 0, -20, 0, GimbalMode.YAW_FOLLOW, SendMode.ONCE)
+    eventually("turning", lambda: gimbal.get_attitude(gimbal_id).euler_angle_forward.pitch_deg < -10)
+    gimbal.set_angular_rates(gimbal_id, 0, 0, 0, GimbalMode.YAW_FOLLOW, SendMode.ONCE)
+    # A place 100 m north on the ground, seen from there: the horizon in the north.
+    gimbal.set_roi_location(gimbal_id, 47.397742 + 100 / 111_190, 8.545594, 488.0)
+    points("the place", 0, 0, "euler_angle_north")
+    gimbal.release_control(gimbal_id)
+    eventually("no control", lambda: gimbal.get_control_status(gimbal_id).control_mode == ControlMode.NONE)
+    gimbal.destroy()
+
+
+def test_gripper(connect):
+    gripper = Gripper(connect())
+    gripper.grab(1)
+    gripper.release(1)
+    gripper.destroy()
+
+
+def test_heartbeats_of_components(start):
+    """A script that takes every heartbeat for the autopilot's is not misled, unless the components are asked to speak."""
+    for arguments, expected in (((), {1}), (("--equipment", "own"), {1, 100, 154})):
+        with Client(start("--speed", "10", *arguments).addresses[0]) as client:
+            heard = set()
+            end = time.monotonic() + 10
+            while time.monotonic() < end and (heard != expected or len(expected) == 1 and end - time.monotonic() > 9.5):
+                beat = client.connection.recv_match(type="HEARTBEAT", blocking=True, timeout=1)
+                if beat is not None:
+                    heard.add(beat.get_srcComponent())
+            assert heard == expected
+            client.mav.command_long_send(1, 100, mavlink.MAV_CMD_IMAGE_START_CAPTURE, 0, 0, 0, 1, 1, 0, 0, 0)
+            ack = client.wait("COMMAND_ACK", lambda ack: ack.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE)
+            assert (ack.result, ack.get_srcComponent()) == (0, 100)

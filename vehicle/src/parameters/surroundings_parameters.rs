@@ -1,0 +1,98 @@
+//! Obstacles, traffic and remote identification by the names and numbers of both autopilots.
+
+use super::ConductParameter;
+use super::conduct_parameter::{choice, real, switch};
+use crate::vehicle::{Action, Conduct, Recovery};
+
+/// A whole number.
+macro_rules! whole {
+    ($id:literal, $maximum:literal, $field:ident, $text:literal) => {
+        ConductParameter {
+            integer: true,
+            get: |conduct| f64::from(conduct.surroundings.$field),
+            set: |conduct, value| {
+                let number = (0..=$maximum).find(|number| f64::from(*number) == value);
+                if let Some(number) = number {
+                    conduct.surroundings.$field = number;
+                }
+                number.is_some()
+            },
+            maximum: $maximum as f64,
+            ..real!($id, None, 0.0..=1.0, surroundings.obstacle_delay_s, "", $text)
+        }
+    };
+}
+
+/// Those that are there unless the vehicle presents itself as ArduPilot.
+#[rustfmt::skip] // One line per parameter reads as the table that it is.
+pub static PX4_SURROUNDINGS: &[ConductParameter] = &[
+    real!("CP_DIST", None, -1.0..=15.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Position mode; negative disables it"),
+    real!("CP_DELAY", None, 0.0..=1.0, surroundings.obstacle_delay_s, "s", "Delay with which ranges are measured and the vehicle brakes"),
+    switch!("CP_GO_NO_DATA", surroundings.go_without_data, "Move where nothing is measured, while CP_DIST is not negative"),
+    choice!("NAV_TRAFF_AVOID", PX4_TRAFFIC, surroundings.traffic.action, "Action when traffic comes too near"),
+    real!("NAV_TRAFF_A_HOR", None, 1.0..=10_000.0, surroundings.traffic.near_m, "m", "Horizontal distance of traffic that is too near"),
+    real!("NAV_TRAFF_A_VER", None, 1.0..=10_000.0, surroundings.traffic.near_vertical_m, "m", "Vertical distance of traffic that is too near"),
+    real!("NAV_TRAFF_COLL_T", None, 1.0..=3600.0, surroundings.traffic.ahead_s, "s", "Time to a collision with traffic at which the vehicle acts"),
+    ConductParameter {
+        get: |conduct| f64::from(u8::from(conduct.surroundings.remote_id) + u8::from(conduct.surroundings.remote_id_to_arm)),
+        set: |conduct, value| set_remote_id(conduct, value),
+        ..choice!("COM_ARM_ODID", REMOTE_ID, surroundings.remote_id, "Remote identification (Open Drone ID)")
+    },
+];
+
+/// Those that are there if the vehicle presents itself as ArduPilot.
+#[rustfmt::skip] // As above.
+pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
+    whole!("AVOID_ENABLE", 7_u8, avoided, "What is avoided, added up: 1 fence, 2 what the proximity sensor sees, 4 beacons; only 2 changes anything here"),
+    real!("AVOID_MARGIN", None, 1.0..=10.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Loiter and Guided mode"),
+    whole!("PRX1_TYPE", 17_u8, proximity_kind, "Proximity sensor: 0 none; any other kind is the lidar of --world and what companions send"),
+    whole!("RNGFND1_TYPE", 100_u8, rangefinder_kind, "Downward rangefinder: 0 none; any other kind is the simulated one"),
+    real!("RNGFND1_MAX", None, 0.5..=100.0, surroundings.rangefinder_farthest_m, "m", "Farthest that the rangefinder measures").also(&[("RNGFND1_MAX_CM", 100.0)]),
+    real!("RNGFND1_MIN", None, 0.0..=5.0, surroundings.rangefinder_nearest_m, "m", "Nearest that the rangefinder measures").also(&[("RNGFND1_MIN_CM", 100.0)]),
+    switch!("ADSB_TYPE", surroundings.traffic.heard, "Receiver of transponders"),
+    switch!("AVD_ENABLE", surroundings.traffic.enabled, "Look at traffic that comes near"),
+    choice!("AVD_F_ACTION", ARDUPILOT_TRAFFIC, surroundings.traffic.action, "Action when traffic comes too near"),
+    switch!("AVD_W_ACTION", surroundings.traffic.warns, "Action when traffic may come near", ["Nothing", "Report"]),
+    choice!("AVD_F_RCVRY", RECOVERIES, surroundings.traffic.recovery, "Action when traffic is no longer too near"),
+    real!("AVD_F_TIME", None, 0.0..=1000.0, surroundings.traffic.ahead_s, "s", "How far ahead traffic is looked for that is too near"),
+    real!("AVD_W_TIME", None, 0.0..=1000.0, surroundings.traffic.warning_ahead_s, "s", "How far ahead traffic is looked for that may come near"),
+    real!("AVD_F_DIST_XY", None, 0.0..=10_000.0, surroundings.traffic.near_m, "m", "Horizontal distance of traffic that is too near"),
+    real!("AVD_W_DIST_XY", None, 0.0..=10_000.0, surroundings.traffic.warning_m, "m", "Horizontal distance of traffic that is reported"),
+    real!("AVD_F_DIST_Z", None, 0.0..=10_000.0, surroundings.traffic.near_vertical_m, "m", "Vertical distance of traffic that is too near"),
+    real!("AVD_W_DIST_Z", None, 0.0..=10_000.0, surroundings.traffic.warning_vertical_m, "m", "Vertical distance of traffic that is reported"),
+    real!("AVD_F_ALT_MIN", None, 0.0..=1000.0, surroundings.traffic.least_height_m, "m", "Height above home below which traffic is only reported"),
+    switch!("DID_ENABLE", surroundings.remote_id, "Remote identification (Open Drone ID)"),
+    switch!("DID_OPTIONS", surroundings.remote_id_to_arm, "Options of remote identification", ["None", "Needed to arm"]),
+];
+
+const PX4_TRAFFIC: &[(Action, i32, &str)] = &[
+    (Action::None, 0, "Nothing"),
+    (Action::Warn, 1, "Warn"),
+    (Action::Return, 2, "Return"),
+    (Action::Land, 3, "Land"),
+    (Action::Hold, 4, "Hold"),
+];
+const ARDUPILOT_TRAFFIC: &[(Action, i32, &str)] = &[
+    (Action::None, 0, "Nothing"),
+    (Action::Warn, 1, "Report"),
+    (Action::Return, 5, "Return"),
+    (Action::Hold, 6, "Brake"),
+];
+const RECOVERIES: &[(Recovery, i32, &str)] = &[
+    (Recovery::Remain, 0, "Nothing"),
+    (Recovery::Resume, 1, "Resume the mode before"),
+    (Recovery::Return, 2, "Return"),
+    (Recovery::ResumeMission, 3, "Resume the mission, else Loiter"),
+];
+/// Names of PX4's values; the second and the third both switch it on.
+const REMOTE_ID: &[(bool, i32, &str)] =
+    &[(false, 0, "Off"), (true, 1, "On"), (true, 2, "On, and needed to arm")];
+
+fn set_remote_id(conduct: &mut Conduct, value: f64) -> bool {
+    let known = value == 0.0 || value == 1.0 || value == 2.0;
+    if known {
+        let settings = &mut conduct.surroundings;
+        (settings.remote_id, settings.remote_id_to_arm) = (value > 0.0, value > 1.0);
+    }
+    known
+}

@@ -1,0 +1,274 @@
+//! What stands around the vehicle: measuring it, stopping before it, and noticing that it was touched.
+
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
+
+use super::fence_watch::stopping_place_m;
+use super::notice::Severity;
+use super::proposal::Proposal;
+use super::set_point::{AxisTarget, PositionSetPoint};
+use super::situation::Situation;
+use crate::mode::Mode;
+use crate::surroundings::{Aircraft, Obstacle, RangeScan, Reading, SECTOR_RAD, SECTORS};
+
+/// The lidar turns ten times per second.
+const TURN_US: u64 = 100_000;
+/// A scan older than this, µs, counts as none.
+const OLD_US: u64 = 500_000;
+/// So near to the distance that is kept, m, the vehicle does not set out towards an obstacle.
+const SLACK_M: f64 = 0.6;
+/// A vehicle that was stopped sets out again when it has so much more room than it needs to brake, m.
+const ROOM_M: f64 = 1.0;
+/// Slower than this, m/s, it stands.
+const STANDING_M_S: f64 = 0.1;
+/// What is asked for and smaller than this, m or m/s, is no direction.
+const SMALL: f64 = 0.02;
+/// What is nearer than the distance that is kept stops only a motion that leads towards it within this cosine.
+const TOWARDS: f64 = 0.5;
+/// A stop is told again when the way was free for so long, µs.
+const TOLD_US: u64 = 2_000_000;
+/// The sphere around the vehicle that must touch nothing, in lengths of its arms.
+const REACH_ARMS: f64 = 1.5;
+
+/// The obstacles, and what is measured of them.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct ObstacleWatch {
+    obstacles: Vec<Obstacle>,
+    lidar: Option<RangeScan>,
+    /// What a companion computer has told.
+    companion: Option<RangeScan>,
+    /// Distance below, m.
+    below_m: Option<f64>,
+    /// Whether it is kept from going on.
+    stopped: bool,
+    /// When it was stopped last, µs.
+    stopped_us: Option<u64>,
+    /// Whether it was told that nothing is measured.
+    told_blind: bool,
+}
+
+impl ObstacleWatch {
+    /// Among these obstacles.
+    pub fn new(obstacles: Vec<Obstacle>) -> Self {
+        Self { obstacles, ..Self::default() }
+    }
+
+    /// The latest turn of our lidar; `None` without obstacles.
+    pub fn lidar(&self) -> Option<&RangeScan> {
+        self.lidar.as_ref()
+    }
+
+    /// What the downward rangefinder shows, m; `None` if there is none, or nothing is in its range.
+    pub fn below_m(&self) -> Option<f64> {
+        self.below_m
+    }
+
+    /// Whether there is a rangefinder.
+    pub fn has_rangefinder(&self, situation: &Situation) -> bool {
+        !self.obstacles.is_empty() || situation.conduct.surroundings.rangefinder_kind > 0
+    }
+
+    /// Takes what a companion computer measures. Sectors that it does not know keep what it knew a moment ago.
+    pub fn take(&mut self, scan: RangeScan) {
+        let fresh = |known: &RangeScan| scan.time_us.saturating_sub(known.time_us) < OLD_US;
+        match &mut self.companion {
+            Some(known) if fresh(known) && known.heading_rad == scan.heading_rad => {
+                for (known, news) in known.sectors.iter_mut().zip(scan.sectors) {
+                    if news != Reading::Unknown {
+                        *known = news;
+                    }
+                }
+                (known.time_us, known.position_m) = (scan.time_us, scan.position_m);
+            }
+            known => *known = Some(scan),
+        }
+    }
+
+    /// Measures what is there after a tick.
+    pub fn measure(&mut self, situation: &Situation) {
+        let outputs = situation.outputs;
+        if !situation.time_us.is_multiple_of(TURN_US) {
+            return;
+        }
+        if self.has_rangefinder(situation) {
+            self.below_m = self.look_down(situation);
+        }
+        if !self.obstacles.is_empty() {
+            self.lidar = Some(RangeScan::of_obstacles(
+                &self.obstacles,
+                &situation.truth.position_m,
+                situation.time_us,
+                outputs.position_m,
+                outputs.attitude_rad.z,
+            ));
+        }
+    }
+
+    fn look_down(&self, situation: &Situation) -> Option<f64> {
+        let truth = situation.truth;
+        let [w, x, y, z] = truth.quaternion;
+        let attitude = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
+        let down = attitude * Vector3::z();
+        let ground_m = (down.z > 0.1).then(|| -truth.position_m.z / down.z);
+        let others = self.obstacles.iter().filter_map(|obstacle| obstacle.along_m(&truth.position_m, &down));
+        let nearest_m = others.chain(ground_m).fold(f64::INFINITY, f64::min);
+        let settings = &situation.conduct.surroundings;
+        let range_m = nearest_m.max(settings.rangefinder_nearest_m);
+        (range_m <= settings.rangefinder_farthest_m).then_some(range_m)
+    }
+
+    /// What the vehicle touches.
+    pub fn touched(&self, situation: &Situation) -> Option<&Obstacle> {
+        let reach_m = REACH_ARMS * situation.configuration.airframe.arm_length_m;
+        self.obstacles.iter().find(|obstacle| obstacle.distance_m(&situation.truth.position_m) < reach_m)
+    }
+
+    /// Ends the flight of a vehicle that touches something.
+    pub fn watch_contact(&self, situation: &Situation, proposal: &mut Proposal) {
+        if !situation.armed {
+            return;
+        }
+        if let Some(obstacle) = self.touched(situation) {
+            proposal.say(Severity::Critical, format!("Collision with {}", obstacle.name));
+            proposal.terminate();
+        }
+    }
+
+    /// Stops the vehicle before what is measured, in the modes that keep a distance.
+    pub fn keep_distance(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some(asked) = proposal.steering().asked().filter(|_| keeps_distance(situation)) else {
+            self.stopped = false;
+            return;
+        };
+        let fresh = |scan: &&RangeScan| situation.time_us.saturating_sub(scan.time_us) <= OLD_US;
+        let scans: Vec<&RangeScan> =
+            [&self.lidar, &self.companion].into_iter().flatten().filter(fresh).collect();
+        let here_m = situation.outputs.position_m;
+        let direction = wanted(&asked, &here_m).try_normalize(SMALL);
+        if scans.is_empty() {
+            if !situation.conduct.surroundings.go_without_data && direction.is_some() {
+                if !std::mem::replace(&mut self.told_blind, true) {
+                    proposal.say(Severity::Warning, "No range data: not moving");
+                }
+                proposal.follow(situation, &stopped(&asked));
+            }
+            return;
+        }
+        self.told_blind = false;
+        let points: Vec<_> = scans.iter().flat_map(|scan| scan.seen_from(here_m)).collect();
+        let margin_m = situation.conduct.surroundings.obstacle_distance_m;
+        let (course, brakes_m) = braking(situation);
+        let free = |direction: &Vector2<f64>| free_m(&points, direction, margin_m);
+        let room_m = if self.stopped { brakes_m + ROOM_M } else { SLACK_M };
+        let sets_out = direction.is_some_and(|direction| free(&direction) < room_m);
+        self.stopped = sets_out || course.is_some_and(|course| free(&course) < brakes_m);
+        if self.stopped {
+            let told = self.stopped_us.replace(situation.time_us);
+            if told.is_none_or(|told_us| situation.time_us - told_us > TOLD_US) {
+                proposal.say(Severity::Warning, "Obstacle ahead: stopping");
+            }
+            proposal.follow(situation, &stopped(&asked));
+        }
+    }
+}
+
+/// PX4 keeps its distance in Position mode, ArduPilot in Loiter and Guided, if it has a sensor.
+fn keeps_distance(situation: &Situation) -> bool {
+    const PROXIMITY: u8 = 2;
+    let settings = &situation.conduct.surroundings;
+    if situation.landed || settings.obstacle_distance_m < 0.0 {
+        return false;
+    }
+    if situation.identity.is_ardupilot() {
+        let senses = settings.avoided & PROXIMITY != 0 && settings.proximity_kind > 0;
+        senses && matches!(situation.mode, Mode::Position | Mode::PositionHold | Mode::Offboard)
+    } else {
+        situation.mode == Mode::Position
+    }
+}
+
+/// Where set-points lead over the ground: only its direction counts.
+fn wanted(asked: &PositionSetPoint, here_m: &Vector3<f64>) -> Vector2<f64> {
+    Vector2::from_fn(|axis, _| match asked.axes[axis] {
+        AxisTarget::Position(position_m) => position_m - here_m[axis],
+        AxisTarget::Velocity(velocity_m_s) => velocity_m_s,
+        AxisTarget::Acceleration(acceleration_m_s2) => acceleration_m_s2,
+        AxisTarget::Track { position_m, velocity_m_s, .. } => position_m - here_m[axis] + velocity_m_s,
+    })
+}
+
+/// The same without its way over the ground.
+fn stopped(asked: &PositionSetPoint) -> PositionSetPoint {
+    let [_, _, down] = asked.axes;
+    PositionSetPoint { axes: [AxisTarget::HOLD, AxisTarget::HOLD, down], yaw: asked.yaw }
+}
+
+/// Where the vehicle goes, if it does, and how far it goes on, m, when it brakes as hard as it may from now on. What counts is the
+/// reference that it follows: the vehicle itself swings about it.
+fn braking(situation: &Situation) -> (Option<Vector2<f64>>, f64) {
+    let velocity_m_s = situation.outputs.setpoint.velocity_m_s.xy();
+    let Some(course) = velocity_m_s.try_normalize(STANDING_M_S) else { return (None, 0.0) };
+    let stop_m = stopping_place_m(situation, &situation.braking_limits()) - situation.outputs.position_m;
+    let late_m = situation.conduct.surroundings.obstacle_delay_s * velocity_m_s.norm();
+    (Some(course), stop_m.xy().norm() + late_m)
+}
+
+/// How far it is in a direction until something is as near as the margin, m.
+fn free_m(points: &[Vector2<f64>], direction: &Vector2<f64>, margin_m: f64) -> f64 {
+    let free_of = |point: &Vector2<f64>| {
+        let along_m = point.dot(direction);
+        let aside_m = (point - direction * along_m).norm();
+        let distance_m = point.norm();
+        if along_m <= 0.0 || aside_m >= margin_m {
+            return f64::INFINITY;
+        }
+        if distance_m <= margin_m {
+            return if along_m > TOWARDS * distance_m { 0.0 } else { f64::INFINITY };
+        }
+        along_m - libm::sqrt(margin_m * margin_m - aside_m * aside_m)
+    };
+    points.iter().map(free_of).fold(f64::INFINITY, f64::min)
+}
+
+/// A scan of one instrument that looks in one direction: the sectors that it covers, by headings from north, rad.
+pub fn one_direction(
+    time_us: u64,
+    position_m: Vector3<f64>,
+    heading_rad: f64,
+    width_rad: f64,
+    reading: Reading,
+) -> RangeScan {
+    let half_rad = (width_rad / 2.0).max(SECTOR_RAD / 2.0);
+    let mut sectors = [Reading::Unknown; SECTORS];
+    for (sector, place) in sectors.iter_mut().enumerate() {
+        let off_rad = super::motion::wrapped(sector as f64 * SECTOR_RAD - heading_rad).abs();
+        if off_rad <= half_rad {
+            *place = reading;
+        }
+    }
+    RangeScan { time_us, position_m, heading_rad: 0.0, sectors }
+}
+
+/// Distance of an aircraft from a place, m: horizontal, then vertical.
+pub(super) fn separation_m(aircraft: &Aircraft, place_m: &Vector3<f64>, time_us: u64) -> [f64; 2] {
+    let between_m = aircraft.position_at_m(time_us) - place_m;
+    [between_m.xy().norm(), between_m.z.abs()]
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector2;
+
+    use super::free_m;
+
+    #[test]
+    fn the_free_way_ends_where_the_margin_begins() {
+        let north = Vector2::new(1.0, 0.0);
+        let free = |x: f64, y: f64| free_m(&[Vector2::new(x, y)], &north, 2.0);
+        assert!((free(10.0, 0.0) - 8.0).abs() < 1e-12);
+        assert!((free(10.0, 1.2) - (10.0 - 1.6)).abs() < 1e-12);
+        assert_eq!(free(10.0, 2.1), f64::INFINITY, "it passes by");
+        assert_eq!(free(-3.0, 0.0), f64::INFINITY, "behind");
+        assert_eq!(free(1.5, 0.5), 0.0, "too near already, and ahead");
+        assert_eq!(free(0.1, 1.5), f64::INFINITY, "too near already, and beside");
+    }
+}
