@@ -143,12 +143,12 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
         (
             Identity::Px4,
             9.0,
-            "Mode 0x90000 is not available; available: Position, Hold, Takeoff, Mission, Return, Land, Offboard",
+            "Mode 0x90000 is not available; available: Manual, Stabilized, Acro, Altitude, Position, Hold, Takeoff, Mission, Return, Land, Offboard, Orbit, Follow Me",
         ),
         (
             Identity::ArduPilot,
             15.0,
-            "Mode 15 is not available; available: Loiter, Brake, Auto, RTL, Land, Guided",
+            "Mode 15 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL",
         ),
     ] {
         let mut bench = Bench::new(identity);
@@ -270,6 +270,7 @@ fn sticks_fly_the_position_mode_and_their_loss_holds() {
     assert!(bench.velocity()[0].abs() < 0.05, "{:?}", bench.velocity());
     assert!(bench.texts().iter().any(|text| text.starts_with("Manual control lost")), "{:?}", bench.texts());
     // Down to the ground with the stick.
+    assert_eq!(bench.set_mode(Mode::Position), 0);
     let down = MANUAL_CONTROL_DATA { z: 0, ..forward };
     let down = MANUAL_CONTROL_DATA { x: 0, ..down };
     bench.stream(15.0, |bench| bench.send(MavMessage::MANUAL_CONTROL(down.clone())));

@@ -241,6 +241,7 @@ fn the_loss_of_the_radio_does_what_its_parameter_says() {
         (RadioFailure::LowThrottle, RadioLossAction::None, Mode::Altitude),
         (RadioFailure::NoPulses, RadioLossAction::Land, Mode::Land),
         (RadioFailure::NoPulses, RadioLossAction::BrakeOrLand, Mode::Hold),
+        (RadioFailure::NoPulses, RadioLossAction::TraceOrReturn, Mode::SmartReturn),
     ] {
         let mut start = settings(Identity::ArduPilot);
         start.conduct.failsafe.pilot_lost = lost;

@@ -31,7 +31,7 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("MPC_VEL_MANUAL", Some(("LOIT_SPEED", 100.0)), 0.1..=50.0, stick_speed_m_s, "m/s", "Horizontal speed at full stick deflection").also(&[("LOIT_SPEED_MS", 1.0)]),
     real!("MPC_Z_V_MAN_UP", Some(("PILOT_SPEED_UP", 100.0)), 0.1..=20.0, stick_climb_m_s, "m/s", "Climb rate at full stick deflection").also(&[("PILOT_SPD_UP", 1.0)]),
     real!("MPC_Z_V_MAN_DN", Some(("PILOT_SPEED_DN", 100.0)), 0.1..=20.0, stick_sink_m_s, "m/s", "Descent rate at full stick deflection").also(&[("PILOT_SPD_DN", 1.0)]),
-    real!("COM_RC_LOSS_T", Some(("RC_FS_TIMEOUT", 1.0)), 0.1..=60.0, stick_timeout_s, "s", "Time without stick inputs after which they count as lost"),
+    real!("COM_RC_LOSS_T", Some(("RC_FS_TIMEOUT", 1.0)), 0.1..=120.0, stick_timeout_s, "s", "Time without stick inputs after which they count as lost"),
     real!("BAT1_CAPACITY", Some(("BATT_CAPACITY", 1.0)), 10.0..=1e6, battery_capacity_ah, 1000.0, "mAh", "Capacity of the battery"),
     real!("COM_ARM_BAT_MIN", None, 0.0..=0.9, battery_to_arm, "norm", "Smallest remaining charge with which the vehicle arms"),
     switch!("SYS_FAILURE_EN", failure_injection, "Allow failure injection by command"),

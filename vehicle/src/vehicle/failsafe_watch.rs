@@ -6,6 +6,7 @@ use super::proposal::Proposal;
 use super::situation::Situation;
 use crate::fence::Breach;
 use crate::mode::{Leader, Mode, Needs};
+use crate::radio::RadioLossAction;
 
 /// Bits of FS_OPTIONS: missions go on without the ground station, and so do modes that are flown by sticks.
 const MISSION_GOES_ON: u32 = 2;
@@ -104,6 +105,9 @@ impl Failsafe {
         proposal.say(severity(action), format!("{why}{details}: {}", action.doing()));
         self.engage(cause, action);
         match action.mode() {
+            Some(Mode::Return) if cause == Cause::PilotLost && traces_back(situation) => {
+                proposal.enter(Mode::SmartReturn);
+            }
             Some(mode) => proposal.enter(mode),
             None => proposal.terminate(),
         }
@@ -211,6 +215,9 @@ fn action_in(situation: &Situation, cause: Cause) -> Action {
         if goes_on_without_pilot(situation) {
             return Action::Warn;
         }
+        if situation.conduct.failsafe.pilot_lost == RadioLossAction::TraceOrLand && !situation.has_trail {
+            return Action::Land;
+        }
         let mode = action.mode();
         // Without a place there is no way home.
         if mode.is_some_and(|mode| mode != Mode::Land && !situation.can_fly(mode)) {
@@ -218,6 +225,12 @@ fn action_in(situation: &Situation, cause: Cause) -> Action {
         }
     }
     action
+}
+
+/// Whether it flies home the way that it came, without its pilot.
+fn traces_back(situation: &Situation) -> bool {
+    let traces = [RadioLossAction::TraceOrReturn, RadioLossAction::TraceOrLand];
+    situation.has_trail && traces.contains(&situation.conduct.failsafe.pilot_lost)
 }
 
 /// Whether the present mode is one that parameters let go on without the pilot.

@@ -136,14 +136,11 @@ impl Receiver {
         let watched = watched && identity.is_ardupilot();
         let low = self.is_low(watched, settings, pulses.as_ref(), time_us);
         let ever = self.received_us.is_some();
-        // PX4's timeout has passed already.
-        let silent =
-            ever && chosen.is_none() && (!identity.is_ardupilot() || !self.received_us.is_some_and(young));
-        // ArduPilot's simulation has a radio all the time: what overrides gave back is centred.
-        let gone = silent
-            && (!identity.is_ardupilot()
-                || settings.failure == RadioFailure::NoPulses
-                || self.radio.is_some());
+        // ArduPilot's simulation has a radio all the time, unless that fails: what overrides gave back is centred. PX4's timeout has
+        // passed already.
+        let fails = identity.is_ardupilot() && settings.failure == RadioFailure::NoPulses;
+        let silent = ever && chosen.is_none() && !(fails && self.received_us.is_some_and(young));
+        let gone = silent && (fails || !identity.is_ardupilot());
         let released = silent && !gone;
         let sticks = match chosen {
             _ if low || gone => Some(Sticks::default()),

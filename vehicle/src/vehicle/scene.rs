@@ -163,6 +163,7 @@ impl Scene {
             set_points_are_recent: self.set_points_are_recent,
             set_point_turns: false,
             pilot: self.pilot,
+            has_trail: false,
             mission_goes_on: self.mission_goes_on,
         }
     }

@@ -87,6 +87,8 @@ pub struct Situation<'a> {
     pub set_point_turns: bool,
     /// The pilot.
     pub pilot: Pilot,
+    /// Whether there is a way back that it came.
+    pub has_trail: bool,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
 }

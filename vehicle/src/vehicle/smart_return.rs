@@ -58,12 +58,17 @@ impl SmartReturn {
         }
     }
 
+    /// Whether there is a trail.
+    pub fn has_trail(&self) -> bool {
+        self.trail.is_active()
+    }
+
     /// Whether there is a way back.
     ///
     /// # Errors
     /// [`Refusal::Failed`] without a trail.
     pub fn may_begin(&self) -> Result<(), Refusal> {
-        if self.trail.is_active() {
+        if self.has_trail() {
             return Ok(());
         }
         Err(Refusal::Failed("Smart RTL mode rejected: no recorded path; use RTL".to_owned()))

@@ -351,6 +351,7 @@ fn situation<'a>(
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_turns: machines.offboard.turns(),
         pilot: *machines.receiver.pilot(),
+        has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }
 }
