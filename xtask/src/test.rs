@@ -71,7 +71,7 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
         python_passed &= passed;
     }
 
-    let (counted, package_passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    let (counted, package_passed) = package_tests(workspace, progress, &interpreter, &sitl, Beside::Tests)?;
     count += counted;
 
     let mut failed = Vec::new();
@@ -99,7 +99,7 @@ pub fn run_package(workspace: &Workspace, progress: &Progress) -> Result<(), Fai
     }
     let sitl = progress
         .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Nothing))?;
-    let (count, passed) = package_tests(workspace, progress, &interpreter, &sitl)?;
+    let (count, passed) = package_tests(workspace, progress, &interpreter, &sitl, Beside::Nothing)?;
     progress.print_summary();
     println!("total: {} passed, {} failed, {} skipped", count.passed, count.failed, count.skipped);
     if passed { Ok(()) } else { Err(Failure::Tests { failed: "tests of the Python package".to_owned() }) }
@@ -155,8 +155,9 @@ fn package_tests(
     progress: &Progress,
     interpreter: &Interpreter,
     sitl: &Path,
+    beside: Beside,
 ) -> Result<(Count, bool), Failure> {
-    let wheel = wheel::make_for_tests(workspace, progress, interpreter, sitl)?;
+    let wheel = wheel::make_for_tests(workspace, progress, interpreter, sitl, beside)?;
     let python = python::environment(workspace, progress, interpreter, Packages::Package)?;
     progress.timed("Installing the Python package", || python.install_wheel(&wheel))?;
     let (tests, report) = (workspace.package_tests(), workspace.package_report());

@@ -68,10 +68,11 @@ pub fn make_for_tests(
     progress: &Progress,
     interpreter: &Interpreter,
     vehicle: &Path,
+    beside: Beside,
 ) -> Result<PathBuf, Failure> {
     let python = python::environment(workspace, progress, interpreter, Packages::Wheel)?;
     let wheels = workspace.target("wheels-for-tests");
-    let package = Package { vehicle, stage: "wheel-for-tests", wheels: &wheels, beside: Beside::Tests };
+    let package = Package { vehicle, stage: "wheel-for-tests", wheels: &wheels, beside };
     package.write(workspace, progress, &python, |maturin| {
         maturin.args(["--profile", "dev", "--compatibility", "linux"]);
         maturin.arg("--target-dir").arg(workspace.target(""));
