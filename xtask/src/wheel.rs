@@ -95,6 +95,12 @@ impl Package<'_> {
         files::remove_folder(self.wheels)?;
         let mut maturin = python.command();
         maturin.args(["-m", "maturin", "build", "--quiet"]).arg("--out").arg(self.wheels);
+        // Where maturin looks for zig: as a module of the first `python3` on the PATH.
+        let present = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::iter::once(python.programs()).chain(std::env::split_paths(&present));
+        if let Ok(path) = std::env::join_paths(folders) {
+            maturin.env("PATH", path);
+        }
         configure(&mut maturin);
         maturin.current_dir(&stage);
         let status = progress.timed("Building the Python package", || process::status(&mut maturin))?;
