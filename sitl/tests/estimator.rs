@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quadrotor::GRAVITY_M_S2;
-use vehicle::estimation::{Estimate, Navigation, TrueMotion};
+use vehicle::estimation::{Estimate, Navigation, SensorErrors, TrueMotion};
 use vehicle::fault::Faults;
 use vehicle::world::{Geodetic, LocalFrame};
 
@@ -65,7 +65,8 @@ fn fly(seed: u64, seconds: f64, mut look: impl FnMut(&Navigation, &TrueMotion)) 
     let mut navigation = Navigation::new(seed, Estimate::unaligned(Vector3::zeros(), 0.0));
     for tick in 1..=(seconds * 1000.0) as u64 {
         let motion = motion(tick * 1000);
-        navigation.step(&motion, &frame(), &Faults::default(), motion.time_us as f64 / 1e6 <= REST_S);
+        let resting = motion.time_us as f64 / 1e6 <= REST_S;
+        navigation.step(&motion, &frame(), &Faults::default(), &SensorErrors::default(), resting);
         look(&navigation, &motion);
     }
     navigation

@@ -25,6 +25,10 @@ const OFF: f32 = 1.0;
 const STUCK: f32 = 2.0;
 const WRONG: f32 = 4.0;
 
+fn obstacles(bench: &Bench) -> Vec<String> {
+    bench.autopilot.vehicle().arming_obstacles().iter().map(ToString::to_string).collect()
+}
+
 fn inject(bench: &mut Bench, unit: f32, kind: f32, instance: f32) -> u8 {
     bench.command(MavCmd::MAV_CMD_INJECT_FAILURE, [unit, kind, instance, 0.0, 0.0, 0.0, 0.0])
 }
@@ -82,8 +86,7 @@ fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
         assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::OnGround);
         assert!(tilt_rad(&bench) < 0.02 && bench.position()[2].abs() < 0.02, "{:?}", bench.position());
         // Until it is mended it does not fly again.
-        let obstacles = bench.autopilot.vehicle().arming_obstacles();
-        assert_eq!(obstacles, ["rotor 2 failed"]);
+        assert_eq!(obstacles(&bench), ["rotor 2 failed"]);
         assert_eq!(inject(&mut bench, MOTOR, OK, 0.0), 0);
         assert!(bench.autopilot.vehicle().arming_obstacles().is_empty());
     }
@@ -177,7 +180,7 @@ fn faults_come_and_go_by_the_schedule() {
     assert!(remaining(&bench) > 0.99);
     bench.fly(0.002);
     assert_eq!(remaining(&bench), 0.0);
-    assert_eq!(bench.autopilot.vehicle().arming_obstacles(), ["battery at 0 %, required 15 %"]);
+    assert_eq!(obstacles(&bench), ["battery at 0 %, required 15 %"]);
     bench.fly(1.1);
     let voltage = bench.heard.iter().rev().find_map(|message| match message {
         Message::Typed(MavMessage::SYS_STATUS(status)) => {

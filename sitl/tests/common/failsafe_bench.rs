@@ -65,8 +65,6 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::BatteryLow | Cause::BatteryCritical | Cause::BatteryEmergency => "COM_LOW_BAT_ACT",
         Cause::PositionLost => "COM_POSCTL_NAVL",
         Cause::RotorFailure => "COM_ACT_FAIL_ACT",
-        Cause::PilotLost if identity.is_ardupilot() => "FS_THR_ENABLE",
-        Cause::PilotLost => "NAV_RCL_ACT",
     }
 }
 
