@@ -101,6 +101,8 @@ impl Package<'_> {
         if let Ok(path) = std::env::join_paths(folders) {
             maturin.env("PATH", path);
         }
+        let cache = workspace.platforms().join("zig");
+        maturin.env("CARGO_ZIGBUILD_CACHE_DIR", &cache).env("ZIG_GLOBAL_CACHE_DIR", &cache);
         configure(&mut maturin);
         maturin.current_dir(&stage);
         let status = progress.timed("Building the Python package", || process::status(&mut maturin))?;
