@@ -147,8 +147,8 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
         ),
         (
             Identity::ArduPilot,
-            15.0,
-            "Mode 15 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL",
+            99.0,
+            "Mode 99 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL",
         ),
     ] {
         let mut bench = Bench::new(identity);

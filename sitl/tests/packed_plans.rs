@@ -77,11 +77,11 @@ fn what_is_wrong_is_told_and_the_old_plan_stays() {
     let good = packed(0, &mission());
     assert_eq!(write(&mut client, "/@MISSION/mission.dat", &good), Ok(Vec::new()));
     let mut foreign = mission();
-    foreign[1].command = MavCmd::MAV_CMD_DO_DIGICAM_CONTROL;
+    foreign[1].command = MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION;
     let mut partial = good.clone();
     partial[4] = 1;
     for (wrong, reason) in [
-        (packed(0, &foreign), "Mission rejected: item 2: DO_DIGICAM_CONTROL (203): not supported"),
+        (packed(0, &foreign), "Mission rejected: item 2: PREFLIGHT_CALIBRATION (241): not supported"),
         (good[..good.len() - 1].to_vec(), "3 items in 113 bytes"),
         (packed(1, &mission()), "type 1"),
         (b"QGC WPL 110".to_vec(), "begins with 0x4751"),

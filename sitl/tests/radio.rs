@@ -319,7 +319,7 @@ fn switches_have_functions() {
     bench.heard.clear();
     radio.set(&mut bench, 10, 2000);
     bench.fly(0.3);
-    assert!(said(&bench, "Mode 15 is not available"), "{:?}", bench.texts());
+    assert!(said(&bench, "AutoTune mode is not available"), "{:?}", bench.texts());
     radio.set(&mut bench, 9, 2000);
     bench.fly(0.3);
     assert!(!is_armed(&bench));

@@ -29,6 +29,12 @@ fn set(id: &str, value: Value) -> MavMessage {
 fn others(present: Value, description: &Description) -> Vec<Value> {
     let within = |value: f64| value.clamp(description.range.minimum, description.range.maximum);
     let values: Vec<Value> = match present {
+        Value::Real(_) if !description.names.is_empty() => {
+            description.names.iter().map(|named| Value::Real(named.value as f32)).collect()
+        }
+        Value::Integer(_) if !description.names.is_empty() => {
+            description.names.iter().map(|named| Value::Integer(named.value)).collect()
+        }
         Value::Real(0.0) => [0.01, 0.001, 1e-5].map(|value| Value::Real(within(value) as f32)).into(),
         Value::Real(present) => [0.97, 0.99, 1.1, 2.0, 0.5]
             .map(|factor| Value::Real(within(f64::from(present) * factor) as f32))

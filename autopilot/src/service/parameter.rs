@@ -49,7 +49,7 @@ impl Service for ParameterProtocol {
     }
 
     fn answers(&self) -> &'static [u32] {
-        &[id::PARAM_VALUE]
+        &[id::PARAM_VALUE, id::PARAM_ERROR]
     }
 
     fn messages(&self) -> &'static [u32] {

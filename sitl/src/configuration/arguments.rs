@@ -159,7 +159,8 @@ pub struct Arguments {
     /// cameras and gimbals do. With `autopilot` no heartbeats but the autopilot's are sent, so that clients that take every
     /// heartbeat for the autopilot's are not misled; requests to both components are answered all the same.
     #[arg(
-        long, env = "LMPC_SITL_EQUIPMENT", value_name = "autopilot|own", help_heading = VEHICLE, hide_possible_values = true
+        long, env = "LMPC_SITL_EQUIPMENT", value_name = "autopilot|own", help_heading = VEHICLE, hide_possible_values = true,
+        hide_short_help = true
     )]
     pub equipment: Option<EquipmentChoice>,
 

@@ -54,7 +54,7 @@ fn rows(settings: &Settings, own: &MemberSettings) -> Vec<(Entry, Value)> {
         conduct: own.vehicle.conduct,
         system_id: own.system_id,
         speed: settings.speed,
-        statistics: Statistics::default(),
+        statistics: Statistics { boots: 1, ..Statistics::default() },
     };
     let table = ParameterTable::new(own.vehicle.identity);
     let value = |index| table.value(index, &values);
