@@ -464,7 +464,7 @@ fn a_mission_that_a_later_fence_forbids_is_not_begun() {
 fn nothing_leads_through_a_thin_wall() {
     let mut start = settings(Identity::Px4);
     // When the sticks are let go.
-    start.conduct.failsafe.pilot_lost = vehicle::radio::RadioLossAction::Hold;
+    start.conduct.failsafe.pilot_lost = vehicle::radio::RadioLossAction::None;
     let wall = polygon(&start, false, &[[20.0, -40.0], [20.0, 40.0], [20.5, 40.0], [20.5, -40.0]]);
     let mut bench = hovering(&start, wall, Vec::new());
     assert_eq!(go_to(&mut bench, 40.0, 0.0), DENIED);

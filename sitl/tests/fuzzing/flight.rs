@@ -20,8 +20,8 @@ use super::bytes::{Bytes, command, framed, position_target};
 const PIECES: usize = 600;
 /// After these every bounded memory has been filled once.
 const WARM_UP: usize = 200;
-/// What a case may hold more at its end than after that, bytes: some plans and open files.
-const GROWTH: i64 = 256 * 1024;
+/// What a case may hold more at its end than after that, bytes: some plans, open files and descriptions of parameters.
+const GROWTH: i64 = 512 * 1024;
 /// Turns of long answers in a tick.
 const TURNS: usize = 1;
 /// What the decoder may hold: less than the longest frame.

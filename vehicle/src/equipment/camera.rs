@@ -18,7 +18,7 @@ const IMAGE_MIB: f64 = 8.0;
 /// What a second of video takes, MiB.
 const VIDEO_MIB_PER_S: f64 = 6.0;
 /// Images whose places are remembered.
-const REMEMBERED: usize = 4_096;
+const REMEMBERED: usize = 1_024;
 
 /// What it is set to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
