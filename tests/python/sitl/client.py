@@ -6,7 +6,7 @@ import time
 
 import pytest
 from pymavlink import mavutil
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 PX4_OFFBOARD = (1, 6, 0)
 PX4_HOLD = (1, 4, 3)
@@ -17,7 +17,7 @@ PX4_POSITION = (1, 3, 0)
 
 class Client:
     def __init__(self, address: str, kind: str = "udpout", system: int = 255, heartbeat: bool = True):
-        self.connection = mavutil.mavlink_connection(f"{kind}:{address}", source_system=system, dialect="common")
+        self.connection = mavutil.mavlink_connection(f"{kind}:{address}", source_system=system, dialect="ardupilotmega")
         self.mav = self.connection.mav
         self.target = (0, 0)
         if heartbeat:

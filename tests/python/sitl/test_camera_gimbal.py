@@ -7,7 +7,7 @@ from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.camera import Camera, CameraError, Mode
 from mavsdk.plugins.gimbal import ControlMode, Gimbal, GimbalMode, SendMode
 from mavsdk.plugins.gripper import Gripper
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from test_mavsdk import eventually, free_port
 

@@ -7,7 +7,7 @@ import pytest
 from mavsdk.plugins.failure import Failure
 from mavsdk.plugins.failure.failure import FailureError, FailureType, FailureUnit
 from mavsdk.plugins.telemetry import Telemetry
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from test_mavsdk import eventually, fly  # noqa: F401: a fixture
 
 ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED

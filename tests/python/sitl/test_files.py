@@ -9,7 +9,7 @@ import pytest
 from mavsdk.plugins.component_metadata import ComponentMetadata, MetadataType
 from mavsdk.plugins.ftp import Ftp, FtpResult
 from pymavlink import mavftp
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from test_mavsdk import eventually, fly  # noqa: F401
 from test_program import run

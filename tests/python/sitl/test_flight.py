@@ -1,6 +1,6 @@
 """Arm, take off, go somewhere, land: what every client does first."""
 
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from client import PX4_OFFBOARD, near
 

@@ -12,7 +12,7 @@ import time
 from dataclasses import dataclass
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from test_lockstep import steer
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from client import near
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 import foreign
 import records

@@ -7,7 +7,7 @@ import socket
 import time
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 LOCKSTEP, ARMED = 1, 128
 STEP_US = 4000

@@ -7,7 +7,7 @@ import tty
 
 import pytest
 from pymavlink import mavutil
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 
 def test_two_clients_at_once_over_udp_and_tcp(start, connect):

@@ -5,7 +5,7 @@ import subprocess
 import time
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from client import PX4_OFFBOARD
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mavsdk.plugins.log_files import LogFiles, LogFilesResult
 from pymavlink import mavutil
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyulog import ULog
 from pyulog.px4 import PX4ULog
 

@@ -6,7 +6,7 @@ import struct
 import time
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 pytestmark = pytest.mark.alone
 

@@ -9,7 +9,7 @@ from mavsdk.plugins.action import Action
 from mavsdk.plugins.mission import Mission, MissionItem, MissionPlan
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink import mavwp
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from test_mavproxy import shell  # noqa: F401
 from test_mavsdk import eventually, fly  # noqa: F401
 

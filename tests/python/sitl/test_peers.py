@@ -6,7 +6,7 @@ import socket
 import time
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from client import Client, own_address
 from test_disks import ended, launch, said, still_flies  # noqa: F401

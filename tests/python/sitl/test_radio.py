@@ -76,10 +76,15 @@ def test_mavsdk_flies_by_hand(fly):  # noqa: F811
     system = fly("--speed", "2", "--set", "NAV_RCL_ACT=1")
     telemetry, action, manual = Telemetry(system), Action(system), ManualControl(system)
     eventually("health", telemetry.health_all_ok)
+
+    def centred_and(condition) -> bool:
+        manual.set_manual_control_input(0.0, 0.0, 0.5, 0.0)
+        return condition()
+
     manual.set_manual_control_input(0.0, 0.0, 0.5, 0.0)
     action.arm()
     action.takeoff()
-    eventually("airborne", lambda: telemetry.position().relative_altitude_m > 2.0)
+    eventually("airborne", lambda: centred_and(lambda: telemetry.position().relative_altitude_m > 2.0))
     manual.set_manual_control_input(0.0, 0.0, 0.5, 0.0)
     manual.start_altitude_control()
     eventually("altitude mode", lambda: telemetry.flight_mode() == FlightMode.ALTCTL)

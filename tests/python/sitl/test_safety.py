@@ -9,7 +9,7 @@ from mavsdk.plugins.action import Action
 from mavsdk.plugins.action.action import ActionError
 from mavsdk.plugins.geofence import Circle, FenceType, Geofence, GeofenceData, Point, Polygon
 from mavsdk.plugins.telemetry import Telemetry
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from test_mavsdk import eventually, fly  # noqa: F401
 
 HOME = (47.397742, 8.545594)

@@ -4,7 +4,7 @@ import struct
 import time
 
 from pymavlink import mavparm
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 
 def all_parameters(client):
@@ -75,9 +75,11 @@ def test_identity_and_modes(start, connect):
     client.command(mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 1)
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 435, 0)
     # This version of the library does not know AVAILABLE_MODES: its name is behind 11 bytes of numbers.
-    bodies = [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(6)]
-    names = {body[11:].rstrip(b"\0") for body in bodies}
-    assert names == {b"Loiter", b"Guided", b"Auto", b"RTL", b"Land", b"Brake"}
+    first = bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2]
+    bodies = [first] + [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(first[8] - 1)]
+    names = {body[11:].rstrip(b"\0").decode() for body in bodies}
+    assert names == {"Stabilize", "Acro", "AltHold", "Loiter", "PosHold", "Brake", "Auto", "RTL", "Land", "Guided", "Guided NoGPS", "Circle",
+                     "Follow", "Smart RTL"}
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 395, result=mavlink.MAV_RESULT_UNSUPPORTED)
     # An integer of ArduPilot travels as a number.
     assert client.set_parameter("COM_OBL_RC_ACT", 3.0, mavlink.MAV_PARAM_TYPE_INT32).param_value == 3.0

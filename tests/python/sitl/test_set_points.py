@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from pymavlink.dialects.v20 import common as mavlink
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from client import PX4_HOLD, PX4_OFFBOARD, PX4_POSITION, near
 

@@ -127,7 +127,7 @@ impl RadioSettings {
             mode_channel: if ardupilot { 5.0 } else { 0.0 },
             modes: if ardupilot { [7.0, 9.0, 6.0, 3.0, 5.0, 0.0] } else { [-1.0; 6] },
             switches: Switches::default(),
-            inputs: InputChoice::First,
+            inputs: InputChoice::Either,
             lost_exceptions: 0,
             options: 16,
             low_throttle_us: 975.0,

@@ -54,7 +54,7 @@ impl Obstacle {
     /// Distance of a place, NED, m, from its surface; zero within.
     pub fn distance_m(&self, place_m: &Vector3<f64>) -> f64 {
         let height_m = -place_m.z;
-        let above = (height_m - self.top_m).max(self.bottom_m - height_m).max(0.0);
+        let above = (height_m - self.top_m).max(self.base_m() - height_m).max(0.0);
         let [beside, behind] = match self.shape {
             Shape::Box { centre_m, size_m, heading_rad } => {
                 let own = Rotation2::new(-heading_rad) * (place_m.xy() - Vector2::from(centre_m));
@@ -67,9 +67,14 @@ impl Obstacle {
         sqrt(above * above + beside * beside + behind * behind)
     }
 
+    /// Where it begins, m above the ground: what stands on the ground is rooted in it, as feet sink into it by millimetres.
+    fn base_m(&self) -> f64 {
+        if self.bottom_m > 0.0 { self.bottom_m } else { -ROOTS_M }
+    }
+
     /// How far a ray from a place, NED, m, goes in a direction of length one before it meets the surface, m.
     pub fn along_m(&self, place_m: &Vector3<f64>, direction: &Vector3<f64>) -> Option<f64> {
-        let up = slab(-place_m.z - self.bottom_m, -direction.z, self.top_m - self.bottom_m)?;
+        let up = slab(-place_m.z - self.base_m(), -direction.z, self.top_m - self.base_m())?;
         let plan = match self.shape {
             Shape::Box { centre_m, size_m, heading_rad } => {
                 let turn = Rotation2::new(-heading_rad);
@@ -85,6 +90,9 @@ impl Obstacle {
         (leaves_m >= 0.0).then_some(enters_m.max(0.0))
     }
 }
+
+/// How deep obstacles that stand on the ground reach into it, m.
+const ROOTS_M: f64 = 10.0;
 
 /// Where a line from `at` with a slope is between zero and a width: from and to.
 fn slab(at: f64, slope: f64, width: f64) -> Option<(f64, f64)> {
