@@ -8,6 +8,7 @@ use crate::plant::forces::Forces;
 use crate::plant::ground::{HoldingMargins, cannot_be_held, contact};
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
+use crate::plant::rotor_fault::goals_rad_s;
 use crate::plant::rotor_forces::{RotorForces, Surroundings};
 use crate::{Airframe, Environment, RotorFault};
 
@@ -126,12 +127,9 @@ impl Plant {
             command_rad_s = command_rad_s.map(|command| command * share);
             discharge_per_s = battery.current_a / pack.capacity_a_s;
         }
+        let goals_rad_s = goals_rad_s(faults, &command_rad_s, &state.rotor_speed_rad_s);
         let accelerations = core::array::from_fn(|rotor| {
-            let present = state.rotor_speed_rad_s[rotor];
-            let goal = match faults[rotor] {
-                Some(fault) => fault.goal_rad_s(command_rad_s[rotor], present),
-                None => command_rad_s[rotor],
-            };
+            let (goal, present) = (goals_rad_s[rotor], state.rotor_speed_rad_s[rotor]);
             (goal - present) / self.airframe.lag_s(goal.value(), present.value())
         });
         (accelerations, discharge_per_s)

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::plant::differentiation::real::Real;
 use crate::plant::plant_state::zipped;
+use crate::plant::rotor_fault::goals_rad_s;
 use crate::{Disturbance, RotorFault, Wrench};
 
 /// What drives the vehicle.
@@ -64,6 +65,17 @@ impl<T: Real> PlantInputs<T> {
 }
 
 impl PlantInputs {
+    /// The speeds that the rotors go to, rad/s, at their present ones: as commanded, but for faults. Zero for a plant without rotors
+    /// of its own, which is moved by thrust and torques.
+    pub fn rotor_goals_rad_s(&self, present_rad_s: &[f64; 4]) -> [f64; 4] {
+        match &self.actuation {
+            Actuation::RotorSpeeds(command_rad_s) => {
+                goals_rad_s(&self.rotor_faults, command_rad_s, present_rad_s)
+            }
+            Actuation::Wrench(_) => [0.0; 4],
+        }
+    }
+
     /// The name of the first input that is not finite.
     pub(crate) fn not_finite(&self) -> Option<&'static str> {
         let drive = match &self.actuation {

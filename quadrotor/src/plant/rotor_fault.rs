@@ -18,9 +18,21 @@ pub enum RotorFault {
     },
 }
 
+/// The speeds that rotors go to, rad/s, under commanded speeds and at their present ones.
+pub(crate) fn goals_rad_s<T: Real>(
+    faults: &[Option<RotorFault>; 4],
+    command_rad_s: &[T; 4],
+    present_rad_s: &[T; 4],
+) -> [T; 4] {
+    core::array::from_fn(|rotor| match faults[rotor] {
+        Some(fault) => fault.goal_rad_s(command_rad_s[rotor], present_rad_s[rotor]),
+        None => command_rad_s[rotor],
+    })
+}
+
 impl RotorFault {
     /// The speed that the rotor goes to, rad/s, under a commanded speed and at its present speed.
-    pub(crate) fn goal_rad_s<T: Real>(self, command_rad_s: T, present_rad_s: T) -> T {
+    fn goal_rad_s<T: Real>(self, command_rad_s: T, present_rad_s: T) -> T {
         match self {
             Self::Off => T::zero(),
             Self::Stuck => present_rad_s,

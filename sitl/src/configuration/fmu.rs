@@ -89,11 +89,12 @@ pub(super) fn check_plant(
 fn refuse(arguments: &Arguments, vehicle: &VehicleSettings, mapping: &Mapping) -> Result<(), Failure> {
     let name = &mapping.model_name;
     let wrong = |flag: &str, reason: String| Err(Failure::Value { name: flag.to_owned(), reason });
-    if let Some(scheduled) = vehicle.faults.iter().find(|scheduled| scheduled.fault.is_of_rotors()) {
-        return wrong(
-            "--fault",
-            format!("`{scheduled}`: the rotors are those of the FMU {name}, whose faults are its own"),
+    let of_rotors = vehicle.faults.iter().find(|scheduled| scheduled.fault.is_of_rotors());
+    if let Some(scheduled) = of_rotors.filter(|_| mapping.role == ForeignRole::ClosedLoop) {
+        let reason = format!(
+            "`{scheduled}`: the FMU {name} flies as the closed loop, and its rotors take no faults; only a plant's do"
         );
+        return wrong("--fault", reason);
     }
     if (vehicle.wind.speed_m_s > 0.0 || vehicle.wind.gusts_m_s > 0.0) && !mapping.takes(crate::fmu::WIND) {
         let reason = format!(

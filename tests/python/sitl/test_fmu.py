@@ -27,6 +27,11 @@ def closed_loop() -> Path:
 
 
 @pytest.fixture(scope="session")
+def plant(closed_loop) -> Path:
+    return closed_loop.with_name("QuadrotorPlant.fmu")
+
+
+@pytest.fixture(scope="session")
 def body(tmp_path_factory):
     """The body in C, which works."""
     return foreign.in_c(tmp_path_factory.mktemp("body"))
@@ -52,9 +57,9 @@ def fly_about(client):
     return there
 
 
-@pytest.mark.parametrize("model", ["closed loop", "body"])
-def test_a_client_flies_an_fmu_and_the_record_is_the_same_flight(start, connect, program, tmp_path, model, closed_loop, body):
-    fmu, map_file = (closed_loop, None) if model == "closed loop" else body
+@pytest.mark.parametrize("model", ["closed loop", "plant", "body"])
+def test_a_client_flies_an_fmu_and_the_record_is_the_same_flight(start, connect, program, tmp_path, model, closed_loop, plant, body):
+    fmu, map_file = {"closed loop": (closed_loop, None), "plant": (plant, None), "body": body}[model]
     options = ["--fmu", fmu, "--speed", "5", "--record", tmp_path / "record", "--log-dir", tmp_path / "logs", "--home", "47,8,400,30"]
     vehicle = start(*map(str, options), *([] if map_file is None else ["--map", str(map_file)]))
     client = connect(vehicle)
@@ -73,12 +78,37 @@ def test_a_client_flies_an_fmu_and_the_record_is_the_same_flight(start, connect,
     assert list((tmp_path / "logs").glob("**/*.ulg"))
 
 
-def test_the_body_flies_as_the_vehicle_does(program, body, tmp_path):
-    """One mission with the vehicle's own plant, and with the body that somebody else has integrated."""
-    plan = tmp_path / "square.waypoints"
+def a_plan(folder):
+    """Up, to a place, and down there."""
+    plan = folder / "square.waypoints"
     rows = ["0\t1\t0\t16\t0\t0\t0\t0\t47\t8\t400\t1", "1\t0\t3\t22\t0\t0\t0\t0\t47\t8\t5\t1",
             "2\t0\t3\t16\t0\t0\t0\t0\t47.0001\t8.0001\t8\t1", "3\t0\t3\t21\t0\t0\t0\t0\t47.0001\t8.0001\t0\t1"]
     plan.write_text("QGC WPL 110\n" + "\n".join(rows) + "\n")
+    return plan
+
+
+def test_a_rotor_of_a_plant_fails_as_the_vehicle_s_own(program, plant, body, tmp_path):
+    """Told to stop, or to turn on: a plant with rotors, and one that is moved by the thrust of ours."""
+    plan = a_plan(tmp_path)
+
+    def fly(fault, *options):
+        result = run(program, "--mission", plan, "--autostart", "--speed", "max", "--duration", 50, "--home", "47,8,400", "--link", "udpin:0",
+                     "--fault", fault, *options)
+        assert result.returncode == 0, result.stderr
+        found = re.search(r"(\d+\.\d+)s .*Rotor 2 lost: descending.*?(\d+\.\d+)s .*Disarmed: landed without rotor 2", result.stderr, re.DOTALL)
+        assert found, result.stderr
+        return [float(time_s) for time_s in found.groups()]
+
+    for fault in ("8:rotor2=off", "8:rotor2=stuck"):
+        own = fly(fault)
+        assert fly(fault, "--fmu", plant) == pytest.approx(own, abs=0.01)
+        # It stands on another ground, and has no drag.
+        assert fly(fault, "--fmu", body[0], "--map", body[1]) == pytest.approx(own, abs=1.5)
+
+
+def test_the_body_flies_as_the_vehicle_does(program, body, tmp_path):
+    """One mission with the vehicle's own plant, and with the body that somebody else has integrated."""
+    plan = a_plan(tmp_path)
     fmu, map_file = body
 
     def fly(*options):
@@ -196,7 +226,7 @@ def test_fmus_that_cannot_be_flown_are_told_so(program, body, tmp_path, closed_l
         (["--fmu", fmu], 4, "no inputs to fly it by"),
         (["--map", map_file], 2, "--map: needs --fmu"),
         (["--fmu", fmu, "--map", map_file, "--wind", "3"], 2, "has no inputs for the wind"),
-        (["--fmu", fmu, "--map", map_file, "--fault", "3:rotor1=off"], 2, "the rotors are those of the FMU Body"),
+        (["--fmu", closed_loop, "--fault", "3:rotor1=off"], 2, "LmpcQuadrotor flies as the closed loop, and its rotors take no faults"),
         (["--fmu", closed_loop, "--sensors", "realistic"], 2, "flies by measurements of its own"),
         (["--fmu", closed_loop, "--hil", "0"], 2, "an external autopilot needs a plant"),
     ]:

@@ -30,16 +30,14 @@ pub fn drive(
 ) -> Result<Driven, FlightError> {
     let h_s = duration_us as f64 / 1e6;
     let ours = plant.step(state, inputs, h_s);
-    let rotor_command_rad_s = match inputs.actuation {
-        Actuation::RotorSpeeds(command_rad_s) => command_rad_s,
-        Actuation::Wrench(_) => [0.0; 4],
-    };
+    // A motor without power is one that is told to stop; the lag to there is the model's.
+    let rotor_command_rad_s = inputs.rotor_goals_rad_s(&state.rotor_speed_rad_s);
     let (_, _, yaw_rad) = state.body.rotation().euler_angles();
     let motion = model.advance(&Demand {
         time_us,
         duration_us,
         reference: PositionReference::goal(state.body.position_m.into(), yaw_rad),
-        armed: rotor_command_rad_s.iter().any(|speed| *speed > 0.0),
+        armed: turns(inputs),
         rotor_command_rad_s,
         wrench: mean_wrench(plant, state, &ours, inputs),
         wind_m_s: inputs.disturbance.wind_m_s,
@@ -51,6 +49,11 @@ pub fn drive(
         acceleration_m_s2: motion.acceleration_m_s2.unwrap_or_else(change),
         motion,
     })
+}
+
+/// Whether a rotor is commanded to turn.
+fn turns(inputs: &PlantInputs) -> bool {
+    matches!(inputs.actuation, Actuation::RotorSpeeds(command_rad_s) if command_rad_s.iter().any(|speed| *speed > 0.0))
 }
 
 /// The mean of thrust and torques at the beginning and the end of a step in which the rotors follow their commands.

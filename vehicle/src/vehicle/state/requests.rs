@@ -81,8 +81,13 @@ impl Vehicle {
             let reason = "ideal sensors can only fail as off; start with --sensors realistic";
             return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
-        if let Some(model) = self.foreign().filter(|_| fault.is_of_rotors()) {
-            let reason = format!("the rotors are those of {}, whose faults are its own", model.name);
+        if let Some(model) =
+            self.foreign().filter(|model| fault.is_of_rotors() && model.role == ForeignRole::ClosedLoop)
+        {
+            let reason = format!(
+                "{} flies as the closed loop, and its rotors take no faults; only a plant's do",
+                model.name
+            );
             return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
         self.consult(|parts, _, proposal| parts.injection.inject(fault, proposal));
