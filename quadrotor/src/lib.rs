@@ -1,4 +1,8 @@
-//! A quadrotor under a cascade of Laguerre model predictive controllers (Chipofya, Lee, Chong 2015).
+#![doc = include_str!("../README.md")]
+//!
+//! # How it is made
+//!
+//! The controllers are those of Chipofya, Lee and Chong (2015).
 //!
 //! ```text
 //!            ┌──────────────────────── ControlLoop ────────────────────────┐     ┌────── Plant ──────┐
@@ -43,20 +47,6 @@
 //!
 //! The crate builds without the standard library. Only the shaper, a default feature, needs it; without the shaper the
 //! control loop does not allocate in flight.
-//!
-//! # Example: the paper's flight to 5 m north, 5 m east, 10 m up
-//!
-//! ```
-//! use quadrotor::{Configuration, Inputs, Simulation};
-//!
-//! # if !cfg!(feature = "shaper") { return Ok(()); }
-//! let inputs = Inputs::default(); // armed, with a goal 5 m north, 5 m east, 10 m up
-//! let mut flight = Simulation::new(&Configuration::default(), &inputs)?;
-//! flight.advance_to(15_000_000, &inputs)?; // µs
-//! let goal = inputs.reference.position_m;
-//! assert!((flight.outputs().position_m - goal).norm() < 0.01);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
 //!
 //! # Example: the control loop on a vehicle of your own
 //!

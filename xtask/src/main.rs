@@ -1,6 +1,7 @@
 //! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
 mod book;
+mod crates;
 mod demo;
 mod fmu;
 mod optimum;
@@ -90,6 +91,8 @@ enum Task {
     },
     /// Builds the book into target/book; a warning is an error.
     Book,
+    /// Packages lmpc, quadrotor and fmi as for a registry, and compiles them with the oldest dependencies that they allow.
+    Crates,
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
@@ -156,6 +159,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
+        Task::Crates => crates::check(&workspace, &progress),
         Task::Test => test::run_all(&workspace, &progress),
     }
 }
@@ -185,7 +189,7 @@ mod tests {
         super::Arguments::command().debug_assert();
     }
 
-    /// The README's flight is the documentation example of `quadrotor`, which is compiled and run.
+    /// The README's flight is the example of `quadrotor`'s front page, which is compiled and run.
     #[test]
     fn rust_code_of_the_readme_is_a_documentation_test() {
         let workspace = Workspace::find().expect("cargo knows the workspace");
@@ -193,9 +197,9 @@ mod tests {
         let readme = read("README.md");
         let (_, rest) = readme.split_once("```rust\n").expect("the README has Rust code");
         let (code, _) = rest.split_once("```").expect("the code ends");
-        let documentation = read("quadrotor/src/lib.rs");
+        let documentation = read("quadrotor/README.md");
         for line in code.lines().filter(|line| !line.is_empty()) {
-            assert!(documentation.contains(&format!("//! {line}\n")), "not in quadrotor/src/lib.rs: {line}");
+            assert!(documentation.contains(&format!("{line}\n")), "not in quadrotor/README.md: {line}");
         }
     }
 
