@@ -211,8 +211,13 @@ fn what_describes_the_model_does_not_change_and_its_rotors_do_not_break() {
         assert_eq!(vehicle.adopt(&regulator, &conduct).is_err(), closed_loop);
 
         let fault = Fault::Rotors(Rotors::Front, Some(RotorFault::Off));
-        let refused = vehicle.inject(&fault).expect_err("no rotor");
-        assert!(matches!(&refused, Refusal::Unsupported(text) if text.contains("the model")), "{refused}");
+        match vehicle.inject(&fault) {
+            Ok(()) => assert!(!closed_loop, "a plant is told what its rotors do"),
+            Err(refused) => {
+                let says = matches!(&refused, Refusal::Unsupported(text) if text.contains("flies as the closed loop"));
+                assert!(closed_loop && says, "{refused}");
+            }
+        }
     }
 }
 
