@@ -185,7 +185,7 @@ fn a_closed_loop_follows_references_and_what_it_cannot_do_is_refused() {
 }
 
 #[test]
-fn what_describes_the_model_does_not_change_and_its_rotors_do_not_break() {
+fn what_describes_the_model_does_not_change_and_the_rotors_of_a_closed_loop_do_not_break() {
     let settings = settings();
     for closed_loop in [false, true] {
         let configuration = settings.flown_configuration();

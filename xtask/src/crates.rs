@@ -22,7 +22,8 @@ pub fn check(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> 
     package.args(PUBLISHED.iter().flat_map(|name| ["--package", name]));
     succeed(progress, "Packaging the libraries", &mut package)?;
 
-    let unpacked = workspace.target("crates");
+    // Beside what is compiled of it, which stays for the next time.
+    let unpacked = workspace.target("crates").join("source");
     files::remove_folder(&unpacked)?;
     files::create_folder(&unpacked)?;
     let mut folders = Vec::new();
