@@ -39,7 +39,7 @@ def _benchmark(arguments: list[str]) -> int:
 COMMANDS = {
     "sitl": (_sitl, "the MAVLink vehicle; takes the flags of lmpc-sitl"),
     "fmu": (_fmu, "prints the path of an FMU"),
-    "view": (_view, "writes a page that shows a flight: of a CSV file, or of lmpc-sitl's flight log if pyulog is installed"),
+    "view": (_view, "writes a page that shows the flight of a CSV file"),
     "benchmark": (_benchmark, "measures how fast vehicles fly on this machine"),
 }
 

@@ -264,3 +264,17 @@ fn a_heading_that_turns_is_followed_forwards() {
         assert!(!settled || (now.yaw_rad - angle_rad).abs() < 0.02, "{hundredth}: {} rad", now.yaw_rad);
     }
 }
+
+/// A straight way is flown 2 % below the limit of speed, so that the vehicle keeps it, too; or at it when it is a commanded speed.
+#[test]
+fn a_straight_way_is_flown_at_its_speed() {
+    for (full_speed, speed_m_s) in [(false, 0.98 * 8.0), (true, 8.0)] {
+        let mut configuration = Configuration::default();
+        configuration.limits.full_speed = full_speed;
+        let mut simulation = Simulation::new(&configuration, &goal([90.0, 120.0, -3.0], 0.0)).unwrap();
+        simulation.advance_to(12_000_000, &goal([90.0, 120.0, -3.0], 0.0)).unwrap();
+        let outputs = simulation.outputs();
+        let [asked, flown] = [outputs.setpoint.velocity_m_s, outputs.velocity_m_s].map(|v| v.xy().norm());
+        assert!((asked - speed_m_s).abs() < 1e-3 && (flown - speed_m_s).abs() < 0.02, "{asked} {flown} m/s");
+    }
+}

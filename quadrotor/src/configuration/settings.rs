@@ -296,6 +296,9 @@ pub struct Limits {
     pub thrust_max: f64,
     /// Largest horizontal speed of shaped references, m/s.
     pub speed_horizontal_m_s: f64,
+    /// Whether a straight shaped way is flown at that speed itself, as a commanded speed is. Otherwise it is flown at 98 % of it: the rest
+    /// is for the controllers to overshoot, so that the vehicle, too, keeps the limit.
+    pub full_speed: bool,
     /// Largest climb rate of shaped references, m/s.
     pub speed_up_m_s: f64,
     /// Largest sink rate of shaped references, m/s.
@@ -336,6 +339,7 @@ impl Default for Limits {
             thrust_min: 0.6,
             thrust_max: 2.0,
             speed_horizontal_m_s: 8.0,
+            full_speed: false,
             speed_up_m_s: 4.0,
             speed_down_m_s: 3.0,
             acceleration_horizontal_m_s2: 2.5,

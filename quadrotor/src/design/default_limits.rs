@@ -50,6 +50,7 @@ pub(crate) fn default_limits(airframe: &Airframe) -> Result<Limits, Configuratio
         speed_horizontal_m_s: known
             .speed_horizontal_m_s
             .min(dragged_speed_m_s(airframe, has.horizontal_acceleration_m_s2 - acceleration_m_s2)),
+        full_speed: known.full_speed,
         speed_up_m_s: known.speed_up_m_s,
         speed_down_m_s: known.speed_down_m_s,
         acceleration_horizontal_m_s2: acceleration_m_s2,

@@ -102,6 +102,7 @@ impl Limits {
             },
             thrust_max: combine(self.thrust_max, other.thrust_max),
             speed_horizontal_m_s: combine(self.speed_horizontal_m_s, other.speed_horizontal_m_s),
+            full_speed: self.full_speed,
             speed_up_m_s: combine(self.speed_up_m_s, other.speed_up_m_s),
             speed_down_m_s: combine(self.speed_down_m_s, other.speed_down_m_s),
             acceleration_horizontal_m_s2: combine(
@@ -124,6 +125,7 @@ impl Limits {
     fn with_dynamics_of(&self, other: &Self) -> Self {
         Self {
             speed_horizontal_m_s: self.speed_horizontal_m_s,
+            full_speed: self.full_speed,
             speed_up_m_s: self.speed_up_m_s,
             speed_down_m_s: self.speed_down_m_s,
             yaw_rate_rad_s: self.yaw_rate_rad_s,

@@ -10,7 +10,8 @@ use crate::{Limits, PositionReference};
 
 /// Share of a horizontal limit along the line to the goal, and across it: 0.98² + 0.198² < 1.
 const STRAIGHT: [f64; 2] = [0.98, 0.198];
-/// Least share of a limit of speed across the line: the less moves across, the more is left along it.
+/// Least share of a limit of speed across the line where the limit itself is to be flown: the less moves across, the more is left
+/// along it.
 const LEAST_ACROSS: f64 = 0.01;
 /// How much more than the speed across the line that share is.
 const ROOM_ACROSS: f64 = 2.0;
@@ -81,17 +82,13 @@ impl WayPlan {
         let limit =
             |horizontal: f64, vertical: f64| [shares[0] * horizontal, shares[1] * horizontal, vertical];
 
-        let speed_shares = if straight {
-            // The speed across when its acceleration has been taken back, and that at the goal.
-            let (acceleration, jerk) =
-                (local(&from.acceleration_m_s2)[1], STRAIGHT[1] * limits.jerk_horizontal_m_s3);
-            let settled_m_s = local(&from.velocity_m_s)[1].abs() + acceleration * acceleration / (2.0 * jerk);
-            let most_m_s = settled_m_s.max(local(&goal.velocity_m_s)[1].abs());
-            let share =
-                (ROOM_ACROSS * most_m_s / limits.speed_horizontal_m_s).clamp(LEAST_ACROSS, STRAIGHT[1]);
-            [libm::sqrt(1.0 - share * share), share]
+        let speed_shares = if straight && limits.full_speed {
+            let jerk = STRAIGHT[1] * limits.jerk_horizontal_m_s3;
+            let beside =
+                [&from.velocity_m_s, &from.acceleration_m_s2, &goal.velocity_m_s].map(|of| local(of)[1]);
+            full_speed_shares(beside, jerk, limits.speed_horizontal_m_s)
         } else {
-            TURNING
+            shares
         };
         let max_velocity = [
             speed_shares[0] * limits.speed_horizontal_m_s,
@@ -182,6 +179,16 @@ impl WayPlan {
         let jerks = [across, across, kept.jerk_vertical_m_s3];
         stays && (0..3).all(|axis| keeps_speed(&self.axes[axis], speeds[axis], jerks[axis], FASTER_M_S))
     }
+}
+
+/// Shares of the limit of speed along the line to the goal and across it, so that as much as possible is along it: from what moves
+/// across, its velocity and acceleration at the start and its velocity at the goal.
+fn full_speed_shares([velocity, acceleration, at_goal]: [f64; 3], jerk: f64, limit_m_s: f64) -> [f64; 2] {
+    // The velocity when its acceleration has been taken back.
+    let settled_m_s = velocity.abs() + acceleration * acceleration / (2.0 * jerk);
+    let most_m_s = settled_m_s.max(at_goal.abs());
+    let share = (ROOM_ACROSS * most_m_s / limit_m_s).clamp(LEAST_ACROSS, STRAIGHT[1]);
+    [libm::sqrt(1.0 - share * share), share]
 }
 
 /// Whether a profile keeps within speeds in either direction, its speed at the start, and the one that it comes to when its

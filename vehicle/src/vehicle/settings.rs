@@ -81,6 +81,8 @@ impl VehicleSettings {
         let mut configuration = self.configuration;
         configuration.environment.ground_plane = true;
         configuration.reference.shaping = true;
+        // Speeds are commanded here: they are to be flown.
+        configuration.limits.full_speed = true;
         configuration.initial.attitude_rad[2] = self.heading_rad;
         configuration
     }
