@@ -35,7 +35,7 @@ fn speeds_change_and_come_back() {
     assert!((fastest(0, 2) - 3.0).abs() < 0.15, "{}", fastest(0, 2));
     assert!((fastest(2, 4) - 6.0).abs() < 0.3, "{}", fastest(2, 4));
     let limits = flight.bench.autopilot.vehicle().simulation().configuration().limits;
-    assert_eq!(limits, quadrotor::Limits::default(), "the mission's speeds go with it");
+    assert_eq!(limits.speed_horizontal_m_s, 8.0, "the mission's speeds go with it");
 }
 
 /// Speeds that hold for a while are none of the parameters: a file that keeps those keeps no mission's.

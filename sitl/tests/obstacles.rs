@@ -167,6 +167,37 @@ fn what_a_companion_computer_sees_stops_it_too_and_without_data_px4_stays() {
     assert!((7.9..=9.05).contains(&north), "{north}: 3 m before 12 m");
 }
 
+/// A step that no scan can have makes it no data, and an offset counts modulo a turn.
+#[test]
+fn scans_that_make_no_sense_are_passed_over() {
+    let mut bench = hovering(Identity::Px4, Vec::new());
+    set(&mut bench, "CP_DIST", 3.0);
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let scan = |increment_f, angle_offset, distances| OBSTACLE_DISTANCE_DATA {
+        distances,
+        max_distance: 3000,
+        increment_f,
+        angle_offset,
+        frame: MavFrame::MAV_FRAME_BODY_FRD,
+        ..OBSTACLE_DISTANCE_DATA::default()
+    };
+    bench.stream(2.0, |bench| {
+        for increment_f in [f32::MAX, -1e9, 361.0, f32::NAN, f32::INFINITY] {
+            bench.send(MavMessage::OBSTACLE_DISTANCE(scan(increment_f, 0.0, [3001; 72])));
+        }
+        push_forward(bench);
+    });
+    assert!(bench.position()[0].abs() < 0.1, "no data: {:?}", bench.position());
+    bench.stream(10.0, |bench| {
+        let mut distances = [3001; 72];
+        distances[36] = ((12.0 - bench.position()[0]) * 100.0).max(20.0) as u16;
+        bench.send(MavMessage::OBSTACLE_DISTANCE(scan(5.0, 180.0 - 360.0 * 1000.0, distances)));
+        push_forward(bench);
+    });
+    let [north, ..] = bench.position();
+    assert!((7.9..=9.05).contains(&north), "{north}: 3 m before 12 m");
+}
+
 /// ArduPilot's rangefinder, without a world.
 #[test]
 fn a_rangefinder_is_there_if_its_parameter_says_so() {

@@ -60,9 +60,11 @@ fn take_scan(context: &mut Context, payload: &Payload) {
     let exact_deg = f64::from(payload.f32(158));
     let step_deg = if exact_deg != 0.0 { exact_deg } else { whole_deg };
     let (offset_deg, farthest_cm) = (f64::from(payload.f32(162)), payload.u16(154));
-    if !step_deg.is_finite() || step_deg == 0.0 || !offset_deg.is_finite() {
+    // Wider than all around is no step.
+    if !(step_deg.abs() > 0.0 && step_deg.abs() <= 360.0 && offset_deg.is_finite()) {
         return;
     }
+    let offset_deg = offset_deg.rem_euclid(360.0);
     let vehicle = &mut context.vehicle;
     let nose_rad = if payload.u8(166) == BODY_FRD { vehicle.outputs().attitude_rad.z } else { 0.0 };
     let mut sectors = [Reading::Unknown; SECTORS];
