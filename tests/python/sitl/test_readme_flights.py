@@ -68,7 +68,7 @@ def test_all_blocks_on_one_vehicle(start, group, backwards):
 
 
 def test_the_mavsdk_block_flies_a_vehicle_that_another_program_has_left_in_the_air(start, connect):
-    block = next(block for block in FLIGHTS if "from mavsdk" in block.text)
+    block = next(block for block in FLIGHTS if "from mavsdk" in block.text and "print(\"landed\")" in block.text)
     port = free_port()
     vehicle = start("--speed", "4", links=("udpin:0", f"udpout:127.0.0.1:{port},onboard"))
     connect(vehicle).take_off()
