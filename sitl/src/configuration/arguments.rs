@@ -266,7 +266,7 @@ pub struct Arguments {
 
     /// Aircraft around the vehicles: a flight, a file or `fleet`
     ///
-    /// NORTH,EAST,HEIGHT,SPEED,COURSE[,CLIMB] flies straight on, from a place in metres, with m/s and degrees. FILE.toml has
+    /// `NORTH,EAST,HEIGHT,SPEED,COURSE[,CLIMB]` flies straight on, from a place in metres, with m/s and degrees. FILE.toml has
     /// several, with tracks. `fleet` makes the vehicles of this run see one another. Repeat it for more.
     #[arg(
         long, env = "LMPC_SITL_TRAFFIC", value_name = "AIRCRAFT", value_delimiter = ';', allow_hyphen_values = true,
