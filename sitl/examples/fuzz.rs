@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
-#[path = "../tests/fuzzing/mod.rs"]
+#[path = "../tests/suite/fuzzing/mod.rs"]
 mod fuzzing;
 
 use fuzzing::TARGETS;

@@ -1,0 +1,257 @@
+//! Failsafes that follow one another, flicker, or leave a choice.
+
+use crate::common::failsafe_bench::*;
+use crate::common::{Bench, settings};
+use mavlink::dialects::ardupilotmega::*;
+use vehicle::estimation::SensorModel;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
+use vehicle::{Cause, Mode};
+
+fn count(bench: &Bench, text: &str) -> usize {
+    bench.texts().iter().filter(|told| *told == text).count()
+}
+
+/// A cause that comes and goes several times per second acts once, and is over once.
+#[test]
+fn what_flickers_acts_once() {
+    let mut bench = hovering(Cause::GroundStationLost);
+    set(&mut bench, "NAV_DLL_ACT", 1.0);
+    bench.heard.clear();
+    for _ in 0..20 {
+        lose_ground_station(&mut bench);
+        bench.fly(0.4);
+        bench.autopilot.hear_ground_station(true);
+        bench.fly(0.4);
+        assert_eq!(state(&bench), MavState::MAV_STATE_CRITICAL);
+    }
+    assert_eq!(count(&bench, "Ground station lost: holding"), 1, "{:?}", bench.texts());
+    assert_eq!(count(&bench, "Failsafe cleared: ground station connected"), 0);
+    bench.fly(0.7);
+    assert_eq!(count(&bench, "Failsafe cleared: ground station connected"), 1);
+    assert_eq!(state(&bench), MavState::MAV_STATE_ACTIVE);
+    // A user who flies on is not spared the next time, however soon it comes.
+    lose_ground_station(&mut bench);
+    bench.fly(0.1);
+    bench.autopilot.hear_ground_station(true);
+    bench.fly(0.1);
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    bench.autopilot.hear_ground_station(false);
+    bench.fly(0.1);
+    assert_eq!(bench.mode(), Mode::Hold, "{:?}", bench.texts());
+}
+
+/// On its way home the battery runs empty: it lands where it is.
+#[test]
+fn a_return_on_a_critical_battery_becomes_a_landing_when_it_is_empty() {
+    let mut bench = hovering(Cause::BatteryCritical);
+    bench.fly(60.0);
+    drain_to(&mut bench, 0.053);
+    bench.fly(0.1);
+    assert_eq!((bench.mode(), state(&bench)), (Mode::Return, MavState::MAV_STATE_CRITICAL));
+    bench.fly_until("empty", 60.0, |bench| bench.mode() == Mode::Land);
+    let share = bench.autopilot.vehicle().battery_remaining();
+    assert!((share - 0.05).abs() < 1e-4, "{share}");
+    assert_eq!(count(&bench, "Battery empty (5 %): landing"), 1, "{:?}", bench.texts());
+    bench.fly(0.1);
+    assert_eq!(state(&bench), MavState::MAV_STATE_EMERGENCY);
+    bench.fly_until("landed", 90.0, |bench| !bench.autopilot.vehicle().is_armed());
+    assert!(bench.position()[2].abs() < 0.05, "{:?}", bench.position());
+}
+
+/// From a hold in the wind to a return to a landing, and never back.
+#[test]
+fn a_worse_cause_goes_before_a_milder_one() {
+    let mut bench = hovering(Cause::HighWind);
+    for (id, value) in [("COM_WIND_MAX_ACT", 2.0), ("NAV_DLL_ACT", 2.0), ("GF_ACTION", 5.0)] {
+        set(&mut bench, id, value);
+    }
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut modes = Vec::new();
+    for cause in [Cause::HighWind, Cause::GroundStationLost, Cause::Fence] {
+        spoil(&mut bench, cause);
+        bench.fly(0.1);
+        modes.push(bench.mode());
+    }
+    assert_eq!(modes, [Mode::Hold, Mode::Return, Mode::Land]);
+    lose_ground_station(&mut bench);
+    bench.fly(3.0);
+    assert_eq!(bench.mode(), Mode::Land);
+}
+
+/// Only landing is left: a mission is neither begun nor gone on with.
+#[test]
+fn no_mission_is_begun_without_a_position_or_a_rotor() {
+    for cause in [Cause::PositionLost, Cause::RotorFailure] {
+        let mut start = settings(Identity::Px4);
+        let waypoint = MissionItem {
+            frame: frame::GLOBAL_RELATIVE_INT,
+            command: command::NAV_WAYPOINT,
+            parameters: [0.0; 4],
+            position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
+            autocontinue: true,
+        };
+        start.plans.set(PlanKind::Mission, Plan::new(vec![waypoint]));
+        let mut bench = Bench::hovering_with(&start);
+        spoil(&mut bench, cause);
+        bench.fly(0.2);
+        for command in [MavCmd::MAV_CMD_MISSION_START, MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH] {
+            assert_eq!(bench.command(command, [0.0; 7]), TEMPORARILY_REJECTED, "{cause:?} {command:?}");
+        }
+        let go_on = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_ne!(bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, go_on), 0, "{cause:?}");
+        assert_eq!(bench.mode(), Mode::Land, "{cause:?}");
+    }
+}
+
+/// A user who starts the mission, or pauses where it is, has decided: the next cause acts again.
+#[test]
+fn whoever_flies_on_has_decided() {
+    let mut bench = hovering(Cause::HighWind);
+    set(&mut bench, "COM_WIND_MAX_ACT", 3.0);
+    set(&mut bench, "RTL_MIN_DIST", 0.5);
+    spoil(&mut bench, Cause::HighWind);
+    bench.fly(0.1);
+    assert_eq!((bench.mode(), state(&bench)), (Mode::Return, MavState::MAV_STATE_CRITICAL));
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, [f32::NAN; 7]), 0);
+    bench.fly(0.1);
+    assert_eq!((bench.mode(), state(&bench)), (Mode::Hold, MavState::MAV_STATE_ACTIVE));
+    set(&mut bench, "NAV_DLL_ACT", 2.0);
+    lose_ground_station(&mut bench);
+    bench.fly(0.1);
+    assert_eq!((bench.mode(), state(&bench)), (Mode::Return, MavState::MAV_STATE_CRITICAL));
+}
+
+/// Terminated by command it says so until it is armed again.
+#[test]
+fn a_terminated_flight_is_told() {
+    let mut bench = hovering(Cause::Fence);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), 0);
+    bench.fly(0.1);
+    assert!(!bench.autopilot.vehicle().is_armed());
+    assert_eq!(state(&bench), MavState::MAV_STATE_FLIGHT_TERMINATION);
+    bench.fly(10.0);
+    assert_eq!(state(&bench), MavState::MAV_STATE_FLIGHT_TERMINATION);
+    assert_eq!(
+        bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        0
+    );
+    bench.fly(0.1);
+    assert_eq!(state(&bench), MavState::MAV_STATE_ACTIVE);
+}
+
+#[test]
+fn a_meaningless_choice_is_refused_with_those_that_there_are() {
+    let mut bench = Bench::new(Identity::Px4);
+    let mut param_id = [0; 16];
+    param_id[..16].copy_from_slice(b"COM_ACT_FAIL_ACT");
+    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
+        param_value: f32::from_bits(1),
+        target_system: 1,
+        target_component: 1,
+        param_id: param_id.into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
+    }));
+    let told = bench.texts().pop().expect("a reason");
+    let reason = "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)";
+    assert_eq!(told, reason);
+}
+
+/// Without a barometer and a receiver nothing corrects the height; without an accelerometer nothing is known between fixes.
+/// Measured: touched down at 0.3 to 0.9 m/s.
+#[test]
+fn without_a_height_it_lands_at_once_and_softly() {
+    use FailureType::{FAILURE_TYPE_OFF as OFF, FAILURE_TYPE_STUCK as STUCK};
+    use FailureUnit::{
+        FAILURE_UNIT_SENSOR_ACCEL as ACCELEROMETER, FAILURE_UNIT_SENSOR_BARO as BAROMETER,
+        FAILURE_UNIT_SENSOR_GPS as GPS,
+    };
+    for (broken, failed) in [
+        (vec![(BAROMETER, OFF), (GPS, OFF)], "barometer, gps failed"),
+        (vec![(ACCELEROMETER, STUCK)], "accelerometer failed"),
+    ] {
+        let mut start = settings(Identity::Px4);
+        start.sensors.model = SensorModel::Realistic;
+        let mut bench = Bench::of(&start);
+        bench.fly(4.0);
+        bench.arm();
+        let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0);
+        bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+        for (unit, kind) in broken {
+            break_unit(&mut bench, unit, kind);
+        }
+        bench.fly(1.5);
+        assert_eq!((bench.mode(), state(&bench)), (Mode::Land, MavState::MAV_STATE_CRITICAL), "{failed}");
+        let told = format!("Position lost ({failed}): landing");
+        assert_eq!(count(&bench, &told), 1, "{:?}", bench.texts());
+        let mut fastest: f64 = 0.0;
+        while bench.autopilot.vehicle().is_armed() {
+            bench.fly(0.05);
+            fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
+            assert!(bench.autopilot.vehicle().time_us() < 90_000_000, "still up: {:?}", bench.position());
+        }
+        println!("{failed}: {fastest}");
+        assert!(fastest < 1.6, "{failed}: {fastest} m/s");
+    }
+}
+
+#[test]
+fn without_a_gyroscope_it_falls_and_says_so() {
+    let mut start = settings(Identity::Px4);
+    start.sensors.model = SensorModel::Realistic;
+    let mut bench = Bench::of(&start);
+    bench.fly(4.0);
+    bench.arm();
+    let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0);
+    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
+    break_unit(&mut bench, FailureUnit::FAILURE_UNIT_SENSOR_GYRO, FailureType::FAILURE_TYPE_OFF);
+    let mut fastest: f64 = 0.0;
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
+        assert!(bench.autopilot.vehicle().time_us() < 60_000_000, "still up: {:?}", bench.position());
+    }
+    let told = "Position lost (gyroscope failed: cannot hold attitude): landing";
+    assert_eq!(count(&bench, told), 1, "{:?}", bench.texts());
+    assert!(fastest > 8.0, "{fastest} m/s");
+}
+
+#[test]
+fn a_script_without_a_ground_station_is_left_alone() {
+    let mut bench = hovering(Cause::GroundStationLost);
+    bench.fly(60.0);
+    assert_eq!(bench.mode(), Mode::Hold);
+    bench.heard.clear();
+    lose_ground_station(&mut bench);
+    bench.fly(5.0);
+    assert_eq!(bench.mode(), Mode::Hold);
+}
+
+#[test]
+fn who_lands_is_not_called_back() {
+    let mut bench = hovering(Cause::GroundStationLost);
+    set(&mut bench, "NAV_DLL_ACT", 2.0);
+    assert_eq!(bench.set_mode(Mode::Land), 0);
+    lose_ground_station(&mut bench);
+    bench.fly(1.0);
+    assert_eq!(bench.mode(), Mode::Land);
+}
+
+#[test]
+fn without_a_position_it_comes_down_level_and_softly() {
+    let mut bench = hovering(Cause::PositionLost);
+    spoil(&mut bench, Cause::PositionLost);
+    bench.fly(0.5);
+    assert_eq!(bench.mode(), Mode::Land);
+    assert_eq!(bench.set_mode(Mode::Hold), TEMPORARILY_REJECTED);
+    let mut fastest: f64 = 0.0;
+    while bench.autopilot.vehicle().is_armed() {
+        bench.fly(0.05);
+        fastest = fastest.max(bench.autopilot.vehicle().truth().velocity_m_s.z);
+        assert!(bench.autopilot.vehicle().time_us() < 90_000_000, "still up: {:?}", bench.position());
+    }
+    assert!(fastest < 3.0, "{fastest} m/s");
+    assert!(bench.position()[2].abs() < 0.05);
+}

@@ -1,0 +1,158 @@
+//! Items of missions beside waypoints: curves, altitudes, tags, payloads, and what the vehicle does not carry.
+
+use crate::common;
+use crate::common::mission_flight::{Flight, NAN, at, simple, takeoff, waypoint};
+use mavlink::dialects::ardupilotmega::MavCmd;
+use nalgebra::Vector3;
+use vehicle::Mode;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, command};
+
+fn spline(position: [f64; 3]) -> MissionItem {
+    at(command::NAV_SPLINE_WAYPOINT, [0.0; 4], position)
+}
+
+/// ArduPilot's spline: through every place without a stop, and with the direction from the place before to the one behind.
+#[test]
+fn splines_lead_through_their_places_without_a_stop() {
+    let places = [[30.0, 0.0, -10.0], [40.0, 30.0, -12.0], [0.0, 40.0, -10.0], [-5.0, 5.0, -10.0]];
+    let mut items = vec![takeoff(), waypoint([0.0, 0.0, -10.0])];
+    items.extend(places.map(spline));
+    let flight = Flight::new(&items).complete(90.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4, 5]);
+    for place in places {
+        assert!(flight.nearest(place) < 0.4, "{place:?}: {}", flight.nearest(place));
+    }
+    let (first_s, last_s) = (flight.time_of(2), flight.time_of(4));
+    let track: Vec<_> = flight.between(first_s, last_s).copied().collect();
+    let slowest = track.windows(11).map(|window| (window[10].1 - window[0].1).norm() / 0.1);
+    let slowest = slowest.fold(f64::INFINITY, f64::min);
+    assert!(slowest > 1.0, "{slowest} m/s");
+    // At the second place it flies along the way from the first to the third.
+    let passing =
+        flight.between(flight.time_of(3) - 0.2, flight.time_of(3) + 0.2).copied().collect::<Vec<_>>();
+    let along = (passing[passing.len() - 1].1 - passing[0].1).normalize();
+    let expected = (Vector3::from(places[2]) - Vector3::from(places[0])).normalize();
+    assert!(along.dot(&expected) > 0.97, "{along} {expected}");
+    // The nose follows the curve.
+    let heading = Vector3::new(passing[passing.len() / 2].2.cos(), passing[passing.len() / 2].2.sin(), 0.0);
+    assert!(heading.dot(&along) > 0.9, "{heading}");
+}
+
+#[test]
+fn an_altitude_is_come_to_at_its_place() {
+    let there = [20.0, 0.0, -16.0];
+    let items = [takeoff(), at(command::NAV_LOITER_TO_ALT, [0.0; 4], there), waypoint([0.0, 0.0, -16.0])];
+    let flight = Flight::new(&items).complete(60.0);
+    let reached = flight.track.iter().find(|(time_s, ..)| *time_s >= flight.time_of(1)).expect("reached").1;
+    assert!((reached - Vector3::from(there)).norm() < 0.5, "{reached}");
+    // On the way it keeps its height.
+    let on_the_way = flight.track.iter().filter(|(_, at, _)| (5.0..18.0).contains(&at.x));
+    let highest = on_the_way.take_while(|(time_s, ..)| *time_s < flight.time_of(1)).map(|(_, at, _)| -at.z);
+    assert!(highest.fold(0.0, f64::max) < 11.0);
+}
+
+#[test]
+fn tags_are_jumped_to_by_items_and_by_commands() {
+    let items = [
+        takeoff(),
+        simple(command::JUMP_TAG, [7.0, 0.0, 0.0, 0.0]),
+        waypoint([15.0, 0.0, -10.0]),
+        waypoint([15.0, 15.0, -10.0]),
+        simple(command::DO_JUMP_TAG, [7.0, 1.0, 0.0, 0.0]),
+        waypoint([0.0, 0.0, -10.0]),
+    ];
+    let flight = Flight::new(&items).complete(90.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4, 1, 2, 3, 5], "the jump is made once");
+    let mut flight = Flight::new(&items);
+    flight.fly_until("the last leg of the first round", 60.0, |flight| flight.order().contains(&2));
+    let jump = |flight: &mut Flight, tag: f32| {
+        flight.bench.command(MavCmd::MAV_CMD_DO_JUMP_TAG, [tag, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    };
+    assert_eq!(jump(&mut flight, 8.0), 4, "there is no such tag");
+    assert_eq!((jump(&mut flight, 7.0), flight.current()), (0, 1));
+}
+
+#[test]
+fn a_landing_begins_at_its_mark() {
+    let items = [
+        MissionItem::home([47.397_742, 8.545_594, 488.0]),
+        takeoff(),
+        waypoint([60.0, 0.0, -10.0]),
+        at(command::DO_LAND_START, [0.0; 4], [5.0, 0.0, 0.0]),
+        waypoint([5.0, 0.0, -8.0]),
+        at(command::NAV_LAND, [0.0; 4], [5.0, 5.0, 0.0]),
+    ];
+    let mut flight = Flight::of(Identity::ArduPilot, &items);
+    assert_eq!(flight.bench.set_mode(Mode::Offboard), 0);
+    flight.bench.arm();
+    assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+    flight.fly_until("on the way", 30.0, |flight| flight.bench.position()[0] > 20.0);
+    assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_LAND_START, [0.0; 7]), 0);
+    flight.fly_until("landed", 60.0, |flight| !flight.bench.autopilot.vehicle().is_armed());
+    let [x, y, _] = flight.bench.position();
+    assert!((x - 5.0).abs() < 0.5 && (y - 5.0).abs() < 0.5, "{x} {y}");
+    assert!(!flight.order().contains(&2), "the far waypoint was left out");
+}
+
+#[test]
+fn a_payload_is_put_down_and_the_vehicle_comes_back_up() {
+    for (descent_m, placed) in [(0.0, true), (3.0, false)] {
+        let items = [
+            takeoff(),
+            at(command::NAV_PAYLOAD_PLACE, [descent_m, 0.0, 0.0, 0.0], [10.0, 0.0, -8.0]),
+            waypoint([0.0, 0.0, -8.0]),
+        ];
+        let mut flight = Flight::new(&items);
+        let mut texts = Vec::new();
+        for _ in 0..9_000 {
+            flight.step();
+            texts.extend(flight.bench.texts());
+            if flight.order().contains(&2) {
+                break;
+            }
+        }
+        assert_eq!(flight.order(), [0, 1, 2], "{texts:?}");
+        let lowest = flight.track.iter().filter(|(_, at, _)| at.x > 5.0).map(|(_, at, _)| -at.z);
+        let lowest = lowest.fold(f64::INFINITY, f64::min);
+        let said = |text: &str| texts.iter().any(|line| line.contains(text));
+        assert_eq!(lowest < 0.1, placed, "{lowest} m");
+        assert_eq!((said("Payload placed"), said("Gripper load releasing")), (placed, placed), "{texts:?}");
+        assert!(placed || said("Payload not placed") && (4.5..7.0).contains(&lowest), "{lowest} {texts:?}");
+    }
+}
+
+#[test]
+fn what_is_not_carried_is_passed_by_and_said() {
+    let items = [
+        takeoff(),
+        simple(command::DO_SET_SERVO, [9.0, 1700.0, 0.0, 0.0]),
+        simple(command::DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0]),
+        simple(command::DO_GRIPPER, [1.0, 0.0, 0.0, 0.0]),
+        simple(command::DO_SET_SERVO, [1.0, 1700.0, 0.0, 0.0]),
+        simple(command::DO_MOUNT_CONTROL, [-60.0, 0.0, 0.0, NAN]),
+        waypoint([15.0, 0.0, -10.0]),
+    ];
+    let mut items = items;
+    items[5].position[2] = 2.0;
+    let mut flight = Flight::new(&items);
+    let mut texts = Vec::new();
+    while flight.now_s() < 60.0 && !flight.order().contains(&6) {
+        flight.step();
+        texts.extend(flight.bench.texts());
+    }
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4, 5, 6]);
+    let said = |text: &str| texts.iter().any(|line| line.contains(text));
+    assert!(said("Mission: no parachute: passed by") && said("Mission: Servo 1 drives a rotor"), "{texts:?}");
+    let equipment = flight.bench.autopilot.vehicle().equipment();
+    assert_eq!(equipment.servos().pulse_us(9), 1700);
+    assert!((equipment.gimbal().angles_rad().y.to_degrees() + 60.0).abs() < 0.5);
+    // Guided control within a mission would have no end here.
+    let guided = simple(command::NAV_GUIDED_ENABLE, [1.0, 0.0, 0.0, 0.0]);
+    let heard = common::plan_client::upload(
+        &mut flight.bench,
+        vehicle::plan::PlanKind::Mission,
+        &[takeoff(), guided],
+    );
+    assert_eq!(common::plan_client::result(&heard), Some(6), "MAV_MISSION_INVALID_PARAM1");
+}

@@ -1,0 +1,67 @@
+//! What is answered to a parameter that is not there, cannot be changed or cannot have a value: PARAM_ERROR.
+
+use crate::common;
+use crate::common::Bench;
+use autopilot::codec::Message;
+use mavlink::dialects::ardupilotmega::*;
+use vehicle::identity::Identity;
+
+fn errors(bench: &mut Bench, message: MavMessage) -> Vec<(String, i16, MavParamError)> {
+    bench.heard.clear();
+    bench.send(message);
+    let error = |message: &Message| match message {
+        Message::Typed(MavMessage::PARAM_ERROR(error)) => {
+            assert_eq!((error.target_system, error.target_component), common::GROUND_STATION);
+            Some((error.param_id.to_str().unwrap_or("?").to_owned(), error.param_index, error.error))
+        }
+        _ => None,
+    };
+    bench.heard.iter().filter_map(error).collect()
+}
+
+fn read(name: &str, param_index: i16) -> MavMessage {
+    MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
+        param_index,
+        target_system: 1,
+        target_component: 1,
+        param_id: name.into(),
+    })
+}
+
+fn set(name: &str, value: f32) -> MavMessage {
+    MavMessage::PARAM_SET(PARAM_SET_DATA {
+        param_value: value,
+        target_system: 1,
+        target_component: 1,
+        param_id: name.into(),
+        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+    })
+}
+
+#[test]
+fn every_refusal_is_answered_with_its_reason() {
+    use MavParamError as Error;
+    for (identity, hover) in [(Identity::Px4, "MPC_THR_HOVER"), (Identity::ArduPilot, "MOT_THST_HOVER")] {
+        let mut bench = Bench::new(identity);
+        let count = bench.autopilot.parameters().count();
+        let told = |name: &str, index, error| vec![(name.to_owned(), index, error)];
+        let unknown = Error::MAV_PARAM_ERROR_DOES_NOT_EXIST;
+        let range = Error::MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE;
+        assert_eq!(errors(&mut bench, read("NO_SUCH_NAME", -1)), told("NO_SUCH_NAME", -1, unknown));
+        assert_eq!(errors(&mut bench, read("", count as i16)), told("", count as i16, unknown));
+        assert_eq!(errors(&mut bench, read("", count as i16 - 1)), []);
+        assert_eq!(errors(&mut bench, set("NO_SUCH_NAME", 1.0)), told("NO_SUCH_NAME", -1, unknown));
+        // What has no meaning here is not kept, either: it would be a lie.
+        assert_eq!(errors(&mut bench, set("SIM_FLOAT_EXCEPT", 1.0)), told("SIM_FLOAT_EXCEPT", -1, unknown));
+        for value in [-1.0, 1e9, f32::NAN, f32::INFINITY] {
+            assert_eq!(
+                errors(&mut bench, set("FRAME_MASS", value)),
+                told("FRAME_MASS", -1, range),
+                "{value}"
+            );
+        }
+        assert_eq!(errors(&mut bench, set(hover, 0.9)), told(hover, -1, Error::MAV_PARAM_ERROR_READ_ONLY));
+        assert_eq!(errors(&mut bench, set("FRAME_MASS", 0.75)), []);
+        assert_eq!(errors(&mut bench, read("FRAME_MASS", -1)), []);
+    }
+}
