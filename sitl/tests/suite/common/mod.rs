@@ -1,7 +1,5 @@
 //! A client and a vehicle without a socket between them.
 
-#![allow(dead_code)] // Each test uses a part of it.
-
 pub mod channel;
 pub mod failsafe_bench;
 pub mod ftp_client;

@@ -1,0 +1,87 @@
+//! Starts far from hover.
+
+use proptest::prelude::*;
+use quadrotor::{Configuration, Outputs};
+
+use crate::common::{fly, goal, tilt_rad};
+
+/// Starts `height_m` up in an attitude, with body rates, and asks to hold that place.
+fn from_attitude(
+    height_m: f64,
+    attitude_rad: [f64; 3],
+    body_rate_rad_s: [f64; 3],
+    mut see: impl FnMut(&Outputs),
+) -> Outputs {
+    let mut configuration = Configuration::default();
+    configuration.initial.position_m = [0.0, 0.0, -height_m];
+    configuration.initial.attitude_rad = attitude_rad;
+    configuration.initial.body_rate_rad_s = body_rate_rad_s;
+    let inputs = goal([0.0, 0.0, -height_m], attitude_rad[2]);
+    fly(&configuration, &inputs, 25.0, |outputs| {
+        assert!(outputs.position_m.iter().all(|x| x.is_finite()), "{outputs:?}");
+        see(outputs);
+    })
+    .outputs()
+}
+
+#[test]
+fn from_sixty_degrees_of_roll_and_three_radians_per_second() {
+    for rates in [[3.0, 0.0, 0.0], [-3.0, 0.0, 0.0], [2.0, 2.0, 1.0]] {
+        let mut lowest_m = f64::NEG_INFINITY;
+        let end = from_attitude(20.0, [60_f64.to_radians(), 0.0, 0.0], rates, |outputs| {
+            lowest_m = lowest_m.max(outputs.position_m.z);
+        });
+        assert!(lowest_m < 0.0, "{rates:?}: came down to {lowest_m} m");
+        assert!(tilt_rad(&end) < 0.01 && end.body_rate_rad_s.norm() < 0.01, "{rates:?}: {end:?}");
+        assert!(
+            (end.position_m.z + 20.0).abs() < 0.01 && end.position_m.xy().norm() < 0.05,
+            "{rates:?}: {end:?}"
+        );
+    }
+}
+
+#[test]
+fn from_upside_down() {
+    for attitude in [[std::f64::consts::PI, 0.0, 0.0], [0.0, std::f64::consts::PI, 0.0], [2.0, 1.2, -2.0]] {
+        let mut lowest_m = f64::NEG_INFINITY;
+        let end =
+            from_attitude(50.0, attitude, [0.0; 3], |outputs| lowest_m = lowest_m.max(outputs.position_m.z));
+        assert!(lowest_m < 0.0, "{attitude:?}: came down to {lowest_m} m");
+        assert!(tilt_rad(&end) < 0.01, "{attitude:?}: {end:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// Every start attitude 50 m up is recovered above the ground.
+    #[test]
+    fn from_every_attitude(phi in -3.15..3.15, theta in -1.58..1.58, psi in -3.15..3.15) {
+        let mut lowest_m = f64::NEG_INFINITY;
+        let end =
+            from_attitude(50.0, [phi, theta, psi], [0.0; 3], |outputs| lowest_m = lowest_m.max(outputs.position_m.z));
+        prop_assert!(lowest_m < 0.0, "came down to {lowest_m} m");
+        prop_assert!(tilt_rad(&end) < 0.01, "{end:?}");
+        prop_assert!((end.position_m.z + 50.0).abs() < 0.05, "{end:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// Spins and tumbles, with a goal that asks for tilt while they last, end at the goal.
+    #[test]
+    fn from_body_rates(p in -4.0..4.0, q in -4.0..4.0, r in -8.0..8.0) {
+        let mut configuration = Configuration::default();
+        configuration.initial.position_m = [0.0, 0.0, -150.0];
+        configuration.initial.body_rate_rad_s = [p, q, r];
+        let mut lowest_m = f64::NEG_INFINITY;
+        let end = fly(&configuration, &goal([5.0, 5.0, -150.0], 0.0), 80.0, |outputs| {
+            lowest_m = lowest_m.max(outputs.position_m.z);
+        })
+        .outputs();
+        prop_assert!(lowest_m < 0.0, "came down to {lowest_m} m");
+        prop_assert!(tilt_rad(&end) < 0.05, "{end:?}");
+        prop_assert!((end.position_m - nalgebra::Vector3::new(5.0, 5.0, -150.0)).norm() < 0.5, "{end:?}");
+    }
+}
