@@ -15,6 +15,7 @@ import pytest  # noqa: E402
 sys.path.insert(0, str(Path(__file__).parent))
 
 from client import Client  # noqa: E402
+from mavsdk_vehicle import flown_by_mavsdk  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -91,3 +92,10 @@ def connect():
     yield make
     for client in clients:
         client.close()
+
+
+@pytest.fixture
+def fly(start):
+    """Starts vehicles that MAVSDK is connected to."""
+    with flown_by_mavsdk(start) as make:
+        yield make

@@ -3,38 +3,17 @@
 import math
 
 import pytest
-from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.camera import Camera, CameraError, Mode
 from mavsdk.plugins.gimbal import ControlMode, Gimbal, GimbalMode, SendMode
 from mavsdk.plugins.gripper import Gripper
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from test_mavsdk import eventually, free_port
-
-
-@pytest.fixture
-def sdk(start):
-    """Starts a vehicle and connects MAVSDK to it."""
-    made = []
-
-    def make(*arguments):
-        port = free_port()
-        vehicle = start(*arguments, links=(f"udpout:127.0.0.1:{port},onboard",))
-        mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
-        made.append(mavsdk)
-        mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-        system = mavsdk.first_autopilot(10.0)
-        assert system is not None, vehicle.output()
-        return system
-
-    yield make
-    for mavsdk in made:
-        mavsdk.destroy()
+from mavsdk_vehicle import eventually
 
 
 @pytest.mark.parametrize("arguments", [(), ("--equipment", "own"), ("--autopilot", "ardupilot")], ids=" ".join)
-def test_photos(sdk, arguments):
-    camera = Camera(sdk(*arguments))
+def test_photos(fly, arguments):
+    camera = Camera(fly(*arguments))
     eventually("a camera", lambda: camera.camera_list().cameras)
     [found] = camera.camera_list().cameras
     assert found.model_name == "Simulated camera" and found.horizontal_resolution_px == 4000
@@ -62,8 +41,8 @@ def test_photos(sdk, arguments):
     camera.destroy()
 
 
-def test_gimbal(sdk):
-    gimbal = Gimbal(sdk())
+def test_gimbal(fly):
+    gimbal = Gimbal(fly())
     eventually("a gimbal", lambda: gimbal.gimbal_list().gimbals)
     [found] = gimbal.gimbal_list().gimbals
     gimbal_id = found.gimbal_id
@@ -95,8 +74,8 @@ def test_gimbal(sdk):
     gimbal.destroy()
 
 
-def test_gripper(sdk):
-    gripper = Gripper(sdk())
+def test_gripper(fly):
+    gripper = Gripper(fly())
     gripper.grab(1)
     gripper.release(1)
     gripper.destroy()

@@ -2,7 +2,6 @@
 replays both flights bit for bit."""
 
 import json
-import math
 import re
 
 from pymavlink import mavutil

@@ -8,7 +8,7 @@ from mavsdk.plugins.failure import Failure
 from mavsdk.plugins.failure.failure import FailureError, FailureType, FailureUnit
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from test_mavsdk import eventually, fly  # noqa: F401: a fixture
+from mavsdk_vehicle import eventually
 
 ARMED = mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 

@@ -11,7 +11,7 @@ from mavsdk.plugins.ftp import Ftp, FtpResult
 from pymavlink import mavftp
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 from test_program import run
 
 AUTOPILOT = 1

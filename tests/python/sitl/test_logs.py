@@ -12,7 +12,7 @@ from pyulog import ULog
 from pyulog.px4 import PX4ULog
 
 from client import near
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 from test_program import run
 
 

@@ -1,52 +1,15 @@
 """MAVSDK from PyPI: connect, health, parameters, takeoff, go-to, offboard, return, land."""
 
 import math
-import socket
-import time
 
 import pytest
-from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
 from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import Telemetry
 
-
-def eventually(what, condition, timeout: float = 20.0):
-    """Waits until a condition holds."""
-    end = time.monotonic() + timeout
-    while time.monotonic() < end:
-        if condition():
-            return
-        time.sleep(0.05)
-    raise AssertionError(f"not within {timeout} s: {what}")
-
-
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-@pytest.fixture
-def fly(start):
-    """Starts a vehicle and connects MAVSDK as its users do: listening on the port that the vehicle sends to."""
-    made = []
-
-    def make(*arguments):
-        port = free_port()
-        vehicle = start(*arguments, links=(f"udpout:127.0.0.1:{port},onboard",))
-        mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
-        made.append(mavsdk)
-        mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-        system = mavsdk.first_autopilot(10.0)
-        assert system is not None, vehicle.output()
-        return system
-
-    yield make
-    for mavsdk in made:
-        mavsdk.destroy()
+from mavsdk_vehicle import eventually
 
 
 def test_takeoff_goto_return(fly):

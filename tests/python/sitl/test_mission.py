@@ -11,7 +11,7 @@ from mavsdk.plugins.telemetry import Telemetry
 from pymavlink import mavwp
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from test_mavproxy import shell  # noqa: F401
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 
 HOME = (47.397742, 8.545594)
 METRE = 1 / 111_200  # of latitude, degrees

@@ -8,7 +8,7 @@ from mavsdk.plugins.follow_me import Config, FollowMe, TargetLocation
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 from pymavlink import mavutil
 
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 
 METRES_PER_DEGREE = 6371000 * math.pi / 180
 

@@ -10,7 +10,7 @@ from mavsdk.plugins.manual_control import ManualControl
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 from pymavlink import mavutil
 
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 
 
 class Radio:

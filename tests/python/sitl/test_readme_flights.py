@@ -8,7 +8,7 @@ import sys
 import documents
 import pytest
 
-from test_mavsdk import free_port
+from mavsdk_vehicle import free_port
 
 FLIGHTS = [block for block in documents.of("python") if re.search(r"^(from|import) (pymavlink|mavsdk)\b", block.text, re.MULTILINE)]
 

@@ -10,7 +10,7 @@ from mavsdk.plugins.action.action import ActionError
 from mavsdk.plugins.geofence import Circle, FenceType, Geofence, GeofenceData, Point, Polygon
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from test_mavsdk import eventually, fly  # noqa: F401
+from mavsdk_vehicle import eventually
 
 HOME = (47.397742, 8.545594)
 NORTH, EAST = 1 / 111_180, 1 / 75_470  # degrees per metre there

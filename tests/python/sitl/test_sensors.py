@@ -8,7 +8,7 @@ from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from client import near
-from test_mavsdk import eventually, free_port
+from mavsdk_vehicle import eventually, free_port
 
 GPS = mavlink.MAV_SYS_STATUS_SENSOR_GPS
 XY_CONTROL = mavlink.MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL

@@ -6,7 +6,6 @@ import sys
 import time
 from subprocess import PIPE, STDOUT, Popen
 
-import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
