@@ -11,12 +11,12 @@ import pytest
 from lmpc_quadrotor.pytest_plugin.options import Options
 
 #: Pages whose blocks are parts of one program.
-PROGRAMS = ["start", "simulate", "control", "gym"]
+PROGRAMS = ["python/start", "python/simulate", "python/control", "python/gym", "tutorials/own-plant", "explanations/why-laguerre"]
 
 
 def blocks(repository, page):
     """Title and text of each block of Python in a page."""
-    text = (repository / "book" / "src" / "python" / f"{page}.md").read_text()
+    text = (repository / "book" / "src" / f"{page}.md").read_text()
     found = re.findall(r'^```python title="([^"]+)"\n(.*?)^```', text, re.DOTALL | re.MULTILINE)
     assert len(found) == text.count("```python"), "a block has no title, by which the other tests pass over it"
     return found
@@ -38,7 +38,7 @@ def test_programs_run_as_printed(repository, page, capsys):
 
 
 def test_the_example_of_the_fixture_passes(repository, pytester):
-    ((title, text),) = blocks(repository, "pytest")
+    ((title, text),) = blocks(repository, "python/pytest")
     pytester.path.joinpath(title).write_text(text)
     pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=2)
 

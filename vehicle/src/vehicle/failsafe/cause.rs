@@ -59,7 +59,7 @@ impl Cause {
     /// Words for the pilot once the cause is gone.
     pub fn cleared(self) -> &'static str {
         match self {
-            Self::RotorFailure => "all rotors work",
+            Self::RotorFailure => "no rotor known to be lost",
             Self::PositionLost => "position known",
             Self::BatteryEmergency => "battery no longer empty",
             Self::BatteryCritical => "battery no longer critical",
