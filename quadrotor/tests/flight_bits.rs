@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{
-    AirframePreset, AttitudeTarget, Configuration, ControllerKind, InputSignal, Inputs, Outputs,
-    PlantState, PositionReference, PredictionModel, ReferencePlan, RotorFault, Sensors, Simulation,
+    AirframePreset, AttitudeTarget, Configuration, ControllerKind, InputSignal, Inputs, Outputs, PlantState,
+    PositionReference, PredictionModel, ReferencePlan, RotorFault, Sensors, Simulation,
 };
 use serde::{Deserialize, Serialize};
 
@@ -214,9 +214,8 @@ fn by_plan() -> Flight {
     let mut from = PositionReference::goal([0.0; 3], 0.0);
     from.jerk_m_s3.x = 1.0;
     let plan = ReferencePlan::new(0, &from);
-    let planned = |time_us: u64| {
-        Inputs { reference: plan.at(time_us), plan: Some(plan), ..Inputs::default() }
-    };
+    let planned =
+        |time_us: u64| Inputs { reference: plan.at(time_us), plan: Some(plan), ..Inputs::default() };
     Flight::new(&unshaped(), &planned(0)).fly(3, &planned)
 }
 
