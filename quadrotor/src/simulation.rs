@@ -161,7 +161,7 @@ impl Simulation {
         // apply from there on.
         while self.world.event_us < time_us {
             if self.control.next_sample_us() <= self.world.event_us {
-                self.sample(&inputs.at(self.world.event_us))?;
+                inputs.with(self.world.event_us, |inputs| self.sample(inputs))?;
             }
             // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
             // wherever it is interrupted.
@@ -275,11 +275,17 @@ impl Simulation {
     fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
         let event_us = self.world.event_us;
         inputs.check(event_us)?;
-        let mut world = self.world;
-        world.take(inputs);
-        let noise = self.configuration().sensors;
-        self.control.advance_to(event_us, &inputs.control(), &mut sensors(&noise, &mut world))?;
-        self.world = world;
+        // The world is as before if the control loop refuses: only what it changes is copied.
+        let (deviations, mut noise) = (self.configuration().sensors, self.world.noise);
+        let mut sensors = SimulatedSensors {
+            sensors: &deviations,
+            noise: &mut noise,
+            plant: &self.world.plant,
+            estimate: inputs.estimate.as_ref(),
+        };
+        self.control.advance_to(event_us, &inputs.control(), &mut sensors)?;
+        self.world.noise = noise;
+        self.world.take(inputs);
         Ok(())
     }
 }

@@ -199,8 +199,8 @@ impl ControlLoop {
         instruments: &mut impl Instruments,
     ) -> Result<[f64; 4], ControlError> {
         while self.state.next_us() <= time_us {
-            let inputs = inputs.at(self.state.next_us());
-            self.state.sample(&self.design, &inputs, instruments)?;
+            let Self { design, state } = self;
+            inputs.with(state.next_us(), |inputs| state.sample(design, inputs, instruments))?;
         }
         Ok(self.state.rotor_command_rad_s())
     }
