@@ -14,11 +14,36 @@ pub(crate) fn check_calculated<M: Model>(model: &M) -> Result<(), CallError> {
 
 /// Rejects the first output that is not finite.
 pub(crate) fn check_outputs<M: Model>(outputs: &M::Outputs) -> Result<(), CallError> {
-    variables::<M>().try_for_each(|(_, variable)| match &variable.role {
+    let groups = const { groups_with_outputs::<M>() };
+    groups.iter().flat_map(|group| group.iter()).try_for_each(|variable| match &variable.role {
         Role::Output { signal, .. } => finite(variable, signal.get(outputs)).map(drop),
         Role::Derivative { get, .. } => finite(variable, Value::Real(get(outputs))).map(drop),
         _ => Ok(()),
     })
+}
+
+/// The groups of the table from the first with an output to the last: looking at the parameters at each step takes longer than most
+/// steps.
+const fn groups_with_outputs<M: Model>() -> &'static [&'static [Variable<M>]] {
+    let groups = M::VARIABLES;
+    let (mut first, mut end, mut group) = (groups.len(), 0, 0);
+    while group < groups.len() {
+        let mut variable = 0;
+        while variable < groups[group].len() {
+            if matches!(groups[group][variable].role, Role::Output { .. } | Role::Derivative { .. }) {
+                if group < first {
+                    first = group;
+                }
+                end = group + 1;
+            }
+            variable += 1;
+        }
+        group += 1;
+    }
+    if first >= end {
+        return &[];
+    }
+    groups.split_at(end).0.split_at(first).1
 }
 
 /// The value of a variable, if it is finite.

@@ -1,5 +1,7 @@
 //! One instance of the model: everything behind the interface, without a pointer.
 
+use std::any::Any;
+
 use crate::clock::Clock;
 use crate::error::{CallError, SavedStateError};
 use crate::finite_values::{check_calculated, check_outputs};
@@ -25,6 +27,8 @@ pub(crate) struct Instance<M: Model> {
     /// Outputs at the current time, if they were requested.
     outputs: Option<M::Outputs>,
     last_step_failed: bool,
+    /// Held as long as the instance is there.
+    _share: Box<dyn Any>,
 }
 
 impl<M: Model> Instance<M> {
@@ -40,6 +44,7 @@ impl<M: Model> Instance<M> {
             model: None,
             outputs: None,
             last_step_failed: false,
+            _share: M::share(),
         }
     }
 

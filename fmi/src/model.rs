@@ -1,5 +1,6 @@
 //! The model behind the interface.
 
+use std::any::Any;
 use std::borrow::Cow;
 use std::fmt::{Debug, Display};
 
@@ -60,6 +61,12 @@ pub trait Model: Sized + 'static {
     /// show the values that it runs with.
     fn as_read(parameters: &Self::Parameters) -> Cow<'_, Self::Parameters> {
         Cow::Borrowed(parameters)
+    }
+
+    /// What an instance holds from its instantiation until it is freed, whatever becomes of its runs: a share in what instances have in
+    /// common, as the results of long calculations. What nobody holds any more must go: a library can be unloaded then.
+    fn share() -> Box<dyn Any> {
+        Box::new(())
     }
 
     /// A run at time 0.

@@ -8,6 +8,7 @@
 
 mod closed_loop;
 mod controller;
+mod designs;
 mod flight_error;
 mod plant;
 mod quantities;

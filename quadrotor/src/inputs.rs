@@ -55,11 +55,20 @@ impl Default for Inputs {
 pub trait InputSignal {
     /// The inputs at `time_us` microseconds after the start of the flight.
     fn at(&self, time_us: u64) -> Inputs;
+
+    /// The same, to be looked at: inputs that are there already are not copied.
+    fn with<R>(&self, time_us: u64, look: impl FnOnce(&Inputs) -> R) -> R {
+        look(&self.at(time_us))
+    }
 }
 
 impl InputSignal for Inputs {
     fn at(&self, _time_us: u64) -> Inputs {
         *self
+    }
+
+    fn with<R>(&self, _time_us: u64, look: impl FnOnce(&Inputs) -> R) -> R {
+        look(self)
     }
 }
 
@@ -77,7 +86,9 @@ impl Inputs {
             (None, Some(target)) => Target::Attitude(target),
             (None, None) => Target::Reference(self.reference),
         };
-        ControlInputs { target, plan: self.plan, armed: self.armed, shaping: self.shaping }
+        // A plan is large, and mostly there is none to be copied.
+        let plan = self.plan.as_ref().copied();
+        ControlInputs { target, plan, armed: self.armed, shaping: self.shaping }
     }
 
     /// Refuses what is not finite, the reference also while something else is flown. The control loop checks what it is

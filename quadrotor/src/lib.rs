@@ -45,8 +45,11 @@
 //! that are not finite are refused with a [`ControlError`] or [`SimulationError`]; the state then is the one before the
 //! refused sample. Nothing panics.
 //!
-//! The crate builds without the standard library. Only the shaper, a default feature, needs it; without the shaper the
-//! control loop does not allocate in flight.
+//! **Many flights.** A [`PreparedDesign`] is shared by all flights of one configuration, a [`DesignCache`] keeps those of several. With the
+//! feature `fleet`, `Fleet` flies many vehicles on all cores, each as it flies alone.
+//!
+//! The crate builds without the standard library. Only the shaper, a default feature, and the feature `fleet` need it; without the shaper
+//! the control loop does not allocate in flight.
 //!
 //! # Example: the control loop on a vehicle of your own
 //!
@@ -106,6 +109,8 @@ mod attitude;
 mod configuration;
 mod control;
 mod design;
+#[cfg(feature = "fleet")]
+mod fleet;
 mod guidance;
 mod inputs;
 mod outputs;
@@ -129,7 +134,7 @@ pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
 pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
-pub use control::control_loop::{ControlLoop, PreparedDesign};
+pub use control::control_loop::ControlLoop;
 pub use control::control_state::ControlState;
 pub use control::flat_attitude::FlatAttitude;
 pub use control::measurement::{Instruments, Measurement};
@@ -138,17 +143,21 @@ pub use control::rotor_monitor::RotorMonitor;
 pub use design::attitude_loop::AttitudeLoop;
 pub use design::cascade_design::{CascadeDesign, DesignReport, Redesigned};
 pub use design::default_bandwidths::{Bandwidths, default_bandwidths};
+pub use design::design_cache::DesignCache;
 pub use design::hover_loops::{HoverLoop, HoverLoops};
 pub use design::limited_samples;
 pub use design::linear_loop::LinearLoop;
 pub use design::linear_models::{altitude_model, attitude_model, lagged_attitude_model, position_model};
 pub use design::loop_problem::LoopProblem;
+pub use design::prepared_design::PreparedDesign;
 pub use design::side_force::{commanded_thrust_n, commanded_tilt_rad, side_force_limit_n};
 pub use design::stability::cause::Cause;
 pub use design::stability::loop_stability::{LoopStability, Spread};
 pub use design::stability::noise_effect::NoiseEffect;
 pub use design::stability::stability_report::StabilityReport;
 pub use design::stability::stability_warning::StabilityWarning;
+#[cfg(feature = "fleet")]
+pub use fleet::{Fleet, FleetError};
 pub use guidance::attitude_target::AttitudeTarget;
 pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;

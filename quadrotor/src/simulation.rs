@@ -1,7 +1,7 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
 use crate::attitude::wrapped;
-use crate::design::loop_design::LoopDesign;
+use crate::design::prepared_design::PreparedDesign;
 use crate::schedule::next_point_us;
 use crate::sensors::SimulatedSensors;
 use crate::simulation_state::{SimulationState, World};
@@ -25,18 +25,32 @@ impl Simulation {
     /// [`ConfigurationError`] when a value is out of range, values contradict one another, or a
     /// controller cannot be designed.
     pub fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, ConfigurationError> {
-        Self::with_design(LoopDesign::new(configuration)?, inputs)
+        Self::prepared(&PreparedDesign::new(configuration)?, inputs)
     }
 
-    /// The same, with a finished design.
+    /// The same, with a finished design, which it shares: for many flights of one vehicle.
+    ///
+    /// ```
+    /// use quadrotor::{Configuration, Inputs, PreparedDesign, Simulation};
+    ///
+    /// # if !cfg!(feature = "shaper") { return Ok(()); }
+    /// let (configuration, inputs) = (Configuration::default(), Inputs::default());
+    /// let design = PreparedDesign::new(&configuration)?; // takes a millisecond, a flight with it a microsecond
+    /// let mut one = Simulation::prepared(&design, &inputs)?;
+    /// one.advance_to(2_000_000, &inputs)?;
+    /// let mut other = Simulation::new(&configuration, &inputs)?;
+    /// other.advance_to(2_000_000, &inputs)?;
+    /// assert_eq!(one.state(), other.state());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`ConfigurationError::Measurement`].
-    pub(crate) fn with_design(design: LoopDesign, inputs: &Inputs) -> Result<Self, ConfigurationError> {
-        let mut world = World::new(&design.configuration, inputs);
-        let noise = design.configuration.sensors;
-        let mut sensors = sensors(&noise, &mut world);
-        let control = ControlLoop::with_design(design, &inputs.control(), &mut sensors, 0)?;
+    pub fn prepared(prepared: &PreparedDesign, inputs: &Inputs) -> Result<Self, ConfigurationError> {
+        let configuration = prepared.configuration();
+        let mut world = World::new(configuration, inputs);
+        let mut sensors = sensors(&configuration.sensors, &mut world);
+        let control = ControlLoop::prepared(prepared, &inputs.control(), &mut sensors, 0)?;
         Ok(Self::of(control, world))
     }
 
@@ -49,7 +63,16 @@ impl Simulation {
         state: SimulationState,
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
-        Ok(Self::of(ControlLoop::from_state(configuration, state.control)?, state.world))
+        Self::resumed(&PreparedDesign::new(configuration)?, state)
+    }
+
+    /// The same, with a finished design, which it shares.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::State`].
+    pub fn resumed(prepared: &PreparedDesign, state: SimulationState) -> Result<Self, ConfigurationError> {
+        state.check(prepared.configuration())?;
+        Ok(Self::of(ControlLoop::resumed(prepared, state.control)?, state.world))
     }
 
     fn of(control: ControlLoop, world: World) -> Self {
@@ -138,7 +161,7 @@ impl Simulation {
         // apply from there on.
         while self.world.event_us < time_us {
             if self.control.next_sample_us() <= self.world.event_us {
-                self.sample(&inputs.at(self.world.event_us))?;
+                inputs.with(self.world.event_us, |inputs| self.sample(inputs))?;
             }
             // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
             // wherever it is interrupted.
@@ -252,11 +275,17 @@ impl Simulation {
     fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
         let event_us = self.world.event_us;
         inputs.check(event_us)?;
-        let mut world = self.world;
-        world.take(inputs);
-        let noise = self.configuration().sensors;
-        self.control.advance_to(event_us, &inputs.control(), &mut sensors(&noise, &mut world))?;
-        self.world = world;
+        // The world is as before if the control loop refuses: only what it changes is copied.
+        let (deviations, mut noise) = (self.configuration().sensors, self.world.noise);
+        let mut sensors = SimulatedSensors {
+            sensors: &deviations,
+            noise: &mut noise,
+            plant: &self.world.plant,
+            estimate: inputs.estimate.as_ref(),
+        };
+        self.control.advance_to(event_us, &inputs.control(), &mut sensors)?;
+        self.world.noise = noise;
+        self.world.take(inputs);
         Ok(())
     }
 }

@@ -80,3 +80,14 @@ fn host() -> Result<String, Failure> {
         .find_map(|line| line.strip_prefix("host: ").map(str::to_owned))
         .ok_or_else(|| Failure::Answer { what: "cargo -vV", detail: "it names no host".to_owned() })
 }
+
+/// The compiler that cargo uses: its version, and the machine that it compiles for.
+///
+/// # Errors
+///
+/// If it does not start or fails.
+pub fn compiler() -> Result<String, Failure> {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let version = process::output(Command::new(rustc).arg("-V"), "rustc -V")?;
+    Ok(format!("{} for {}", String::from_utf8_lossy(&version).trim(), host()?))
+}

@@ -105,6 +105,14 @@ pub enum Failure {
     /// A demo flight missed its goal, as its table says.
     #[error("a flight missed its goal; see the lines marked MISSED above")]
     GoalMissed,
+    /// Work takes more instructions than its reference allows.
+    #[error("more than a tenth above the reference: {exceeded}; {remedy}")]
+    MoreInstructions {
+        /// Which, with both numbers.
+        exceeded: String,
+        /// What to do.
+        remedy: String,
+    },
     /// Tests failed, after saying which.
     #[error("{failed} failed; see above")]
     Tests {

@@ -1,6 +1,7 @@
 //! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
 mod book;
+mod counts;
 mod crates;
 mod demo;
 mod fmu;
@@ -102,6 +103,14 @@ enum Task {
     Book,
     /// Packages lmpc, quadrotor and fmi as for a registry, and compiles them with the oldest dependencies that they allow.
     Crates,
+    /// Counts the instructions of a control period, a simulated second, an FMU step and a vehicle tick, and compares with counts/reference.json.
+    ///
+    /// Fails when one takes a tenth more. Needs valgrind.
+    Counts {
+        /// Makes what is counted the reference.
+        #[arg(long)]
+        update: bool,
+    },
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
@@ -177,6 +186,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
         Task::Book => book::build(&workspace, &progress),
+        Task::Counts { update } => counts::run(&workspace, &progress, *update),
         Task::Crates => crates::check(&workspace, &progress),
         Task::Test { package: true } => test::run_package(&workspace, &progress),
         Task::Test { package: false } => test::run_all(&workspace, &progress),

@@ -1,6 +1,7 @@
 //! Programs of the workspace that a task runs.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use xtask::cargo::cargo;
 use xtask::failure::Failure;
@@ -23,12 +24,20 @@ pub enum Beside {
 
 /// Builds a program for development and returns its path.
 pub fn build(workspace: &Workspace, name: &str, beside: Beside) -> Result<PathBuf, Failure> {
-    let mut build = cargo();
+    built(workspace, name, beside, &mut cargo())
+}
+
+/// The same as `.ci/run` compiles it, whatever this machine is set to: the same instructions.
+pub fn build_as_in_ci(workspace: &Workspace, name: &str, beside: Beside) -> Result<PathBuf, Failure> {
+    built(workspace, name, beside, cargo().env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0"))
+}
+
+fn built(workspace: &Workspace, name: &str, beside: Beside, build: &mut Command) -> Result<PathBuf, Failure> {
     // `--workspace` gives every program's dependencies the same features, so that they compile once for all.
     build.args(["build", "--quiet", "--workspace", "--bin", name]).current_dir(workspace.root());
     if matches!(beside, Beside::Tests) {
         build.arg("--tests");
     }
-    process::output(&mut build, &format!("building {name}"))?;
+    process::output(build, &format!("building {name}"))?;
     Ok(workspace.program(name))
 }

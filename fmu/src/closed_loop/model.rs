@@ -1,5 +1,6 @@
 //! The closed loop as an FMI model, over [`quadrotor::Simulation`].
 
+use std::any::Any;
 use std::borrow::Cow;
 
 use fmi::variables::{Array, Quantity, Terminal, Variable};
@@ -7,6 +8,7 @@ use fmi::{Identity, Model};
 use quadrotor::{CascadeDesign, Configuration, Inputs, Outputs, Simulation, SimulationState};
 
 use super::{identity, inputs, outputs, parameters};
+use crate::designs;
 use crate::flight_error::FlightError;
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
@@ -62,12 +64,16 @@ impl Model for ClosedLoop {
         Cow::Owned(configuration.as_read())
     }
 
+    fn share() -> Box<dyn Any> {
+        designs::share()
+    }
+
     fn new(configuration: &Configuration, inputs: &Inputs) -> Result<Self, FlightError> {
-        Ok(Self(Simulation::new(&configuration.resolved()?, inputs)?))
+        Ok(Self(Simulation::prepared(&designs::design(&configuration.resolved()?)?, inputs)?))
     }
 
     fn from_state(configuration: &Configuration, state: &SimulationState) -> Result<Self, FlightError> {
-        Ok(Self(Simulation::from_state(&configuration.resolved()?, *state)?))
+        Ok(Self(Simulation::resumed(&designs::design(&configuration.resolved()?)?, *state)?))
     }
 
     fn state(&self) -> SimulationState {

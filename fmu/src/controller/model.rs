@@ -1,5 +1,6 @@
 //! The controllers as an FMI model, over [`quadrotor::ControlLoop`].
 
+use std::any::Any;
 use std::borrow::Cow;
 
 use fmi::variables::{Array, Quantity, Terminal, Variable};
@@ -15,6 +16,7 @@ use super::{
     ControllerError, ControllerInputs, ControllerParameters, Measurements, RotorSpeedMeasurement, identity,
     inputs, measurement, outputs, parameters,
 };
+use crate::designs;
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
@@ -153,12 +155,17 @@ impl Model for Controller {
         parameters.as_read()
     }
 
+    fn share() -> Box<dyn Any> {
+        designs::share()
+    }
+
     fn new(parameters: &ControllerParameters, inputs: &ControllerInputs) -> Result<Self, ControllerError> {
         let configuration = parameters.resolved()?;
         let measurements = parameters.measurements;
         let rotors = PredictedRotors::new(&configuration.airframe, inputs.armed);
         let mut measured = measurement_of(measurements, inputs, &rotors, 0)?;
-        let control = ControlLoop::new(&configuration, &inputs.control(), &mut measured, 0)?;
+        let design = designs::design(&configuration)?;
+        let control = ControlLoop::prepared(&design, &inputs.control(), &mut measured, 0)?;
         Ok(Self { control, measurements, rotors, time_us: 0 })
     }
 
@@ -167,7 +174,7 @@ impl Model for Controller {
         state: &ControllerState,
     ) -> Result<Self, ControllerError> {
         state.check()?;
-        let control = ControlLoop::from_state(&parameters.resolved()?, state.control)?;
+        let control = ControlLoop::resumed(&designs::design(&parameters.resolved()?)?, state.control)?;
         let ControllerState { rotors, time_us, .. } = *state;
         Ok(Self { control, measurements: parameters.measurements, rotors, time_us })
     }

@@ -1,12 +1,13 @@
 //! Many flights at once.
 
+use std::collections::HashMap;
+use std::num::NonZeroUsize;
+
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
-use quadrotor::Configuration;
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use quadrotor::{Configuration, FleetError, SimulationError};
 
 use super::actuation::Actuation;
 use super::commands::Commands;
@@ -24,25 +25,16 @@ struct Member {
     vehicle: Vehicle,
     /// Where its flights begin.
     start: Saved,
-    /// Why it could not go on.
-    failure: Option<String>,
 }
 
 impl Member {
-    fn advance_to(&mut self, time_us: u64) {
-        if self.failure.is_none() {
-            self.failure = self.vehicle.advance_to(time_us).err().map(|error| error.to_string());
-        }
-    }
-
-    fn advance_by(&mut self, duration_us: u64) {
-        self.advance_to(self.vehicle.time_us().saturating_add(duration_us));
+    fn advance_by(&mut self, duration_us: u64) -> Result<(), SimulationError> {
+        self.vehicle.advance_to(self.vehicle.time_us().saturating_add(duration_us))
     }
 
     fn restart(&mut self, motion: Option<&[f64; MOTION]>) -> Result<(), String> {
         self.start.commands = self.vehicle.commands;
         self.vehicle.restore(&self.start)?;
-        self.failure = None;
         motion.map_or(Ok(()), |motion| self.vehicle.place(motion))
     }
 }
@@ -50,9 +42,8 @@ impl Member {
 /// Many flights that go on side by side on several threads. Each is that of a [`super::simulation::Simulation`], whatever the others do.
 #[pyclass(module = "lmpc_quadrotor._native")]
 pub struct Fleet {
-    members: Vec<Member>,
+    fleet: quadrotor::Fleet<Member>,
     actuation: Actuation,
-    threads: ThreadPool,
 }
 
 /// One value for all vehicles, or one for each.
@@ -113,16 +104,44 @@ impl Fleet {
 
     /// The outputs of all vehicles, a row for each.
     fn rows(&self, chosen: &[Output]) -> Vec<f64> {
-        self.threads.install(|| {
-            self.members
-                .par_iter()
-                .flat_map_iter(|member| {
-                    let outputs = member.vehicle.outputs();
-                    chosen.iter().map(move |output| output.get(&outputs))
-                })
-                .collect()
-        })
+        let row = |_, member: &Member| {
+            let outputs = member.vehicle.outputs();
+            chosen.iter().map(|output| output.get(&outputs)).collect::<Vec<_>>()
+        };
+        self.fleet.map(row).concat()
     }
+}
+
+/// Vehicles with these settings. Those that are alike are designed once.
+fn members(
+    settings: Vec<(Configuration, Commands)>,
+    actuation: Actuation,
+    threads: Option<NonZeroUsize>,
+) -> PyResult<Vec<Member>> {
+    let mut designed: Vec<(Configuration, Commands)> = Vec::new();
+    let mut kinds = Vec::with_capacity(settings.len());
+    for setting in settings {
+        let kind = designed.iter().rposition(|known| *known == setting).unwrap_or_else(|| {
+            designed.push(setting);
+            designed.len() - 1
+        });
+        kinds.push(kind);
+    }
+    let designed = quadrotor::Fleet::of(designed, threads).map_err(no_threads)?;
+    let vehicles = designed
+        .map(|_, (configuration, commands)| Vehicle::new(configuration, commands, actuation))
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(ParameterError::new_err)?;
+    let member = |kind: usize| {
+        let vehicle: Vehicle = vehicles[kind].clone();
+        Member { start: vehicle.save(), vehicle }
+    };
+    Ok(kinds.into_iter().map(member).collect())
+}
+
+fn no_threads(error: FleetError) -> PyErr {
+    ArgumentError::new_err(error.to_string())
 }
 
 #[pymethods]
@@ -160,41 +179,14 @@ impl Fleet {
             .map(|configuration| Commands::new(&configuration.with_airframe()))
             .collect();
         Self::set(&mut commands, inputs)?;
-        let threads = ThreadPoolBuilder::new()
-            .num_threads(threads.unwrap_or(0))
-            .thread_name(|thread| format!("fleet {thread}"))
-            .build()
-            .map_err(|error| ArgumentError::new_err(format!("threads: {error}")))?;
-        let members = python.detach(|| {
-            threads.install(|| {
-                // Vehicles that are alike are designed once.
-                let settings: Vec<(Configuration, Commands)> =
-                    configurations.into_iter().zip(commands).collect();
-                let mut designed: Vec<(Configuration, Commands)> = Vec::new();
-                let mut kinds = Vec::with_capacity(settings.len());
-                for setting in &settings {
-                    let kind = designed.iter().rposition(|known| known == setting).unwrap_or_else(|| {
-                        designed.push(*setting);
-                        designed.len() - 1
-                    });
-                    kinds.push(kind);
-                }
-                let vehicles = designed
-                    .par_iter()
-                    .map(|(configuration, commands)| Vehicle::new(configuration, commands, actuation))
-                    .collect::<Result<Vec<_>, _>>()?;
-                let member = |kind: usize| {
-                    let vehicle = vehicles[kind].clone();
-                    Member { start: vehicle.save(), vehicle, failure: None }
-                };
-                Ok::<_, String>(kinds.into_par_iter().map(member).collect::<Vec<_>>())
-            })
-        });
-        Ok(Self { members: members.map_err(ParameterError::new_err)?, actuation, threads })
+        let settings = configurations.into_iter().zip(commands).collect();
+        let threads = threads.and_then(NonZeroUsize::new);
+        let members = python.detach(|| members(settings, actuation, threads))?;
+        Ok(Self { fleet: quadrotor::Fleet::of(members, threads).map_err(no_threads)?, actuation })
     }
 
     fn __len__(&self) -> usize {
-        self.members.len()
+        self.fleet.len()
     }
 
     #[getter]
@@ -204,18 +196,18 @@ impl Fleet {
 
     #[getter]
     fn times_us<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<u64>> {
-        PyArray1::from_vec(python, self.members.iter().map(|member| member.vehicle.time_us()).collect())
+        PyArray1::from_vec(python, self.fleet.vehicles().map(|member| member.vehicle.time_us()).collect())
     }
 
     /// Why each vehicle could not go on, if it could not.
     #[getter]
-    fn failures(&self) -> Vec<Option<&str>> {
-        self.members.iter().map(|member| member.failure.as_deref()).collect()
+    fn failures(&self) -> Vec<Option<String>> {
+        self.fleet.failures().map(|failure| failure.map(ToString::to_string)).collect()
     }
 
     #[getter]
     fn failed<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        PyArray1::from_vec(python, self.members.iter().map(|member| member.failure.is_some()).collect())
+        PyArray1::from_vec(python, self.fleet.failures().map(|failure| failure.is_some()).collect())
     }
 
     fn output_names(&self) -> Vec<&'static str> {
@@ -223,9 +215,10 @@ impl Fleet {
     }
 
     fn set_inputs(&mut self, values: &Bound<'_, PyDict>) -> PyResult<()> {
-        let mut commands: Vec<Commands> = self.members.iter().map(|member| member.vehicle.commands).collect();
+        let mut commands: Vec<Commands> =
+            self.fleet.vehicles().map(|member| member.vehicle.commands).collect();
         Self::set(&mut commands, values)?;
-        for (member, commands) in self.members.iter_mut().zip(commands) {
+        for (member, commands) in self.fleet.vehicles_mut().zip(commands) {
             member.vehicle.commands = commands;
         }
         Ok(())
@@ -233,10 +226,8 @@ impl Fleet {
 
     /// All vehicles that can fly on by a duration.
     fn advance(&mut self, python: Python<'_>, duration_us: u64) {
-        let (members, threads) = (&mut self.members, &self.threads);
-        python.detach(|| {
-            threads.install(|| members.par_iter_mut().for_each(|member| member.advance_by(duration_us)));
-        });
+        let fleet = &mut self.fleet;
+        python.detach(|| fleet.advance_each(|_, member| member.advance_by(duration_us)));
     }
 
     #[pyo3(signature = (names = None))]
@@ -247,7 +238,7 @@ impl Fleet {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let chosen = self.chosen(python, names)?;
         let rows = python.detach(|| self.rows(&chosen));
-        PyArray1::from_vec(python, rows).reshape([self.members.len(), chosen.len()])
+        PyArray1::from_vec(python, rows).reshape([self.fleet.len(), chosen.len()])
     }
 
     /// Flies on by a duration and returns the times since then, µs, and the outputs: by time, vehicle and name.
@@ -262,21 +253,17 @@ impl Fleet {
     ) -> PyResult<(Bound<'py, PyArray1<u64>>, Bound<'py, PyArray3<f64>>)> {
         let chosen = self.chosen(python, names)?;
         let instants = instants(0, duration_us, step_us)?;
-        let begun: Vec<u64> = self.members.iter().map(|member| member.vehicle.time_us()).collect();
-        let mut table = Vec::with_capacity(instants.len() * self.members.len() * chosen.len());
+        let begun: Vec<u64> = self.fleet.vehicles().map(|member| member.vehicle.time_us()).collect();
+        let mut table = Vec::with_capacity(instants.len() * self.fleet.len() * chosen.len());
         python.detach(|| {
             for instant in &instants {
-                let (members, threads) = (&mut self.members, &self.threads);
-                threads.install(|| {
-                    members
-                        .par_iter_mut()
-                        .zip(&begun)
-                        .for_each(|(member, begun)| member.advance_to(begun.saturating_add(*instant)));
+                self.fleet.advance_each(|vehicle, member| {
+                    member.vehicle.advance_to(begun[vehicle].saturating_add(*instant))
                 });
                 table.extend(self.rows(&chosen));
             }
         });
-        let shape = [instants.len(), self.members.len(), chosen.len()];
+        let shape = [instants.len(), self.fleet.len(), chosen.len()];
         let table = PyArray1::from_vec(python, table).reshape(shape)?;
         Ok((PyArray1::from_vec(python, instants), table))
     }
@@ -300,60 +287,59 @@ impl Fleet {
             )));
         }
         for vehicle in &vehicles {
-            self.member(*vehicle)?;
+            self.check(*vehicle)?;
         }
         let motion_of = |row: usize| {
             motions
                 .as_ref()
                 .map(|motions: &DMatrix<f64>| std::array::from_fn(|column| motions[(row, column)]))
         };
-        let rows: Vec<(usize, Option<[f64; MOTION]>)> =
+        let restarted: HashMap<usize, Option<[f64; MOTION]>> =
             vehicles.iter().enumerate().map(|(row, vehicle)| (*vehicle, motion_of(row))).collect();
+        let fleet = &mut self.fleet;
         python
             .detach(|| {
-                rows.iter().try_for_each(|(vehicle, motion)| self.members[*vehicle].restart(motion.as_ref()))
+                fleet.change_each(|vehicle, member| match restarted.get(&vehicle) {
+                    Some(motion) => member.restart(motion.as_ref()).map(|()| true),
+                    None => Ok(false),
+                })
             })
             .map_err(ArgumentError::new_err)
     }
 
     fn save<'py>(&self, python: Python<'py>) -> PyResult<Vec<Bound<'py, PyBytes>>> {
         let bytes = |member: &Member| Ok(PyBytes::new(python, &member.vehicle.save().bytes()?));
-        self.members.iter().map(bytes).collect()
+        self.fleet.vehicles().map(bytes).collect()
     }
 
     fn restore(&mut self, python: Python<'_>, saved: Vec<Vec<u8>>) -> PyResult<()> {
-        if saved.len() != self.members.len() {
+        if saved.len() != self.fleet.len() {
             return Err(ArgumentError::new_err(format!(
                 "saved has {} flights, expected {}",
                 saved.len(),
-                self.members.len()
+                self.fleet.len()
             )));
         }
         let saved = saved.iter().map(|bytes| Saved::from_bytes(bytes)).collect::<PyResult<Vec<_>>>()?;
         if saved.iter().any(|saved| saved.actuation != self.actuation) {
             return Err(ArgumentError::new_err("saved has flights with another actuation than this fleet's"));
         }
-        let (members, threads) = (&mut self.members, &self.threads);
+        let fleet = &mut self.fleet;
         let restored = python.detach(|| {
-            threads.install(|| {
-                members.par_iter_mut().zip(&saved).try_for_each(|(member, saved)| {
-                    member.vehicle.restore(saved)?;
-                    member.failure = None;
-                    Ok::<_, String>(())
-                })
-            })
+            fleet.change_each(|vehicle, member| member.vehicle.restore(&saved[vehicle]).map(|()| true))
         });
         restored.map_err(ArgumentError::new_err)
     }
 }
 
 impl Fleet {
-    fn member(&self, vehicle: usize) -> PyResult<&Member> {
-        self.members.get(vehicle).ok_or_else(|| {
-            ArgumentError::new_err(format!(
-                "there is no vehicle {vehicle}; allowed are 0 to {}",
-                self.members.len().saturating_sub(1)
-            ))
-        })
+    fn check(&self, vehicle: usize) -> PyResult<()> {
+        if vehicle < self.fleet.len() {
+            return Ok(());
+        }
+        Err(ArgumentError::new_err(format!(
+            "there is no vehicle {vehicle}; allowed are 0 to {}",
+            self.fleet.len().saturating_sub(1)
+        )))
     }
 }

@@ -103,6 +103,14 @@ impl Access {
             Self::Boolean { get, .. } => get(one) == get(other),
         }
     }
+
+    /// The same, and no zero has another sign.
+    pub(crate) fn same_bits(&self, one: &Configuration, other: &Configuration) -> bool {
+        match *self {
+            Self::Real { get, .. } => get(one).to_bits() == get(other).to_bits(),
+            _ => self.same(one, other),
+        }
+    }
 }
 
 impl Parameter {

@@ -52,11 +52,20 @@ pub struct ControlInputs {
 pub trait ControlSignal {
     /// The inputs at `time_us`.
     fn at(&self, time_us: u64) -> ControlInputs;
+
+    /// The same, to be looked at: inputs that are there already are not copied.
+    fn with<R>(&self, time_us: u64, look: impl FnOnce(&ControlInputs) -> R) -> R {
+        look(&self.at(time_us))
+    }
 }
 
 impl ControlSignal for ControlInputs {
     fn at(&self, _time_us: u64) -> ControlInputs {
         *self
+    }
+
+    fn with<R>(&self, _time_us: u64, look: impl FnOnce(&ControlInputs) -> R) -> R {
+        look(self)
     }
 }
 

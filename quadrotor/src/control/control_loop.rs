@@ -1,5 +1,7 @@
 //! The control loop without a plant.
 
+use alloc::sync::Arc;
+
 use nalgebra::Vector3;
 
 use crate::control::control_error::ControlError;
@@ -7,6 +9,7 @@ use crate::control::control_inputs::{ControlInputs, ControlSignal};
 use crate::control::control_state::ControlState;
 use crate::control::measurement::Instruments;
 use crate::design::loop_design::LoopDesign;
+use crate::design::prepared_design::PreparedDesign;
 use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody, StabilityReport};
 
 /// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
@@ -33,14 +36,8 @@ use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody, Stabili
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlLoop {
-    design: LoopDesign,
+    design: Arc<LoopDesign>,
     state: ControlState,
-}
-
-/// Controllers for another configuration of a flight, ready to take over: see [`ControlLoop::prepare`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct PreparedDesign {
-    design: LoopDesign,
 }
 
 impl ControlLoop {
@@ -55,19 +52,20 @@ impl ControlLoop {
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<Self, ConfigurationError> {
-        Self::with_design(LoopDesign::new(configuration)?, inputs, instruments, time_us)
+        Self::prepared(&PreparedDesign::new(configuration)?, inputs, instruments, time_us)
     }
 
-    /// The same, with a finished design.
+    /// The same, with a finished design, which it shares.
     ///
     /// # Errors
     /// [`ConfigurationError::Measurement`].
-    pub(crate) fn with_design(
-        design: LoopDesign,
+    pub fn prepared(
+        prepared: &PreparedDesign,
         inputs: &ControlInputs,
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<Self, ConfigurationError> {
+        let design = Arc::clone(&prepared.design);
         let state = ControlState::new(&design.configuration, inputs, instruments, time_us)?;
         Ok(Self { design, state })
     }
@@ -81,7 +79,17 @@ impl ControlLoop {
         state: ControlState,
     ) -> Result<Self, ConfigurationError> {
         state.check(configuration)?;
-        Ok(Self { design: LoopDesign::new(configuration)?, state })
+        Self::resumed(&PreparedDesign::new(configuration)?, state)
+    }
+
+    /// The same, with a finished design, which it shares.
+    ///
+    /// # Errors
+    /// [`ConfigurationError::State`].
+    pub fn resumed(prepared: &PreparedDesign, state: ControlState) -> Result<Self, ConfigurationError> {
+        let design = Arc::clone(&prepared.design);
+        state.check(&design.configuration)?;
+        Ok(Self { design, state })
     }
 
     /// Begins anew, with the same controllers: takes over a vehicle at `time_us`, as [`ControlLoop::new`] does.
@@ -136,7 +144,7 @@ impl ControlLoop {
     /// [`ConfigurationError::Fixed`] when a parameter that describes the start differs ([`Mutability::Start`](crate::Mutability)),
     /// and those of [`ControlLoop::new`].
     pub fn prepare(&self, configuration: &Configuration) -> Result<PreparedDesign, ConfigurationError> {
-        Ok(PreparedDesign { design: self.design.changed(configuration)? })
+        Ok(PreparedDesign { design: Arc::new(self.design.changed(configuration)?) })
     }
 
     /// Goes on under a prepared design from its next sample on. It neither designs nor allocates.
@@ -191,8 +199,8 @@ impl ControlLoop {
         instruments: &mut impl Instruments,
     ) -> Result<[f64; 4], ControlError> {
         while self.state.next_us() <= time_us {
-            let inputs = inputs.at(self.state.next_us());
-            self.state.sample(&self.design, &inputs, instruments)?;
+            let Self { design, state } = self;
+            inputs.with(state.next_us(), |inputs| state.sample(design, inputs, instruments))?;
         }
         Ok(self.state.rotor_command_rad_s())
     }

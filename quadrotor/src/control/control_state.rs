@@ -48,6 +48,20 @@ struct Due {
     attitude: bool,
 }
 
+impl Due {
+    fn at(clocks: &Clocks, time_us: u64) -> Self {
+        Self {
+            position: clocks.position.ticks(time_us),
+            altitude: clocks.altitude.ticks(time_us),
+            attitude: clocks.attitude.ticks(time_us),
+        }
+    }
+
+    fn any(self) -> bool {
+        self.position || self.altitude || self.attitude
+    }
+}
+
 impl ControlState {
     /// Takes over a vehicle at `time_us`.
     ///
@@ -225,14 +239,39 @@ impl ControlState {
         if let Target::WithoutRotor { lost, .. } = inputs.target {
             design.rotor_loss.of(lost)?;
         }
-        let mut next = *self;
-        next.take(&design.configuration, inputs, instruments, time_us)?;
-        if next.armed {
-            next.control(design, inputs, instruments, time_us)?;
+        let clocks = self.clocks(&design.configuration.controllers);
+        let due = Due::at(&clocks, time_us);
+        if inputs.armed && (due.any() || self.takes_over(inputs)) {
+            let mut next = *self;
+            next.advance(design, inputs, instruments, (due, time_us))?;
+            *self = next;
+        } else {
+            // Nothing is measured, so nothing is refused: most samples are these, and none of them copies the state.
+            self.advance(design, inputs, instruments, (due, time_us))?;
         }
-        next.next_us = self.clocks(&design.configuration.controllers).next_instant_us(time_us);
-        *self = next;
+        self.next_us = clocks.next_instant_us(time_us);
         Ok(())
+    }
+
+    /// Takes inputs in, and runs the controllers that are due.
+    fn advance(
+        &mut self,
+        design: &LoopDesign,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        (due, time_us): (Due, u64),
+    ) -> Result<(), ControlError> {
+        self.take(&design.configuration, inputs, instruments, time_us)?;
+        if self.armed {
+            self.control(design, inputs, instruments, (due, time_us))?;
+        }
+        Ok(())
+    }
+
+    /// Whether reference and controllers take over the vehicle under these inputs, if they are armed.
+    fn takes_over(&self, inputs: &ControlInputs) -> bool {
+        let law = inputs.target.law();
+        !self.armed || self.engage || (law != self.law && self.law != ControlLaw::Cascade)
     }
 
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
@@ -243,14 +282,14 @@ impl ControlState {
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<(), ControlError> {
-        let law = inputs.target.law();
+        let (law, takes_over) = (inputs.target.law(), self.takes_over(inputs));
         self.engage |= law != self.law && self.law != ControlLaw::Cascade;
         self.law = law;
         if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
             self.guidance =
                 self.guidance.switched(&self.limits.of_references(configuration), shaping, time_us);
         }
-        if inputs.armed && (!self.armed || self.engage) {
+        if inputs.armed && takes_over {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
             let shaping = self.guidance.is_shaped();
             (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
@@ -273,18 +312,12 @@ impl ControlState {
         design: &LoopDesign,
         inputs: &ControlInputs,
         instruments: &mut impl Instruments,
-        time_us: u64,
+        (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
         if let Target::Reference(reference) = &inputs.target {
             self.guidance.watch(reference, &design.configuration.limits, time_us);
         }
-        let clocks = self.clocks(&design.configuration.controllers);
-        let due = Due {
-            position: clocks.position.ticks(time_us),
-            altitude: clocks.altitude.ticks(time_us),
-            attitude: clocks.attitude.ticks(time_us),
-        };
-        if !(due.position || due.altitude || due.attitude) {
+        if !due.any() {
             return Ok(());
         }
         let measurement = instruments.read(time_us).checked(time_us)?;

@@ -39,20 +39,34 @@ pub(crate) struct RotorLossLaw {
 }
 
 impl RotorLossLaw {
-    /// For the loss of one rotor, by its index in the airframe's layout.
+    /// For the loss of one rotor, by its index in the airframe's layout. What is `known` for other rotors of this configuration is not
+    /// designed again: airframes are symmetric.
     ///
     /// # Errors
     /// [`ConfigurationError::Layout`] when the rotors are not opposite in pairs that turn the same way,
     /// [`ConfigurationError::Design`] when the airframe has no regulator.
-    pub(crate) fn new(configuration: &Configuration, lost: usize) -> Result<Self, ConfigurationError> {
+    pub(crate) fn new(
+        configuration: &Configuration,
+        lost: usize,
+        known: &[Self],
+    ) -> Result<Self, ConfigurationError> {
         let airframe = &configuration.airframe;
         let rotors = airframe.layout.around(lost)?;
         let [jx, jy, jz] = airframe.inertia_kg_m2;
         let (x, y) = (rotors.towards.x * rotors.towards.x, rotors.towards.y * rotors.towards.y);
         let inertia_kg_m2 = [jx * x + jy * y, jx * y + jy * x, jz];
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        let design = ReducedAttitudeDesign::new(airframe, &rotors, inertia_kg_m2, sample_time_s)
-            .map_err(|source| ConfigurationError::Design { part: "controller for a lost rotor", source })?;
+        // All that the designs for one airframe differ in, bit for bit.
+        let problem = |rotors: &RotorsAround, [jx, jy, jz]: [f64; 3]| {
+            [rotors.distance, rotors.right.x, rotors.right.y, jx, jy, jz].map(f64::to_bits)
+        };
+        let wanted = problem(&rotors, inertia_kg_m2);
+        let design = match known.iter().find(|law| problem(&law.rotors, law.inertia_kg_m2) == wanted) {
+            Some(law) => law.design.clone(),
+            None => ReducedAttitudeDesign::new(airframe, &rotors, inertia_kg_m2, sample_time_s).map_err(
+                |source| ConfigurationError::Design { part: "controller for a lost rotor", source },
+            )?,
+        };
         Ok(Self { rotors, inertia_kg_m2, design })
     }
 

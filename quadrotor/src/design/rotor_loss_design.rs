@@ -1,5 +1,7 @@
 //! The control laws for the loss of each rotor.
 
+use alloc::vec::Vec;
+
 use crate::control::rotor_loss::RotorLossLaw;
 use crate::{Configuration, ConfigurationError, ControlError, ValueRange};
 
@@ -11,7 +13,13 @@ pub(crate) struct RotorLossDesign {
 
 impl RotorLossDesign {
     pub(crate) fn new(configuration: &Configuration) -> Self {
-        Self { laws: core::array::from_fn(|lost| RotorLossLaw::new(configuration, lost)) }
+        let mut known = Vec::with_capacity(4);
+        let law = |lost| {
+            let law = RotorLossLaw::new(configuration, lost, &known);
+            known.extend(law.clone());
+            law
+        };
+        Self { laws: core::array::from_fn(law) }
     }
 
     /// Whether two configurations have the same laws.
@@ -34,6 +42,28 @@ impl RotorLossDesign {
             None => Err(no_such_rotor),
             Some(Ok(_)) => Ok(()),
             Some(Err(error)) => Err(error.clone()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RotorLossDesign;
+    use crate::control::rotor_loss::RotorLossLaw;
+    use crate::{Airframe, Configuration, RotorLayout};
+
+    /// In an "H" and with moments of inertia that differ, and where all rotors are alike.
+    #[test]
+    fn what_is_known_for_another_rotor_is_what_would_be_designed() {
+        let different = Airframe { inertia_kg_m2: [0.1, 0.11, 0.2], ..Airframe::default() };
+        let stretched = Airframe { layout: RotorLayout::h(1.3), ..Airframe::default() };
+        for airframe in [Airframe::default(), different, stretched] {
+            let configuration = Configuration { airframe, ..Configuration::default() };
+            let together = RotorLossDesign::new(&configuration).laws;
+            for (lost, law) in together.iter().enumerate() {
+                assert_eq!(*law, RotorLossLaw::new(&configuration, lost, &[]));
+                assert!(law.is_ok());
+            }
         }
     }
 }

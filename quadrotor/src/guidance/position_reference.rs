@@ -47,6 +47,15 @@ impl PositionReference {
 
     /// The name of its first component that is not finite.
     pub(crate) fn not_finite(&self) -> Option<&'static str> {
+        let Self { position_m, velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4, .. } = self;
+        // Zero times what is not finite is not a number, and neither is a sum with it. Mostly this is all there is to do.
+        let vectors = (position_m * 0.0 + velocity_m_s * 0.0)
+            + (acceleration_m_s2 * 0.0 + jerk_m_s3 * 0.0)
+            + snap_m_s4 * 0.0;
+        let turn = self.yaw_rad * 0.0 + self.yaw_rate_rad_s * 0.0 + self.yaw_acceleration_rad_s2 * 0.0;
+        if vectors.sum() + turn == 0.0 {
+            return None;
+        }
         let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
         let checks = [
             ("reference.position", finite(&self.position_m)),

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::plant::differentiation::real::Real;
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::forces::Forces;
-use crate::plant::ground::{HoldingMargins, cannot_be_held, contact};
+use crate::plant::ground::{HoldingMargins, cannot_be_held, contact, reach_m};
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
 use crate::plant::rotor_fault::goals_rad_s;
@@ -31,13 +31,15 @@ use crate::{Airframe, Environment, RotorFault};
 pub struct Plant {
     airframe: Airframe,
     ground_plane: bool,
+    /// No foot is farther from the centre of mass.
+    reach_m: f64,
 }
 
 impl Plant {
     /// The vehicle in its world. The airframe is not checked: use one of a configuration that
     /// [`CascadeDesign::new`](crate::CascadeDesign::new) accepts.
     pub fn new(airframe: &Airframe, environment: &Environment) -> Self {
-        Self { airframe: *airframe, ground_plane: environment.ground_plane }
+        Self { airframe: *airframe, ground_plane: environment.ground_plane, reach_m: reach_m(airframe) }
     }
 
     /// The vehicle's constants.
@@ -70,7 +72,7 @@ impl Plant {
     ) -> Forces<T> {
         let mut forces = self.loads(state, inputs, branches);
         if self.ground_plane {
-            let ground = contact(&self.airframe, &state.body, branches);
+            let ground = contact(&self.airframe, &state.body, self.reach_m, branches);
             forces.external.force_n += ground.force_n;
             forces.external.torque_n_m += ground.torque_n_m;
         }
@@ -151,7 +153,7 @@ impl Plant {
 
     /// Whether static friction holds the vehicle where it is.
     pub(crate) fn is_held<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
-        if !self.ground_plane || cannot_be_held(&self.airframe, &state.body) {
+        if !self.ground_plane || cannot_be_held(&state.body, self.reach_m) {
             return false;
         }
         let (state, inputs) = (state.zip_map(state, |x, _| x.value()), inputs.values());

@@ -27,14 +27,15 @@ const DEEPEST_START_M: f64 = 0.01;
 /// the centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
 ///
 /// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`HoldingMargins`] decide when
-/// static friction holds the vehicle instead.
+/// static friction holds the vehicle instead. `reach_m` is [`reach_m`] of the airframe.
 pub(crate) fn contact<T: Real>(
     airframe: &Airframe,
     body: &RigidBody<T>,
+    reach_m: f64,
     branches: &mut impl Branches,
 ) -> External<T> {
     let mut total = External::default();
-    if may_skip(branches) && is_above(airframe, body) {
+    if may_skip(branches) && is_above(body, reach_m) {
         return total;
     }
     let orientation = body.orientation();
@@ -92,7 +93,7 @@ impl HoldingMargins {
         let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
         let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
         Self {
-            slip_m_s: FRICTION_SLIP_M_S - slip_m_s(airframe, body),
+            slip_m_s: FRICTION_SLIP_M_S - slip_m_s(body, reach_m(airframe)),
             least_load_n: footings.iter().map(Footing::pressing_n).fold(f64::INFINITY, f64::min),
             grip_n: FRICTION_COEFFICIENT * load_n - demand_n,
         }
@@ -113,14 +114,14 @@ impl HoldingMargins {
 }
 
 /// Whether the vehicle is so high, or so fast along the ground, that static friction cannot hold it under any pull.
-pub(crate) fn cannot_be_held<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> bool {
-    is_above(airframe, body) || slip_m_s(airframe, body) >= FRICTION_SLIP_M_S
+pub(crate) fn cannot_be_held<T: Real>(body: &RigidBody<T>, reach_m: f64) -> bool {
+    is_above(body, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
 }
 
 /// How fast the outermost foot may slip along the ground, m/s.
-fn slip_m_s<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> f64 {
+fn slip_m_s<T: Real>(body: &RigidBody<T>, reach_m: f64) -> f64 {
     let velocity_m_s = body.velocity_m_s.map(T::value);
-    velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m(airframe)
+    velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m
 }
 
 /// The greatest z, NED, m, from which a flight can start above the ground with this initial attitude: there the lowest foot
@@ -133,13 +134,12 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) ->
 }
 
 /// Whether no foot can touch the ground in any attitude.
-fn is_above<T: Real>(airframe: &Airframe, body: &RigidBody<T>) -> bool {
-    body.position_m.z.value() < -reach_m(airframe)
+fn is_above<T: Real>(body: &RigidBody<T>, reach_m: f64) -> bool {
+    body.position_m.z.value() < -reach_m
 }
 
 /// No foot is farther from the centre of mass, m.
-#[inline]
-fn reach_m(airframe: &Airframe) -> f64 {
+pub(crate) fn reach_m(airframe: &Airframe) -> f64 {
     let [x, y, _] = airframe.centre_of_gravity_m;
     airframe.arm_length_m * airframe.layout.reach() + libm::hypot(x, y)
 }
@@ -231,7 +231,7 @@ mod tests {
     }
 
     fn force(depth_m: f64, velocity_m_s: [f64; 3]) -> Vector3<f64> {
-        let ground = contact(&airframe(), &level(depth_m, velocity_m_s), &mut ByValue);
+        let ground = contact(&airframe(), &level(depth_m, velocity_m_s), reach_m(&airframe()), &mut ByValue);
         assert!(ground.torque_n_m.norm() < 1e-9 * (1.0 + ground.force_n.norm()), "level feet share a load");
         ground.force_n
     }
@@ -272,14 +272,14 @@ mod tests {
         let depth = 0.01;
         let mut body = level(depth - 0.25 * libm::sin(roll), [0.0; 3]);
         body.attitude = rotation.into_inner();
-        let ground = contact(&airframe(), &body, &mut ByValue);
+        let ground = contact(&airframe(), &body, reach_m(&airframe()), &mut ByValue);
         let load = 0.5 * 2500.0 * depth;
         assert!((ground.force_n - Vector3::new(0.0, 0.0, -load)).norm() < 1e-9, "{ground:?}");
         let torque = Vector3::new(-0.25 * load * libm::cos(roll), 0.0, 0.0);
         assert!((ground.torque_n_m - torque).norm() < 1e-9, "{ground:?}");
         // A rate about the down axis moves that foot backwards, and friction pulls it forward.
         body.body_rate_rad_s.z = 1.0;
-        let spun = contact(&airframe(), &body, &mut ByValue);
+        let spun = contact(&airframe(), &body, reach_m(&airframe()), &mut ByValue);
         assert!((spun.force_n.x - 0.7 * load).abs() < 1e-9 && spun.torque_n_m.z < 0.0, "{spun:?}");
     }
 

@@ -1,10 +1,13 @@
 //! Nonlinear flights with any configuration whose controllers can be designed.
 
+use alloc::sync::Arc;
+
 use crate::design::loop_design::LoopDesign;
 use crate::design::rotor_loss_design::RotorLossDesign;
 use crate::design::stability::stability_report::StabilityReport;
 use crate::{
-    CascadeDesign, Configuration, ConfigurationError, Inputs, Outputs, PositionReference, Simulation,
+    CascadeDesign, Configuration, ConfigurationError, Inputs, Outputs, PositionReference, PreparedDesign,
+    Simulation,
 };
 
 /// Loses sight of the vehicle, m.
@@ -41,7 +44,8 @@ pub(super) fn fly(
     step_us: u64,
     mut see: impl FnMut(&Outputs),
 ) -> End {
-    let Ok(mut flight) = Simulation::with_design(design, inputs) else { return End::Lost };
+    let design = PreparedDesign { design: Arc::new(design) };
+    let Ok(mut flight) = Simulation::prepared(&design, inputs) else { return End::Lost };
     for step in 1..=(duration_s * 1e6) as u64 / step_us {
         if flight.advance_to(step * step_us, inputs).is_err() {
             return End::Lost;

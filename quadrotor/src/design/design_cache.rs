@@ -1,0 +1,126 @@
+//! Designs that were asked for lately.
+
+use alloc::vec::Vec;
+
+use crate::{Configuration, ConfigurationError, PARAMETERS, PreparedDesign};
+
+/// The designs that were asked for latest, so that each configuration is designed once.
+///
+/// A configuration is known when all of its numbers have the same bits: the design is the one that it would get anew.
+///
+/// ```
+/// use quadrotor::{Configuration, DesignCache};
+///
+/// let mut cache = DesignCache::with_room(16);
+/// let design = cache.design(&Configuration::default())?;
+/// assert_eq!(cache.find(&Configuration::default()), Some(design));
+/// # Ok::<(), quadrotor::ConfigurationError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DesignCache {
+    room: usize,
+    /// The latest one last.
+    known: Vec<PreparedDesign>,
+}
+
+impl DesignCache {
+    /// An empty cache with room for so many designs of about 90 kB each, which live as long as it or a flight with them.
+    pub const fn with_room(room: usize) -> Self {
+        Self { room, known: Vec::new() }
+    }
+
+    /// The design of a configuration, if it is known.
+    pub fn find(&mut self, configuration: &Configuration) -> Option<PreparedDesign> {
+        let place = self.known.iter().rposition(|known| is_same(known.configuration(), configuration))?;
+        let design = self.known.remove(place);
+        self.known.push(design.clone());
+        Some(design)
+    }
+
+    /// Keeps a design, in place of the one that was not asked for the longest if there is no room.
+    pub fn keep(&mut self, design: &PreparedDesign) {
+        if self.room == 0 || self.find(design.configuration()).is_some() {
+            return;
+        }
+        if self.known.len() >= self.room {
+            self.known.remove(0);
+        }
+        self.known.push(design.clone());
+    }
+
+    /// The design of a configuration: the known one, or a new one, which is kept.
+    ///
+    /// # Errors
+    /// Those of [`PreparedDesign::new`].
+    pub fn design(&mut self, configuration: &Configuration) -> Result<PreparedDesign, ConfigurationError> {
+        if let Some(design) = self.find(configuration) {
+            return Ok(design);
+        }
+        let design = PreparedDesign::new(configuration)?;
+        self.keep(&design);
+        Ok(design)
+    }
+}
+
+/// Whether two configurations are the same, bit for bit. Equal ones can differ in the signs of their zeros.
+pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
+    let places = |configuration: &Configuration| {
+        configuration.airframe.layout.rotors.map(|rotor| [rotor.x.to_bits(), rotor.y.to_bits()])
+    };
+    one == other
+        && places(one) == places(other)
+        && PARAMETERS.iter().all(|parameter| parameter.access.same_bits(one, other))
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::sync::Arc;
+
+    use super::DesignCache;
+    use crate::{Configuration, PreparedDesign};
+
+    fn of_mass(mass_kg: f64) -> Configuration {
+        let mut configuration = Configuration::default();
+        configuration.airframe.mass_kg = mass_kg;
+        configuration
+    }
+
+    fn are_one(one: &PreparedDesign, other: &PreparedDesign) -> bool {
+        Arc::ptr_eq(&one.design, &other.design)
+    }
+
+    #[test]
+    fn a_known_configuration_gets_the_design_that_there_is() {
+        let mut cache = DesignCache::with_room(2);
+        let light = cache.design(&of_mass(0.6)).unwrap();
+        let heavy = cache.design(&of_mass(0.7)).unwrap();
+        assert!(!are_one(&light, &heavy));
+        assert!(are_one(&cache.design(&of_mass(0.6)).unwrap(), &light));
+        assert_eq!(light, PreparedDesign::new(&of_mass(0.6)).unwrap());
+        // The one that was asked for the longest ago makes room.
+        cache.design(&of_mass(0.8)).unwrap();
+        assert!(cache.find(&of_mass(0.7)).is_none());
+        assert!(are_one(&cache.find(&of_mass(0.6)).unwrap(), &light));
+    }
+
+    #[test]
+    fn the_sign_of_a_zero_is_another_configuration() {
+        let mut cache = DesignCache::with_room(4);
+        let (configuration, mut other) = (Configuration::default(), Configuration::default());
+        cache.design(&configuration).unwrap();
+        other.initial.position_m[0] = -0.0;
+        assert_eq!(configuration, other);
+        assert!(cache.find(&other).is_none());
+        other = configuration;
+        other.airframe.layout.rotors[0].y = -0.0;
+        assert_eq!(configuration, other);
+        assert!(cache.find(&other).is_none());
+    }
+
+    #[test]
+    fn what_cannot_be_designed_is_not_kept() {
+        let mut cache = DesignCache::with_room(4);
+        assert!(cache.design(&of_mass(-1.0)).is_err());
+        assert!(cache.find(&of_mass(-1.0)).is_none());
+    }
+}

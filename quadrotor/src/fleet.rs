@@ -1,0 +1,221 @@
+//! Many flights at once.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::num::NonZeroUsize;
+
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use thiserror::Error;
+
+use crate::design::design_cache::is_same;
+use crate::{
+    Configuration, ConfigurationError, InputSignal, Inputs, Outputs, PreparedDesign, Simulation,
+    SimulationError,
+};
+
+/// Many vehicles that fly side by side on all cores. Each flight is the one that it would be alone, bit for bit, however many
+/// there are and on however many threads: a vehicle that cannot go on stops where it is, and the others fly on.
+///
+/// ```
+/// use quadrotor::{Configuration, Fleet, Inputs, PositionReference};
+///
+/// # if !cfg!(feature = "shaper") { return Ok(()); }
+/// // A hundred vehicles with masses from 0.5 to 0.7 kg, each to a place of its own.
+/// let configurations: Vec<Configuration> = (0..100)
+///     .map(|vehicle| {
+///         let mut configuration = Configuration::default();
+///         configuration.airframe.mass_kg = 0.5 + 0.2 * f64::from(vehicle / 10) / 9.0;
+///         configuration
+///     })
+///     .collect();
+/// let inputs = |vehicle: usize| Inputs {
+///     reference: PositionReference::goal([vehicle as f64, 0.0, -2.0], 0.0),
+///     ..Inputs::default()
+/// };
+/// let mut fleet = Fleet::new(&configurations, inputs)?; // ten designs
+/// fleet.advance_to(1_000_000, inputs); // µs
+/// assert!(fleet.failures().all(|failure| failure.is_none()));
+/// assert!(fleet.outputs().iter().all(|outputs| outputs.position_m.z < 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// A fleet can be of anything that flies: [`Fleet::of`].
+#[derive(Debug)]
+pub struct Fleet<V = Simulation> {
+    members: Vec<Member<V>>,
+    threads: ThreadPool,
+}
+
+/// A vehicle of a fleet.
+#[derive(Debug)]
+struct Member<V> {
+    vehicle: V,
+    /// Why it could not go on.
+    failure: Option<SimulationError>,
+}
+
+/// Why there is no fleet.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FleetError {
+    /// A vehicle cannot fly as it is configured.
+    #[error("vehicle {vehicle}: {error}")]
+    Configuration {
+        /// The first of those with this configuration, counted from 0.
+        vehicle: usize,
+        /// Why.
+        error: ConfigurationError,
+    },
+    /// The system gives no threads.
+    #[error("cannot start the threads of a fleet: {reason}; ask for fewer")]
+    Threads {
+        /// What the system says.
+        reason: String,
+    },
+}
+
+impl<V: Send + Sync> Fleet<V> {
+    /// A fleet of these vehicles on so many threads; `None` is one for each core.
+    ///
+    /// # Errors
+    /// [`FleetError::Threads`].
+    pub fn of(vehicles: Vec<V>, threads: Option<NonZeroUsize>) -> Result<Self, FleetError> {
+        let members = vehicles.into_iter().map(|vehicle| Member { vehicle, failure: None }).collect();
+        Ok(Self { members, threads: pool(threads)? })
+    }
+
+    /// How many vehicles there are.
+    pub fn len(&self) -> usize {
+        self.members.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.members.is_empty()
+    }
+
+    /// The vehicles, in their order.
+    pub fn vehicles(&self) -> impl ExactSizeIterator<Item = &V> {
+        self.members.iter().map(|member| &member.vehicle)
+    }
+
+    /// The same, to be changed. One that has failed does not fly before [`Fleet::change_each`] has changed it.
+    pub fn vehicles_mut(&mut self) -> impl ExactSizeIterator<Item = &mut V> {
+        self.members.iter_mut().map(|member| &mut member.vehicle)
+    }
+
+    /// Why each vehicle could not go on, if it could not.
+    pub fn failures(&self) -> impl ExactSizeIterator<Item = Option<&SimulationError>> {
+        self.members.iter().map(|member| member.failure.as_ref())
+    }
+
+    /// Lets each vehicle that has not failed fly on, by its index and on several threads. One that refuses has failed.
+    pub fn advance_each(&mut self, advance: impl Fn(usize, &mut V) -> Result<(), SimulationError> + Sync) {
+        let Self { members, threads } = self;
+        threads.install(|| {
+            members.par_iter_mut().enumerate().for_each(|(index, member)| {
+                if member.failure.is_none() {
+                    member.failure = advance(index, &mut member.vehicle).err();
+                }
+            });
+        });
+    }
+
+    /// What can be seen of each vehicle, looked at by its index and on several threads.
+    pub fn map<R: Send>(&self, look: impl Fn(usize, &V) -> R + Sync) -> Vec<R> {
+        let Self { members, threads } = self;
+        threads.install(|| {
+            members.par_iter().enumerate().map(|(index, member)| look(index, &member.vehicle)).collect()
+        })
+    }
+
+    /// Changes vehicles, by their indices and on several threads: restores or restarts them. `change` returns whether it has; such a
+    /// vehicle flies on, even if it had failed.
+    ///
+    /// # Errors
+    /// That of a vehicle that refuses; others may have changed.
+    pub fn change_each<E: Send>(
+        &mut self,
+        change: impl Fn(usize, &mut V) -> Result<bool, E> + Sync,
+    ) -> Result<(), E> {
+        let Self { members, threads } = self;
+        threads.install(|| {
+            members.par_iter_mut().enumerate().try_for_each(|(index, member)| {
+                if change(index, &mut member.vehicle)? {
+                    member.failure = None;
+                }
+                Ok(())
+            })
+        })
+    }
+}
+
+impl Fleet {
+    /// Flights at time zero, one for each configuration, under these inputs by index. Vehicles that are alike share a design. There is
+    /// a thread for each core.
+    ///
+    /// # Errors
+    /// [`FleetError`].
+    pub fn new(
+        configurations: &[Configuration],
+        inputs: impl Fn(usize) -> Inputs + Sync,
+    ) -> Result<Self, FleetError> {
+        Self::with_threads(configurations, inputs, None)
+    }
+
+    /// The same on so many threads.
+    ///
+    /// # Errors
+    /// [`FleetError`].
+    pub fn with_threads(
+        configurations: &[Configuration],
+        inputs: impl Fn(usize) -> Inputs + Sync,
+        threads: Option<NonZeroUsize>,
+    ) -> Result<Self, FleetError> {
+        let threads = pool(threads)?;
+        let refused = |vehicle: usize| move |error| FleetError::Configuration { vehicle, error };
+        // The first vehicle of each kind, and the kind of each vehicle.
+        let mut first: Vec<usize> = Vec::new();
+        let mut kinds = Vec::with_capacity(configurations.len());
+        for (vehicle, configuration) in configurations.iter().enumerate() {
+            let known = |kind: &usize| is_same(&configurations[first[*kind]], configuration);
+            let kind = (0..first.len()).rev().find(known).unwrap_or(first.len());
+            if kind == first.len() {
+                first.push(vehicle);
+            }
+            kinds.push(kind);
+        }
+        let members = threads.install(|| {
+            let design =
+                |vehicle: &usize| PreparedDesign::new(&configurations[*vehicle]).map_err(refused(*vehicle));
+            let designs = first.par_iter().map(design).collect::<Result<Vec<_>, _>>()?;
+            let member = |(vehicle, kind): (usize, &usize)| {
+                let simulation = Simulation::prepared(&designs[*kind], &inputs(vehicle));
+                Ok(Member { vehicle: simulation.map_err(refused(vehicle))?, failure: None })
+            };
+            kinds.par_iter().enumerate().map(member).collect::<Result<Vec<_>, _>>()
+        })?;
+        Ok(Self { members, threads })
+    }
+
+    /// Flies all vehicles on to `time_us` under inputs by index, as [`Simulation::advance_to`] does. [`Fleet::failures`] tells which could
+    /// not.
+    pub fn advance_to<S: InputSignal>(&mut self, time_us: u64, inputs: impl Fn(usize) -> S + Sync) {
+        self.advance_each(|vehicle, simulation| simulation.advance_to(time_us, &inputs(vehicle)));
+    }
+
+    /// What can be observed of each vehicle now.
+    pub fn outputs(&self) -> Vec<Outputs> {
+        self.map(|_, simulation| simulation.outputs())
+    }
+}
+
+fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, FleetError> {
+    ThreadPoolBuilder::new()
+        .num_threads(threads.map_or(0, NonZeroUsize::get))
+        .thread_name(|thread| format!("fleet {thread}"))
+        .build()
+        .map_err(|error| FleetError::Threads { reason: error.to_string() })
+}
