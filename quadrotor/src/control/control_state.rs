@@ -225,14 +225,26 @@ impl ControlState {
         if let Target::WithoutRotor { lost, .. } = inputs.target {
             design.rotor_loss.of(lost)?;
         }
-        let mut next = *self;
-        next.take(&design.configuration, inputs, instruments, time_us)?;
-        if next.armed {
-            next.control(design, inputs, instruments, time_us)?;
+        let next_us = self.clocks(&design.configuration.controllers).next_instant_us(time_us);
+        let before = *self;
+        let sampled = self.take_and_control(design, inputs, instruments, time_us);
+        match sampled {
+            Ok(()) => self.next_us = next_us,
+            Err(_) => *self = before,
         }
-        next.next_us = self.clocks(&design.configuration.controllers).next_instant_us(time_us);
-        *self = next;
-        Ok(())
+        sampled
+    }
+
+    /// Takes inputs in, and runs the controllers that are due. An error may leave it half done.
+    fn take_and_control(
+        &mut self,
+        design: &LoopDesign,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        time_us: u64,
+    ) -> Result<(), ControlError> {
+        self.take(&design.configuration, inputs, instruments, time_us)?;
+        if self.armed { self.control(design, inputs, instruments, time_us) } else { Ok(()) }
     }
 
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
