@@ -1,14 +1,18 @@
 //! The orthogonal factorisation of the active constraints of a quadratic program.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use crate::dense::{dot, subtract_scaled};
 
 /// Below this share of a unit normal that is left after removing the active normals, it depends on them.
 const DEPENDENT: f64 = 1e-7;
+/// Share of a vector's square that must be left after removing the active normals, so that removing them again changes nothing but
+/// rounding.
+const LEFT: f64 = 0.25;
 
 /// Active constraint normals v_j (unit vectors) as Q R, Q with orthonormal columns and R upper triangular,
-/// with their multipliers: of `unknowns` ≤ N elements and as many at most, no allocation.
+/// with their multipliers: of `unknowns` ≤ N elements and as many at most, no allocation. Elements beyond the unknowns are zero: loops
+/// over all N, whose number the compiler knows, take less time than those over fewer.
 #[derive(Clone, Debug)]
 pub(crate) struct ActiveSet<const N: usize> {
     /// Constraint index of each column.
@@ -20,8 +24,9 @@ pub(crate) struct ActiveSet<const N: usize> {
     multipliers: [f64; N],
     count: usize,
     unknowns: usize,
-    q: SMatrix<f64, N, N>,
-    r: SMatrix<f64, N, N>,
+    /// Columns of Q, and of R.
+    q: [SVector<f64, N>; N],
+    r: [SVector<f64, N>; N],
 }
 
 /// A normal against the active ones: v = Q Qᵀv + rest.
@@ -43,8 +48,8 @@ impl<const N: usize> ActiveSet<N> {
             multipliers: [0.0; N],
             count: 0,
             unknowns,
-            q: SMatrix::zeros(),
-            r: SMatrix::zeros(),
+            q: [SVector::zeros(); N],
+            r: [SVector::zeros(); N],
         }
     }
 
@@ -61,37 +66,41 @@ impl<const N: usize> ActiveSet<N> {
         &self.multipliers[..self.count]
     }
 
-    /// Qᵀv and v − Q Qᵀv by Gram and Schmidt's method, twice, which is enough (Kahan).
-    fn orthogonal_part(&self, vector: &SVector<f64, N>) -> (SVector<f64, N>, SVector<f64, N>) {
-        let n = self.unknowns;
-        let mut within = SVector::zeros();
+    /// Qᵀv, v − Q Qᵀv and ‖v − Q Qᵀv‖² by Gram and Schmidt's method: twice, which is enough (Kahan), unless the first time leaves so
+    /// much that its rounding is small beside it (Daniel, Gragg, Kaufman and Stewart 1976).
+    fn orthogonal_part(&self, vector: &SVector<f64, N>) -> (SVector<f64, N>, SVector<f64, N>, f64) {
+        let mut within = SVector::<f64, N>::zeros();
         let mut rest = *vector;
-        for _ in 0..2 {
+        let whole_squared = dot(rest.as_slice(), rest.as_slice());
+        let mut rest_squared = whole_squared;
+        // Of nothing no part is taken away.
+        let times = if self.count == 0 || whole_squared == 0.0 { 0 } else { 2 };
+        for _ in 0..times {
             let along = self.along(&rest);
-            let rest = &mut rest.as_mut_slice()[..n];
-            for j in 0..self.count {
-                within[j] += along[j];
-                subtract_scaled(rest, &self.q.column(j).as_slice()[..n], along[j]);
+            within += along;
+            for (q_j, share) in self.q[..self.count].iter().zip(&along) {
+                subtract_scaled(rest.as_mut_slice(), q_j.as_slice(), *share);
+            }
+            rest_squared = dot(rest.as_slice(), rest.as_slice());
+            if rest_squared >= LEFT * whole_squared {
+                break;
             }
         }
-        (within, rest)
+        (within, rest, rest_squared)
     }
 
     /// Qᵀ v.
     fn along(&self, vector: &SVector<f64, N>) -> SVector<f64, N> {
-        let n = self.unknowns;
-        let mut along = SVector::zeros();
-        for j in 0..self.count {
-            along[j] = dot(&self.q.column(j).as_slice()[..n], &vector.as_slice()[..n]);
+        let mut along = SVector::<f64, N>::zeros();
+        for (share, q_j) in along.iter_mut().zip(&self.q[..self.count]) {
+            *share = dot(q_j.as_slice(), vector.as_slice());
         }
         along
     }
 
     /// Splits a normal into what depends on the active ones and the rest.
     pub(crate) fn split(&self, normal: &SVector<f64, N>) -> Split<N> {
-        let n = self.unknowns;
-        let (within, mut rest) = self.orthogonal_part(normal);
-        let mut rest_squared = dot(&rest.as_slice()[..n], &rest.as_slice()[..n]);
+        let (within, mut rest, mut rest_squared) = self.orthogonal_part(normal);
         if rest_squared <= DEPENDENT * DEPENDENT || self.is_full() {
             rest.fill(0.0);
             rest_squared = 0.0;
@@ -110,9 +119,9 @@ impl<const N: usize> ActiveSet<N> {
             return false;
         }
         let length = libm::sqrt(split.rest_squared);
-        self.q.set_column(self.count, &(split.rest / length));
-        self.r.set_column(self.count, &split.within);
-        self.r[(self.count, self.count)] = length;
+        self.q[self.count] = split.rest / length;
+        self.r[self.count] = split.within;
+        self.r[self.count][self.count] = length;
         self.constraints[self.count] = constraint;
         self.bounds[self.count] = bound;
         self.multipliers[self.count] = multiplier;
@@ -124,28 +133,25 @@ impl<const N: usize> ActiveSet<N> {
     /// Removes the constraint in column `column` and restores the triangle by Givens rotations.
     pub(crate) fn remove(&mut self, column: usize) {
         for j in column + 1..self.count {
-            let moved = self.r.column(j).into_owned();
-            self.r.set_column(j - 1, &moved);
+            self.r[j - 1] = self.r[j];
             self.constraints[j - 1] = self.constraints[j];
             self.bounds[j - 1] = self.bounds[j];
             self.multipliers[j - 1] = self.multipliers[j];
         }
         self.count -= 1;
         for j in column..self.count {
-            let (a, b) = (self.r[(j, j)], self.r[(j + 1, j)]);
+            let (a, b) = (self.r[j][j], self.r[j][j + 1]);
             // Not near zero: b was on the diagonal, where dependent normals do not come.
             let length = libm::sqrt(a * a + b * b);
             let (cosine, sine) = (a / length, b / length);
-            for k in j..self.count {
-                let (upper, lower) = (self.r[(j, k)], self.r[(j + 1, k)]);
-                self.r[(j, k)] = cosine * upper + sine * lower;
-                self.r[(j + 1, k)] = cosine * lower - sine * upper;
+            for r_k in &mut self.r[j..self.count] {
+                let (upper, lower) = (r_k[j], r_k[j + 1]);
+                r_k[j] = cosine * upper + sine * lower;
+                r_k[j + 1] = cosine * lower - sine * upper;
             }
-            for k in 0..self.unknowns {
-                let (left, right) = (self.q[(k, j)], self.q[(k, j + 1)]);
-                self.q[(k, j)] = cosine * left + sine * right;
-                self.q[(k, j + 1)] = cosine * right - sine * left;
-            }
+            let (left, right) = (self.q[j], self.q[j + 1]);
+            self.q[j] = left * cosine + right * sine;
+            self.q[j + 1] = right * cosine - left * sine;
         }
         self.meet_bounds(column);
     }
@@ -153,9 +159,9 @@ impl<const N: usize> ActiveSet<N> {
     /// R⁻ᵀ b from column `first` on.
     fn meet_bounds(&mut self, first: usize) {
         for i in first..self.count {
-            let of_those_before = self.r.column(i);
+            let of_those_before = &self.r[i];
             let known = dot(&of_those_before.as_slice()[..i], &self.met_at.as_slice()[..i]);
-            self.met_at[i] = (self.bounds[i] - known) / self.r[(i, i)];
+            self.met_at[i] = (self.bounds[i] - known) / of_those_before[i];
         }
     }
 
@@ -167,30 +173,22 @@ impl<const N: usize> ActiveSet<N> {
     }
 
     /// Sets the multipliers for which all active constraints hold with equality on the way from z: RᵀR u = Vᵀz − b. Returns the
-    /// column of the most negative one, if any.
+    /// last column with a negative one, if any: what has become active last is the first to be released.
     ///
     /// ```text
     /// R u = Qᵀz − R⁻ᵀ b
     /// ```
     pub(crate) fn solve_multipliers(&mut self, z: &SVector<f64, N>) -> Option<usize> {
         let u = self.back_substituted(&(self.along(z) - self.met_at));
-        let mut worst = None;
-        for j in 0..self.count {
-            self.multipliers[j] = u[j];
-            if u[j] < 0.0 && worst.is_none_or(|column: usize| u[j] < u[column]) {
-                worst = Some(j);
-            }
-        }
-        worst
+        self.multipliers[..self.count].copy_from_slice(&u.as_slice()[..self.count]);
+        self.multipliers().iter().rposition(|multiplier| *multiplier < 0.0)
     }
 
     /// The point nearest to z where Vᵀz = b: (I − Q Qᵀ) z + Q R⁻ᵀ b.
     pub(crate) fn nearest(&self, z: &SVector<f64, N>) -> SVector<f64, N> {
-        let n = self.unknowns;
         let mut nearest = if self.is_full() { SVector::zeros() } else { self.orthogonal_part(z).1 };
-        for j in 0..self.count {
-            let q_j = self.q.column(j);
-            subtract_scaled(&mut nearest.as_mut_slice()[..n], &q_j.as_slice()[..n], -self.met_at[j]);
+        for (q_j, met_at) in self.q[..self.count].iter().zip(&self.met_at) {
+            subtract_scaled(nearest.as_mut_slice(), q_j.as_slice(), -met_at);
         }
         nearest
     }
@@ -199,7 +197,7 @@ impl<const N: usize> ActiveSet<N> {
     fn back_substituted(&self, y: &SVector<f64, N>) -> SVector<f64, N> {
         let mut x = *y;
         for i in (0..self.count).rev() {
-            let column = self.r.column(i);
+            let column = &self.r[i];
             x[i] /= column[i];
             let solved = x[i];
             subtract_scaled(&mut x.as_mut_slice()[..i], &column.as_slice()[..i], solved);

@@ -28,9 +28,23 @@ pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
     }
 }
 
+/// The least of some numbers, infinity of none; NaN counts as none.
+#[inline]
+pub(crate) fn least(values: &[f64]) -> f64 {
+    let smaller = |a: f64, b: f64| if b < a { b } else { a };
+    let mut lanes = [f64::INFINITY; 4];
+    let (chunks, rest) = values.as_chunks::<4>();
+    for chunk in chunks {
+        for lane in 0..4 {
+            lanes[lane] = smaller(lanes[lane], chunk[lane]);
+        }
+    }
+    rest.iter().chain(&lanes).fold(f64::INFINITY, |least, value| smaller(least, *value))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{dot, dot_of_magnitudes, subtract_scaled};
+    use super::{dot, dot_of_magnitudes, least, subtract_scaled};
     use alloc::vec::Vec;
 
     /// Whole numbers, whose sums are exact in any order: Σ i (i + 1) = n (n + 1)(n + 2) / 3.
@@ -45,6 +59,16 @@ mod tests {
     #[test]
     fn magnitudes_do_not_cancel() {
         assert_eq!(dot_of_magnitudes(&[1.0, -2.0, 3.0], &[4.0, 5.0, -6.0]), 32.0);
+    }
+
+    #[test]
+    fn the_least_is_found_at_any_place() {
+        assert_eq!(least(&[]), f64::INFINITY);
+        for place in 0..11 {
+            let mut values = [2.0, f64::NAN, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, f64::INFINITY, 2.5];
+            values[place] = -1.0;
+            assert_eq!(least(&values), -1.0, "at {place}");
+        }
     }
 
     #[test]

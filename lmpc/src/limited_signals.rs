@@ -9,18 +9,23 @@ use crate::sparse_columns::SparseColumns;
 use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
 
 /// Most components of a limited signal.
-pub(crate) const COMPONENTS: usize = 3;
+const COMPONENTS: usize = 3;
 /// Most values of signals on all samples together: what a step keeps on the stack.
 pub(crate) const SIGNALS: usize = 640;
+/// Samples that are looked at side by side.
+const BLOCK: usize = 8;
 /// So many are kept in less room, which takes less time to clear.
 pub(crate) const FEW_SIGNALS: usize = 96;
 
 /// The limited signals as linear maps, for a plant of N states, P inputs and Q outputs and at most E unknowns. Component by
-/// component, limit by limit, sample by sample, so that a column of a map is long:
+/// component, limit by limit, sample by sample, so that a column of a map is long. With the plan η = η₀ + L⁻ᵀ z of
+/// [`PlanCoordinates`]:
 ///
 /// ```text
 /// signal = C x_m(k) + D (u_r(k) + v(k−1)) + of_increment Δx_m(k) + of_error (y − r) + of_plan z
 /// ```
+///
+/// What does not depend on z are the signals of the plan without limits: whether it keeps them is a plain comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LimitedSignals {
     limits: Vec<PlacedLimit>,
@@ -46,9 +51,9 @@ pub(crate) struct PlacedLimit {
     /// The largest of its rows' [`LimitedSignals::scale`].
     pub(crate) largest_scale: f64,
     pub(crate) samples: usize,
-    pub(crate) components: usize,
+    components: usize,
     /// Index of its first bound among [`Sample::upper`].
-    pub(crate) first_bound: usize,
+    first_bound: usize,
     /// Index of its first value among [`Sample::moved`].
     first_moved: usize,
     /// Where the samples of each component begin among all signals.
@@ -63,6 +68,32 @@ impl PlacedLimit {
     /// The constraint of a direction at a sample.
     pub(crate) fn row(&self, sample: usize, direction: usize) -> usize {
         self.first_row + sample * self.directions.len() + direction
+    }
+
+    /// Its values among those of [`Sample::upper`](crate::Sample::upper), as far as there are.
+    pub(crate) fn bounds<'a>(&self, upper: &'a [f64]) -> &'a [f64] {
+        let bounds = upper.get(self.first_bound..).unwrap_or_default();
+        &bounds[..bounds.len().min(self.directions.len())]
+    }
+
+    /// The sample of the longest signal, and its |signal|². Several samples are looked at side by side.
+    #[inline]
+    pub(crate) fn longest_signal(&self, signals: &[f64]) -> (usize, f64) {
+        let mut longest = (0, 0.0);
+        for first in (0..self.samples).step_by(BLOCK) {
+            let samples = BLOCK.min(self.samples - first);
+            let mut squares = [0.0; BLOCK];
+            for component in 0..self.components {
+                let values = &signals[self.first[component] + first..][..samples];
+                for (square, value) in squares.iter_mut().zip(values) {
+                    *square += value * value;
+                }
+            }
+            for (within, square) in squares.into_iter().enumerate() {
+                longest = if square > longest.1 { (first + within, square) } else { longest };
+            }
+        }
+        longest
     }
 
     /// The components at a sample among all signals.
@@ -82,9 +113,17 @@ impl PlacedLimit {
     }
 }
 
+/// How z stands for a plan: η = η₀ + L⁻ᵀ z with S_ηη = L Lᵀ, in which η₀ = −S_ηη⁻¹ S_ηx x is the plan without limits.
+pub(crate) struct PlanCoordinates {
+    /// −S_ηη⁻¹ S_ηx.
+    pub(crate) unlimited: DMatrix<f64>,
+    /// L⁻ᵀ.
+    pub(crate) by_z: DMatrix<f64>,
+}
+
 /// The components of a limit at one of its samples.
 struct SignalAt {
-    /// Of \[Δx_m; y − r\].
+    /// Of \[Δx_m; y − r\], under the plan without limits.
     of_state: DMatrix<f64>,
     /// Of z.
     of_plan: DMatrix<f64>,
@@ -123,14 +162,14 @@ impl Motion {
 }
 
 impl LimitedSignals {
-    /// Places limits on their samples. z = Lᵀη, of which `inverse` is L⁻¹; `slack_unit` is the slack that its element of z stands for.
+    /// Places limits on their samples. `slack_unit` is the slack that its element of z stands for.
     ///
     /// # Errors
     /// [`DesignError::Dimension`]: see [`StabilizedMpc::new`](crate::StabilizedMpc::new).
     pub(crate) fn new<const N: usize, const P: usize, const Q: usize>(
         design: &StabilizedDesign,
         limits: &[SignalLimit],
-        inverse: &DMatrix<f64>,
+        coordinates: &PlanCoordinates,
         slack_unit: f64,
     ) -> Result<Self, DesignError> {
         let mut placed = Self {
@@ -156,7 +195,7 @@ impl LimitedSignals {
                 &limit.directions,
                 (limit.directions.nrows(), components.min(COMPONENTS)),
             )?;
-            signals.push(placed.add::<N, P, Q>(limit, &motion, inverse, slack_unit, bounds));
+            signals.push(placed.add::<N, P, Q>(limit, &motion, coordinates, slack_unit, bounds));
             bounds += limit.directions.nrows();
         }
         for component in 0..COMPONENTS {
@@ -178,21 +217,23 @@ impl LimitedSignals {
         &mut self,
         limit: &SignalLimit,
         motion: &Motion,
-        inverse: &DMatrix<f64>,
+        coordinates: &PlanCoordinates,
         slack_unit: f64,
         first_bound: usize,
     ) -> Vec<SignalAt> {
-        let terms = inverse.nrows();
+        let terms = coordinates.by_z.nrows();
         let mut signals = Vec::new();
         let mut samples = limit.samples.clone();
         samples.sort_unstable();
         samples.dedup();
         for m in samples {
             let signal = &limit.state * &motion.states[m] + &limit.input * &motion.moves[m];
-            let of_plan = signal.columns(N + Q, terms) * inverse.transpose();
+            let of_eta = signal.columns(N + Q, terms);
+            let of_plan = of_eta * &coordinates.by_z;
             if of_plan.amax() > 0.0 {
+                let of_state = signal.columns(0, N + Q) + of_eta * &coordinates.unlimited;
                 self.by_sample.push((m, self.limits.len(), signals.len()));
-                signals.push(SignalAt { of_state: signal.columns(0, N + Q).into_owned(), of_plan });
+                signals.push(SignalAt { of_state, of_plan });
             }
         }
         let components = limit.directions.ncols();
@@ -274,8 +315,8 @@ impl LimitedSignals {
         self.count
     }
 
-    /// The part of each signal that is known before z is chosen, `input` being u_r(k) + v(k−1). S must be their number or more.
-    pub(crate) fn known<const N: usize, const P: usize, const Q: usize, const S: usize>(
+    /// Each signal of the plan without limits, `input` being u_r(k) + v(k−1). S must be their number or more.
+    pub(crate) fn unlimited<const N: usize, const P: usize, const Q: usize, const S: usize>(
         &self,
         sample: &Sample<'_, N, P, Q>,
         input: &SVector<f64, P>,
@@ -299,8 +340,8 @@ impl LimitedSignals {
     }
 
     /// Sets the signals to those at z.
-    pub(crate) fn set_at(&self, known: &[f64], z: &[f64], signals: &mut [f64]) {
-        signals[..self.count].copy_from_slice(&known[..self.count]);
+    pub(crate) fn set_at(&self, unlimited: &[f64], z: &[f64], signals: &mut [f64]) {
+        signals[..self.count].copy_from_slice(&unlimited[..self.count]);
         self.of_plan.add_product(z, signals);
     }
 
@@ -352,6 +393,10 @@ impl MovedSignals {
     pub fn values(&self) -> &[f64] {
         &self.values[..self.count]
     }
+}
+
+pub(crate) fn along(direction: &[f64; COMPONENTS], signal: &[f64; COMPONENTS]) -> f64 {
+    direction[0] * signal[0] + direction[1] * signal[1] + direction[2] * signal[2]
 }
 
 /// The rows of a matrix.

@@ -1,26 +1,32 @@
-//! Matrices column by column, without the zeros above and below.
+//! Matrices without their zeros, for products of some rows side by side.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A matrix of which each column is stored from its first to its last element that is not zero.
-///
-/// Its product with a vector is a sum of columns: each addition runs over neighbouring elements, however few columns there are, and
-/// columns of nothing but zeros cost nothing.
+/// Rows that are summed up side by side: as many as a processor has room for while it goes through the columns.
+const ROWS: usize = 8;
+
+/// A matrix in tiles of a few neighbouring rows, of which each holds the columns that are not zero in all of its rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SparseColumns {
+    tiles: Vec<Tile>,
     columns: Vec<Column>,
-    values: Vec<f64>,
 }
 
+/// Neighbouring rows, at most [`ROWS`].
+#[derive(Clone, Debug, PartialEq)]
+struct Tile {
+    rows: Range<usize>,
+    /// Where its columns are.
+    columns: Range<usize>,
+}
+
+/// A column of a tile, with zeros in the rows that the tile does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Column {
     /// Element of the vector that it is multiplied by.
     source: usize,
-    first_row: usize,
-    /// Where its values are.
-    first_value: usize,
-    length: usize,
+    values: [f64; ROWS],
 }
 
 impl SparseColumns {
@@ -33,42 +39,55 @@ impl SparseColumns {
         columns: usize,
         value: impl Fn(usize, usize) -> f64,
     ) -> Range<usize> {
-        let before = self.columns.len();
-        for source in 0..columns {
-            let is_used = |row: &usize| value(*row, source) != 0.0;
-            let Some(first) = (0..rows).find(is_used) else { continue };
-            let last = (first..rows).rfind(is_used).unwrap_or(first);
-            self.columns.push(Column {
-                source,
-                first_row: first_row + first,
-                first_value: self.values.len(),
-                length: last + 1 - first,
+        let before = self.tiles.len();
+        for first in (0..rows).step_by(ROWS) {
+            let last = rows.min(first + ROWS);
+            let first_column = self.columns.len();
+            for source in 0..columns {
+                let row = |row: usize| if first + row < last { value(first + row, source) } else { 0.0 };
+                let values: [f64; ROWS] = core::array::from_fn(row);
+                if values.iter().any(|value| *value != 0.0) {
+                    self.columns.push(Column { source, values });
+                }
+            }
+            self.tiles.push(Tile {
+                rows: first_row + first..first_row + last,
+                columns: first_column..self.columns.len(),
             });
-            self.values.extend((first..=last).map(|row| value(row, source)));
         }
-        before..self.columns.len()
+        before..self.tiles.len()
     }
 
     /// sums ← sums + A x.
     pub(crate) fn add_product(&self, x: &[f64], sums: &mut [f64]) {
-        for column in &self.columns {
-            let factor = x[column.source];
-            let values = &self.values[column.first_value..][..column.length];
-            let sums = &mut sums[column.first_row..][..column.length];
-            for (sum, value) in sums.iter_mut().zip(values) {
-                *sum += value * factor;
+        for tile in &self.tiles {
+            let product = product(&self.columns[tile.columns.clone()], x);
+            for (sum, product) in sums[tile.rows.clone()].iter_mut().zip(product) {
+                *sum += product;
             }
         }
     }
 
     /// A row of the block that is at `block`, told element by element.
     pub(crate) fn for_each_in_row(&self, block: Range<usize>, row: usize, mut tell: impl FnMut(usize, f64)) {
-        for column in &self.columns[block] {
-            if (column.first_row..column.first_row + column.length).contains(&row) {
-                tell(column.source, self.values[column.first_value + row - column.first_row]);
-            }
+        let Some(tile) = self.tiles[block].iter().find(|tile| tile.rows.contains(&row)) else { return };
+        for column in &self.columns[tile.columns.clone()] {
+            tell(column.source, column.values[row - tile.rows.start]);
         }
     }
+}
+
+/// The product of a tile. Its sums are kept in registers, and put together only where they are returned.
+#[inline(never)]
+fn product(columns: &[Column], x: &[f64]) -> [f64; ROWS] {
+    let mut sums = [0.0; ROWS];
+    for column in columns {
+        let factor = x[column.source];
+        for (sum, value) in sums.iter_mut().zip(&column.values) {
+            *sum += value * factor;
+        }
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -77,30 +96,35 @@ mod tests {
     use alloc::vec::Vec;
     use nalgebra::DMatrix;
 
-    /// Two blocks below one another, with zeros at the ends of columns, within them, and in all of one.
+    /// Two blocks below one another, the first of more than one tile, with columns of zeros in a tile and in a block.
     #[test]
     fn products_and_rows_are_those_of_the_whole_matrix() {
-        let upper = DMatrix::from_row_slice(3, 4, &[0., 1., 0., 2., 3., 0., 0., 0., 4., 5., 0., 0.]);
+        let upper = DMatrix::from_fn(11, 4, |row, column| match column {
+            0 => row as f64,
+            1 if row == 9 => 5.0,
+            3 if row < 8 => 2.0 - row as f64,
+            _ => 0.0,
+        });
         let lower = DMatrix::from_row_slice(2, 4, &[0., 0., 6., 0., 7., 0., 0., 8.]);
         let mut sparse = SparseColumns::default();
-        let above = sparse.add_block(0, 3, 4, |row, column| upper[(row, column)]);
-        let below = sparse.add_block(3, 2, 4, |row, column| lower[(row, column)]);
+        let above = sparse.add_block(0, 11, 4, |row, column| upper[(row, column)]);
+        let below = sparse.add_block(11, 2, 4, |row, column| lower[(row, column)]);
         let whole =
             DMatrix::from_fn(
-                5,
+                13,
                 4,
                 |row, column| {
-                    if row < 3 { upper[(row, column)] } else { lower[(row - 3, column)] }
+                    if row < 11 { upper[(row, column)] } else { lower[(row - 11, column)] }
                 },
             );
         let x = [1.0, -2.0, 3.0, 0.5];
-        let mut sums = [10.0; 5];
+        let mut sums = [10.0; 13];
         sparse.add_product(&x, &mut sums);
         let expected = &whole * DMatrix::from_column_slice(4, 1, &x);
-        assert!((0..5).all(|row| sums[row] == 10.0 + expected[row]), "{sums:?}");
-        for row in 0..5 {
+        assert!((0..13).all(|row| sums[row] == 10.0 + expected[row]), "{sums:?}");
+        for row in 0..13 {
             let mut told = Vec::from([0.0; 4]);
-            let block = if row < 3 { above.clone() } else { below.clone() };
+            let block = if row < 11 { above.clone() } else { below.clone() };
             sparse.for_each_in_row(block, row, |column, value| told[column] += value);
             assert!((0..4).all(|column| told[column] == whole[(row, column)]), "{row}: {told:?}");
         }

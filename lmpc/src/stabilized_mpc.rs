@@ -1,10 +1,13 @@
 //! Stabilized Laguerre MPC under limits, at run time.
 
+use core::iter;
+
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 use crate::controller_state::Decision;
+use crate::dense::{dot, least};
 use crate::dual_search::{Constraints, DualSearch};
-use crate::limited_signals::{COMPONENTS, FEW_SIGNALS, LimitedSignals, MovedSignals, SIGNALS};
+use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS, along};
 use crate::{
     Controller, ControllerState, DesignError, Outcome, Sample, SignalLimit, StabilizedDesign, StateFeedback,
     Status, Step, WarmStart,
@@ -14,7 +17,7 @@ use crate::{
 const FEASIBILITY: f64 = 1e-9;
 /// The slack from which limits count as relaxed: a thousandth of their relaxations.
 const RELAXED: f64 = 1e-3;
-/// Limits of which the least bound is known beforehand. Those beyond are looked at side by side.
+/// Limits of which the least bound is known beforehand. Those beyond are looked at direction by direction.
 const LEAST: usize = 8;
 /// Iterations after which a program is given up; those at hand take fewer than twenty.
 const ITERATIONS: u32 = 100;
@@ -23,8 +26,9 @@ const ITERATIONS: u32 = 100;
 /// unknowns: the Laguerre coefficients and one slack.
 ///
 /// The first move of min V(x, η) + c σ² under D · signal ≤ upper + relaxation · σ. All limits share the slack σ and give way in
-/// proportion to their relaxations, so that every program has a solution. When the unconstrained optimum keeps the limits, the
-/// step is one matrix–vector product; else an exact dual active-set method runs, warm-started from the last active set.
+/// proportion to their relaxations, so that every program has a solution. When the plan without limits keeps them, the
+/// step is that of the linear law; else an exact dual active-set method looks for what to add to this plan, warm-started from the last
+/// active set.
 ///
 /// ```text
 /// u(k+m)   = u_r(k) + v(k−1) + Σ_{i ≤ m} Δu(k+i)
@@ -35,13 +39,8 @@ const ITERATIONS: u32 = 100;
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilizedMpc<const N: usize, const P: usize, const Q: usize, const E: usize> {
     unconstrained: StateFeedback<N, P, Q>,
-    /// K_s.
-    stabilizing: StateFeedback<N, P, Q>,
     unknowns: usize,
-    /// z₀ = −L⁻¹ S_ηx x with S_ηη = L Lᵀ, z = Lᵀη.
-    start_state: SMatrix<f64, E, N>,
-    start_output: SMatrix<f64, E, Q>,
-    /// L(0)ᵀ L⁻ᵀ: what z adds to the first move.
+    /// L(0)ᵀ L⁻ᵀ: what z adds to the first move of the plan without limits.
     first_move: SMatrix<f64, P, E>,
     signals: LimitedSignals,
     /// 1/√c: the slack per element of z that stands for it.
@@ -80,19 +79,18 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             .l()
             .solve_lower_triangular(&DMatrix::identity(terms, terms))
             .ok_or(DesignError::NotPositiveDefinite { name })?;
-        let start = -(&inverse * design.cost().view((states, 0), (terms, states)));
-        let plan = design.plan();
-        let first_move = plan.move_of.columns(states, terms) * inverse.transpose();
+        // S_ηη⁻¹ = L⁻ᵀ L⁻¹
+        let by_z = inverse.transpose();
+        let unlimited = -(&by_z * (&inverse * design.cost().view((states, 0), (terms, states))));
+        let first_move = design.plan().move_of.columns(states, terms) * &by_z;
+        let coordinates = PlanCoordinates { unlimited, by_z };
 
         let slack_unit = 1.0 / libm::sqrt(slack_cost);
         Ok(Self {
             unconstrained: StateFeedback::new(design.gain())?,
-            stabilizing: StateFeedback::new(design.stabilizing_gain())?,
             unknowns: terms + 1,
-            start_state: SMatrix::from_fn(|i, j| if i < terms { start[(i, j)] } else { 0.0 }),
-            start_output: SMatrix::from_fn(|i, j| if i < terms { start[(i, N + j)] } else { 0.0 }),
             first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
-            signals: LimitedSignals::new::<N, P, Q>(design, limits, &inverse, slack_unit)?,
+            signals: LimitedSignals::new::<N, P, Q>(design, limits, &coordinates, slack_unit)?,
             slack_unit,
         })
     }
@@ -118,19 +116,21 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         z[self.unknowns - 1] * self.slack_unit
     }
 
-    /// What limits make of the unconstrained optimum z₀, with room for S signals; `None` when it keeps them.
+    /// What limits make of the plan without them, with room for S signals; `None` when it keeps them.
     fn limited<const W: usize, const S: usize>(
         &self,
         state: &mut ControllerState<N, P, W>,
         sample: &Sample<'_, N, P, Q>,
-        z_0: SVector<f64, E>,
     ) -> Option<Decision<P>> {
         let mut program = self.program::<S>(sample, &(sample.input_reference + state.feedback()));
-        let warm_start = state.warm_start.strict();
-        if warm_start.is_empty() && program.most_violated(&z_0, &[]).is_none() {
+        if !program.is_finite() {
             return None;
         }
-        let mut search = DualSearch::new(&mut program, z_0, warm_start);
+        let warm_start = state.warm_start.strict();
+        if warm_start.is_empty() && program.worst(&program.unlimited, 0.0, &[]).is_none() {
+            return None;
+        }
+        let mut search = DualSearch::new(&mut program, SVector::zeros(), warm_start);
         let outcome = search.run(ITERATIONS);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
@@ -140,10 +140,10 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         } else {
             *warm_start = WarmStart::default();
         }
-        // Δu = −K_s x + L(0)ᵀη
-        let stabilizing =
-            self.stabilizing.state_gain() * sample.increment + self.stabilizing.output_gain() * sample.error;
-        let increment = self.first_move * search.z - stabilizing;
+        // Δu = −K [Δx; y − r] + L(0)ᵀ L⁻ᵀ z
+        let increment = self.first_move * search.z
+            - self.unconstrained.state_gain() * sample.increment
+            - self.unconstrained.output_gain() * sample.error;
         let status = match outcome {
             Outcome::Optimal if self.slack_of(&search.z) > RELAXED => Status::Relaxed,
             Outcome::Optimal => Status::Optimal,
@@ -161,23 +161,17 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         input: &SVector<f64, P>,
     ) -> Program<'a, N, P, Q, E, S> {
         let limits = self.signals.limits();
-        let least = |index: usize| {
-            let Some(limit) = limits.get(index) else { return f64::NEG_INFINITY };
-            let bounds = limit.first_bound..limit.first_bound + limit.directions.len();
-            bounds.map(|bound| upper(sample.upper, bound)).fold(f64::INFINITY, f64::min)
+        let least_of = |index: usize| {
+            limits.get(index).map_or(f64::NEG_INFINITY, |limit| least(limit.bounds(sample.upper)))
         };
         Program {
             controller: self,
             upper: sample.upper,
-            least: core::array::from_fn(least),
-            known: self.signals.known(sample, input),
+            least: core::array::from_fn(least_of),
+            unlimited: self.signals.unlimited(sample, input),
             signals: [0.0; S],
         }
     }
-}
-
-fn upper(values: &[f64], bound: usize) -> f64 {
-    values.get(bound).copied().unwrap_or(f64::INFINITY)
 }
 
 /// The limits of one sample, as constraints of z, with room for S signals.
@@ -186,10 +180,66 @@ struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usiz
     upper: &'a [f64],
     /// The least bound of each of the first limits.
     least: [f64; LEAST],
-    /// The part of each signal that is known before z is chosen.
-    known: [f64; S],
+    /// The signals of the plan without limits, z = 0.
+    unlimited: [f64; S],
     /// The signals at the z that was looked at last.
     signals: [f64; S],
+}
+
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize>
+    Program<'_, N, P, Q, E, S>
+{
+    /// Whether its numbers can be calculated with.
+    fn is_finite(&self) -> bool {
+        dot(&self.unlimited, &self.unlimited).is_finite() && self.upper.iter().all(|upper| !upper.is_nan())
+    }
+
+    /// The constraint that some signals violate most under a slack σ, by more than rounding, among those that are not active.
+    fn worst(&self, signals: &[f64; S], slack: f64, active: &[usize]) -> Option<usize> {
+        let placed = &self.controller.signals;
+        let (mut worst, mut most) = (None, 0.0);
+        for (index, limit) in placed.limits().iter().enumerate() {
+            let give = limit.relaxation * slack;
+            let least_bound = self.least.get(index).map_or(f64::NEG_INFINITY, |bound| bound + give);
+            // Up to this length no signal breaks the limit by more than rounding, and more than the worst so far:
+            // |direction · signal| ≤ |direction| |signal|.
+            let kept = |most: f64| {
+                let room = (least_bound * (1.0 + FEASIBILITY) - most / limit.largest_scale) / limit.longest;
+                if room > 0.0 { room * room } else { f64::NEG_INFINITY }
+            };
+            let mut squared_room = kept(most);
+            // Most limits end here. The longest signal of the others is likely to leave the rest nothing to look at.
+            let (longest, square) = limit.longest_signal(signals);
+            if square <= squared_room {
+                continue;
+            }
+            for sample in iter::once(longest).chain((0..limit.samples).filter(|sample| *sample != longest)) {
+                let signal = limit.at(sample, signals);
+                if along(&signal, &signal) <= squared_room {
+                    continue;
+                }
+                // What is not bounded is not violated.
+                for (side, (direction, bound)) in
+                    limit.directions.iter().zip(limit.bounds(self.upper)).enumerate()
+                {
+                    let (value, upper) = (along(direction, &signal), bound + give);
+                    if value <= upper {
+                        continue;
+                    }
+                    let constraint = limit.row(sample, side);
+                    let scale = placed.scale(constraint);
+                    let room = (upper - value) * scale;
+                    let size: f64 = signal.iter().map(|component| libm::fabs(*component)).sum();
+                    let rounding = FEASIBILITY * (libm::fabs(upper) + size) * scale;
+                    if room < most && room < -rounding && !active.contains(&constraint) {
+                        (worst, most) = (Some(constraint), room);
+                        squared_room = kept(most);
+                    }
+                }
+            }
+        }
+        worst
+    }
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize> Constraints<E>
@@ -214,53 +264,16 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
     fn bound(&self, constraint: usize) -> f64 {
         let signals = &self.controller.signals;
         let place = signals.place(constraint);
-        let known =
-            along(&place.limit.directions[place.direction], &place.limit.at(place.sample, &self.known));
-        (upper(self.upper, place.limit.first_bound + place.direction) - known) * signals.scale(constraint)
+        let unlimited =
+            along(&place.limit.directions[place.direction], &place.limit.at(place.sample, &self.unlimited));
+        let upper = place.limit.bounds(self.upper).get(place.direction).copied().unwrap_or(f64::INFINITY);
+        (upper - unlimited) * signals.scale(constraint)
     }
 
     fn most_violated(&mut self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
-        let signals = &self.controller.signals;
-        signals.set_at(&self.known, z.as_slice(), &mut self.signals);
-        let slack = self.controller.slack_of(z);
-        let (mut worst, mut least) = (None, 0.0);
-        for (index, limit) in signals.limits().iter().enumerate() {
-            let give = limit.relaxation * slack;
-            let least_bound = self.least.get(index).map_or(f64::NEG_INFINITY, |bound| bound + give);
-            // Up to this length no signal breaks the limit by more than rounding, and more than the worst so far:
-            // |direction · signal| ≤ |direction| |signal|.
-            let kept = |worst: f64| {
-                let room = least_bound * (1.0 + FEASIBILITY) - worst / limit.largest_scale;
-                if room > 0.0 { room * room } else { f64::NEG_INFINITY }
-            };
-            let mut squared_room = kept(least);
-            let squared_longest = limit.longest * limit.longest;
-            let bounds = self.upper.get(limit.first_bound..).unwrap_or_default();
-            for sample in 0..limit.samples {
-                let signal = limit.at(sample, &self.signals);
-                // Most samples end here.
-                if squared_longest * squared(&signal) <= squared_room {
-                    continue;
-                }
-                // What is not bounded is not violated.
-                for (side, (direction, bound)) in limit.directions.iter().zip(bounds).enumerate() {
-                    let (value, upper) = (along(direction, &signal), bound + give);
-                    if value <= upper {
-                        continue;
-                    }
-                    let constraint = limit.row(sample, side);
-                    let scale = signals.scale(constraint);
-                    let room = (upper - value) * scale;
-                    let size: f64 = signal.iter().map(|component| libm::fabs(*component)).sum();
-                    let rounding = FEASIBILITY * (libm::fabs(upper) + size) * scale;
-                    if room < least && room < -rounding && !active.contains(&constraint) {
-                        (worst, least) = (Some(constraint), room);
-                        squared_room = kept(least);
-                    }
-                }
-            }
-        }
-        worst
+        let controller = self.controller;
+        controller.signals.set_at(&self.unlimited, z.as_slice(), &mut self.signals);
+        self.worst(&self.signals, controller.slack_of(z), active)
     }
 }
 
@@ -268,27 +281,14 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
     for StabilizedMpc<N, P, Q, E>
 {
     fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
-        // z₀ = −L⁻¹ S_ηx x
-        let z_0 = self.start_state * sample.increment + self.start_output * sample.error;
-        if !(z_0.norm_squared().is_finite() && sample.upper.iter().all(|upper| !upper.is_nan())) {
-            return self.unconstrained.step(state, sample);
-        }
         let decision = if self.signals.count() <= FEW_SIGNALS {
-            self.limited::<W, FEW_SIGNALS>(state, sample, z_0)
+            self.limited::<W, FEW_SIGNALS>(state, sample)
         } else {
-            self.limited::<W, SIGNALS>(state, sample, z_0)
+            self.limited::<W, SIGNALS>(state, sample)
         };
         match decision {
             Some(decision) => state.take(sample, &decision),
             None => self.unconstrained.step(state, sample),
         }
     }
-}
-
-fn along(direction: &[f64; COMPONENTS], signal: &[f64; COMPONENTS]) -> f64 {
-    direction[0] * signal[0] + direction[1] * signal[1] + direction[2] * signal[2]
-}
-
-fn squared(signal: &[f64; COMPONENTS]) -> f64 {
-    along(signal, signal)
 }

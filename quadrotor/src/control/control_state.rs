@@ -241,19 +241,18 @@ impl ControlState {
         }
         let clocks = self.clocks(&design.configuration.controllers);
         let due = Due::at(&clocks, time_us);
-        if inputs.armed && (due.any() || self.takes_over(inputs)) {
-            let mut next = *self;
-            next.advance(design, inputs, instruments, (due, time_us))?;
-            *self = next;
-        } else {
-            // Nothing is measured, so nothing is refused: most samples are these, and none of them copies the state.
-            self.advance(design, inputs, instruments, (due, time_us))?;
+        // Where nothing is measured nothing is refused: most samples are these, and none of them copies the state.
+        let before = (inputs.armed && (due.any() || self.takes_over(inputs))).then_some(*self);
+        let advanced = self.advance(design, inputs, instruments, (due, time_us));
+        match (advanced, before) {
+            (Ok(()), _) => self.next_us = clocks.next_instant_us(time_us),
+            (Err(_), Some(before)) => *self = before,
+            (Err(_), None) => {}
         }
-        self.next_us = clocks.next_instant_us(time_us);
-        Ok(())
+        advanced
     }
 
-    /// Takes inputs in, and runs the controllers that are due.
+    /// Takes inputs in, and runs the controllers that are due. An error may leave it half done.
     fn advance(
         &mut self,
         design: &LoopDesign,
