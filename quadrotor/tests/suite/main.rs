@@ -10,6 +10,8 @@ mod determinism;
 mod estimate;
 mod extended_flights;
 mod extended_physics;
+mod fleet;
+mod flight_bits;
 mod flights;
 mod full_thrust;
 mod ground;

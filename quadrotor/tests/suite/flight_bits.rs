@@ -4,7 +4,7 @@
 //! the digests anew:
 //!
 //! ```text
-//! RECORD_FLIGHTS=1 cargo test -p quadrotor --test flight_bits
+//! RECORD_FLIGHTS=1 cargo test -p quadrotor --test suite flight_bits::
 //! ```
 
 use std::collections::BTreeMap;
@@ -17,11 +17,8 @@ use quadrotor::{
 };
 use serde::{Deserialize, Serialize};
 
-mod common;
-#[path = "common/physics.rs"]
-mod physics;
-use common::{GOAL_M, goal, smooth_flight, unshaped};
-use physics::all_physics;
+use crate::common::physics::all_physics;
+use crate::common::{GOAL_M, goal, smooth_flight, unshaped};
 
 /// Times at which a flight is looked at, µs: mostly between two events.
 const LOOK_US: u64 = 9_700;
@@ -282,7 +279,7 @@ fn flown() -> BTreeMap<String, Recorded> {
 }
 
 fn file() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recorded/flights.json")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/recorded/flights.json")
 }
 
 /// How far a flight is from the one that was recorded, relative to each number's usual magnitude.

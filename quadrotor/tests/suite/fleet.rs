@@ -7,8 +7,7 @@ use quadrotor::{
     SimulationError,
 };
 
-mod common;
-use common::{goal, unshaped};
+use crate::common::{goal, unshaped};
 
 const VEHICLES: usize = 13;
 const END_US: u64 = 1_500_300;
