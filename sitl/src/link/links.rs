@@ -72,6 +72,8 @@ pub struct Links {
     signing: Signing,
     setup_rules: SetupRules,
     setups: Vec<SigningSetup>,
+    /// The latest frame of ours: its buffer is that of the next.
+    sent: Option<Frame>,
 }
 
 impl Link {
@@ -122,6 +124,7 @@ impl Links {
             signing: Signing::default(),
             setup_rules: SetupRules::default(),
             setups: Vec::new(),
+            sent: None,
         }
     }
 

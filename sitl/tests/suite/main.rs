@@ -7,6 +7,7 @@ mod airframes;
 mod autostart;
 mod combinations;
 mod dataflash;
+mod datagrams;
 mod determinism;
 mod equipment;
 mod estimator;

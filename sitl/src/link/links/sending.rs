@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use autopilot::codec::{Frame, Version, id, target_of};
+use autopilot::codec::{Encoded, Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Outgoing, PeerId};
 
 use super::{Links, Received};
@@ -32,12 +32,13 @@ impl Links {
         }
     }
 
-    /// Sends a message of one of our systems and returns it as one of its frames, for a log.
-    pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<Frame> {
+    /// Sends a message of one of our systems and returns it as one of its frames, for a log. It is written once for all peers.
+    pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<&Frame> {
         let sender = (system, outgoing.component);
         self.senders.insert(sender);
         let essential = matches!(outgoing.to, Destination::Peer(_)) || outgoing.message.id() == id::HEARTBEAT;
-        let mut sent = None;
+        let mut encoded: Option<Encoded> = None;
+        let mut sent = false;
         for (index, link) in self.links.iter_mut().enumerate() {
             for (number, peer) in &mut link.peers {
                 let wanted = match outgoing.to {
@@ -50,20 +51,24 @@ impl Links {
                 }
                 // MAVLink 1 has no signatures.
                 let version = if self.signing.is_on() { Version::Two } else { peer.version() };
-                // Messages beyond number 255 do not exist in MAVLink 1.
-                let sequence = peer.sequences.entry(sender).or_default();
-                if let Some(frame) = Frame::encode(&outgoing.message, version, *sequence, sender) {
-                    if !peer.allowance.spend(frame.bytes().len(), essential) {
-                        continue;
-                    }
-                    let frame = self.signing.sign(frame, index as u8);
-                    *sequence = sequence.wrapping_add(1);
-                    link.transport.send(*number, frame.bytes());
-                    sent = Some(frame);
+                if encoded.as_ref().is_none_or(|encoded| encoded.version() != version) {
+                    encoded = Encoded::new(&outgoing.message, version);
                 }
+                // Messages beyond number 255 do not exist in MAVLink 1.
+                let Some(encoded) = &encoded else { continue };
+                if !peer.allowance.spend(encoded.frame_length(), essential) {
+                    continue;
+                }
+                let sequence = peer.sequences.entry(sender).or_default();
+                let buffer = self.sent.take().map(Frame::into_buffer).unwrap_or_default();
+                let frame = self.signing.sign(encoded.frame(*sequence, sender, buffer), index as u8);
+                *sequence = sequence.wrapping_add(1);
+                link.transport.send(*number, frame.bytes());
+                self.sent = Some(frame);
+                sent = true;
             }
         }
-        sent
+        self.sent.as_ref().filter(|_| sent)
     }
 
     /// Whether a peer takes more than the telemetry without losing it; `None`: it is gone.
