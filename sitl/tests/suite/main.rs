@@ -27,6 +27,7 @@ mod guided;
 mod guided_attitude;
 mod hil;
 mod instruments;
+mod latency;
 mod log_download;
 mod long_answers;
 mod lossy;
