@@ -49,7 +49,7 @@ def starts(program, times: int):
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             seen = {}
             while len(seen) < 2:
-                data = listener.recv(1000)
+                data = listener.recv(65536)
                 now = (time.perf_counter() - begin) * 1e3
                 for message in mav.parse_buffer(data) or []:
                     if message.get_type() == "HEARTBEAT":

@@ -1,6 +1,8 @@
 //! The whole vehicle as MAVLink sees it, without a socket and without a clock: received frames and ticks of simulation
 //! time go in, messages come out.
 
+use std::vec::Drain;
+
 use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
@@ -185,7 +187,7 @@ impl Autopilot {
     }
 
     /// Messages to be sent since the last call.
-    pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
+    pub fn take_outgoing(&mut self) -> Drain<'_, Outgoing> {
         self.context.outbox.take()
     }
 

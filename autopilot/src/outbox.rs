@@ -1,5 +1,7 @@
 //! What is on its way out: messages, and lines for the pilot.
 
+use std::vec::Drain;
+
 use vehicle::Severity;
 use vehicle::equipment::EquipmentVoice;
 
@@ -76,9 +78,9 @@ impl Outbox {
         }
     }
 
-    /// Messages since the last call.
-    pub fn take(&mut self) -> Vec<Outgoing> {
-        std::mem::take(&mut self.messages)
+    /// Messages since the last call. Their room stays, for those of the next ticks.
+    pub fn take(&mut self) -> Drain<'_, Outgoing> {
+        self.messages.drain(..)
     }
 
     /// The clock begins anew: what was said before is not said a moment ago any more.
@@ -112,9 +114,9 @@ mod tests {
         outbox.send(Destination::Everyone, message(2));
         outbox.send(Destination::Everyone, message(1));
         outbox.last_to(mark);
-        let sent: Vec<_> = outbox.take().into_iter().map(|outgoing| outgoing.message).collect();
+        let sent: Vec<_> = outbox.take().map(|outgoing| outgoing.message).collect();
         assert_eq!(sent, [message(0), message(1), message(2)].map(Into::into));
-        assert!(outbox.take().is_empty());
+        assert_eq!(outbox.take().len(), 0);
     }
 
     #[test]

@@ -33,8 +33,7 @@ fn ask(autopilot: &mut Autopilot, sequence: u8, number: u16, [param1, param2, pa
     let origin = Origin { peer: PeerId { link: 0, number: 1 }, system: 255, component: 190 };
     drop(autopilot.take_outgoing());
     autopilot.receive(&origin, &frame);
-    let answers = autopilot.take_outgoing();
-    let result = answers.iter().find_map(|outgoing| match &outgoing.message {
+    let result = autopilot.take_outgoing().find_map(|outgoing| match outgoing.message {
         Message::CommandAck(ack) if ack.command == number => Some(ack.result),
         _ => None,
     });

@@ -74,7 +74,7 @@ impl Bench {
 
     fn listen(&mut self) {
         let outgoing = self.autopilot.take_outgoing();
-        self.heard.extend(outgoing.into_iter().map(|outgoing| (outgoing.to, outgoing.message)));
+        self.heard.extend(outgoing.map(|outgoing| (outgoing.to, outgoing.message)));
     }
 
     fn fly(&mut self, ticks: u64) {

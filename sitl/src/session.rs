@@ -74,6 +74,8 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
     while !stop.load(Ordering::Relaxed) && !clocks.iter().all(|clock| clock.is_over(fleet)) {
         fleet.receive(Instant::now());
         fleet.hear_radios();
+        // Answers do not wait for the flight.
+        fleet.flush();
         let now = Instant::now();
         let mut behind = false;
         for clock in &mut clocks {

@@ -29,6 +29,13 @@ impl Version {
         }
     }
 
+    pub(super) fn marker(self) -> u8 {
+        match self {
+            Self::One => MAV_STX,
+            Self::Two => MAV_STX_V2,
+        }
+    }
+
     pub(super) fn of_marker(marker: u8) -> Option<Self> {
         match marker {
             MAV_STX => Some(Self::One),
@@ -80,32 +87,22 @@ impl Frame {
         (calculate_crc(bytes.get(1..end)?, extra) == told).then_some(frame)
     }
 
-    /// A payload as a frame; `None` if the version has no place for its message.
-    pub(super) fn of_payload(
-        id: u32,
-        payload: &[u8],
-        version: Version,
-        sequence: u8,
-        (system, component): (u8, u8),
-    ) -> Option<Self> {
-        let length = u8::try_from(payload.len()).ok()?;
-        let mut bytes = match version {
-            Version::One => vec![MAV_STX, length, sequence, system, component, u8::try_from(id).ok()?],
-            Version::Two => {
-                let [low, middle, high, _] = id.to_le_bytes();
-                vec![MAV_STX_V2, length, 0, 0, sequence, system, component, low, middle, high]
-            }
-        };
-        bytes.extend(payload);
+    /// Puts the checksum, which begins with a seed, behind header and payload.
+    pub(super) fn finish(mut bytes: Vec<u8>, version: Version, extra: u8) -> Self {
         let end = bytes.len();
-        let checksum = calculate_crc(bytes.get(1..)?, extra_crc(id)?);
+        let checksum = calculate_crc(bytes.get(1..).unwrap_or_default(), extra);
         bytes.extend(checksum.to_le_bytes());
-        Some(Self { bytes, version, end })
+        Self { bytes, version, end }
     }
 
     /// The frame as it is on the wire.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
+    }
+
+    /// The buffer of a frame that is not needed any more.
+    pub fn into_buffer(self) -> Vec<u8> {
+        self.bytes
     }
 
     /// Version of the protocol.

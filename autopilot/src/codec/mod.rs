@@ -25,6 +25,7 @@ pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
 pub use command_name::command_name;
 pub use decoder::{Decoded, FrameDecoder};
+pub use encode::Encoded;
 pub use frame::{Frame, Signature, Version};
 pub use message::{CommandAck, Message};
 pub use mission_item::MissionItemMessage;

@@ -11,6 +11,10 @@ use crate::pace::Pace;
 
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);
+/// Ticks flown between two looks at the clock, which costs about as much as one.
+const MOST_TICKS: u64 = 8;
+/// Messages of several ticks share a datagram where simulation time is fast; none waits much longer than this for others.
+const LONGEST_WAIT: Duration = Duration::from_millis(1);
 
 /// Simulation time of some vehicles: they tick together, and share its speed.
 #[derive(Debug)]
@@ -44,10 +48,11 @@ impl Clock {
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> bool {
         self.agree_on_speed(fleet, now);
         let limit_us = fleet.limit_us(self.members.clone());
-        match self.pace.goal_us(self.speed, now, self.time_us) {
-            None => self.fly_for(fleet, limit_us, BURST / clocks.max(1)),
-            Some(goal_us) => self.fly_to(fleet, goal_us.min(limit_us), 4 * BURST / clocks.max(1)),
-        }
+        let (goal_us, longest) = match self.pace.goal_us(self.speed, now, self.time_us) {
+            None => (limit_us, BURST),
+            Some(goal_us) => (goal_us.min(limit_us), 4 * BURST),
+        };
+        self.fly_to(fleet, goal_us, longest / clocks.max(1))
     }
 
     /// A new speed of one vehicle is that of all, and told by all.
@@ -65,39 +70,32 @@ impl Clock {
         }
     }
 
-    fn tick(&mut self, fleet: &mut Fleet, now: Instant) {
-        for number in self.members.clone() {
-            fleet.tick(number, now);
-        }
-        self.time_us += TICK_US;
-    }
-
+    /// Flies on to a time, µs, but hardly longer than a time of the wall clock. Whether it is not there yet.
     fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration) -> bool {
         let start = Instant::now();
-        while self.time_us + TICK_US <= goal_us && !self.has_ended() {
-            self.tick(fleet, start);
-            if start.elapsed() > longest {
+        let mut flushed = Duration::ZERO;
+        loop {
+            let ticks = self.ticks_to(goal_us);
+            if ticks == 0 {
+                return false;
+            }
+            fleet.fly(self.members.clone(), ticks, start);
+            self.time_us += ticks * TICK_US;
+            let elapsed = start.elapsed();
+            if elapsed >= longest {
                 return true;
             }
-        }
-        false
-    }
-
-    /// As fast as possible, but no further than a limit.
-    fn fly_for(&mut self, fleet: &mut Fleet, limit_us: u64, longest: Duration) -> bool {
-        let start = Instant::now();
-        while start.elapsed() < longest && !self.has_ended() {
-            // Asking the clock costs more than a tick.
-            for _ in 0..16 {
-                if self.time_us + TICK_US > limit_us {
-                    return false;
-                }
-                if self.has_ended() {
-                    break;
-                }
-                self.tick(fleet, start);
+            if elapsed >= flushed + LONGEST_WAIT {
+                fleet.flush();
+                flushed = elapsed;
             }
         }
-        true
+    }
+
+    /// Ticks to a time, µs, or to the end, as many as are flown at once.
+    fn ticks_to(&self, goal_us: u64) -> u64 {
+        let left_us = self.end_us.map_or(u64::MAX, |end_us| end_us.saturating_sub(self.time_us));
+        let ticks = goal_us.saturating_sub(self.time_us) / TICK_US;
+        ticks.min(left_us.div_ceil(TICK_US)).min(MOST_TICKS)
     }
 }

@@ -9,6 +9,8 @@
 //! Vehicles do not interact: the flight of each depends only on its own messages and their simulation times. One whose
 //! simulation fails ends alone.
 
+#[cfg(test)]
+mod allocations;
 mod books;
 mod clock;
 mod held;

@@ -29,7 +29,7 @@ pub trait Transport: std::fmt::Debug {
         false
     }
 
-    /// Sends a whole frame to a peer. If the peer's buffer is full, the frame is lost.
+    /// Sends a whole frame to a peer, at the next [`Transport::flush`] at the latest. If the peer's buffer is full, the frame is lost.
     fn send(&mut self, peer: u64, bytes: &[u8]);
 
     /// Sends somebody else's frame to a peer: it leaves room for our own.
@@ -43,7 +43,7 @@ pub trait Transport: std::fmt::Debug {
     }
 
     /// Sends what is buffered.
-    fn flush(&mut self) {}
+    fn flush(&mut self);
 
     /// Whether frames are whole datagrams.
     fn is_datagram(&self) -> bool;

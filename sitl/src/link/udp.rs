@@ -1,7 +1,7 @@
 //! UDP: one socket, many peers.
 //!
 //! Whoever sends a datagram is a stranger until a valid frame of it is accepted; nothing is sent to strangers, and no peer makes room
-//! for one.
+//! for one. Frames for a peer share datagrams: most of what sending costs is by the datagram.
 
 use std::collections::BTreeMap;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
@@ -23,12 +23,38 @@ const MOST_DATAGRAMS: usize = 512;
 const MOST_BYTES: usize = 1 << 20;
 /// The largest MAVLink frame has 280 bytes; some senders put several into a datagram.
 const DATAGRAM: usize = 65_536;
+/// Bytes of the frames that share a datagram of ours. mavlink-router reads no more of one, MAVSDK 2048 and others all; it fits into the
+/// packets of any network.
+pub(super) const MOST_SHARED: usize = 4 * 280;
 
 #[derive(Debug)]
 struct Peer {
     address: SocketAddr,
     heard: Instant,
     permanent: bool,
+    /// Whole frames of the datagram that leaves next.
+    waiting: Vec<u8>,
+}
+
+impl Peer {
+    fn new(address: SocketAddr, heard: Instant, permanent: bool) -> Self {
+        Self { address, heard, permanent, waiting: Vec::with_capacity(MOST_SHARED) }
+    }
+
+    fn add(&mut self, frame: &[u8], socket: &UdpSocket) {
+        if self.waiting.len() + frame.len() > MOST_SHARED {
+            self.flush(socket);
+        }
+        self.waiting.extend_from_slice(frame);
+    }
+
+    fn flush(&mut self, socket: &UdpSocket) {
+        if !self.waiting.is_empty() {
+            // A datagram may be lost, here as anywhere on its way.
+            let _lost = socket.send_to(&self.waiting, self.address);
+            self.waiting.clear();
+        }
+    }
 }
 
 /// A UDP socket.
@@ -67,7 +93,7 @@ impl Udp {
         };
         if let Some(address) = target {
             let number = udp.numbers.next();
-            udp.peers.insert(number, Peer { address, heard: Instant::now(), permanent: true });
+            udp.peers.insert(number, Peer::new(address, Instant::now(), true));
             udp.fresh.push(Event::Opened(number));
         }
         Ok(udp)
@@ -142,7 +168,7 @@ impl Transport for Udp {
         let Some(address) = self.strangers.take(peer) else { return false };
         let room = self.make_room(address, now);
         if room {
-            self.peers.insert(peer, Peer { address, heard: now, permanent: false });
+            self.peers.insert(peer, Peer::new(address, now, false));
         }
         room
     }
@@ -152,10 +178,13 @@ impl Transport for Udp {
     }
 
     fn send(&mut self, peer: u64, bytes: &[u8]) {
-        if let Some(peer) = self.peers.get(&peer) {
-            // A datagram may be lost, here as anywhere on its way.
-            let _lost = self.socket.send_to(bytes, peer.address);
+        if let Some(peer) = self.peers.get_mut(&peer) {
+            peer.add(bytes, &self.socket);
         }
+    }
+
+    fn flush(&mut self) {
+        self.peers.values_mut().for_each(|peer| peer.flush(&self.socket));
     }
 
     fn is_datagram(&self) -> bool {
@@ -183,7 +212,7 @@ mod tests {
     use std::net::UdpSocket;
     use std::time::{Duration, Instant};
 
-    use super::{EXPIRY, Event, MOST_PEERS, PAUSE, Transport, Udp};
+    use super::{EXPIRY, Event, MOST_PEERS, MOST_SHARED, PAUSE, Transport, Udp};
 
     struct Bench {
         udp: Udp,
@@ -229,14 +258,52 @@ mod tests {
         let (number, events) = bench.hear(&sender, Duration::ZERO);
         assert_eq!(events, []);
         bench.udp.send(number, b"!");
+        bench.udp.flush();
         assert!(!hears(&sender), "nothing is sent to strangers");
         assert!(bench.udp.confirm(number, bench.start));
         bench.udp.send(number, b"!");
+        assert!(!hears(&sender), "more may follow");
+        bench.udp.flush();
         assert!(hears(&sender));
+        bench.udp.flush();
+        assert!(!hears(&sender), "sent once");
         // Bytes alone do not keep its place.
         assert_eq!(bench.hear(&sender, EXPIRY - PAUSE).0, number);
         assert_eq!(bench.udp.poll(bench.start + EXPIRY, &|_| usize::MAX), [Event::Closed(number)]);
         assert_ne!(bench.hear(&sender, EXPIRY).0, number);
+    }
+
+    #[test]
+    fn frames_share_datagrams_and_none_is_cut() {
+        let receiver = UdpSocket::bind("127.0.0.1:0").expect("a free port");
+        receiver.set_read_timeout(Some(Duration::from_secs(5))).expect("a socket");
+        let port = receiver.local_addr().expect("an address").port();
+        let mut bench = Bench::new(Some(("127.0.0.1", port)));
+        // Of any lengths that frames have; the last ones fill a datagram to the byte.
+        let lengths = (12..=280).step_by(7).chain([280; 8]);
+        let frames: Vec<Vec<u8>> = lengths.zip(0..).map(|(length, number)| vec![number; length]).collect();
+        frames.iter().for_each(|frame| bench.udp.send(1, frame));
+        bench.udp.flush();
+        let mut datagrams = Vec::new();
+        while datagrams.iter().map(Vec::len).sum::<usize>() < frames.concat().len() {
+            let mut datagram = vec![0; 65_536];
+            let length = receiver.recv(&mut datagram).expect("all frames come");
+            datagrams.push(datagram[..length].to_vec());
+        }
+        assert_eq!(datagrams.concat(), frames.concat(), "whole and in their order");
+        let mut rest = frames.iter().peekable();
+        for datagram in &datagrams {
+            let mut whole = 0;
+            while whole < datagram.len() {
+                whole += rest.next().expect("a frame").len();
+            }
+            assert_eq!(whole, datagram.len(), "a frame is cut");
+            assert!(whole <= MOST_SHARED, "{whole}");
+            assert!(
+                rest.peek().is_none_or(|next| whole + next.len() > MOST_SHARED),
+                "there was room for more"
+            );
+        }
     }
 
     #[test]

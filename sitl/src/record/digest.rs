@@ -1,5 +1,6 @@
 //! A number that two flights share only if they are the same, bit for bit.
 
+use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 use vehicle::Vehicle;
 
@@ -20,6 +21,10 @@ impl Digest {
     /// Takes the state in, if it is time, and what the vehicle believes if that is something else.
     pub fn update(&mut self, vehicle: &Vehicle) {
         let time_us = vehicle.time_us();
+        // The state is large: it is copied only when it counts.
+        if !is_due(time_us) {
+            return;
+        }
         self.update_with(time_us, &vehicle.simulation().state());
         if let Some(estimate) = vehicle.estimate() {
             self.update_with(time_us, &estimate.body);
@@ -28,11 +33,11 @@ impl Digest {
 
     /// The same for anything that has a state and a time, µs.
     pub fn update_with(&mut self, time_us: u64, state: &impl Serialize) {
-        if !time_us.is_multiple_of(PERIOD_US) {
+        if !is_due(time_us) {
             return;
         }
-        match postcard::to_allocvec(state) {
-            Ok(bytes) => self.bytes(&bytes),
+        match postcard::serialize_with_flavor(state, *self) {
+            Ok(digest) => *self = digest,
             // It has no kind that cannot be written; an error must not look like sameness.
             Err(error) => tracing::error!(%error, "the state cannot be digested"),
         }
@@ -40,15 +45,35 @@ impl Digest {
 
     /// Takes bytes in, whatever the time.
     pub fn bytes(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        bytes.iter().for_each(|byte| self.byte(*byte));
+    }
+
+    fn byte(&mut self, byte: u8) {
+        self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     }
 
     /// The number.
     pub fn value(self) -> u64 {
         self.0
     }
+}
+
+/// Takes what is serialized in as it comes, without a copy.
+impl Flavor for Digest {
+    type Output = Self;
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.byte(byte);
+        Ok(())
+    }
+
+    fn finalize(self) -> postcard::Result<Self> {
+        Ok(self)
+    }
+}
+
+fn is_due(time_us: u64) -> bool {
+    time_us.is_multiple_of(PERIOD_US)
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ fn command_to(
     let long = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { target_component: component, ..long });
     let frame = bench.frame(long);
     bench.autopilot.receive(&Bench::origin(), &frame);
-    let outgoing = bench.autopilot.take_outgoing();
+    let outgoing: Vec<_> = bench.autopilot.take_outgoing().collect();
     // Who is new is greeted with a heartbeat and a line of text.
     let answers = outgoing.iter().filter(|outgoing| {
         outgoing.to == Destination::Peer(Bench::origin().peer) && ![0, 253].contains(&outgoing.message.id())
@@ -359,7 +359,7 @@ fn components_answer_for_themselves_and_are_heard_only_if_they_may() {
         let mut beats = Vec::new();
         for _ in 0..2500 {
             bench.autopilot.tick().expect("the flight goes on");
-            let outgoing = bench.autopilot.take_outgoing().into_iter();
+            let outgoing = bench.autopilot.take_outgoing();
             beats.extend(
                 outgoing.filter(|outgoing| outgoing.message.id() == 0).map(|outgoing| outgoing.component),
             );

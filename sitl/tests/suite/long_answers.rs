@@ -52,7 +52,7 @@ fn receive_from(bench: &mut Bench, number: u64, message: MavMessage) {
 /// Indices of the parameters that go out in some turns, with their peers.
 fn values(bench: &mut Bench, turns: usize, room: impl Fn(PeerId) -> Option<bool>) -> Vec<(PeerId, u16)> {
     bench.autopilot.transfer(turns, room);
-    let sent = bench.autopilot.take_outgoing().into_iter();
+    let sent = bench.autopilot.take_outgoing();
     sent.filter_map(|outgoing| match (outgoing.to, outgoing.message) {
         (Destination::Peer(peer), Message::Typed(MavMessage::PARAM_VALUE(value))) => {
             Some((peer, value.param_index))
@@ -163,7 +163,7 @@ fn a_list_of_logs_goes_in_slices_and_one_look_serves_a_flood() {
     assert_eq!(listings.load(Ordering::SeqCst), 1);
     let entries = |bench: &mut Bench, turns| {
         bench.autopilot.transfer(turns, |_| Some(true));
-        let sent = bench.autopilot.take_outgoing().into_iter();
+        let sent = bench.autopilot.take_outgoing();
         sent.filter_map(|outgoing| match outgoing.message {
             Message::Typed(MavMessage::LOG_ENTRY(entry)) => Some(entry.id),
             _ => None,

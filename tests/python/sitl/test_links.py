@@ -104,7 +104,7 @@ def test_mavlink_1(start):
     connection.port.setblocking(True)
     connection.port.settimeout(1)
     while time.monotonic() < end and not {"ATTITUDE", "COMMAND_ACK"} <= kinds:
-        data, _ = connection.port.recvfrom(1000)
+        data, _ = connection.port.recvfrom(65536)
         if data[0] != 0xFE:
             continue
         if not sent:

@@ -131,15 +131,13 @@ impl ClosedLoop {
     ) -> Result<(), FlightError> {
         let time_us = conditions.outputs.time_us;
         let dt_s = duration_us as f64 / 1e6;
-        let asked = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
+        // Inputs are large: they are completed in their place.
+        let mut inputs = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
-        let inputs = Inputs {
-            disturbance: Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() },
-            armed: conditions.armed,
-            estimate: conditions.estimate,
-            rotor_faults: conditions.rotor_faults,
-            ..asked
-        };
+        inputs.disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
+        inputs.armed = conditions.armed;
+        inputs.estimate = conditions.estimate;
+        inputs.rotor_faults = conditions.rotor_faults;
         match &mut self.foreign {
             Some(foreign) => foreign.advance(&mut self.simulation, &inputs, &self.limits, duration_us),
             None => Ok(self.simulation.advance_to(time_us + duration_us, &inputs)?),

@@ -84,6 +84,14 @@ impl<'a> Proposal<'a> {
         }
     }
 
+    /// Whether everything is to stay as it is: most calls of most ticks.
+    pub fn asks_nothing(&self, situation: &Situation) -> bool {
+        matches!(self.steering, Cow::Borrowed(_))
+            && self.requests.is_empty()
+            && self.region == situation.region
+            && self.home == *situation.home
+    }
+
     /// Ends the proposal.
     pub fn into_outcome(self) -> Outcome {
         let steering = match self.steering {

@@ -192,41 +192,39 @@ impl Steering {
     ) -> Inputs {
         let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
         let lost_rotor = self.lost_rotor().filter(|rotor| can_fly_without(simulation, *rotor));
-        let along = |reference, shaping| Inputs { reference, shaping, lost_rotor, ..Inputs::default() };
+        let mut inputs = Inputs { lost_rotor, ..Inputs::default() };
         match self {
-            Self::Idle { yaw_rad } => Inputs {
-                attitude_target: Some(AttitudeTarget {
+            Self::Idle { yaw_rad } => {
+                inputs.reference = at_rest(outputs.position_m, *yaw_rad);
+                inputs.attitude_target = Some(AttitudeTarget {
                     attitude: UnitQuaternion::from_euler_angles(0.0, 0.0, *yaw_rad),
                     body_rate_rad_s: Vector3::zeros(),
                     thrust_n: 0.0,
-                }),
-                ..along(at_rest(outputs.position_m, *yaw_rad), None)
-            },
+                });
+            }
             Self::Attitude { set_point, reference } => {
                 if set_point.attitude.is_none() {
                     *reference = turned_on(reference, set_point, &attitude_of(outputs), dt_s);
                 }
-                Inputs {
-                    attitude_target: Some(AttitudeTarget {
-                        attitude: *reference,
-                        body_rate_rad_s: set_point.body_rate_rad_s,
-                        thrust_n: set_point.thrust * strongest_n,
-                    }),
-                    ..along(at_rest(outputs.position_m, outputs.attitude_rad.z), None)
-                }
+                inputs.reference = at_rest(outputs.position_m, outputs.attitude_rad.z);
+                inputs.attitude_target = Some(AttitudeTarget {
+                    attitude: *reference,
+                    body_rate_rad_s: set_point.body_rate_rad_s,
+                    thrust_n: set_point.thrust * strongest_n,
+                });
             }
-            Self::Descent { reference, .. } => along(*reference, None),
-            Self::Goal(goal) => along(*goal, Some(true)),
+            Self::Descent { reference, .. } => inputs.reference = *reference,
+            Self::Goal(goal) => (inputs.reference, inputs.shaping) = (*goal, Some(true)),
             Self::Path(path) => {
-                let reference = path.reference(limits.wanted(), outputs.time_us);
-                Inputs { plan: Some(path.plan()), ..along(reference, Some(false)) }
+                inputs.reference = path.reference(limits.wanted(), outputs.time_us);
+                (inputs.plan, inputs.shaping) = (Some(path.plan()), Some(false));
             }
             Self::Motion(motion) => {
-                let reference = motion.reference(outputs.time_us);
+                (inputs.reference, inputs.shaping) = (motion.reference(outputs.time_us), Some(false));
                 motion.step(&limits.largest(), dt_s);
-                along(reference, Some(false))
             }
         }
+        inputs
     }
 }
 

@@ -8,7 +8,7 @@ use mavlink::dialects::ardupilotmega::{
 use vehicle::{Action, Cause, Vehicle};
 
 use super::buffer::EventBuffer;
-use super::report::{Draft, report};
+use super::report::{Draft, packed, report};
 use crate::codec::{Frame, boot_ms, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
@@ -83,10 +83,6 @@ impl Events {
     }
 
     fn send(&mut self, context: &mut Context, draft: &Draft) {
-        let mut arguments = [0; 40];
-        for (byte, argument) in arguments.iter_mut().zip(&draft.arguments) {
-            *byte = *argument;
-        }
         let event = self.buffer.push(EVENT_DATA {
             id: draft.event.id(),
             event_time_boot_ms: boot_ms(context.vehicle.time_us()),
@@ -94,19 +90,18 @@ impl Events {
             destination_component: 0,
             destination_system: 0,
             log_levels: draft.level.bits(),
-            arguments,
+            arguments: draft.arguments,
         });
         context.outbox.send(Destination::Everyone, MavMessage::EVENT(event));
     }
 
     /// The whole report, when it has changed.
     fn tell_report(&mut self, context: &mut Context) {
-        let drafts = report(&context.vehicle);
-        if drafts != self.reported {
-            for draft in &drafts {
-                self.send(context, draft);
+        if report(&context.vehicle).ne(self.reported.iter().cloned()) {
+            self.reported = report(&context.vehicle).collect();
+            for draft in self.reported.clone() {
+                self.send(context, &draft);
             }
-            self.reported = drafts;
         }
     }
 
@@ -115,29 +110,29 @@ impl Events {
         if armed != self.armed {
             self.armed = armed;
             let event = if armed { Event::Armed } else { Event::Disarmed };
-            self.send(context, &Draft { event, level: LogLevel::Info, arguments: Vec::new() });
+            self.send(context, &Draft { event, level: LogLevel::Info, arguments: packed([]) });
             self.report_due_us = 0;
         }
     }
 
     /// Causes that have begun or ended, except those that nothing is done about.
     fn tell_failsafes(&mut self, context: &mut Context) {
-        let present: Vec<Cause> = context.vehicle.failsafe().present().collect();
-        if present == self.causes {
+        if context.vehicle.failsafe().present().eq(self.causes.iter().copied()) {
             return;
         }
+        let present: Vec<Cause> = context.vehicle.failsafe().present().collect();
         let before = std::mem::replace(&mut self.causes, present.clone());
         for cause in present.iter().filter(|cause| !before.contains(cause)) {
             let action = action_of(&context.vehicle, *cause);
             if action != Action::None {
                 let level = if action > Action::Warn { LogLevel::Critical } else { LogLevel::Warning };
-                let arguments = vec![cause_number(*cause), action_number(action)];
+                let arguments = packed([&[cause_number(*cause), action_number(action)]]);
                 self.send(context, &Draft { event: Event::FailsafeBegun, level, arguments });
             }
         }
         for cause in before.iter().filter(|cause| !present.contains(cause)) {
             if context.vehicle.conduct().failsafe.action(*cause) != Action::None {
-                let arguments = vec![cause_number(*cause)];
+                let arguments = packed([&[cause_number(*cause)]]);
                 let draft = Draft { event: Event::FailsafeCleared, level: LogLevel::Info, arguments };
                 self.send(context, &draft);
             }

@@ -90,9 +90,10 @@ impl Site {
                     clients.iter().flatten().any(|client| client.is_meant(Destination::Peer(peer)));
                 is_there.then_some(true)
             });
+            let system = self.autopilot.system_id();
             for outgoing in self.autopilot.take_outgoing() {
                 self.sequence = self.sequence.wrapping_add(1);
-                let sender = (self.autopilot.system_id(), outgoing.component);
+                let sender = (system, outgoing.component);
                 let frame = Frame::encode(&outgoing.message, Version::Two, self.sequence, sender);
                 let frame = frame.expect("a message of MAVLink 2");
                 figures.messages.bytes(frame.bytes());

@@ -75,7 +75,7 @@ impl Bench {
 
     pub fn listen(&mut self) {
         self.autopilot.transfer(self.turns, |_| Some(true));
-        self.heard.extend(self.autopilot.take_outgoing().into_iter().map(|outgoing| outgoing.message));
+        self.heard.extend(self.autopilot.take_outgoing().map(|outgoing| outgoing.message));
     }
 
     pub fn fly(&mut self, seconds: f64) {

@@ -22,6 +22,9 @@ impl Vehicle {
         let (situation, parts) = self.situation_and_machines();
         let mut proposal = Proposal::new(&situation);
         let answer = ask(parts, &situation, &mut proposal);
+        if proposal.asks_nothing(&situation) {
+            return answer;
+        }
         let outcome = proposal.into_outcome();
         self.decide(outcome);
         answer

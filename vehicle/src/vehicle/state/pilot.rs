@@ -42,7 +42,7 @@ impl Vehicle {
     /// Looks at the pilot, and does what he asks for.
     pub(super) fn watch_pilot(&mut self) {
         let (identity, time_us) = (self.identity(), self.time_us());
-        let conduct = *self.setup.conduct();
+        let conduct = self.setup.conduct();
         let watched = conduct.failsafe.pilot_lost != RadioLossAction::None;
         let how = (conduct.stick_timeout_s, watched);
         self.machines.receiver.look(identity, &conduct.radio, how, time_us);
