@@ -6,6 +6,7 @@ import io
 import json
 import os
 import subprocess
+import sys
 import tarfile
 import zipfile
 from pathlib import Path
@@ -83,7 +84,7 @@ def test_an_archive_unpacks_into_a_folder_of_its_name(tmp_path, name):
     (tmp_path / "built").write_bytes(PROGRAM)
     (tmp_path / "page").write_bytes(b"page")
     script = ROOT / "xtask" / "python" / "assets.py"
-    command = ["python3", script, tmp_path / name, f"lmpc-sitl={tmp_path / 'built'}", f"man/lmpc-sitl.1={tmp_path / 'page'}",
+    command = [sys.executable, script, tmp_path / name, f"lmpc-sitl={tmp_path / 'built'}", f"man/lmpc-sitl.1={tmp_path / 'page'}",
                f"lmpc-sitl.cdx.json={tmp_path / 'page'}"]
     subprocess.run(command, check=True, timeout=60, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
     folder = name.removesuffix(".zip").removesuffix(".tar.gz")
