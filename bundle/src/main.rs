@@ -63,6 +63,11 @@ enum Task {
         /// File to write.
         file: PathBuf,
     },
+    /// Writes the notices of the libraries that are linked into the MAVLink vehicle.
+    VehicleLicenses {
+        /// File to write.
+        file: PathBuf,
+    },
 }
 
 /// Reads `linux64=target/release/libfmu.so`.
@@ -91,6 +96,10 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::PackageLicenses { file } => {
             let notices =
                 licenses::of_packages(&workspace, "this package", &["sitl", "fmu", "lmpc-quadrotor-python"])?;
+            Ok(files::write(file, notices.as_bytes())?)
+        }
+        Task::VehicleLicenses { file } => {
+            let notices = licenses::of_packages(&workspace, "lmpc-sitl", &["sitl"])?;
             Ok(files::write(file, notices.as_bytes())?)
         }
         Task::ModelDescription => {

@@ -18,7 +18,7 @@ fn main() -> ExitCode {
             environment::check(names).and_then(|()| sitl::run(arguments))
         }
         Err(error) if error.use_stderr() => Err(mistake::failure(&error)),
-        Err(help) => help.exit(),
+        Err(asked) => help::show(&asked),
     };
     match ended {
         Ok(()) => ExitCode::SUCCESS,

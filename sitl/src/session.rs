@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::fleet::{Clock, Fleet, Member};
 use crate::ready;
 use crate::summary::{Flight, Summary};
-use crate::terminal::{StatusLine, of_fleet};
+use crate::terminal::{Panel, of_fleet};
 
 /// Longest rest between two looks at the links.
 const REST: Duration = Duration::from_millis(1);
@@ -69,7 +69,7 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
         .into_iter()
         .map(|members| Clock::new(settings.speed, members, settings.end_us, start))
         .collect();
-    let mut status = StatusLine::new(start);
+    let mut panel = Panel::new(start, settings.no_panel);
     let several = clocks.len() as u32;
     while !stop.load(Ordering::Relaxed) && !clocks.iter().all(|clock| clock.is_over(fleet)) {
         fleet.receive(Instant::now());
@@ -88,10 +88,10 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
         fleet.keep_logs(now);
         fleet.transfer(now);
         fleet.flush();
-        status.update(now, fleet.time_us(), || of_fleet(fleet));
+        panel.update(now, fleet.time_us(), |form| of_fleet(fleet, form));
         if !behind {
             std::thread::sleep(if expected { SHORT_REST } else { REST });
         }
     }
-    status.clear();
+    panel.clear();
 }

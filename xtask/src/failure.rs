@@ -81,6 +81,12 @@ pub enum Failure {
         /// Which.
         platform: Platform,
     },
+    /// Containers are Linux.
+    #[error("there are no images for {platform}: use linux64 or aarch64-linux")]
+    NoImage {
+        /// Which.
+        platform: Platform,
+    },
     /// Nothing on this machine runs the programs of a platform.
     #[error("programs for {platform} do not run on this machine: leave it out of --platforms")]
     NoEmulator {

@@ -1,10 +1,13 @@
 //! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
+mod assets;
+mod bills;
 mod book;
 mod counts;
 mod crates;
 mod demo;
 mod fmu;
+mod image;
 mod optimum;
 mod paper;
 mod paths;
@@ -20,6 +23,7 @@ mod threads;
 mod toolchains;
 mod universal;
 mod wheel;
+mod workflows;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,6 +65,24 @@ enum Task {
         #[command(flatten)]
         platforms: ForPlatforms,
     },
+    /// Writes target/assets/lmpc-sitl-VERSION-PLATFORM.tar.gz or .zip: the MAVLink vehicle as a release has it.
+    ///
+    /// With licences, manual page, completions and bill of materials.
+    Assets {
+        #[command(flatten)]
+        platforms: ForPlatforms,
+    },
+    /// Writes target/assets/lmpc-sitl-VERSION-image-ARCHITECTURE.tar: a container image from scratch with the MAVLink vehicle.
+    ///
+    /// `docker load` and `podman load` take it. For linux64 or aarch64-linux.
+    Image {
+        #[command(flatten)]
+        platforms: ForPlatforms,
+    },
+    /// Writes bills of materials of what is released to target/assets, as CycloneDX, and checks them against its schema.
+    Bills,
+    /// Checks the workflows of this repository and of its templates with actionlint.
+    Workflows,
     /// Builds the FMU and the MAVLink vehicle for linux64, win64 and aarch64-linux, and runs them under wine and qemu.
     ///
     /// Numbers must be the same on all. Needs Linux on x86.
@@ -169,6 +191,17 @@ fn run(task: &Task) -> Result<(), Failure> {
             let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
             sitl::make(&workspace, &progress, &release)
         }
+        Task::Assets { platforms } => {
+            let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
+            let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
+            assets::make(&workspace, &progress, &release)
+        }
+        Task::Image { platforms } => {
+            let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
+            image::make(&workspace, &progress, &platforms.or(&[host]), platforms.install)
+        }
+        Task::Bills => bills::write(&workspace, &progress).map(|_| ()),
+        Task::Workflows => workflows::check(&workspace, &progress),
         Task::Platforms { platforms, fmu_only } => {
             let [reference, ..] = platforms::CHECKED;
             let mut checked = platforms.or(&platforms::CHECKED);

@@ -113,6 +113,25 @@ impl Platform {
         self.facts().target
     }
 
+    /// What rustc calls it with a C library that is linked into the program; Linux only.
+    #[must_use]
+    pub fn static_target(self) -> Option<&'static str> {
+        match self {
+            Self::X86_64Linux => Some("x86_64-unknown-linux-musl"),
+            Self::Aarch64Linux => Some("aarch64-unknown-linux-musl"),
+            _ => None,
+        }
+    }
+
+    /// What container images call its processor.
+    #[must_use]
+    pub fn container_architecture(self) -> &'static str {
+        match self.facts().architecture {
+            "x86_64" => "amd64",
+            _ => "arm64",
+        }
+    }
+
     /// Extension of its libraries, without a dot.
     #[must_use]
     pub fn library_extension(self) -> &'static str {
@@ -183,6 +202,11 @@ mod tests {
         for platform in Platform::ALL {
             let (architecture, _) = platform.fmi3_folder().split_once('-').expect("a tuple");
             assert!(platform.target().starts_with(architecture), "{platform}");
+            assert!(
+                platform.static_target().is_none_or(|target| target.starts_with(architecture)),
+                "{platform}"
+            );
+            assert_eq!(platform.static_target().is_some(), platform.is_linux(), "{platform}");
         }
     }
 }

@@ -90,6 +90,13 @@ const PACKAGE_LAYERS: [Layer; 1] = [Layer {
     made_from: "made-from.txt",
 }];
 
+/// What checks workflows and writes bills of materials.
+const RELEASE_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing the tools of a release (first time; downloads about 8 MB)",
+    lists: &[Pinned { file: "release.txt", complete: true }],
+    made_from: "made-from.txt",
+}];
+
 /// What an environment is for.
 #[derive(Clone, Copy)]
 pub enum Packages {
@@ -109,6 +116,8 @@ pub enum Packages {
     WheelForAll,
     /// The tests of the installed Python package.
     Package,
+    /// What checks workflows and writes bills of materials.
+    Release,
 }
 
 impl Packages {
@@ -123,6 +132,7 @@ impl Packages {
             Self::Wheel => ("venv-wheel", &WHEEL_LAYERS, 1),
             Self::WheelForAll => ("venv-wheel", &WHEEL_LAYERS, 2),
             Self::Package => ("venv-package", &PACKAGE_LAYERS, 1),
+            Self::Release => ("venv-release", &RELEASE_LAYERS, 1),
         }
     }
 }
@@ -131,6 +141,15 @@ impl Packages {
 pub struct Interpreter {
     program: String,
     version: String,
+}
+
+impl Interpreter {
+    /// A command of this interpreter, for scripts that need no packages.
+    pub fn command(&self) -> Command {
+        let mut command = Command::new(&self.program);
+        command.env("PYTHONUTF8", "1").env("PYTHONDONTWRITEBYTECODE", "1");
+        command
+    }
 }
 
 /// Interpreter of the environment.

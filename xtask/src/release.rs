@@ -29,9 +29,31 @@ impl Release {
         also: Vec<Need>,
         install: bool,
     ) -> Result<Self, Failure> {
-        let find = || -> Result<Vec<Toolchain>, Failure> {
+        Self::with(workspace, progress, also, install, || {
             platforms.iter().map(|platform| Toolchain::of(workspace, *platform)).collect()
-        };
+        })
+    }
+
+    /// The same for programs that need nothing of a Linux system.
+    pub fn prepare_static(
+        workspace: &Workspace,
+        progress: &Progress,
+        platforms: &[Platform],
+        install: bool,
+    ) -> Result<Self, Failure> {
+        Self::with(workspace, progress, Vec::new(), install, || {
+            let each = |platform: &Platform| Toolchain::with_own_c_library(workspace, *platform);
+            platforms.iter().map(each).collect()
+        })
+    }
+
+    fn with(
+        workspace: &Workspace,
+        progress: &Progress,
+        also: Vec<Need>,
+        install: bool,
+        find: impl Fn() -> Result<Vec<Toolchain>, Failure>,
+    ) -> Result<Self, Failure> {
         let missing = |toolchains: &[Toolchain]| toolchains.iter().flat_map(Toolchain::needs).collect();
         let mut toolchains = find()?;
         let mut needs: Vec<Need> = missing(&toolchains);

@@ -87,6 +87,11 @@ impl Workspace {
         self.target.join("sitl")
     }
 
+    /// What is attached to a release.
+    pub fn assets(&self) -> PathBuf {
+        self.target.join("assets")
+    }
+
     /// Sources of the Python package.
     pub fn python_package(&self) -> PathBuf {
         self.root.join("python")

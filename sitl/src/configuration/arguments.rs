@@ -9,7 +9,7 @@ use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
 use super::equipment::EquipmentChoice;
-use super::help::{self, FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
+use super::help::{FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::{
     Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports,
@@ -23,9 +23,7 @@ use crate::link::LinkSpecification;
 
 /// A simulated MAVLink quadrotor under Laguerre model predictive control.
 #[derive(Clone, Debug, Default, PartialEq, Parser)]
-#[command(
-    name = "lmpc-sitl", version, max_term_width = 110, after_help = help::AFTER_SHORT, after_long_help = help::AFTER_LONG
-)]
+#[command(name = "lmpc-sitl", version, max_term_width = 110)]
 pub struct Arguments {
     /// Configuration file (TOML)
     ///
@@ -46,6 +44,15 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_LOG", value_name = "LEVEL")]
     pub log: Option<LogFilter>,
 
+    /// One line, not a panel, follows the flight [default: false]
+    ///
+    /// On a terminal. Elsewhere there is neither.
+    #[arg(
+        long, env = "LMPC_SITL_NO_PANEL", value_name = "true|false", num_args = 0..=1, default_missing_value = "true",
+        hide_short_help = true
+    )]
+    pub no_panel: Option<bool>,
+
     /// Link to clients; repeat it for more
     ///
     /// See "Link formats" below. [default: PX4's links to UDP ports 14550 and 14540]
@@ -55,7 +62,7 @@ pub struct Arguments {
     /// Instance number on this machine, 0 to 200 [default: 0]
     ///
     /// Moves the default ports and the system id, so that several runs do not collide.
-    #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = whole(0_u16, 200), allow_negative_numbers = true, help_heading = LINKS)]
+    #[arg(long, env = "LMPC_SITL_INSTANCE", value_name = "N", value_parser = whole(0_u16, 200), allow_negative_numbers = true, help_heading = LINKS, hide_short_help = true)]
     pub instance: Option<u16>,
 
     /// MAVLink system id, 1 to 250 [default: 1 + instance]
@@ -129,7 +136,7 @@ pub struct Arguments {
     /// With the values at the start, as a table or as JSON. [default: table]
     #[arg(
         long, env = "LMPC_SITL_LIST_PARAMETERS", value_name = "table|json", num_args = 0..=1,
-        default_missing_value = "table", help_heading = VEHICLE, hide_possible_values = true
+        default_missing_value = "table", help_heading = VEHICLE, hide_short_help = true, hide_possible_values = true
     )]
     pub list_parameters: Option<ListFormat>,
 
@@ -196,7 +203,7 @@ pub struct Arguments {
     /// set-points, `always` from the start. [default: off; `streaming` without a value]
     #[arg(
         long, env = "LMPC_SITL_LOCKSTEP", value_name = "PHASE", num_args = 0..=1,
-        default_missing_value = "streaming", help_heading = SIMULATION, hide_possible_values = true
+        default_missing_value = "streaming", help_heading = SIMULATION, hide_short_help = true, hide_possible_values = true
     )]
     pub lockstep: Option<LockstepPhase>,
 
@@ -438,6 +445,7 @@ impl Arguments {
             ready_file: self.ready_file.or(file.ready_file),
             duration: self.duration.or(file.duration),
             log: self.log.or(file.log),
+            no_panel: self.no_panel.or(file.no_panel),
         }
     }
 }

@@ -67,6 +67,7 @@ impl HilSettings {
             system_id: first_system_id(arguments),
             speed,
             ready_file: arguments.ready_file.clone(),
+            no_panel: arguments.no_panel.unwrap_or(false),
             end_us: end_us(arguments),
             notes: notes.into_iter().chain(about_fmu).collect(),
         })

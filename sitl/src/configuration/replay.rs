@@ -61,6 +61,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ready_file,
         duration,
         log: _,
+        no_panel,
     } = arguments;
     let given = [
         ("link", link.is_some()),
@@ -110,6 +111,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("accept-signing-setup", accept_signing_setup.is_some()),
         ("rc-port", rc_port.is_some()),
         ("ready-file", ready_file.is_some()),
+        ("no-panel", no_panel.is_some()),
         ("duration", duration.is_some()),
     ];
     let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
@@ -154,6 +156,7 @@ mod tests {
         ("equipment", "own"),
         ("lockstep", "always"),
         ("traffic", "fleet"),
+        ("no-panel", "true"),
     ];
 
     #[test]

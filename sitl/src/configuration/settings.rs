@@ -64,6 +64,8 @@ pub struct Settings {
     pub fmu: Option<FmuChoice>,
     /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
+    /// Whether the flight is followed in one line, and not in a panel.
+    pub no_panel: bool,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
     /// What the user is told at the start.
@@ -132,6 +134,7 @@ impl Settings {
             fmu,
             accept_signing_setup: arguments.accept_signing_setup.unwrap_or(false),
             ready_file: arguments.ready_file.clone(),
+            no_panel: arguments.no_panel.unwrap_or(false),
             end_us: end_us(arguments),
         })
     }

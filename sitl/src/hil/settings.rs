@@ -27,6 +27,8 @@ pub struct HilSettings {
     pub speed: Speed,
     /// File to write when the autopilot can connect.
     pub ready_file: Option<PathBuf>,
+    /// Whether the flight is followed in one line, and not in a panel.
+    pub no_panel: bool,
     /// End, µs of simulation time.
     pub end_us: Option<u64>,
     /// What the user is told at the start.

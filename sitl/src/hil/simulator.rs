@@ -18,7 +18,7 @@ use crate::fmu::FlownFmu;
 use crate::link::{LinkError, resolve};
 use crate::pace::Pace;
 use crate::summary::{Flight, Summary};
-use crate::terminal::{Segment, StatusLine, of_autopilot, set_simulation_time};
+use crate::terminal::{Panel, of_autopilot, set_simulation_time, waiting};
 
 /// Between two looks for a connection, and longest rest of the pace.
 const REST: Duration = Duration::from_millis(1);
@@ -37,7 +37,7 @@ pub struct Simulator {
 /// One autopilot's flight.
 struct Flown<'a> {
     settings: &'a HilSettings,
-    status: &'a mut StatusLine,
+    panel: &'a mut Panel,
     rig: Rig,
     client: Client,
     /// Time of the last controls that were taken.
@@ -80,31 +80,26 @@ impl Simulator {
     /// [`Failure`] of the simulation.
     pub fn run(self, stop: &Arc<AtomicBool>) -> Result<Summary, Failure> {
         let start = Instant::now();
-        let mut status = StatusLine::new(start);
+        let mut panel = Panel::new(start, self.settings.no_panel);
         let mut flights = Vec::new();
         while !stop.load(Ordering::Relaxed) {
             let Ok((stream, address)) = self.listener.accept() else {
-                status.update(Instant::now(), 0, || vec![Segment::new(0, "waiting for an autopilot")]);
+                panel.update(Instant::now(), 0, |_| waiting());
                 std::thread::sleep(REST);
                 continue;
             };
             tracing::info!("autopilot connected from {address}");
-            let flight = self.serve(stream, stop, &mut status)?;
+            let flight = self.serve(stream, stop, &mut panel)?;
             flights.push(flight);
             if self.settings.end_us.is_some_and(|end_us| flight.time_us >= end_us) {
                 break;
             }
         }
-        status.clear();
+        panel.clear();
         Ok(Summary { wall: start.elapsed(), flights, losses: Vec::new(), incomplete: Vec::new() })
     }
 
-    fn serve(
-        &self,
-        stream: TcpStream,
-        stop: &Arc<AtomicBool>,
-        status: &mut StatusLine,
-    ) -> Result<Flight, Failure> {
+    fn serve(&self, stream: TcpStream, stop: &Arc<AtomicBool>, panel: &mut Panel) -> Result<Flight, Failure> {
         let rig = rig(&self.settings)?;
         let system_id = self.settings.system_id;
         let Ok(client) = Client::new(stream, system_id) else {
@@ -112,7 +107,7 @@ impl Simulator {
         };
         let mut flown = Flown {
             settings: &self.settings,
-            status,
+            panel,
             rig,
             client,
             answered_us: None,
@@ -177,15 +172,16 @@ impl Flown<'_> {
         Ok(Ok(()))
     }
 
-    /// Shows the state on the status line, if it is time to.
+    /// Shows the state on the terminal, if it is time to.
     fn show(&mut self, now: Instant) {
         let state = match (self.answered_us, self.armed) {
             (None, _) => "autopilot starting",
             (Some(_), false) => "disarmed",
             (Some(_), true) => "armed",
         };
-        let position_m = self.rig.plant().body.position_m;
-        self.status.update(now, self.rig.time_us(), || of_autopilot(state, &position_m));
+        let body = self.rig.plant().body;
+        let said = |form| of_autopilot(state, &body.position_m, &body.velocity_m_s, form);
+        self.panel.update(now, self.rig.time_us(), said);
     }
 
     /// An autopilot that has not answered yet is starting, by the wall clock as much as by ours.

@@ -161,8 +161,14 @@ impl Links {
 
     /// Number of peers that have sent something.
     pub fn active_peers(&self) -> usize {
-        let peers = self.links.iter().flat_map(|link| link.peers.values());
-        peers.filter(|peer| peer.has_spoken() && !peer.departed).count()
+        self.active_peers_by_link().sum()
+    }
+
+    /// The same of each link.
+    pub fn active_peers_by_link(&self) -> impl Iterator<Item = usize> {
+        let active =
+            |link: &Link| link.peers.values().filter(|peer| peer.has_spoken() && !peer.departed).count();
+        self.links.iter().map(active)
     }
 
     /// What was lost so far.

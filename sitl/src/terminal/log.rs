@@ -10,7 +10,8 @@ use tracing_subscriber::fmt::time::{FormatTime, SystemTime};
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 
-use super::screen::{has_colours, has_live_line};
+use super::live;
+use super::screen::has_colours;
 
 /// Simulation time of what happens now, µs. The log belongs to the process, and so does this.
 static SIMULATION_TIME_US: AtomicU64 = AtomicU64::new(0);
@@ -22,12 +23,11 @@ pub fn set_simulation_time(time_us: u64) {
 
 /// Logs what passes the filter to the standard error stream. A log that is set up already stays.
 pub fn start_log(filter: Targets) {
-    let live_line = has_live_line();
     let lines = tracing_subscriber::fmt::layer()
         .with_timer(Stamp)
         .with_target(false)
         .with_ansi(has_colours())
-        .with_writer(move || LogLines { live_line });
+        .with_writer(|| LogLines);
     let _kept = tracing_subscriber::registry().with(filter).with(lines).try_init();
 }
 
@@ -43,23 +43,18 @@ impl FormatTime for Stamp {
     }
 }
 
-/// A writer of log lines that does not mix them with the status line.
+/// A writer of log lines that stand above what follows the flight.
 #[derive(Clone, Copy, Debug)]
-struct LogLines {
-    live_line: bool,
-}
+struct LogLines;
 
 impl Write for LogLines {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        // Whoever has closed it does not want it: the flight goes on.
-        if self.live_line {
-            let _gone = stderr().write_all(b"\r\x1b[K");
-        }
-        let _gone = stderr().write_all(bytes);
+        live::write_above(bytes);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
+        // Whoever has closed it does not want it: the flight goes on.
         let _gone = stderr().flush();
         Ok(())
     }

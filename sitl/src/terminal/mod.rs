@@ -1,12 +1,19 @@
-//! What a person sees: the banner, the status line, the log.
+//! What a person sees: the banner, the panel, the log.
+//!
+//! ```text
+//! fleet ─► status (rows of segments) ─► panel (when, how much) ─┬─► live ─► standard error
+//!                                       log ────────────────────┘
+//! ```
 
 mod banner;
+mod live;
 mod log;
+mod panel;
 mod screen;
+mod segment;
 mod status;
-mod status_line;
 
 pub use banner::{banner, hil_banner};
 pub use log::{set_simulation_time, start_log};
-pub use status::{of_autopilot, of_fleet};
-pub use status_line::{Segment, StatusLine};
+pub use panel::Panel;
+pub use status::{of_autopilot, of_fleet, waiting};

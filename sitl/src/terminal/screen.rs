@@ -2,12 +2,12 @@
 
 use std::io::{IsTerminal, stderr, stdout};
 
-/// Width where the terminal does not tell.
-const DEFAULT_COLUMNS: usize = 80;
+/// Columns and rows where the terminal does not tell.
+const DEFAULT_SIZE: (usize, usize) = (80, 24);
 
-/// Whether a line can be written over: both streams are the same person's terminal, and it knows control sequences
-/// (`TERM` is set, and not `dumb`). With the standard output in a pipe, the line would run into what comes out of it.
-pub fn has_live_line() -> bool {
+/// Whether lines can be written over: both streams are the same person's terminal, and it knows control sequences
+/// (`TERM` is set, and not `dumb`). With the standard output in a pipe, they would run into what comes out of it.
+pub fn has_live_lines() -> bool {
     stdout().is_terminal() && stderr().is_terminal() && anstyle_query::term_supports_color()
 }
 
@@ -18,13 +18,14 @@ pub fn has_colours() -> bool {
     wanted && (able || anstyle_query::clicolor_force())
 }
 
-/// Width of the terminal, in characters.
-pub fn columns() -> usize {
+/// Columns and rows of the terminal.
+pub fn size() -> (usize, usize) {
     #[cfg(unix)]
     if let Ok(size) = rustix::termios::tcgetwinsize(stderr())
         && size.ws_col > 0
+        && size.ws_row > 0
     {
-        return size.ws_col.into();
+        return (size.ws_col.into(), size.ws_row.into());
     }
-    DEFAULT_COLUMNS
+    DEFAULT_SIZE
 }

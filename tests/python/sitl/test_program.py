@@ -1,6 +1,7 @@
 """The program: configuration, pace, records, logs, errors, signals."""
 
 import os
+import re
 import signal
 import socket
 import struct
@@ -160,11 +161,54 @@ def test_noise_is_the_same_by_flag_environment_and_file(program, tmp_path):
 
 
 def test_help_is_worth_reading(program):
-    text = run(program, "--help").stdout
-    for word in ("udpin", "QGroundControl", "Exit codes", "LMPC_SITL_", "--replay", "Links:", "Simulation:", "Examples:"):
+    text = run(program, "--help", "all").stdout
+    for word in ("udpin", "QGroundControl", "Exit codes", "LMPC_SITL_", "--replay", "Link formats:", "Faults, as", "Example:"):
         assert word in text
-    short = run(program, "-h").stdout
-    assert len(short.splitlines()) <= 45 and "--help" in short and len(short) < len(text) / 4, short
+    short = run(program, "--help").stdout
+    assert short == run(program, "-h").stdout
+    assert len(short.splitlines()) <= 50 and "--help TOPIC" in short and len(short) < len(text) / 4, short
+
+
+def test_a_topic_is_found_by_its_name_or_a_flag(program):
+    wind = run(program, "--help", "wind")
+    assert wind.returncode == 0 and "--gusts" in wind.stdout and "--speed" not in wind.stdout, wind
+    assert run(program, "-h", "gusts").stdout == wind.stdout
+    unknown = run(program, "--help", "wnid")
+    assert unknown.returncode == 2 and len(unknown.stderr.splitlines()) == 1, unknown
+    assert "did you mean `wind`? (topics: links, radio, " in unknown.stderr
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell"])
+def test_completions_have_every_flag(program, shell):
+    text = run(program, "--generate", f"complete-{shell}").stdout
+    flags = set(re.findall(r"^ +(?:-\w, )?--([a-z-]+)", run(program, "--help", "all").stdout, re.MULTILINE))
+    assert len(flags) > 50
+    for flag in flags:
+        assert re.search(rf"(--|-l ){flag}\b", text), flag
+
+
+def test_bash_completes_flags_topics_and_choices(program):
+    """As bash does it: by the function that the completion registers."""
+    script = run(program, "--generate", "complete-bash").stdout
+
+    function = re.search(r"complete -F (\S+)", script)[1]
+
+    def offered(*words):
+        # The program, the word to be completed and the one before it are also the function's arguments.
+        words = ("lmpc-sitl", *words)
+        call = f"COMP_WORDS=({' '.join(map(repr, words))}); COMP_CWORD={len(words) - 1}; {function} lmpc-sitl {words[-1]!r} {words[-2]!r}"
+        show = "printf '%s\\n' \"${COMPREPLY[@]}\""
+        return subprocess.run(["bash", "-c", f"{script}\n{call}\n{show}"], capture_output=True, text=True, timeout=20, env={}).stdout.split()
+
+    assert {"--vehicles", "--version"} <= set(offered("--ve")), offered("--ve")
+    assert set(offered("--autopilot", "")) == {"px4", "ardupilot", "generic"}
+
+
+def test_the_manual_page_has_flags_and_topics(program):
+    page = run(program, "--generate", "man").stdout
+    assert "\n.TH lmpc-sitl 1 " in page, page[:200]
+    for heading in ("NAME", "OPTIONS", "LINKS", "EXIT-CODES"):
+        assert f"\n.SH {heading}\n" in page, heading
 
 
 def test_the_banner_tells_how_to_connect(program):

@@ -56,6 +56,7 @@ impl Linker {
         let Some(target) = target else { return build };
         build.arg("--target");
         match self {
+            Self::Zig if target.ends_with("musl") => build.arg(target),
             Self::Zig => build.arg(format!("{target}.{OLDEST_GLIBC}")),
             Self::MinGw => build.arg(target).env(linker_variable(target), MINGW),
             Self::System => build.arg(target),

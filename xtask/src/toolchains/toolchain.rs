@@ -44,6 +44,15 @@ impl Toolchain {
         Ok(Self { platform, linker, target, compiler, folder })
     }
 
+    /// The one whose programs need nothing of a Linux system: the C library is in them. They load no libraries.
+    pub fn with_own_c_library(workspace: &Workspace, platform: Platform) -> Result<Self, Failure> {
+        let target = platform.static_target().ok_or(Failure::NoImage { platform })?;
+        let linker = Linker::on(Platform::host(), platform)?;
+        let compiler = Compiler::find(workspace, target)?;
+        let folder = Some(workspace.platforms().join(format!("{}-static", platform.fmi2_folder())));
+        Ok(Self { platform, linker, target: Some(target), compiler, folder })
+    }
+
     /// What it builds for.
     pub fn platform(&self) -> Platform {
         self.platform

@@ -1,19 +1,9 @@
-//! One line at the bottom of a terminal that follows the flight.
+//! Parts of a line, of which a narrow terminal shows the most important ones.
 
-use std::io::{Write, stderr};
-use std::time::{Duration, Instant};
-
-use super::screen::{columns, has_live_line};
-
-/// How often the line changes.
-const PERIOD: Duration = Duration::from_millis(500);
 /// Between two segments.
 const GAP: &str = "  ";
-/// Ranks of simulation time and of its speed.
-const TIME_RANK: u8 = 1;
-const SPEED_RANK: u8 = 4;
 
-/// A part of the line.
+/// A part of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// What it says.
@@ -29,52 +19,8 @@ impl Segment {
     }
 }
 
-/// The status line. It is shown only where it can be written over.
-#[derive(Debug)]
-pub struct StatusLine {
-    live: bool,
-    shown: bool,
-    last: Instant,
-    last_us: u64,
-}
-
-impl StatusLine {
-    /// Shows nothing yet.
-    pub fn new(now: Instant) -> Self {
-        Self { live: has_live_line(), shown: false, last: now, last_us: 0 }
-    }
-
-    /// Shows simulation time, µs, its speed and these segments, if it is time to.
-    pub fn update(&mut self, now: Instant, time_us: u64, segments: impl FnOnce() -> Vec<Segment>) {
-        let elapsed = now.saturating_duration_since(self.last);
-        if !self.live || elapsed < PERIOD {
-            return;
-        }
-        // Another flight begins at zero again.
-        let flown_s = time_us.saturating_sub(self.last_us) as f64 / 1e6;
-        let speed = flown_s / elapsed.as_secs_f64();
-        (self.last, self.last_us, self.shown) = (now, time_us, true);
-        let mut all = vec![
-            Segment::new(TIME_RANK, format!("{:6.1} s", time_us as f64 / 1e6)),
-            Segment::new(SPEED_RANK, format!("{speed:.1}x")),
-        ];
-        all.extend(segments());
-        // A line as wide as the terminal could wrap, and what has wrapped cannot be written over.
-        let text = fit(&all, columns().saturating_sub(1));
-        // Nobody minds if a terminal is gone.
-        let _gone = write!(stderr(), "\r\x1b[K{text}").and_then(|()| stderr().flush());
-    }
-
-    /// Leaves the line to what follows.
-    pub fn clear(&mut self) {
-        if std::mem::take(&mut self.shown) {
-            let _gone = write!(stderr(), "\r\x1b[K").and_then(|()| stderr().flush());
-        }
-    }
-}
-
 /// As many segments as fit into a width, those of low rank first, in their order; cut off if not even one fits.
-fn fit(segments: &[Segment], width: usize) -> String {
+pub fn fit(segments: &[Segment], width: usize) -> String {
     let length = |segment: &Segment| segment.text.chars().count();
     let mut by_rank: Vec<usize> = (0..segments.len()).collect();
     by_rank.sort_by_key(|number| segments.get(*number).map(|segment| segment.rank));

@@ -1,0 +1,138 @@
+//! Texts that other programs read: completions of shells, the manual page.
+
+use std::io;
+
+use clap::Command;
+use clap_complete::Shell;
+use clap_mangen::Man;
+use clap_mangen::roff::{Roff, roman};
+
+use super::command;
+use super::topic::TOPICS;
+use crate::configuration::nearest;
+
+/// What can be generated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// The manual page, for man(1).
+    Manual,
+    /// Completions.
+    Completions(Shell),
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Manual,
+        Self::Completions(Shell::Bash),
+        Self::Completions(Shell::Zsh),
+        Self::Completions(Shell::Fish),
+        Self::Completions(Shell::PowerShell),
+    ];
+
+    /// What is asked for.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Manual => "man",
+            Self::Completions(Shell::Bash) => "complete-bash",
+            Self::Completions(Shell::Zsh) => "complete-zsh",
+            Self::Completions(Shell::Fish) => "complete-fish",
+            Self::Completions(_) => "complete-powershell",
+        }
+    }
+
+    /// All names, for a person.
+    pub fn names() -> String {
+        let names = Self::ALL.map(Self::name);
+        let [first @ .., last] = names.as_slice() else { return String::new() };
+        format!("{} or {last}", first.join(", "))
+    }
+
+    /// The form of a name.
+    ///
+    /// # Errors
+    /// One line with the forms that there are.
+    pub fn find(name: &str) -> Result<Self, String> {
+        if let Some(form) = Self::ALL.into_iter().find(|form| form.name() == name) {
+            return Ok(form);
+        }
+        let meant = nearest(name, Self::ALL.iter().map(|form| form.name()));
+        let meant = meant.map(|meant| format!("; did you mean {meant}?")).unwrap_or_default();
+        Err(format!("must be {}, not `{name}`{meant}", Self::names()))
+    }
+
+    /// The text.
+    pub fn text(self) -> String {
+        let mut text = Vec::new();
+        // Writing into memory does not fail.
+        let _written = match self {
+            Self::Manual => manual(command(), &mut text),
+            Self::Completions(shell) => {
+                let mut command = command();
+                let name = command.get_name().to_owned();
+                clap_complete::generate(shell, &mut command, name, &mut text);
+                Ok(())
+            }
+        };
+        String::from_utf8_lossy(&text).into_owned()
+    }
+}
+
+/// The manual page: all flags, and then what is to be known of each topic.
+fn manual(command: Command, page: &mut Vec<u8>) -> io::Result<()> {
+    // What stands behind the help is a list of topics, which are sections here.
+    let manual = Man::new(command.after_help(None::<&str>));
+    manual.render_title(page)?;
+    manual.render_name_section(page)?;
+    manual.render_synopsis_section(page)?;
+    manual.render_description_section(page)?;
+    manual.render_options_section(page)?;
+    for topic in TOPICS {
+        let mut section = Roff::new();
+        section.control("SH", [topic.name.to_uppercase().as_str()]).control("nf", []);
+        for line in topic.text.lines() {
+            section.text([roman(line)]);
+        }
+        section.control("fi", []).to_writer(page)?;
+    }
+    manual.render_version_section(page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Form, command};
+    use crate::configuration::help::topic::TOPICS;
+
+    #[test]
+    fn every_form_has_every_flag() {
+        for form in Form::ALL {
+            let text = form.text();
+            for flag in command().get_arguments().filter_map(clap::Arg::get_long) {
+                // Roff writes a hyphen that is one as \-.
+                let written = [format!("--{flag}"), format!("\\-\\-{}", flag.replace('-', "\\-"))];
+                let fish = format!("-l {flag}");
+                let has = written.iter().chain([&fish]).any(|written| text.contains(written.as_str()));
+                assert!(has, "{}: --{flag}", form.name());
+            }
+        }
+    }
+
+    #[test]
+    fn the_manual_page_has_a_section_for_each_topic() {
+        let page = Form::Manual.text();
+        for topic in TOPICS {
+            let heading = topic.name.to_uppercase();
+            assert!(page.lines().any(|line| line.starts_with(".SH") && line.contains(&heading)), "{heading}");
+        }
+    }
+
+    #[test]
+    fn a_form_that_is_not_there_is_refused() {
+        let refused = Form::find("complete-bsh").expect_err("no form");
+        assert_eq!(
+            refused,
+            "must be man, complete-bash, complete-zsh, complete-fish or complete-powershell, not `complete-bsh`; \
+             did you mean complete-bash?"
+        );
+    }
+}

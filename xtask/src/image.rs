@@ -1,0 +1,36 @@
+//! `cargo xtask image`.
+
+use crate::assets::notices;
+use crate::product::{Product, Profile};
+use crate::progress::Progress;
+use crate::python;
+use crate::release::Release;
+use xtask::failure::Failure;
+use xtask::files;
+use xtask::platform::Platform;
+use xtask::process;
+use xtask::workspace::Workspace;
+
+/// Builds the vehicle with a C library of its own, writes an image for each platform, and prints where and how large.
+pub fn make(
+    workspace: &Workspace,
+    progress: &Progress,
+    platforms: &[Platform],
+    install: bool,
+) -> Result<(), Failure> {
+    // Its scripts need Python alone.
+    let interpreter = python::interpreter()?;
+    let release = Release::prepare_static(workspace, progress, platforms, install)?;
+    let notices = notices(workspace, progress)?;
+    for (platform, program) in release.build(workspace, progress, Product::Vehicle, Profile::Release)? {
+        let (architecture, version) = (platform.container_architecture(), env!("CARGO_PKG_VERSION"));
+        let image = workspace.assets().join(format!("lmpc-sitl-{version}-image-{architecture}.tar"));
+        let mut write = interpreter.command();
+        write.arg(workspace.python_sources().join("image.py"));
+        write.arg(&program).args([architecture, version]).arg(&image).args(&notices);
+        progress.timed("Writing the image", || process::output(&mut write, "writing the image"))?;
+        let bytes = files::read(&image)?.len();
+        println!("{} ({:.1} MB)", workspace.shown(&image), bytes as f64 / 1e6);
+    }
+    Ok(())
+}
