@@ -22,7 +22,7 @@ use crate::fmu::Fmu;
 const PARTING: Duration = Duration::from_secs(2);
 /// What was said last is told with a failure: so many lines, each at most so many characters.
 const LAST_WORDS: usize = 3;
-const LONGEST_WORDS: usize = 300;
+const LONGEST_WORDS: usize = 600;
 
 /// What a guarded instance is made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,7 +220,7 @@ impl Guarded {
             };
             if let Some(words) = words {
                 let line = words.lines().collect::<Vec<_>>().join(" ");
-                self.last_words.push_back(line.chars().take(LONGEST_WORDS).collect());
+                self.last_words.push_back(shortened(&line, LONGEST_WORDS));
                 if self.last_words.len() > LAST_WORDS {
                     self.last_words.pop_front();
                 }
@@ -228,6 +228,16 @@ impl Guarded {
             self.said.push(said);
         }
     }
+}
+
+/// A line of at most so many characters; what is left out of a longer one begins after a whole word, and shows as "…".
+fn shortened(line: &str, longest: usize) -> String {
+    if line.chars().count() <= longest {
+        return line.to_owned();
+    }
+    let beginning: String = line.chars().take(longest.saturating_sub(2)).collect();
+    let whole = beginning.rsplit_once(' ').map_or(beginning.as_str(), |(whole, _)| whole);
+    format!("{whole} …")
 }
 
 impl Drop for Guarded {
@@ -275,4 +285,16 @@ fn end(child: &mut Child) {
         unsafe { libc::kill(-group, libc::SIGKILL) };
     }
     let _gone = child.kill();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shortened;
+
+    #[test]
+    fn long_lines_end_with_a_whole_word() {
+        assert_eq!(shortened("no root found", 13), "no root found");
+        assert_eq!(shortened("no root found at all", 13), "no root …");
+        assert_eq!(shortened(&"ü".repeat(30), 10), format!("{} …", "ü".repeat(8)));
+    }
 }
