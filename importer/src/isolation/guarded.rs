@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -80,6 +80,7 @@ impl Guarded {
             last_words: Vec::new(),
         };
         let library = fmu.library().map_err(|error: ImportError| not_started(error.to_string()))?;
+        let library_folder = library.parent().map(Path::to_owned).unwrap_or_default();
         let slip = fmu.folder().join(".call");
         let start = Start {
             preload: setup.preload.clone(),
@@ -94,7 +95,8 @@ impl Guarded {
             booleans: setup.booleans.clone(),
             outputs: setup.outputs.clone(),
         };
-        let mut child = spawn(&setup.host).map_err(|error| not_started(error.to_string()))?;
+        let mut child =
+            spawn(&setup.host, &library_folder).map_err(|error| not_started(error.to_string()))?;
         let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (Some(requests), Some(responses), Some(said)) = pipes else {
             return Err(not_started("its pipes are missing".to_owned()));
@@ -248,8 +250,22 @@ impl Drop for Guarded {
     }
 }
 
-fn spawn((program, arguments): &(PathBuf, Vec<String>)) -> io::Result<Child> {
+/// Where the system looks for libraries that a library needs.
+const SEARCHED: &str = if cfg!(windows) {
+    "PATH"
+} else if cfg!(target_os = "macos") {
+    "DYLD_LIBRARY_PATH"
+} else {
+    "LD_LIBRARY_PATH"
+};
+
+/// Starts the host. Libraries that an FMU brings along are found beside its own, whatever that says of where to look.
+fn spawn((program, arguments): &(PathBuf, Vec<String>), library_folder: &Path) -> io::Result<Child> {
+    let usual = std::env::var_os(SEARCHED).unwrap_or_default();
+    let folders = std::iter::once(library_folder.to_owned()).chain(std::env::split_paths(&usual));
+    let searched = std::env::join_paths(folders.filter(|folder| !folder.as_os_str().is_empty()));
     let mut command = Command::new(program);
+    command.env(SEARCHED, searched.map_err(io::Error::other)?);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     // An interrupt at the terminal is for us: the flight ends, then the FMU.
     #[cfg(unix)]
