@@ -238,7 +238,16 @@ fn written(variable: &Variable, value: &Value) -> Result<StartValue, String> {
             item.map(|(_, number)| StartValue::Integer(*number))
                 .ok_or_else(|| format!("there is no item `{text}`; allowed are {}", listed(items)))
         }
-        (kind, _) => Err(format!("the variable has the type {kind}, which this value does not fit")),
+        (kind, _) => {
+            let allowed = match kind {
+                Kind::Real { .. } => "a number",
+                Kind::Integer => "a whole number",
+                Kind::Boolean => "true or false",
+                Kind::String => "a text in quotes",
+                Kind::Enumeration { .. } => "the name of an item in quotes, or its number",
+            };
+            Err(format!("the variable has the type {kind}, which this value does not fit; give {allowed}"))
+        }
     }
 }
 

@@ -211,7 +211,7 @@ fn mistakes_are_named_with_their_remedy() {
         (
             "[parameters]\ngain = true",
             with(("gain", "parameter", PLAIN)),
-            "[parameters] gain: the variable has the type Real",
+            "[parameters] gain: the variable has the type Real, which this value does not fit; give a number",
         ),
         (
             "[parameters]\ngin = 1",
