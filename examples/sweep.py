@@ -12,8 +12,9 @@ Each flight has a number, from which its parameters follow: `--seed 1` and numbe
 are written in batches to OUTPUT/flights/*.parquet. An interrupted study goes on where it stopped: call it again. A flight that fails
 is a row with the FMU's message, not the end of the study.
 
-What is varied: `--vary NAME=LOW:HIGH`, uniformly, any Real parameter or input of the FMU. Without it mass, inertia, side force, motor
-lag and the goal are varied.
+What is varied: `--vary NAME=LOW:HIGH`, uniformly, any Real parameter or input of the FMU. With percent signs the bounds are shares of
+the start value that the FMU says: `--vary airframe.mass=85%:120%`. Without it mass, inertia, side force, motor lag and the goal are
+varied.
 """
 
 import argparse
@@ -27,17 +28,18 @@ from pathlib import Path
 
 import numpy as np
 
-#: Name, lowest and highest value.
-DEFAULT = [
-    ("airframe.mass", 0.6, 0.85),
-    ("airframe.inertia.x", 0.9e-2, 1.6e-2),
-    ("airframe.rotor.time_constant", 0.02, 0.08),
-    ("disturbance.force.x", -1.0, 1.0),
-    ("disturbance.force.y", -1.0, 1.0),
-    ("reference.position.x", -10.0, 10.0),
-    ("reference.position.y", -10.0, 10.0),
-    ("reference.position.z", -15.0, -5.0),
-]
+#: What is varied without --vary.
+DEFAULT = (
+    "airframe.mass=85%:120%",
+    "airframe.inertia.x=80%:130%",
+    "airframe.inertia.y=80%:130%",
+    "airframe.rotor.time_constant=50%:150%",
+    "disturbance.force.x=-1:1",
+    "disturbance.force.y=-1:1",
+    "reference.position.x=-10:10",
+    "reference.position.y=-10:10",
+    "reference.position.z=-15:-5",
+)
 #: What is kept of a flight, and how the picture names it.
 FIGURES = {
     "settling_time_s": "settling time, s",
@@ -122,7 +124,7 @@ class Study:
 
     def __init__(self, arguments: argparse.Namespace):
         self.fmu = arguments.fmu.read_bytes()
-        self.varied = arguments.vary or DEFAULT
+        self.varied = intervals(arguments.vary or list(map(varied, DEFAULT)), arguments.fmu)
         self.seed, self.duration = arguments.seed, arguments.duration
         self.flights, self.batch = arguments.flights, arguments.batch
         self.folder = arguments.output
@@ -170,7 +172,6 @@ class Study:
         part = self.path(batch.start).with_suffix(".part")
         parquet.write_table(table, part)
         part.replace(self.path(batch.start))
-
 
 
 def guid(fmu: Path) -> str:
@@ -250,16 +251,20 @@ def dependence(given: np.ndarray, values: np.ndarray) -> float:
     return float(abs(np.corrcoef(rank(given), rank(values))[0, 1]))
 
 
-def varied(text: str) -> tuple[str, float, float]:
-    """NAME=LOW:HIGH"""
+def varied(text: str) -> tuple[str, float, float, bool]:
+    """NAME=LOW:HIGH, and whether the bounds are shares of the start value."""
     try:
         name, interval = text.split("=")
-        low, high = map(float, interval.split(":"))
+        bounds = interval.split(":")
+        relative = all(bound.endswith("%") for bound in bounds)
+        low, high = (float(bound.removesuffix("%")) / 100 if relative else float(bound) for bound in bounds)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=LOW:HIGH, for example airframe.mass=0.6:0.8") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not NAME=LOW:HIGH, for example airframe.mass=0.6:0.8 or airframe.mass=85%:120%"
+        ) from None
     if not low <= high:
         raise argparse.ArgumentTypeError(f"{text!r}: {low} is above {high}")
-    return name, low, high
+    return name, low, high, relative
 
 
 def count(text: str) -> int:
@@ -269,22 +274,31 @@ def count(text: str) -> int:
     return int(text)
 
 
-def check(study: Study, path: Path) -> None:
-    """Rejects names that the FMU does not have, before anything is flown."""
+def intervals(asked: list[tuple[str, float, float, bool]], path: Path) -> list[tuple[str, float, float]]:
+    """Names with lowest and highest values. Rejects what the FMU does not have, before anything is flown."""
     from fmpy import read_model_description
 
     variables = read_model_description(str(path)).modelVariables
-    known = {v.name for v in variables if v.type == "Real" and v.causality in ("parameter", "input")}
-    for name, *_ in study.varied:
+    known = {v.name: v for v in variables if v.type == "Real" and v.causality in ("parameter", "input")}
+    found = []
+    for name, low, high, relative in asked:
         if name not in known:
             sys.exit(f"error: --vary {name}: the FMU has no Real parameter or input of this name")
+        start = float(known[name].start)
+        if relative and start == 0.0:
+            sys.exit(f"error: --vary {name}: its start value is 0, which has no shares; give the bounds without percent signs")
+        # A share of a negative value turns the interval round.
+        found.append((name, *(sorted((low * start, high * start)) if relative else (low, high))))
+    return found
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="Monte Carlo study over parameters of the FMU on Dask.")
     parser.add_argument("fmu", type=Path, nargs="?", default=Path("target/fmu/LmpcQuadrotor.fmu"))
     parser.add_argument("--flights", type=count, default=1000)
-    parser.add_argument("--vary", type=varied, action="append", metavar="NAME=LOW:HIGH", help="can be repeated")
+    parser.add_argument(
+        "--vary", type=varied, action="append", metavar="NAME=LOW:HIGH", help="can be repeated; LOW%%:HIGH%% are shares of the start value"
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--duration", type=float, default=15.0, help="of each flight, s")
     parser.add_argument("--batch", type=count, default=25, help="flights of one task and of one file")
@@ -297,7 +311,6 @@ def main() -> None:
         sys.exit(f"error: {arguments.fmu} does not exist; build it with: cargo xtask fmu")
 
     study = Study(arguments)
-    check(study, arguments.fmu)
     study.open()
     from dask.distributed import Client
 

@@ -29,8 +29,8 @@ pub struct Product {
     pub page: &'static str,
     /// The picture of its default experiment over this time, s, as SVG.
     pub picture: fn(f64) -> Result<String, Failure>,
-    /// Outputs that its default experiment is about.
-    pub shown: &'static str,
+    /// Outputs that its default experiment is about, for each version.
+    shown: [&'static str; 2],
     /// Its default experiment.
     pub default_experiment: Experiment,
 }
@@ -39,21 +39,21 @@ pub struct Product {
 pub const CLOSED_LOOP: Product = Product::of::<ClosedLoop>(
     "closed_loop.html",
     picture::of_default_flight,
-    "position.x position.y position.z",
+    ["position.x position.y position.z", "position"],
 );
 
 /// Driven by rotor speeds or thrust and torques.
 pub const PLANT: Product = Product::of::<QuadrotorPlant>(
     "plant.html",
     picture::of_default_climb,
-    "altitude velocity.z rotor.speed[1]",
+    ["altitude velocity.z rotor.speed[1]", "altitude velocity rotor.speed"],
 );
 
 /// The controllers without a vehicle.
 pub const CONTROLLER: Product = Product::of::<Controller>(
     "controller.html",
     picture::of_default_flight,
-    "setpoint.position.z rotor.command[1]",
+    ["setpoint.position.z rotor.command[1]", "setpoint.position rotor.command"],
 );
 
 /// All of them.
@@ -62,6 +62,14 @@ pub const PRODUCTS: [Product; 3] = [CLOSED_LOOP, CONTROLLER, PLANT];
 impl Version {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Two, Self::Three];
+
+    /// What the names of its functions begin with.
+    pub fn prefix(self) -> &'static str {
+        match self {
+            Self::Two => "fmi2",
+            Self::Three => "fmi3",
+        }
+    }
 
     /// How it is called.
     pub fn name(self) -> &'static str {
@@ -76,7 +84,7 @@ impl Product {
     const fn of<M: Model>(
         page: &'static str,
         picture: fn(f64) -> Result<String, Failure>,
-        shown: &'static str,
+        shown: [&'static str; 2],
     ) -> Self {
         Self {
             identifier: M::IDENTITY.model_identifier,
@@ -97,6 +105,11 @@ impl Product {
     /// The text of its `terminalsAndIcons.xml`, if it has terminals.
     pub fn terminals(&self, version: Version) -> Option<String> {
         self.terminals[version as usize]()
+    }
+
+    /// Outputs that its default experiment is about: vectors are arrays in FMI 3.0.
+    pub fn shown(&self, version: Version) -> &'static str {
+        self.shown[version as usize]
     }
 
     /// Where it is written: FMUs of FMI 3.0 have a folder of their own.

@@ -45,7 +45,9 @@ pub enum ImportError {
     #[error("its library says that it is of FMI {0}, its modelDescription.xml 2.0")]
     LibraryVersion(String),
     /// fmi2Instantiate returned nothing.
-    #[error("fmi2Instantiate failed")]
+    #[error(
+        "fmi2Instantiate made no instance; if the FMU does not say why, its library may be of another export than its modelDescription.xml (guid)"
+    )]
     Instantiate,
     /// A text with a zero character.
     #[error("a text for the FMU has a zero character in it: {0:?}")]

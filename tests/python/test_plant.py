@@ -1,18 +1,11 @@
 """QuadrotorPlant: under FMPy's CVode and scipy's solvers, in CasADi, and against the paper's Euler form."""
 
-import shutil
-import subprocess
-import sys
-import zipfile
-from io import BytesIO
-
 import casadi
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description, simulate_fmu
 from fmpy.fmi2 import FMU2Model
 from fmpy.validation import validate_fmu
-from lxml import etree
 from scipy.integrate import solve_ivp
 from test_equations import euler_form
 
@@ -193,15 +186,3 @@ def test_casadi_takes_it_and_its_jacobian_is_that_of_differences(folder):
             for block, (one, other) in zip(found[place::2], zip(ahead, behind, strict=True), strict=True):
                 difference = (np.array(one) - np.array(other)).ravel() / (2 * step)
                 assert block[:, column] == pytest.approx(difference, rel=1e-6, abs=1e-6)
-
-
-def test_code_of_the_documentation_runs(plant, tmp_path):
-    with zipfile.ZipFile(plant) as archive:
-        page = etree.parse(BytesIO(archive.read("documentation/index.html")))
-    blocks = ["".join(block.itertext()) for block in page.iterfind(".//{*}pre")]
-    assert len(blocks) == 2
-    shutil.copy(plant, tmp_path)
-    for block, altitude in zip(blocks, [3.7, 7.7], strict=True):
-        done = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-        assert done.returncode == 0, done.stderr
-        assert float(done.stdout) == pytest.approx(altitude, abs=0.1)

@@ -82,9 +82,22 @@ def test_a_flight_that_fails_is_a_row_with_its_message(sweep, tmp_path):
     assert json.loads((tmp_path / "sweep" / "study.json").read_text())["seed"] == 1
 
 
+def test_shares_are_of_the_start_value(sweep, tmp_path, model_description):
+    """Also those that are varied without being asked for: a vehicle of another kind would tell nothing about this one."""
+    start = {v.name: float(v.start) for v in model_description.modelVariables if v.type == "Real" and v.start is not None}
+    assert sweep("--flights", "4", "--duration", "1").returncode == 0
+    flown = rows(tmp_path / "sweep" / "flights")
+    for name, low, high in (("airframe.mass", 0.85, 1.2), ("airframe.inertia.x", 0.8, 1.3), ("airframe.inertia.y", 0.8, 1.3),
+                            ("airframe.rotor.time_constant", 0.5, 1.5)):
+        assert all(low * start[name] <= row[name] <= high * start[name] for row in flown), name
+    assert [row["message"] for row in flown] == [""] * 4
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (("--vary", "disturbance.force.x=50%:150%"), "its start value is 0, which has no shares"),
+        (("--vary", "airframe.mass=50%:1"), "is not NAME=LOW:HIGH"),
         (("--vary", "airframe.weight=1:2"), "the FMU has no Real parameter or input of this name"),
         (("--vary", "airframe.mass=2"), "is not NAME=LOW:HIGH"),
         (("--vary", "airframe.mass=2:1"), "2.0 is above 1.0"),

@@ -18,44 +18,52 @@ pub struct Unit {
     pub offset: f64,
 }
 
-const fn of(exponents: [i32; 7], factor: f64) -> (Dimension, f64) {
-    (Dimension(exponents), factor)
-}
-
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const TURN_PER_MINUTE: f64 = std::f64::consts::PI / 30.0;
+
+/// Units in common use: names, the first one as it is told to people, what they measure, and their factor to base units.
+type Known = (&'static [&'static str], [i32; 7], f64);
+#[rustfmt::skip]
+const KNOWN: [Known; 23] = [
+    (&["rad"], [0; 7], 1.0),
+    (&["1", "", "-"], [0; 7], 1.0),
+    (&["deg", "°"], [0; 7], DEGREE),
+    (&["%"], [0; 7], 0.01),
+    (&["m"], [0, 1, 0, 0, 0, 0, 0], 1.0),
+    (&["cm"], [0, 1, 0, 0, 0, 0, 0], 0.01),
+    (&["mm"], [0, 1, 0, 0, 0, 0, 0], 0.001),
+    (&["ft"], [0, 1, 0, 0, 0, 0, 0], 0.3048),
+    (&["m/s"], [0, 1, -1, 0, 0, 0, 0], 1.0),
+    (&["km/h"], [0, 1, -1, 0, 0, 0, 0], 1.0 / 3.6),
+    (&["m/s2", "m/s²"], [0, 1, -2, 0, 0, 0, 0], 1.0),
+    (&["rad/s", "1/s"], [0, 0, -1, 0, 0, 0, 0], 1.0),
+    (&["deg/s", "°/s"], [0, 0, -1, 0, 0, 0, 0], DEGREE),
+    (&["rpm", "rev/min", "1/min"], [0, 0, -1, 0, 0, 0, 0], TURN_PER_MINUTE),
+    (&["rad/s2"], [0, 0, -2, 0, 0, 0, 0], 1.0),
+    (&["kg"], [1, 0, 0, 0, 0, 0, 0], 1.0),
+    (&["g"], [1, 0, 0, 0, 0, 0, 0], 0.001),
+    (&["kgm2", "kgm²"], [1, 2, 0, 0, 0, 0, 0], 1.0),
+    (&["N"], [1, 1, -2, 0, 0, 0, 0], 1.0),
+    (&["Nm"], [1, 2, -2, 0, 0, 0, 0], 1.0),
+    (&["s"], [0, 0, 1, 0, 0, 0, 0], 1.0),
+    (&["V"], [1, 2, -3, -1, 0, 0, 0], 1.0),
+    (&["A"], [0, 0, 0, 1, 0, 0, 0], 1.0),
+];
 
 impl Unit {
     /// A unit in common use by its name, for FMUs that name units without defining them.
     pub fn known(name: &str) -> Option<Self> {
         let compact: String =
             name.chars().filter(|letter| !matches!(letter, ' ' | '^' | '*' | '.' | '·')).collect();
-        let (dimension, factor) = match compact.as_str() {
-            "1" | "" | "-" | "rad" => of([0; 7], 1.0),
-            "deg" | "°" => of([0; 7], DEGREE),
-            "%" => of([0; 7], 0.01),
-            "m" => of([0, 1, 0, 0, 0, 0, 0], 1.0),
-            "cm" => of([0, 1, 0, 0, 0, 0, 0], 0.01),
-            "mm" => of([0, 1, 0, 0, 0, 0, 0], 0.001),
-            "ft" => of([0, 1, 0, 0, 0, 0, 0], 0.3048),
-            "m/s" => of([0, 1, -1, 0, 0, 0, 0], 1.0),
-            "km/h" => of([0, 1, -1, 0, 0, 0, 0], 1.0 / 3.6),
-            "m/s2" | "m/s²" => of([0, 1, -2, 0, 0, 0, 0], 1.0),
-            "rad/s" | "1/s" => of([0, 0, -1, 0, 0, 0, 0], 1.0),
-            "deg/s" | "°/s" => of([0, 0, -1, 0, 0, 0, 0], DEGREE),
-            "rpm" | "rev/min" | "1/min" => of([0, 0, -1, 0, 0, 0, 0], TURN_PER_MINUTE),
-            "rad/s2" => of([0, 0, -2, 0, 0, 0, 0], 1.0),
-            "kg" => of([1, 0, 0, 0, 0, 0, 0], 1.0),
-            "g" => of([1, 0, 0, 0, 0, 0, 0], 0.001),
-            "kgm2" => of([1, 2, 0, 0, 0, 0, 0], 1.0),
-            "N" => of([1, 1, -2, 0, 0, 0, 0], 1.0),
-            "Nm" => of([1, 2, -2, 0, 0, 0, 0], 1.0),
-            "s" => of([0, 0, 1, 0, 0, 0, 0], 1.0),
-            "V" => of([1, 2, -3, -1, 0, 0, 0], 1.0),
-            "A" => of([0, 0, 0, 1, 0, 0, 0], 1.0),
-            _ => return None,
-        };
-        Some(Self { name: name.to_owned(), dimension: Some(dimension), factor, offset: 0.0 })
+        let (_, dimension, factor) = KNOWN.iter().find(|(names, ..)| names.contains(&compact.as_str()))?;
+        let dimension = Some(Dimension(*dimension));
+        Some(Self { name: name.to_owned(), dimension, factor: *factor, offset: 0.0 })
+    }
+
+    /// The names of the units in common use that measure something.
+    pub fn known_of(dimension: Dimension) -> impl Iterator<Item = &'static str> {
+        let of = KNOWN.iter().filter(move |(_, measured, _)| Dimension(*measured) == dimension);
+        of.filter_map(|(names, ..)| names.first().copied())
     }
 
     /// A value of this unit in base units.
@@ -92,5 +100,7 @@ mod tests {
             Some(Dimension([1, 2, -2, 0, 0, 0, 0]))
         );
         assert_eq!(Unit::known("furlong"), None);
+        let speeds: Vec<_> = Unit::known_of(Dimension([0, 1, -1, 0, 0, 0, 0])).collect();
+        assert_eq!(speeds, ["m/s", "km/h"]);
     }
 }

@@ -39,9 +39,9 @@ pub struct Instance {
     life: Life,
     /// Told before each call.
     announce: Box<dyn FnMut(Call) + Send>,
-    /// Both are where the FMU has been told they are, for as long as it lives.
+    /// Where the FMU has been told they are, for as long as it lives.
     _callbacks: Box<Callbacks>,
-    _receiver: Box<Receiver>,
+    _receiver: Receiver,
 }
 
 /// What an instance is made from.
@@ -79,17 +79,17 @@ impl Instance {
     ) -> Result<Self, ImportError> {
         announce(Call::Load);
         let functions = Functions::load(birth.library)?;
-        let receiver = Box::new(Receiver::new(take));
+        let receiver = Receiver::new(take);
         let callbacks = Box::new(Callbacks {
             logger: importer_logger,
             allocate,
             free,
             step_finished: None,
-            environment: std::ptr::from_ref::<Receiver>(&receiver).cast_mut().cast(),
+            environment: receiver.environment(),
         });
         let [name, guid, resources] = [c_text(birth.name)?, c_text(birth.guid)?, c_text(birth.resources)?];
         announce(Call::Instantiate);
-        // SAFETY: the texts end with a zero and are copied by the FMU; callbacks and receiver are boxed and outlive it.
+        // SAFETY: the texts end with a zero and are copied by the FMU; the callbacks are boxed and outlive it.
         let component = unsafe {
             (functions.instantiate)(
                 name.as_ptr(),

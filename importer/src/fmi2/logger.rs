@@ -1,7 +1,8 @@
 //! What an FMU says.
 
+use std::collections::BTreeMap;
 use std::ffi::{CStr, c_int};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
@@ -18,12 +19,44 @@ pub struct Message {
     pub text: String,
 }
 
-/// Who takes the messages of an instance. FMUs may log from threads of their own.
-pub(crate) struct Receiver(Mutex<Box<dyn FnMut(Message) + Send>>);
+type Take = Mutex<Box<dyn FnMut(Message) + Send>>;
+
+/// Who takes messages, by the environments that their instances were given. FMUs hand back what they like, also null and pointers of
+/// their own: an environment is looked up here, and never followed.
+static RECEIVERS: Mutex<BTreeMap<usize, Arc<Take>>> = Mutex::new(BTreeMap::new());
+
+fn receivers() -> MutexGuard<'static, BTreeMap<usize, Arc<Take>>> {
+    RECEIVERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Who takes the messages of an instance, as long as the value lives. FMUs may log from threads of their own.
+pub(crate) struct Receiver(Arc<Take>);
 
 impl Receiver {
     pub(crate) fn new(take: impl FnMut(Message) + Send + 'static) -> Self {
-        Self(Mutex::new(Box::new(take)))
+        let receiver = Self(Arc::new(Mutex::new(Box::new(take))));
+        receivers().insert(receiver.environment().addr(), Arc::clone(&receiver.0));
+        receiver
+    }
+
+    /// What the FMU is given, and should hand back.
+    pub(crate) fn environment(&self) -> Environment {
+        Arc::as_ptr(&self.0).cast_mut().cast()
+    }
+}
+
+impl Drop for Receiver {
+    fn drop(&mut self) {
+        receivers().remove(&self.environment().addr());
+    }
+}
+
+/// Who takes a message: the instance with its environment, or all that there are, since nobody can tell whose it is.
+fn takers(environment: Environment) -> Vec<Arc<Take>> {
+    let receivers = receivers();
+    match receivers.get(&environment.addr()) {
+        Some(take) => vec![Arc::clone(take)],
+        None => receivers.values().cloned().collect(),
     }
 }
 
@@ -42,7 +75,7 @@ unsafe extern "C" {
 /// The other end of `logger.c`.
 ///
 /// # Safety
-/// `environment` is that of the callbacks; texts are null or end with a zero.
+/// Texts are null or end with a zero. `environment` may be anything.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn importer_take_message(
     environment: Environment,
@@ -50,13 +83,14 @@ unsafe extern "C" fn importer_take_message(
     category: Text,
     text: Text,
 ) {
-    // SAFETY: an FMU hands back the environment that it was given, which lives as long as the instance; some hand back null.
-    let Some(receiver) = (unsafe { environment.cast::<Receiver>().as_ref() }) else { return };
     let message =
         // SAFETY: as promised above.
         unsafe { Message { status: status.into(), category: text_of(category), text: text_of(text) } };
-    let mut take = receiver.0.lock().unwrap_or_else(PoisonError::into_inner);
-    take(message);
+    // Nothing is locked but the one who takes it: it may make or free instances.
+    for taker in takers(environment) {
+        let mut take = taker.lock().unwrap_or_else(PoisonError::into_inner);
+        take(message.clone());
+    }
 }
 
 /// A C text, whatever its bytes are.
@@ -75,14 +109,18 @@ pub(crate) unsafe fn text_of(text: Text) -> String {
 mod tests {
     use std::ffi::c_void;
     use std::ptr::{from_ref, null, null_mut};
-    use std::sync::mpsc;
+    use std::sync::{Mutex, PoisonError, mpsc};
 
     use super::{Message, Receiver, Status, importer_logger};
 
+    /// Messages without an owner go to all: these tests would hear one another.
+    static ALONE: Mutex<()> = Mutex::new(());
+
     fn logged(log: impl Fn(*mut c_void)) -> Vec<Message> {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
         let (sender, messages) = mpsc::channel();
         let receiver = Receiver::new(move |message| sender.send(message).expect("the test listens"));
-        log(from_ref(&receiver).cast_mut().cast());
+        log(receiver.environment());
         drop(receiver);
         messages.iter().collect()
     }
@@ -121,7 +159,6 @@ mod tests {
             unsafe {
                 importer_logger(environment, null(), 0, null(), c"%s".as_ptr(), long.as_ptr());
                 importer_logger(environment, null(), 9, null(), null());
-                importer_logger(null_mut(), null(), 0, null(), c"to nobody".as_ptr());
             }
         });
         assert_eq!(messages.len(), 2);
@@ -130,5 +167,41 @@ mod tests {
             messages[1],
             Message { status: Status::Unknown(9), category: String::new(), text: String::new() }
         );
+    }
+
+    /// An FMU's own pointer, null, and one of an instance that is gone.
+    #[test]
+    fn an_environment_that_is_not_known_is_not_followed() {
+        let gone = {
+            let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+            Receiver::new(|_| {}).environment().addr()
+        };
+        let own = [usize::MAX; 32];
+        let messages = logged(|_| {
+            for environment in
+                [from_ref(&own).cast_mut().cast(), null_mut(), std::ptr::without_provenance_mut(gone + 1)]
+            {
+                // SAFETY: the format fits its arguments; the environment may be anything.
+                unsafe { importer_logger(environment, null(), 1, null(), c"lost".as_ptr()) };
+            }
+        });
+        assert_eq!(messages.len(), 3, "{messages:?}");
+        assert!(messages.iter().all(|message| message.text == "lost"), "{messages:?}");
+    }
+
+    #[test]
+    fn messages_of_two_instances_are_told_apart() {
+        let first = logged(|environment| {
+            let (sender, messages) = mpsc::channel();
+            let other =
+                Receiver::new(move |message: Message| sender.send(message).expect("the test listens"));
+            for (environment, text) in [(environment, c"one"), (other.environment(), c"two")] {
+                // SAFETY: the formats have no arguments.
+                unsafe { importer_logger(environment, null(), 0, null(), text.as_ptr()) };
+            }
+            drop(other);
+            assert_eq!(messages.iter().map(|message| message.text).collect::<Vec<_>>(), ["two"]);
+        });
+        assert_eq!(first.into_iter().map(|message| message.text).collect::<Vec<_>>(), ["one"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ use crate::fmu::Fmu;
 const PARTING: Duration = Duration::from_secs(2);
 /// What was said last is told with a failure: so many lines, each at most so many characters.
 const LAST_WORDS: usize = 3;
-const LONGEST_WORDS: usize = 300;
+const LONGEST_WORDS: usize = 600;
 
 /// What a guarded instance is made from.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +80,7 @@ impl Guarded {
             last_words: Vec::new(),
         };
         let library = fmu.library().map_err(|error: ImportError| not_started(error.to_string()))?;
+        let library_folder = library.parent().map(Path::to_owned).unwrap_or_default();
         let slip = fmu.folder().join(".call");
         let start = Start {
             preload: setup.preload.clone(),
@@ -94,7 +95,8 @@ impl Guarded {
             booleans: setup.booleans.clone(),
             outputs: setup.outputs.clone(),
         };
-        let mut child = spawn(&setup.host).map_err(|error| not_started(error.to_string()))?;
+        let mut child =
+            spawn(&setup.host, &library_folder).map_err(|error| not_started(error.to_string()))?;
         let pipes = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (Some(requests), Some(responses), Some(said)) = pipes else {
             return Err(not_started("its pipes are missing".to_owned()));
@@ -220,7 +222,7 @@ impl Guarded {
             };
             if let Some(words) = words {
                 let line = words.lines().collect::<Vec<_>>().join(" ");
-                self.last_words.push_back(line.chars().take(LONGEST_WORDS).collect());
+                self.last_words.push_back(shortened(&line, LONGEST_WORDS));
                 if self.last_words.len() > LAST_WORDS {
                     self.last_words.pop_front();
                 }
@@ -228,6 +230,16 @@ impl Guarded {
             self.said.push(said);
         }
     }
+}
+
+/// A line of at most so many characters; what is left out of a longer one begins after a whole word, and shows as "…".
+fn shortened(line: &str, longest: usize) -> String {
+    if line.chars().count() <= longest {
+        return line.to_owned();
+    }
+    let beginning: String = line.chars().take(longest.saturating_sub(2)).collect();
+    let whole = beginning.rsplit_once(' ').map_or(beginning.as_str(), |(whole, _)| whole);
+    format!("{whole} …")
 }
 
 impl Drop for Guarded {
@@ -238,8 +250,22 @@ impl Drop for Guarded {
     }
 }
 
-fn spawn((program, arguments): &(PathBuf, Vec<String>)) -> io::Result<Child> {
+/// Where the system looks for libraries that a library needs.
+const SEARCHED: &str = if cfg!(windows) {
+    "PATH"
+} else if cfg!(target_os = "macos") {
+    "DYLD_LIBRARY_PATH"
+} else {
+    "LD_LIBRARY_PATH"
+};
+
+/// Starts the host. Libraries that an FMU brings along are found beside its own, whatever that says of where to look.
+fn spawn((program, arguments): &(PathBuf, Vec<String>), library_folder: &Path) -> io::Result<Child> {
+    let usual = std::env::var_os(SEARCHED).unwrap_or_default();
+    let folders = std::iter::once(library_folder.to_owned()).chain(std::env::split_paths(&usual));
+    let searched = std::env::join_paths(folders.filter(|folder| !folder.as_os_str().is_empty()));
     let mut command = Command::new(program);
+    command.env(SEARCHED, searched.map_err(io::Error::other)?);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     // An interrupt at the terminal is for us: the flight ends, then the FMU.
     #[cfg(unix)]
@@ -275,4 +301,16 @@ fn end(child: &mut Child) {
         unsafe { libc::kill(-group, libc::SIGKILL) };
     }
     let _gone = child.kill();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shortened;
+
+    #[test]
+    fn long_lines_end_with_a_whole_word() {
+        assert_eq!(shortened("no root found", 13), "no root found");
+        assert_eq!(shortened("no root found at all", 13), "no root …");
+        assert_eq!(shortened(&"ü".repeat(30), 10), format!("{} …", "ü".repeat(8)));
+    }
 }

@@ -1,5 +1,6 @@
 //! What goes through the pipes.
 
+use std::fmt;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,17 @@ pub enum StartValue {
     Boolean(bool),
     /// Of a string variable.
     Text(String),
+}
+
+impl fmt::Display for StartValue {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Real(value) => value.fmt(formatter),
+            Self::Integer(value) => value.fmt(formatter),
+            Self::Boolean(value) => value.fmt(formatter),
+            Self::Text(value) => write!(formatter, "{value:?}"),
+        }
+    }
 }
 
 /// To the host.

@@ -87,7 +87,7 @@ static CONTROLLER_KIND: Choice = Choice {
     description: "Controller in use",
     items: &[
         ("lmpc", "Laguerre MPC under limits"),
-        ("ssmpc", "State-space MPC under limits, with a Kalman predictor"),
+        ("ssmpc", "State-space MPC under limits"),
         ("dlqr", "Discrete linear-quadratic regulator with integral action"),
     ],
 };

@@ -337,7 +337,7 @@ fn start_models(
     let start = |participant: &mut Participant| {
         let Some(choice) = &settings.fmu else { return Ok(None) };
         let name = format!("system {}", participant.system_id);
-        let model = FlownFmu::start(choice, &name, &participant.vehicle)?;
+        let model = FlownFmu::start(choice, &name, &participant.vehicle, 0.0)?;
         participant.vehicle.foreign = Some(model.description().clone());
         let model: Box<dyn ForeignModel> = Box::new(model);
         Ok(Some(model))

@@ -18,6 +18,8 @@ const LONGEST_START: Duration = Duration::from_secs(60);
 /// A start this near to the vehicle's is the same, m and rad.
 const NEAR_M: f64 = 0.01;
 const NEAR_RAD: f64 = 0.01;
+/// A vehicle that has sunk so far with its rotors at rest falls, m: feet give way by less.
+const FALLEN_M: f64 = 0.2;
 /// Lines of the FMU's log that may be shown at once, and per second after that.
 const LINES: f64 = 50.0;
 const LINES_PER_S: f64 = 5.0;
@@ -32,15 +34,21 @@ pub struct FlownFmu {
     mapping: Mapping,
     description: ForeignDescription,
     log: Log,
+    support: Support,
     failed: bool,
 }
 
 impl FlownFmu {
-    /// Starts an FMU where a vehicle stands.
+    /// Starts an FMU where a vehicle stands. `mount_rad` is how far the nose of its autopilot is turned from its own.
     ///
     /// # Errors
     /// [`Failure`] of the file, the mapping, the FMU's initialization, or of a start elsewhere.
-    pub fn start(choice: &FmuChoice, name: &str, settings: &VehicleSettings) -> Result<Self, Failure> {
+    pub fn start(
+        choice: &FmuChoice,
+        name: &str,
+        settings: &VehicleSettings,
+        mount_rad: f64,
+    ) -> Result<Self, Failure> {
         let configuration = settings.flown_configuration();
         let (fmu, mapping) = choice.open(&configuration)?;
         let place_m = Vector3::from(configuration.initial.position_m);
@@ -66,11 +74,11 @@ impl FlownFmu {
         let mut log = Log::new(guarded.name());
         log.take(guarded.take_said());
         let start = motion_of(&mapping, &shown, 0)?;
-        check_start(&start, place_m, settings.heading_rad)
+        check_start(&start, place_m, settings.heading_rad, mount_rad)
             .map_err(|reason| Failure::Content { path: choice.path.clone(), reason })?;
         let name = format!("the FMU {}", mapping.model_name);
         let description = ForeignDescription { name, role: mapping.role, start };
-        Ok(Self { guarded, mapping, description, log, failed: false })
+        Ok(Self { guarded, mapping, description, log, support: Support::default(), failed: false })
     }
 }
 
@@ -96,6 +104,11 @@ impl ForeignModel for FlownFmu {
             Err(error) => Err(failed(&error, demand.time_us)),
         };
         self.failed = motion.is_err();
+        if let Ok(motion) = &motion
+            && let Some(warning) = self.support.look(demand.armed, &self.description, motion)
+        {
+            tracing::warn!("{warning}");
+        }
         motion
     }
 }
@@ -119,6 +132,11 @@ fn failed(error: &GuestError, time_us: u64) -> FlightError {
         // An FMU of an interpreter counts on the program that loads it being one.
         reason.push_str(
             "; name the library that has it, such as libpython3.12.so.1.0, in `preload` of a --map",
+        );
+    }
+    if reason.contains("cannot open shared object file") {
+        reason.push_str(
+            "; install what its library needs, or name it with its whole path in `preload` of a --map",
         );
     }
     FlightError::Foreign { time_us, reason }
@@ -219,7 +237,12 @@ fn motion_of(mapping: &Mapping, shown: &[f64], time_us: u64) -> Result<ForeignMo
 }
 
 /// Refuses an FMU that does not start where the vehicle stands.
-fn check_start(start: &ForeignMotion, place_m: Vector3<f64>, heading_rad: f64) -> Result<(), String> {
+fn check_start(
+    start: &ForeignMotion,
+    place_m: Vector3<f64>,
+    heading_rad: f64,
+    mount_rad: f64,
+) -> Result<(), String> {
     let shown_m = start.body.position_m;
     let (_, _, psi) = start.body.rotation().euler_angles();
     let turn = vehicle::wrapped(psi - heading_rad);
@@ -232,15 +255,54 @@ fn check_start(start: &ForeignMotion, place_m: Vector3<f64>, heading_rad: f64) -
             place.x,
             place.y,
             place.z,
-            yaw_rad.to_degrees()
+            vehicle::wrapped(yaw_rad).to_degrees()
+        )
+    };
+    let mount = if mount_rad.abs() < 1e-9 {
+        String::new()
+    } else {
+        // The heading of --home is the autopilot's: without a word ours looks like a mistake of the program.
+        format!(
+            " (the autopilot's nose has the heading {:.1}° of --home, and --hil-mount turns it by {:.1}° on the airframe)",
+            vehicle::wrapped(heading_rad + mount_rad).to_degrees(),
+            mount_rad.to_degrees()
         )
     };
     Err(format!(
-        "the FMU starts at {}, the vehicle at {}; map initial.position.x to .z and initial.attitude.psi to its parameters, set \
+        "the FMU starts at {}, the vehicle at {}{mount}; map initial.position.x to .z and initial.attitude.psi to its parameters, set \
          them in [parameters], or say with `origin` of [frame] where the vehicle's start is in its world",
         told(&shown_m, psi),
         told(&place_m, heading_rad)
     ))
+}
+
+/// Whether something carries the vehicle while its rotors rest.
+#[derive(Debug, Default)]
+struct Support {
+    /// Nothing more is to be looked for: its rotors have turned, or the warning has been given.
+    settled: bool,
+}
+
+impl Support {
+    /// A warning, once, of a vehicle that falls before its rotors have ever turned.
+    fn look(
+        &mut self,
+        armed: bool,
+        description: &ForeignDescription,
+        motion: &ForeignMotion,
+    ) -> Option<String> {
+        let fallen_m = motion.body.position_m.z - description.start.body.position_m.z;
+        self.settled |= armed;
+        if self.settled || fallen_m < FALLEN_M {
+            return None;
+        }
+        self.settled = true;
+        Some(format!(
+            "{} falls: nothing carries it while its rotors rest, and it is {fallen_m:.1} m below its start; give it ground at the \
+             height of its start, such as a parameter of its own in [parameters] of a --map",
+            description.name
+        ))
+    }
 }
 
 /// The FMU's log, as far as there is room in ours.

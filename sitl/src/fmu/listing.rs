@@ -2,8 +2,6 @@
 
 use std::fmt::Write;
 
-use importer::StartValue;
-
 use super::mapping::{Channel, Mapping};
 use super::signals::{ARMED, Group, INPUTS, OUTPUTS};
 
@@ -31,12 +29,6 @@ pub fn listing(mapping: &Mapping) -> String {
     }
     write_table(&mut text, &rows);
     for (name, _, value) in &mapping.values {
-        let value = match value {
-            StartValue::Real(value) => value.to_string(),
-            StartValue::Integer(value) => value.to_string(),
-            StartValue::Boolean(value) => value.to_string(),
-            StartValue::Text(value) => format!("{value:?}"),
-        };
         let _infallible = writeln!(text, "start  {name} = {value}");
     }
     text

@@ -13,6 +13,9 @@ use super::signals::{ARMED, names};
 use crate::configuration::{nearest, read_text};
 use crate::failure::Failure;
 
+/// Keys that stand above the first table, and tables.
+const KEYS: [&str; 6] = ["role", "frame", "preload", "step_timeout", "variables", "parameters"];
+
 /// Longest time of a step unless the map has another, s.
 const STEP_TIMEOUT_S: f64 = 5.0;
 
@@ -113,10 +116,8 @@ impl Map {
                     map.parameters(text, "", table.map_err(place)?)?;
                 }
                 name => {
-                    const KNOWN: [&str; 6] =
-                        ["role", "frame", "preload", "step_timeout", "variables", "parameters"];
-                    let meant = nearest(name, KNOWN).map(|meant| format!("; did you mean {meant}?"));
-                    let meant = meant.unwrap_or_else(|| format!("; allowed are {}", KNOWN.join(", ")));
+                    let meant = nearest(name, KEYS).map(|meant| format!("; did you mean {meant}?"));
+                    let meant = meant.unwrap_or_else(|| format!("; allowed are {}", KEYS.join(", ")));
                     return Err(place(format!("unknown key `{name}`{meant}")));
                 }
             }
@@ -128,13 +129,17 @@ impl Map {
     fn entries(&mut self, text: &str, prefix: &str, table: &DeTable<'_>) -> Result<(), String> {
         for (key, value) in table {
             let name = dotted(prefix, key.get_ref());
+            let place = |reason: String| at(text, value.span().start, &reason);
             match value.get_ref() {
-                DeValue::Table(inner) if !inner.contains_key("variable") => {
-                    self.entries(text, &name, inner)?
+                DeValue::Table(inner) if !is_signal(&name) && !inner.contains_key("variable") => {
+                    self.entries(text, &name, inner)?;
                 }
                 given => {
-                    let entry = known(&name).and_then(|()| entry(&name, given));
-                    self.entries.insert(name, entry.map_err(|reason| at(text, value.span().start, &reason))?);
+                    misplaced(&name, "variables").map_err(place)?;
+                    let entry = known(&name).and_then(|()| entry(&name, given)).map_err(place)?;
+                    if self.entries.insert(name.clone(), entry).is_some() {
+                        return Err(place(format!("{name} is mapped twice; keep one of both")));
+                    }
                 }
             }
         }
@@ -145,22 +150,26 @@ impl Map {
     fn parameters(&mut self, text: &str, prefix: &str, table: &DeTable<'_>) -> Result<(), String> {
         for (key, value) in table {
             let name = dotted(prefix, key.get_ref());
+            let place = |reason: String| at(text, value.span().start, &reason);
             let parsed = match value.get_ref() {
                 DeValue::Table(inner) => {
                     self.parameters(text, &name, inner)?;
                     continue;
                 }
+                DeValue::Array(_) => {
+                    misplaced(&name, "parameters").map_err(place)?;
+                    return Err(place(format!("{name} is a number, true, false or a text")));
+                }
                 DeValue::Boolean(value) => Value::Boolean(*value),
                 DeValue::String(value) => Value::Text(value.to_string()),
                 other => match number(other) {
                     Some(value) => Value::Number(value),
-                    None => {
-                        let reason = format!("{name} is a number, true, false or a text");
-                        return Err(at(text, value.span().start, &reason));
-                    }
+                    None => return Err(place(format!("{name} is a number, true, false or a text"))),
                 },
             };
-            self.parameters.insert(name, parsed);
+            if self.parameters.insert(name.clone(), parsed).is_some() {
+                return Err(place(format!("{name} is set twice; keep one of both")));
+            }
         }
         Ok(())
     }
@@ -170,13 +179,32 @@ fn dotted(prefix: &str, key: &str) -> String {
     if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") }
 }
 
+/// Whether one of our signals or parameters has this name.
+fn is_signal(name: &str) -> bool {
+    names().any(|signal| signal == name) || PARAMETERS.iter().any(|parameter| parameter.name == name)
+}
+
+/// Refuses a key of the whole map inside of a table: in TOML a key belongs to the table above it.
+fn misplaced(name: &str, table: &str) -> Result<(), String> {
+    if !KEYS.contains(&name) {
+        return Ok(());
+    }
+    Err(format!("{name} stands below [{table}] and belongs to it; move this line above the first [table]"))
+}
+
 /// Refuses a name that is not ours.
 fn known(name: &str) -> Result<(), String> {
-    let signals: Vec<String> = names().collect();
-    let parameters = PARAMETERS.iter().map(|parameter| parameter.name);
-    let mut all = signals.iter().map(String::as_str).chain(parameters);
-    if all.any(|known| known == name) {
+    if is_signal(name) {
         return Ok(());
+    }
+    let signals: Vec<String> = names().collect();
+    let parts: Vec<&str> = signals
+        .iter()
+        .filter(|signal| signal.strip_prefix(name).is_some_and(|rest| rest.starts_with('.')))
+        .map(String::as_str)
+        .collect();
+    if !parts.is_empty() {
+        return Err(format!("{name} has several parts; map each of them: {}", parts.join(", ")));
     }
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name);
     Err(match nearest(name, signals.iter().map(String::as_str).chain(parameters)) {
@@ -212,7 +240,8 @@ fn entry(name: &str, value: &DeValue<'_>) -> Result<Entry, String> {
                     _ => return Err(wrong()),
                 }
             }
-            let name = variable.ok_or_else(wrong)?;
+            let lacks = || format!("{name} lacks the name of a variable: {name} = {{ variable = \"NAME\" }}");
+            let name = variable.ok_or_else(lacks)?;
             Ok(Entry::Variable { name, factor, offset, unit })
         }
         other => number(other).map(Entry::Constant).ok_or_else(wrong),
@@ -240,7 +269,10 @@ fn axes(value: &DeValue<'_>) -> Result<Axes, String> {
                 origin_m =
                     values.and_then(|values| values.try_into().ok()).ok_or_else(|| ALLOWED.to_owned())?;
             }
-            _ => return Err(ALLOWED.to_owned()),
+            (key, _) => {
+                misplaced(key, "frame")?;
+                return Err(ALLOWED.to_owned());
+            }
         }
     }
     Axes::new(&world, &body, origin_m)
@@ -326,6 +358,29 @@ mod tests {
             ("variables = 3", "it is a table: [variables]"),
             ("[parameters]\na = [1]", "line 2, `a = [1]`: a is a number, true, false or a text"),
             ("x = = 3", "line 1, `x = = 3`: "),
+            (
+                "[variables]\nthrust = \"F\"\npreload = [\"a.so\"]",
+                "line 3, `preload = [\"a.so\"]`: preload stands below [variables] and belongs to it; move this line above the first",
+            ),
+            ("[parameters]\npreload = [\"a.so\"]", "preload stands below [parameters]"),
+            ("[frame]\nworld = \"ENU\"\nstep_timeout = 3", "step_timeout stands below [frame]"),
+            (
+                "[variables]\nposition.x = \"a\"\n\"position.x\" = \"b\"",
+                "position.x is mapped twice; keep one of both",
+            ),
+            ("[parameters]\na.b = 1\n\"a.b\" = 2", "a.b is set twice; keep one of both"),
+            (
+                "[variables]\nposition.x = \"a\"\nposition.x = \"b\"",
+                "line 3, `position.x = \"b\"`: duplicate key",
+            ),
+            (
+                "[variables]\nthrust = { unit = \"N\" }",
+                "thrust lacks the name of a variable: thrust = { variable = \"NAME\" }",
+            ),
+            (
+                "[variables]\nposition = \"r\"",
+                "position has several parts; map each of them: position.x, position.y, position.z",
+            ),
         ] {
             let reason = Map::parse(text).expect_err(text);
             assert!(reason.contains(expected) && !reason.contains('\n'), "{text}: {reason}");

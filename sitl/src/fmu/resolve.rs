@@ -1,5 +1,6 @@
 //! From a map and a description to a mapping.
 
+mod duplicates;
 mod parameters;
 mod variables;
 
@@ -9,6 +10,7 @@ use importer::description::{Causality, Kind, ModelDescription};
 use quadrotor::Configuration;
 use vehicle::foreign::ForeignRole;
 
+use self::duplicates::refuse_duplicates;
 use self::parameters::start_values;
 use self::variables::{Resolver, missing};
 use super::map::{Entry, Map};
@@ -43,6 +45,7 @@ impl Mapping {
         let role = role(map, &inputs)?;
         check_explicit(map, role)?;
         choose_inputs(map, role, &mut inputs)?;
+        let by_wrench = inputs.get(input::THRUST).is_some_and(|channels| !channels.is_empty());
         let (mut outputs, mut constants) = (Vec::new(), Vec::new());
         for group in 0..OUTPUTS.len() {
             let readable = [Causality::Output, Causality::Local, Causality::CalculatedParameter];
@@ -58,11 +61,12 @@ impl Mapping {
             armed: armed(map, description)?,
             outputs,
             constants,
-            values: start_values(map, description, configuration, role)?,
+            values: start_values(map, description, configuration, role, by_wrench)?,
             preload: map.preload.clone(),
             longest_step: Duration::from_secs_f64(map.step_timeout_s),
         };
         mapping.choose_outputs(map, description)?;
+        refuse_duplicates(&mapping)?;
         Ok(mapping)
     }
 

@@ -135,7 +135,8 @@ fn rig(settings: &HilSettings) -> Result<Rig, Failure> {
     let rig = Rig::new(&settings.vehicle, settings.mount)?;
     let Some(choice) = &settings.fmu else { return Ok(rig) };
     let placed = Rig::placed(&settings.vehicle, settings.mount)?;
-    Ok(rig.flown_by(Box::new(FlownFmu::start(choice, "plant", &placed)?)))
+    let mount_rad = settings.vehicle.heading_rad - placed.heading_rad;
+    Ok(rig.flown_by(Box::new(FlownFmu::start(choice, "plant", &placed, mount_rad)?)))
 }
 
 impl Flown<'_> {

@@ -56,8 +56,9 @@ class Built:
     compressed: int
     #: Absent with `--fmu-only`.
     vehicle: Path | None
-    #: The program that loads a library.
+    #: The programs that load a library: of FMI 2.0 and of FMI 3.0.
     host: Path
+    host3: Path
     emulator: list[str] = field(default_factory=list)
 
     def run(self, program: Path, *arguments, timeout: float = 120) -> subprocess.CompletedProcess:
@@ -108,8 +109,9 @@ def built(fmu, tmp_path_factory) -> dict[str, Built]:
             (entry,) = [entry for entry in archive.infolist() if entry.filename.startswith(f"binaries/{platform}/")]
             library = Path(archive.extract(entry, folder))
         windows = platform == "win64"
-        host = folder / ("host.exe" if windows else "host")
-        compile_c(platform, HERE / "host.c", host, *([] if windows else ["-ldl"]))
+        hosts = [folder / (f"{name}.exe" if windows else name) for name in ("host", "host3")]
+        for source, host in zip(("host.c", "host3.c"), hosts):
+            compile_c(platform, HERE / source, host, *([] if windows else ["-ldl"]))
         program = os.environ.get(variable("LMPC_SITL", platform))
         vehicle = Path(program) if program else None
         if windows:
@@ -120,7 +122,7 @@ def built(fmu, tmp_path_factory) -> dict[str, Built]:
             copy.write_bytes(vehicle.read_bytes())
             vehicle = copy
         emulator = [word for word in of("LMPC_QUADROTOR_EMULATOR", platform).split("\n") if word]
-        found[platform] = Built(platform, library, entry.compress_size, vehicle, host, emulator)
+        found[platform] = Built(platform, library, entry.compress_size, vehicle, *hosts, emulator)
     return found
 
 

@@ -58,20 +58,22 @@ def description(model: str, guid: str, unit_of=lambda name, unit: unit) -> str:
 """
 
 
-def in_c(folder: Path, fault: str | None = None, platform: str = "linux64", **changes) -> tuple[Path, Path]:
-    """Compiles the body. Returns the FMU and its map."""
+def in_c(folder: Path, fault: str | None = None, platform: str = "linux64", options: tuple = (), beside: tuple = (), **changes) -> tuple[Path, Path]:
+    """Compiles the body, with options of the compiler, and puts libraries beside it. Returns the FMU and its map."""
     folder.mkdir(parents=True, exist_ok=True)
     headers = Path(fmpy.__file__).parent / "c-code"
     source = Path(__file__).parent / "fmu" / "body.c"
     compiler = shutil.which("cc")
     assert compiler, "a C compiler compiles the crates, too"
     number = FAULTS[fault] if fault else 0
-    subprocess.run([compiler, "-O2", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", f"-DFAULT={number}", f"-I{headers}", source,
+    subprocess.run([compiler, "-O2", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", f"-DFAULT={number}", *options, f"-I{headers}", source,
                     "-o", folder / "Body.so", "-lm"], check=True)
     file = folder / "Body.fmu"
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("modelDescription.xml", description("Body", "{body}", **changes))
         archive.write(folder / "Body.so", f"binaries/{platform}/Body.so")
+        for library in beside:
+            archive.write(library, f"binaries/{platform}/{library.name}")
     (folder / "map.toml").write_text(MAP)
     return file, folder / "map.toml"
 

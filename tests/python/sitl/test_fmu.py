@@ -164,6 +164,61 @@ def test_an_fmu_that_crashes_at_the_start_is_told_at_the_start(program, tmp_path
     assert "the FMU Body crashed in fmi2Instantiate: segmentation fault (SIGSEGV)" in result.stderr.splitlines()[-1]
 
 
+@pytest.mark.parametrize("environment", [1, 2])
+def test_an_fmu_that_hands_the_logger_another_environment_is_heard(program, tmp_path, environment):
+    """A pointer of its own, or none: some exporters do so. It is not followed."""
+    fmu, map_file = foreign.in_c(tmp_path, "error", options=(f"-DENVIRONMENT={environment}",))
+    result = run(program, "--fmu", fmu, "--map", map_file, "--speed", "max", "--duration", 10, "--link", "udpin:0")
+    assert result.returncode == 6, result
+    assert "has a mass of 0.70 kg, 100%" in result.stderr, result.stderr
+    assert "fmi2DoStep returned fmi2Error; it said: " in result.stderr.splitlines()[-1], result.stderr
+    assert "at 3.000 s: fault 2" in result.stderr.splitlines()[-1], result.stderr
+
+
+def test_libraries_that_an_fmu_brings_along_are_found(program, tmp_path):
+    """Without a run path in its own: not every exporter writes one."""
+    helper = tmp_path / "libhelper.so"
+    subprocess.run(["cc", "-shared", "-fPIC", "-xc", "-", "-o", helper], input="double help(void) { return 1; }", text=True, check=True)
+    options = ("-Wl,--no-as-needed", f"-L{tmp_path}", "-lhelper")
+    arguments = ["--speed", "max", "--duration", 1, "--link", "udpin:0"]
+    fmu, map_file = foreign.in_c(tmp_path / "with", options=options, beside=(helper,))
+    result = run(program, "--fmu", fmu, "--map", map_file, *arguments)
+    assert result.returncode == 0, result
+    fmu, map_file = foreign.in_c(tmp_path / "without", options=options)
+    result = run(program, "--fmu", fmu, "--map", map_file, *arguments)
+    last = result.stderr.splitlines()[-1]
+    assert result.returncode == 6 and "libhelper.so" in last and "in `preload` of a --map" in last, last
+
+
+def test_a_plant_without_ground_is_told_so(program, tmp_path, body):
+    fmu, map_file = foreign.in_c(tmp_path, options=("-DGROUND=0",))
+    arguments = ["--speed", "max", "--duration", 3, "--link", "udpin:0"]
+    result = run(program, "--fmu", fmu, "--map", map_file, *arguments)
+    assert len(re.findall("the FMU Body falls: nothing carries it while its rotors rest", result.stderr)) == 1, result.stderr
+    result = run(program, "--fmu", body[0], "--map", body[1], *arguments)
+    assert result.returncode == 0 and "falls" not in result.stderr, result.stderr
+
+
+def test_a_plant_that_takes_both_is_told_what_drives_it(program, plant, tmp_path):
+    """Ours by thrust and torques, without a word about its parameter `actuation`: it takes off."""
+    map_file = tmp_path / "wrench.toml"
+    map_file.write_text('[variables]\nthrust = "command.thrust"\n')
+    listed = run(program, "--fmu", plant, "--map", map_file, "--fmu-check")
+    assert "start  actuation = 2" in listed.stdout, listed
+    result = run(program, "--fmu", plant, "--map", map_file, "--mission", a_plan(tmp_path), "--autostart", "--speed", "max",
+                 "--duration", 50, "--home", "47,8,400", "--link", "udpin:0")
+    assert result.returncode == 0 and "Landing detected" in result.stderr, result.stderr
+
+
+def test_a_wrong_heading_below_an_autopilot_is_explained(program, body, tmp_path):
+    own = tmp_path / "map.toml"
+    own.write_text(body[1].read_text().replace('"start.yaw"', "false"))
+    result = run(program, "--fmu", body[0], "--map", own, "--hil", "0", "--duration", 1)
+    last = result.stderr.splitlines()[-1]
+    assert result.returncode == 4 and "the autopilot's nose has the heading 0.0° of --home, and --hil-mount turns it by 45.0°" in last, last
+    assert "the vehicle at 0.000, 0.000, 0.000 m (north, east, down), heading -45.0°" in last.replace("-0.000", "0.000"), last
+
+
 def test_one_vehicle_of_several_ends_alone(program, tmp_path):
     """Each has a process of its own; the second one is killed from outside."""
     fmu, map_file = foreign.in_c(tmp_path)
@@ -202,6 +257,8 @@ def test_the_program_lists_what_it_would_fly(program, body):
     (lambda map_: map_.replace('"v.up"', '"up"'), "velocity.z: the variable `up` has the unit `m`; it must be one that converts into m/s"),
     (lambda map_: map_.replace('thrust = "F"', ""), "map.*thrust|thrust.*map"),
     (lambda map_: map_.replace('"start.yaw"', 'false'), "the FMU starts at .* heading 90.0°, the vehicle at .* heading 20.0°"),
+    (lambda map_: map_.replace('"t.y"', '"t.x"'), "torque.x and torque.y are both mapped to the variable `t.x`; give each its own input"),
+    (lambda map_: map_ + 'preload = ["a.so"]\n', "preload stands below [variables] and belongs to it; move this line above the first"),
     (lambda map_: map_.replace('"plant"', '"plan"'), "role is \"closed-loop\" or \"plant\""),
 ])
 def test_mistakes_of_the_map_are_one_clear_line(program, body, tmp_path, spoil, words):
@@ -217,6 +274,7 @@ def test_mistakes_of_the_map_are_one_clear_line(program, body, tmp_path, spoil, 
 def test_fmus_that_cannot_be_flown_are_told_so(program, body, tmp_path, closed_loop):
     fmu, map_file = body
     elsewhere, _ = foreign.in_c(tmp_path / "elsewhere", platform="win64")
+    third = closed_loop.parent / "fmi3" / closed_loop.name
     nothing = tmp_path / "nothing.fmu"
     nothing.write_bytes(b"nothing")
     for arguments, code, words in [
@@ -224,6 +282,7 @@ def test_fmus_that_cannot_be_flown_are_told_so(program, body, tmp_path, closed_l
         (["--fmu", nothing], 4, "is not an FMU"),
         (["--fmu", tmp_path / "none.fmu"], 4, "No such file"),
         (["--fmu", fmu], 4, "no inputs to fly it by"),
+        (["--fmu", third], 4, "is an FMU of FMI 3.0; only FMI 2.0 co-simulation is supported"),
         (["--map", map_file], 2, "--map: needs --fmu"),
         (["--fmu", fmu, "--map", map_file, "--wind", "3"], 2, "has no inputs for the wind"),
         (["--fmu", closed_loop, "--fault", "3:rotor1=off"], 2, "LmpcQuadrotor flies as the closed loop, and its rotors take no faults"),

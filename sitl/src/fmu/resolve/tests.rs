@@ -25,6 +25,8 @@ fn model(rows: &[Row<'_>]) -> ModelDescription {
         "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"Model\" guid=\"g\"><CoSimulation modelIdentifier=\"m\"/>\
          <UnitDefinitions><Unit name=\"degree\"><BaseUnit rad=\"1\" factor=\"0.017453292519943295\"/></Unit>\
          <Unit name=\"kilometre\"><BaseUnit m=\"1\" factor=\"1000\"/></Unit><Unit name=\"odd\"/></UnitDefinitions>\
+         <TypeDefinitions><SimpleType name=\"Actuation\"><Enumeration><Item name=\"rotor_speeds\" value=\"1\"/>\
+         <Item name=\"wrench\" value=\"2\"/></Enumeration></SimpleType></TypeDefinitions>\
          <ModelVariables>{variables}</ModelVariables></fmiModelDescription>"
     );
     ModelDescription::parse(&text).expect("a description")
@@ -103,7 +105,8 @@ fn other_names_units_and_constants_come_from_the_map() {
     let without = map.replace(", unit = \"N\"", "");
     let error = resolve(&without, &renamed).expect_err("no unit");
     assert!(
-        error.contains("thrust: the unit `odd` of the variable `F` is not defined; say which one"),
+        error.contains("thrust: the FMU does not define the unit `odd` of the variable `F`; say which one it is: thrust = {")
+            && error.ends_with("allowed are N"),
         "{error}"
     );
 }
@@ -148,6 +151,21 @@ fn mistakes_are_named_with_their_remedy() {
             "`position.x` has the unit `m`; it must be one that converts into m/s",
         ),
         (
+            "[variables]\nposition.x = { variable = \"position.x\", unit = \"furlong\" }",
+            plant(),
+            "position.x: the map gives `position.x` the unknown unit `furlong`; allowed are m, cm, mm, ft, kilometre",
+        ),
+        (
+            "[variables]\ntorque.y = \"torque.x\"",
+            plant(),
+            "torque.x and torque.y are both mapped to the variable `torque.x`; give each its own input",
+        ),
+        (
+            "[variables]\nvelocity.y = \"velocity.x\"",
+            plant(),
+            "velocity.x and velocity.y are both mapped to the variable `velocity.x`; give each its own output",
+        ),
+        (
             "[variables]\nacceleration.x = \"velocity.x\"",
             plant(),
             "acceleration.y is missing; the other variables of acceleration",
@@ -157,13 +175,43 @@ fn mistakes_are_named_with_their_remedy() {
             plant(),
             "armed: the variable `thrust` is a Real input; it must be a Boolean input",
         ),
+        (
+            "[variables]\nposition.x = \"banana\"",
+            plant(),
+            "position.x: the FMU has no variable `banana`; it has thrust, torque.x, torque.y, torque.z, position.x",
+        ),
+        (
+            "[variables]\nairframe.mass = \"gain\"\nairframe.arm_length = \"gain\"",
+            with(("gain", "parameter", PLAIN)),
+            "the variable `gain` is mapped to two of our parameters, which want 0.7 and 0.275 of it",
+        ),
         ("[variables]\nthrust = 3.0", plant(), "thrust is an input; it has no constant value"),
         ("[variables]\nairframe.mass = \"m\"", plant(), "airframe.mass: the FMU has no variable `m`"),
         ("[variables]\nairframe.mass = \"position.x\"", plant(), "only parameters and inputs can be set"),
         (
+            "[variables]\nairframe.mass = { variable = \"gain\", unit = \"stone\" }",
+            with(("gain", "parameter", PLAIN)),
+            "airframe.mass: the map gives `gain` the unknown unit `stone`; allowed are kg, g",
+        ),
+        (
+            "[variables]\nairframe.mass = { variable = \"gain\", unit = \"ft\" }",
+            with(("gain", "parameter", PLAIN)),
+            "airframe.mass: the variable `gain` has the unit `ft`; it must be one that converts into kg: kg, g",
+        ),
+        (
+            "[variables]\nenvironment.ground_plane = { variable = \"on\", factor = 2 }",
+            with(("on", "parameter", "Boolean")),
+            "only Real variables have a factor, an offset or a unit",
+        ),
+        (
+            "[parameters]\nactuation = 3",
+            with(("actuation", "parameter", "Enumeration declaredType=\"Actuation\"")),
+            "[parameters] actuation: there is no item of the number 3; allowed are rotor_speeds (1), wrench (2)",
+        ),
+        (
             "[parameters]\ngain = true",
             with(("gain", "parameter", PLAIN)),
-            "[parameters] gain: the variable has the type Real",
+            "[parameters] gain: the variable has the type Real, which this value does not fit; give a number",
         ),
         (
             "[parameters]\ngin = 1",
@@ -203,4 +251,47 @@ fn parameters_with_our_names_get_the_vehicles_values() {
     let number = AirframePreset::ALL.iter().position(|preset| *preset == AirframePreset::Iris);
     let number = i32::try_from(number.expect("a preset") + 1).expect("a number");
     assert_eq!(value("airframe.preset"), Some(StartValue::Integer(number)));
+}
+
+/// A plant that can be driven in two ways is told which one, unless the map says it.
+#[test]
+fn a_plant_is_told_what_drives_it() {
+    let rotors = ["rotor.command[1]", "rotor.command[2]", "rotor.command[3]", "rotor.command[4]"];
+    let choice = "Enumeration declaredType=\"Actuation\"";
+    let rows: Vec<Row<'_>> = plant()
+        .into_iter()
+        .chain(rotors.map(|name| (name, "input", PLAIN)))
+        .chain([("actuation", "parameter", choice)])
+        .collect();
+    let told = |map: &str| {
+        let mapping = resolve(map, &rows).expect("a mapping");
+        mapping.values.into_iter().find(|(name, ..)| name == "actuation").map(|(.., value)| value)
+    };
+    assert_eq!(told(""), Some(StartValue::Integer(1)));
+    assert_eq!(told("[variables]\nthrust = \"thrust\"\n"), Some(StartValue::Integer(2)));
+    let contrary = "[variables]\nthrust = \"thrust\"\n[parameters]\nactuation = \"rotor_speeds\"\n";
+    assert_eq!(told(contrary), Some(StartValue::Integer(1)));
+}
+
+/// A parameter is written in the unit of its variable, which the map may say; a text has another reference than a number of the same
+/// number.
+#[test]
+fn parameters_are_converted_as_the_map_says() {
+    let rows: Vec<Row<'_>> = plant()
+        .into_iter()
+        .chain([("m", "parameter", PLAIN), ("arm", "parameter", METRE), ("note", "parameter", "String")])
+        .collect();
+    let map = "[variables]\nairframe.mass = { variable = \"m\", unit = \"g\" }\n\
+               airframe.arm_length = { variable = \"arm\", factor = 0.5, offset = 0.075 }\n[parameters]\nnote = \"odd\"\n";
+    let mut description = model(&rows);
+    let number = description.variable("m").expect("a variable").reference;
+    let note = description.variables.iter_mut().find(|variable| variable.name == "note").expect("a variable");
+    note.reference = number;
+    let map = Map::parse(map).expect("a map");
+    let mapping = Mapping::new(&map, &description, &Configuration::default()).expect("a mapping");
+    let value =
+        |name: &str| mapping.values.iter().find(|(known, ..)| known == name).map(|(.., value)| value.clone());
+    assert_eq!(value("m"), Some(StartValue::Real(0.7 / 0.001)));
+    assert_eq!(value("arm"), Some(StartValue::Real((0.275 - 0.075) / 0.5)));
+    assert_eq!(value("note"), Some(StartValue::Text("odd".to_owned())));
 }

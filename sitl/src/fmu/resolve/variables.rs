@@ -130,19 +130,39 @@ impl Resolver<'_> {
         let Some(name) = given.or(declared) else { return Ok((None, si())) };
         let defined = self.description.unit(name).filter(|unit| unit.dimension.is_some()).cloned();
         let unit = defined.or_else(|| Unit::known(name)).ok_or_else(|| {
+            let of = &variable.name;
+            let fitting = self.fitting_units(group);
+            if given.is_some() {
+                return format!("{signal}: the map gives `{of}` the unknown unit `{name}`; allowed are {fitting}");
+            }
             format!(
-                "{signal}: the unit `{name}` of the variable `{}` is not defined; say which one it is: {signal} = {{ variable = \
-                 \"{}\", unit = \"{}\" }}",
-                variable.name, variable.name, group.unit
+                "{signal}: the FMU does not define the unit `{name}` of the variable `{of}`; say which one it is: {signal} = {{ \
+                 variable = \"{of}\", unit = \"{}\" }}; allowed are {fitting}",
+                group.unit
             )
         })?;
         if unit.dimension != Some(group.dimension) {
             return Err(format!(
-                "{signal}: the variable `{}` has the unit `{name}`; it must be one that converts into {}",
-                variable.name, group.unit
+                "{signal}: the variable `{}` has the unit `{name}`; it must be one that converts into {}: {}",
+                variable.name,
+                group.unit,
+                self.fitting_units(group)
             ));
         }
         Ok((Some(name.to_owned()), unit))
+    }
+
+    /// Units that a group can have: those in common use, and those that the FMU defines.
+    fn fitting_units(&self, group: &Group) -> String {
+        let defined = self.description.units.iter().filter(|unit| unit.dimension == Some(group.dimension));
+        let mut names: Vec<&str> = Unit::known_of(group.dimension).collect();
+        for unit in defined {
+            if !names.contains(&unit.name.as_str()) {
+                names.push(&unit.name);
+            }
+        }
+        names.truncate(MOST_NAMES);
+        names.join(", ")
     }
 }
 
@@ -159,8 +179,21 @@ fn channel(
 /// A variable that the FMU does not have.
 pub(super) fn unknown(signal: &str, name: &str, description: &ModelDescription) -> String {
     let names = description.variables.iter().map(|variable| variable.name.as_str());
-    let meant = nearest(name, names).map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default();
-    format!("{signal}: the FMU has no variable `{name}`{meant}")
+    match nearest(name, names.clone()) {
+        Some(meant) => format!("{signal}: the FMU has no variable `{name}`; did you mean `{meant}`?"),
+        None => format!("{signal}: the FMU has no variable `{name}`; it has {}", listed(names.collect())),
+    }
+}
+
+/// Names, as many as a message bears.
+fn listed(mut names: Vec<&str>) -> String {
+    let rest = names.len().saturating_sub(MOST_NAMES);
+    names.truncate(MOST_NAMES);
+    match (names.is_empty(), rest) {
+        (true, _) => "none".to_owned(),
+        (_, 0) => names.join(", "),
+        _ => format!("{} and {rest} more", names.join(", ")),
+    }
 }
 
 /// A group that must be there and is not.
@@ -174,15 +207,12 @@ pub(super) fn missing(
     let signals: Vec<String> = group.signals().collect();
     let wanted = Causality::Output;
     let outputs = description.variables.iter().filter(|variable| variable.causality == wanted);
-    let mut names: Vec<&str> = outputs.map(|variable| variable.name.as_str()).collect();
-    let rest = names.len().saturating_sub(MOST_NAMES);
-    names.truncate(MOST_NAMES);
-    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+    let names: Vec<&str> = outputs.map(|variable| variable.name.as_str()).collect();
     format!(
-        "no {causality} for {} ({}, {}); map it in [variables] of a --map; its outputs are {}{more}",
+        "no {causality} for {} ({}, {}); map it in [variables] of a --map; its outputs are {}",
         signals.join(", "),
         group.description,
         group.unit,
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+        listed(names),
     )
 }

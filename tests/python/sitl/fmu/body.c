@@ -1,7 +1,8 @@
 /* A rigid body over flat ground, driven by a thrust and three torques: axes east, north, up and forward, left, up; angles in degrees.
  *
  * It is compiled against the headers of the standard, and shares nothing with the vehicle that it is flown by. FAULT makes it fail
- * from 3 s of simulation time on. */
+ * from 3 s of simulation time on. ENVIRONMENT says what it hands to the logger: what it was given, a pointer of its own, or none.
+ * Without GROUND nothing carries it. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,16 @@
 #define FAULT 0
 #endif
 
+#define GIVEN 0
+#define OWN 1
+#define NONE_AT_ALL 2
+#ifndef ENVIRONMENT
+#define ENVIRONMENT GIVEN
+#endif
+#ifndef GROUND
+#define GROUND 1
+#endif
+
 enum { MASS, JX, JY, JZ, START_EAST, START_NORTH, START_YAW, THRUST, TX, TY, TZ, EAST, NORTH, UP, VE, VN, VU, ROLL, PITCH, YAW, P, Q, R, COUNT };
 
 static int *volatile nowhere;
@@ -33,6 +44,13 @@ typedef struct {
     const fmi2CallbackFunctions *callbacks;
     char name[64];
 } Body;
+
+static void *environment(const Body *body)
+{
+    static char own[256];
+    memset(own, 0xff, sizeof own);
+    return ENVIRONMENT == OWN ? own : ENVIRONMENT == NONE_AT_ALL ? NULL : body->callbacks->componentEnvironment;
+}
 
 static void show(Body *body)
 {
@@ -71,7 +89,7 @@ static void move(Body *body, double h)
         body->velocity[axis] += h * (v[THRUST] * up[axis] / v[MASS] - (axis == 2 ? 9.81 : 0));
         w[axis] += h * torque[axis] / v[JX + axis];
     }
-    if (body->place[2] <= 0 && body->velocity[2] <= 0) {
+    if (GROUND && body->place[2] <= 0 && body->velocity[2] <= 0) {
         /* It stands as it was put down, level. */
         double yaw = atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
         memset(body->velocity, 0, sizeof body->velocity);
@@ -89,7 +107,7 @@ static fmi2Status fail(Body *body, double time)
 {
     if (FAULT == 0 || time < 3.0)
         return fmi2OK;
-    body->callbacks->logger(body->callbacks->componentEnvironment, body->name, fmi2Warning, "logStatusWarning", "at %.3f s: %s %d", time, "fault", FAULT);
+    body->callbacks->logger(environment(body), body->name, fmi2Warning, "logStatusWarning", "at %.3f s: %s %d", time, "fault", FAULT);
     switch (FAULT) {
     case SEGFAULT:
         *nowhere = 1;
@@ -141,7 +159,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
     body->place[0] = body->value[START_EAST], body->place[1] = body->value[START_NORTH];
     body->attitude[0] = cos(yaw / 2), body->attitude[3] = sin(yaw / 2);
     show(body);
-    body->callbacks->logger(body->callbacks->componentEnvironment, body->name, fmi2Warning, "logAll", "%s has a mass of %.2f kg, %d%%", body->name, body->value[MASS], 100);
+    body->callbacks->logger(environment(body), body->name, fmi2Warning, "logAll", "%s has a mass of %.2f kg, %d%%", body->name, body->value[MASS], 100);
     return fmi2OK;
 }
 
