@@ -207,7 +207,7 @@ impl<T: Real> Footing<T> {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
-    use super::{HoldingMargins, contact};
+    use super::{HoldingMargins, contact, reach_m};
     use crate::plant::events::branches::ByValue;
     use crate::{Airframe, Direction, External, GRAVITY_M_S2, RigidBody, Rotor, RotorLayout};
 

@@ -232,8 +232,11 @@ fn with_changes() -> Flight {
         .fly(2, &eventful)
 }
 
+/// Flies a flight.
+type Fly = fn() -> Flight;
+
 /// The flights with their names. The shaper finds roots by the platform's C library: its flight is no other platform's.
-fn flights() -> Vec<(&'static str, fn() -> Flight)> {
+fn flights() -> Vec<(&'static str, Fly)> {
     fn straight(configuration: &Configuration, inputs: &impl InputSignal) -> Flight {
         Flight::new(configuration, &inputs.at(0)).fly(5, inputs)
     }
