@@ -29,6 +29,8 @@ pub(crate) struct Instance<M: Model> {
     last_step_failed: bool,
     /// Held as long as the instance is there.
     _share: Box<dyn Any>,
+    /// Whether the length of a step has been warned of.
+    warned_of_step: bool,
 }
 
 impl<M: Model> Instance<M> {
@@ -45,6 +47,7 @@ impl<M: Model> Instance<M> {
             outputs: None,
             last_step_failed: false,
             _share: M::share(),
+            warned_of_step: false,
         }
     }
 
@@ -116,7 +119,7 @@ impl<M: Model> Instance<M> {
         self.derivatives.clear();
         self.model = None;
         self.outputs = None;
-        self.last_step_failed = false;
+        (self.last_step_failed, self.warned_of_step) = (false, false);
         self.logger.event("reset");
         Ok(())
     }
@@ -129,6 +132,13 @@ impl<M: Model> Instance<M> {
         self.outputs = None;
         let derivatives = std::mem::take(&mut self.derivatives);
         let model = built(&mut self.model, &self.settings)?;
+        let step_us = end.time_us.saturating_sub(model.time_us());
+        if !self.warned_of_step
+            && let Some(warning) = model.warning_of_step(step_us)
+        {
+            self.logger.warning(&warning);
+            self.warned_of_step = true;
+        }
         let inputs = &self.settings.inputs;
         let outcome = if derivatives.is_empty() {
             model.advance_to(end.time_us, &|_| inputs.clone())

@@ -123,6 +123,12 @@ pub trait Model: Sized + 'static {
         Vec::new()
     }
 
+    /// What its user should know about a communication step of so many µs, before the run advances over it: a sentence. It is logged as
+    /// a warning, once in a run.
+    fn warning_of_step(&self, _step_us: u64) -> Option<String> {
+        None
+    }
+
     /// The message that is logged when initialization ends.
     fn initialized(&self) -> String {
         "initialized".to_owned()

@@ -91,6 +91,32 @@ fn a_tolerance_is_ignored_in_silence(subject: &'static Subject) {
     instance.fly(0.0, 0.05, 2);
 }
 
+/// Controllers that are stepped far more coarsely than they sample say so, once in a run.
+#[test]
+fn a_coarse_step_of_the_controllers_is_warned_of_once() {
+    let mut instance = Instance::new(crate::controller());
+    for _run in 0..2 {
+        instance.initialize();
+        instance.log.take();
+        instance.fly(0.0, 0.02, 5);
+        assert_eq!(instance.log.take(), []);
+        instance.fly(0.1, 0.15, 2);
+        let said = instance.log.take();
+        let [warning] = said.as_slice() else { panic!("one warning is expected: {said:?}") };
+        assert_eq!(warning.category, "logStatusWarning");
+        assert!(
+            warning.text.contains("0.15 s is much longer than the attitude controller's sample time, 0.01 s")
+        );
+        assert!(warning.text.ends_with("use steps of at most 0.01 s"), "{}", warning.text);
+        assert_eq!(instance.reset(), OK);
+    }
+    let mut closed_loop = Instance::new(crate::closed_loop());
+    closed_loop.initialize();
+    closed_loop.log.take();
+    closed_loop.fly(0.0, 0.15, 2);
+    assert_eq!(closed_loop.log.take(), []);
+}
+
 for_each_model! {
     a_tolerance_is_ignored_in_silence,
     categories_are_selected,

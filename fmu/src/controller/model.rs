@@ -22,6 +22,9 @@ use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
 use crate::tables::{arrays, numbers};
 
+/// A communication step of more sample times of the attitude controller than that is warned of.
+const MOST_SAMPLES: u64 = 2;
+
 /// The controllers of a quadrotor, without a vehicle.
 ///
 /// A step from one communication point to the next samples at the instants of the control loop from the first one, inclusive, to
@@ -237,6 +240,19 @@ impl Model for Controller {
 
     fn warnings(&self) -> Vec<String> {
         self.control.stability().warnings().iter().map(ToString::to_string).collect()
+    }
+
+    /// A master that couples controllers and vehicle with long steps makes each sample act on an old measurement.
+    fn warning_of_step(&self, step_us: u64) -> Option<String> {
+        let sample_us = self.configuration().controllers.attitude.sample_time_us;
+        if step_us <= MOST_SAMPLES * sample_us {
+            return None;
+        }
+        let [step_s, sample_s] = [step_us, sample_us].map(|time_us| time_us as f64 / 1e6);
+        Some(format!(
+            "a communication step of {step_s} s is much longer than the attitude controller's sample time, {sample_s} s: samples within it \
+             act on measurements that are up to {step_s} s old, by which a vehicle can be lost; use steps of at most {sample_s} s"
+        ))
     }
 
     fn initialized(&self) -> String {

@@ -144,6 +144,26 @@ fn a_flight_without_shaping_does_not_allocate() {
     assert_eq!(allocations.count_total, 0);
 }
 
+/// Planning is what allocates, in the trajectory library: so often for a new goal, so often for a new heading, and never between.
+#[test]
+fn the_shaper_allocates_when_it_plans_and_only_then() {
+    const OF_A_WAY: u64 = 4;
+    const OF_A_TURN: u64 = 4;
+    let first = goal([5.0, 5.0, -10.0], 0.0);
+    let mut simulation = Simulation::new(&Configuration::default(), &first).unwrap();
+    let mut allocated = |until_us, inputs: &Inputs| {
+        let during = || simulation.advance_to(until_us, inputs).unwrap();
+        allocation_counter::measure(during).count_total
+    };
+    allocated(1_000_000, &first);
+    assert_eq!(allocated(2_000_000, &first), 0);
+    let farther = goal([7.0, -3.0, -12.0], 0.0);
+    assert_eq!(allocated(2_100_000, &farther), OF_A_WAY);
+    let turned = goal([7.0, -3.0, -12.0], 0.5);
+    assert_eq!(allocated(2_200_000, &turned), OF_A_TURN);
+    assert_eq!(allocated(3_000_000, &turned), 0);
+}
+
 /// Saved states may come from anywhere: bytes of the right form whose clocks contradict one another are refused.
 #[test]
 fn impossible_states_are_refused() {
