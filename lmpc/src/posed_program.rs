@@ -114,7 +114,7 @@ impl PosedProgram {
             signals.filter(|signal| signal.columns(known, terms).amax() > 0.0).collect();
         for (sample, signal) in signals.iter().enumerate() {
             for (at, direction) in limit.directions.row_iter().enumerate() {
-                let of_plan = &direction * signal.columns(known, terms) * self.inverse.transpose();
+                let of_plan = direction * signal.columns(known, terms) * self.inverse.transpose();
                 let give = limit.relaxation / libm::sqrt(slack_cost);
                 let length = libm::sqrt(of_plan.norm_squared() + give * give);
                 let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
@@ -123,9 +123,9 @@ impl PosedProgram {
                 self.left.view_mut((row, 0), (1, terms)).copy_from(&(of_plan * scale));
                 self.left[(row, terms)] = -give * scale;
                 self.rows.push(PosedRow {
-                    of_measured: (&direction * &limit.state).transpose(),
-                    of_input: (&direction * &limit.input).transpose(),
-                    of_state: (&direction * signal.columns(0, known)).transpose(),
+                    of_measured: (direction * &limit.state).transpose(),
+                    of_input: (direction * &limit.input).transpose(),
+                    of_state: (direction * signal.columns(0, known)).transpose(),
                     bound: first_bound + at,
                     moved: (0..components)
                         .map(|component| {
