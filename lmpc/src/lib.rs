@@ -16,6 +16,7 @@
 //! | u(k), Δu(k), and how they were found | [`Step`], [`Status`] | |
 //! | K_s, S, K of a plan about a stabilizing feedback | [`StabilizedDesign`], [`StabilizedMpc`] | |
 //! | C, D and directions of a limited signal; its relaxation | [`SignalLimit`] | |
+//! | z₀, G, b of the program that it makes, for another solver | [`PosedProgram`] | |
 //! | Σ xᵀQx + ΔuᵀRΔu of a flight; designs compared by it | [`ClosedLoop`], [`Trial`], [`DesignSearch`] | |
 //! | F, Φ, H of the state-space MPC | [`StateSpaceMpcDesign`] | (28)–(34) |
 //! | x̂(k+1 given k), K, P of the predictor | [`KalmanDesign`], [`KalmanPredictor`] | (24)–(27) |
@@ -72,6 +73,7 @@ mod limited_signals;
 mod model_increment;
 mod moves_walk;
 mod optimal_gain;
+mod posed_program;
 mod prediction;
 mod quadratic_program;
 mod reachability;
@@ -108,6 +110,7 @@ pub use laguerre_mpc::LaguerreMpc;
 pub use limit::{Limit, Quantity};
 pub use limited_signals::MovedSignals;
 pub use model_increment::ModelIncrement;
+pub use posed_program::PosedProgram;
 pub use prediction::Prediction;
 pub use quadratic_program::{Outcome, QuadraticProgram, Solution, WarmStart};
 pub use reachability::{uncontrollable_eigenvalues, unobservable_eigenvalues};

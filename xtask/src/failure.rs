@@ -108,6 +108,14 @@ pub enum Failure {
         /// Why.
         source: io::Error,
     },
+    /// The benchmark's kept figures, or what is written from them, are not as they should be.
+    #[error("{file} {detail}")]
+    Figures {
+        /// The file.
+        file: &'static str,
+        /// What is wrong with it, and the remedy.
+        detail: String,
+    },
     /// A demo flight missed its goal, as its table says.
     #[error("a flight missed its goal; see the lines marked MISSED above")]
     GoalMissed,

@@ -2,6 +2,7 @@
 
 mod assets;
 mod bills;
+mod bench;
 mod book;
 mod counts;
 mod crates;
@@ -121,6 +122,13 @@ enum Task {
         #[arg(long, conflicts_with = "gain")]
         tune: bool,
     },
+    /// Measures the controllers, the engine, the FMU and the vehicle beside their peers: target/bench/report.html, report.md, results.json.
+    ///
+    /// Peers come from the registry of Python packages; one that cannot be installed is reported missing.
+    Bench {
+        #[command(flatten)]
+        options: bench::Options,
+    },
     /// Builds the book into target/book; a warning is an error.
     Book,
     /// Packages lmpc, quadrotor and fmi as for a registry, and compiles them with the oldest dependencies that they allow.
@@ -218,6 +226,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::ModelDescription => fmu::write_description(&workspace, &progress),
         Task::Demo => demo::fly(&workspace, &progress),
         Task::Paper { gain, tune } => paper::run(&workspace, &progress, gain.as_deref(), *tune),
+        Task::Bench { options } => bench::run(&workspace, &progress, options),
         Task::Book => book::build(&workspace, &progress),
         Task::Counts { update } => counts::run(&workspace, &progress, *update),
         Task::Crates => crates::check(&workspace, &progress),

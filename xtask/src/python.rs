@@ -83,6 +83,13 @@ const WHEEL_LAYERS: [Layer; 2] = [
     },
 ];
 
+/// The benchmark, whose peers are installed on top, as far as they can be.
+const BENCH_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing the benchmark's Python packages (first time; downloads about 80 MB)",
+    lists: &[Pinned { file: "../../bench/python/base.txt", complete: false }],
+    made_from: "made-from.txt",
+}];
+
 /// What the tests of the installed Python package need beside it.
 const PACKAGE_LAYERS: [Layer; 1] = [Layer {
     what: "Installing what the Python package is tested with (first time; downloads about 100 MB)",
@@ -108,6 +115,8 @@ pub enum Packages {
     Book,
     /// The optimal flights of the paper's report.
     Optimum,
+    /// The benchmark without its peers.
+    Bench,
     /// The linker for other platforms.
     Zig,
     /// What writes the Python package for this machine.
@@ -128,6 +137,7 @@ impl Packages {
             Self::Tests => ("venv", &LAYERS, 2),
             Self::Book => ("venv-book", &BOOK_LAYERS, 1),
             Self::Optimum => ("venv-optimum", &OPTIMUM_LAYERS, 1),
+            Self::Bench => ("venv-bench", &BENCH_LAYERS, 1),
             Self::Zig => ("venv-zig", &ZIG_LAYERS, 1),
             Self::Wheel => ("venv-wheel", &WHEEL_LAYERS, 1),
             Self::WheelForAll => ("venv-wheel", &WHEEL_LAYERS, 2),
@@ -192,6 +202,21 @@ impl Python {
         }
         install.arg("--requirement").arg(sources.join(list.file));
         if process::status(&mut install)?.success() { Ok(()) } else { Err(Failure::Packages) }
+    }
+
+    /// The folder of the environment.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Installs a package with what it needs within the versions of a list, if that is possible; tells whether it was. Options of pip
+    /// may follow the package.
+    pub fn installs(&self, package: &str, constraint: &Path) -> Result<bool, Failure> {
+        let mut install = self.command();
+        install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input"]);
+        install.args(["--prefer-binary", "--no-compile", "--constraint"]).arg(constraint);
+        install.args(package.split_whitespace()).stderr(Stdio::null());
+        Ok(process::status(&mut install)?.success())
     }
 
     /// Installs a wheel with nothing else, in place of the one that is there.

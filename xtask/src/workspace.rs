@@ -117,6 +117,11 @@ impl Workspace {
         self.target.join(name)
     }
 
+    /// The benchmark's sources and kept results.
+    pub fn bench(&self) -> PathBuf {
+        self.root.join("bench")
+    }
+
     /// Sources of the book.
     pub fn book(&self) -> PathBuf {
         self.root.join("book")
