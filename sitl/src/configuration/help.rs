@@ -14,6 +14,8 @@ pub const FLEET: &str = "Several vehicles";
 pub const SIMULATION: &str = "Simulation";
 /// What is written and read.
 pub const FILES: &str = "Records, logs and files";
+/// The page in a browser.
+pub const VIEW: &str = "Live page";
 /// Models of others.
 pub const FMU: &str = "FMU in place of ours";
 /// Hardware and software in the loop.
@@ -77,6 +79,7 @@ Examples:
   Record       lmpc-sitl --record flight.lmpc
   Replay       lmpc-sitl --replay flight.lmpc
   Flight logs  lmpc-sitl --log-dir logs --log-start boot
+  Live page    lmpc-sitl --view --speed 2
   FMU          lmpc-sitl --fmu plant.fmu --map plant.toml
   PX4          lmpc-sitl --hil 4560
 
