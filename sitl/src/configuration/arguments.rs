@@ -357,8 +357,8 @@ pub struct Arguments {
 
     /// Show a recorded flight in a browser (.ulg or .csv)
     ///
-    /// A ULog of --log-dir, or a table such as FMPy's results of LmpcQuadrotor.fmu. Nothing is simulated; only --view and --log
-    /// go with this flag. Ctrl-C ends it.
+    /// A ULog of --log-dir, or a table such as FMPy's results of LmpcQuadrotor.fmu. Nothing is simulated; only --view,
+    /// --ready-file and --log go with this flag. Ctrl-C ends it.
     #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = VIEW, hide_short_help = true)]
     pub view_record: Option<PathBuf>,
 

@@ -51,11 +51,6 @@ impl Clock {
         self.speed
     }
 
-    /// Its simulation time, µs.
-    pub fn time_us(&self) -> u64 {
-        self.time_us
-    }
-
     /// Goes on for a time although it is paused. Whether it is paused.
     pub fn step(&mut self, time_us: u64) -> bool {
         let paused = self.speed == Speed::Paused;

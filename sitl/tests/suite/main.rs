@@ -26,6 +26,7 @@ mod guided;
 mod guided_attitude;
 mod hil;
 mod instruments;
+mod live_page;
 mod log_download;
 mod long_answers;
 mod lossy;

@@ -34,13 +34,21 @@ fn session(arguments: &[&str]) -> Result<Session, Failure> {
 
 impl Pilot {
     fn of(arguments: &[&str]) -> Self {
-        let session = session(&[&["--view", "127.0.0.1:0"], arguments].concat()).expect("free ports");
-        let url = session.pilot_url().expect("a page");
-        let (address, token) =
-            url.strip_prefix("http://").and_then(|url| url.split_once("/#token=")).expect(&url);
+        let arguments: Vec<String> =
+            ["--view", "127.0.0.1:0"].iter().chain(arguments).map(|word| (*word).to_owned()).collect();
         let stop = Arc::new(AtomicBool::new(false));
         let told = Arc::clone(&stop);
-        let program = std::thread::spawn(move || session.run(&told));
+        let (tell, opened) = std::sync::mpsc::channel();
+        // A session stays in its thread.
+        let program = std::thread::spawn(move || {
+            let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let session = session(&words).expect("free ports");
+            tell.send(session.pilot_url().expect("a page")).expect("the test waits");
+            session.run(&told)
+        });
+        let url = opened.recv_timeout(PATIENCE).expect("a page");
+        let (address, token) =
+            url.strip_prefix("http://").and_then(|url| url.split_once("/#token=")).expect(&url);
         let stream = TcpStream::connect(address).expect("a server");
         stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
         let (mut browser, _) =
