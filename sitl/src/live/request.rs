@@ -47,10 +47,7 @@ impl Request {
                 let [unit, kind, instance] = fault.numbers().map(|number| number as f32);
                 vec![long(MavCmd::MAV_CMD_INJECT_FAILURE, [unit, kind, instance, 0.0, 0.0, 0.0, 0.0])]
             }
-            Action::Wind { speed_m_s, from_deg } => vec![
-                parameter(system, "SIM_WIND_DIR", within(*from_deg, -360.0, 360.0, "direction", "degrees")?),
-                parameter(system, "SIM_WIND_SPD", within(*speed_m_s, 0.0, 50.0, "wind", "m/s")?),
-            ],
+            Action::Wind { speed_m_s, from_deg } => wind(*speed_m_s, *from_deg, autopilot)?,
             Action::Speed { factor } => vec![parameter(system, SPEED_PARAMETER, *factor)],
             // Clocks know of it, vehicles do not.
             Action::Step { .. } => Vec::new(),
@@ -62,6 +59,21 @@ impl Request {
 fn within(value: f64, least: f64, most: f64, what: &str, unit: &str) -> Result<f64, String> {
     let is_fine = (least..=most).contains(&value);
     if is_fine { Ok(value) } else { Err(format!("{what} {value} {unit}; use {least} to {most} {unit}")) }
+}
+
+/// Only ArduPilot has parameters for it.
+fn wind(speed_m_s: f64, from_deg: f64, autopilot: &Autopilot) -> Result<Vec<MavMessage>, String> {
+    if !autopilot.identity().is_ardupilot() {
+        return Err(
+            "PX4 has no parameters for the wind; set it at the start by --wind, or start with --autopilot \
+                    ardupilot to change it in flight"
+                .to_owned(),
+        );
+    }
+    let system = autopilot.system_id();
+    let from_deg = within(from_deg, -360.0, 360.0, "direction", "degrees")?;
+    let speed_m_s = within(speed_m_s, 0.0, 50.0, "wind", "m/s")?;
+    Ok(vec![parameter(system, "SIM_WIND_DIR", from_deg), parameter(system, "SIM_WIND_SPD", speed_m_s)])
 }
 
 /// PX4 is told how high above sea level and may be armed afterwards, ArduPilot how high above home and is armed before.
