@@ -21,10 +21,19 @@ pub fn texts(workspace: &Workspace) -> Result<Vec<(&'static str, String)>, Failu
     ])
 }
 
-/// The notices of what is linked into some of our packages together; `product` is what they make, for a person.
+/// The notices of what is linked into some of our packages together, the vehicle among them; `product` is what they make, for a person.
 pub fn of_packages(workspace: &Workspace, product: &str, packages: &[&str]) -> Result<String, Failure> {
-    notices(product, &linked_packages(workspace, packages)?)
+    let mut page = notices(product, &linked_packages(workspace, packages)?)?;
+    for (name, license) in PAGE_SCRIPTS {
+        let text = files::read_text(&workspace.root().join(license))?;
+        let _ = write!(page, "\n{}\n{name}\n\n{}\n", "=".repeat(80), text.trim_end());
+    }
+    Ok(page)
 }
+
+/// Scripts of the live page, which are in the vehicle's program, and their licences.
+const PAGE_SCRIPTS: [(&str, &str); 2] =
+    [("three 0.185.1", "viewer/assets/three/LICENSE"), ("uplot 1.6.32", "viewer/assets/uplot/LICENSE")];
 
 const OVERVIEW: &str = "\
 This FMU is licensed under either of

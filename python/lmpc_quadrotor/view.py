@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import subprocess
 import sys
 import webbrowser
 from collections.abc import Sequence
@@ -9,6 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from .files import sitl_path
 
 #: Columns that the page needs, by the names of the FMU's outputs.
 _NEEDED = ["time", "position.x", "position.y", "position.z"]
@@ -40,13 +43,23 @@ def _read(path: Path) -> Any:
     return np.atleast_1d(table)
 
 
+def _serve(path: Path) -> int:
+    try:
+        return subprocess.call([sitl_path(), "--view-record", str(path)])
+    except KeyboardInterrupt:
+        return 130
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Writes the page of a CSV file, and opens it if that is asked for."""
+    """Writes the page of a CSV file and opens it if that is asked for, or serves the live page with the file."""
     parser = argparse.ArgumentParser(prog="python -m lmpc_quadrotor view", description="Writes a page that shows a flight.")
     parser.add_argument("file", type=Path, help="CSV file with the columns time and position.x, .y, .z, as FMPy's --output-file writes it")
     parser.add_argument("--output", type=Path, help="page to write (default: FILE.html)")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
+    parser.add_argument("--serve", action="store_true", help="show it in the live page of lmpc-sitl instead, until Ctrl-C; takes ULogs (.ulg), too")
     chosen = parser.parse_args(arguments)
+    if chosen.serve:
+        return _serve(chosen.file)
     output = chosen.output or chosen.file.with_suffix(".html")
     try:
         output.write_text(flight_page(_read(chosen.file), chosen.file.stem), encoding="utf-8")

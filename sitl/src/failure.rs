@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use quadrotor::{ConfigurationError, SimulationError};
 use vehicle::FlightError;
 use vehicle::parameters::{ParameterFileError, SetError};
+use viewer::ViewerError;
 
 use crate::fleet::Loss;
 use crate::link::LinkError;
@@ -41,6 +42,9 @@ pub enum Failure {
     /// A port or device.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// The live page.
+    #[error("--view: {0}")]
+    View(#[from] ViewerError),
     /// A file that cannot be read or written.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
@@ -122,7 +126,7 @@ impl Failure {
             Self::Lost(losses) => losses.iter().map(|loss| code_of(&loss.error)).max().unwrap_or(1),
             Self::Simulation(_) | Self::Signals(_) => 1,
             Self::Value { .. } | Self::Usage(_) | Self::Configuration(_) | Self::Set(_) => 2,
-            Self::Link(_) => 3,
+            Self::Link(_) | Self::View(_) => 3,
             Self::File { .. } | Self::Content { .. } | Self::Parameters { .. } | Self::Incomplete(_) => 4,
             Self::Differs { .. } | Self::FliesOn { .. } => 5,
         }

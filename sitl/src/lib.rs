@@ -21,6 +21,7 @@ pub mod flight_log;
 pub mod fmu;
 pub mod hil;
 pub mod link;
+pub mod live;
 mod pace;
 mod radio_port;
 mod rarely;

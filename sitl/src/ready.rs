@@ -23,7 +23,7 @@ pub fn forget(path: &Path) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Failure::File`]
-pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
+pub fn write(path: &Path, fleet: &Fleet, view: Option<&str>) -> Result<(), Failure> {
     let of_all = |list: fn(&Links) -> Vec<String>| fleet.hubs().iter().flat_map(list).collect::<Vec<_>>();
     let vehicles = fleet.members().iter().map(|member| {
         let list = |list: fn(&Links) -> Vec<String>| fleet.hubs().get(member.hub()).map(list);
@@ -39,6 +39,7 @@ pub fn write(path: &Path, fleet: &Fleet) -> Result<(), Failure> {
         "addresses": of_all(Links::addresses),
         "links": of_all(Links::descriptions),
         "vehicles": vehicles.collect::<Vec<_>>(),
+        "view": view,
     });
     write_content(path, &content)
 }
@@ -55,6 +56,14 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
         "vehicles": [],
     });
     write_content(path, &content)
+}
+
+/// The same for the page of a recorded flight.
+///
+/// # Errors
+/// [`Failure::File`]
+pub fn write_view(path: &Path, view: &str) -> Result<(), Failure> {
+    write_content(path, &serde_json::json!({ "process_id": std::process::id(), "view": view }))
 }
 
 fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {

@@ -10,6 +10,7 @@ use crate::configuration::{Arguments, Settings, check_replay, file, fmu_listing,
 use crate::failure::Failure;
 use crate::fleet::Loss;
 use crate::hil::{HilSettings, Simulator};
+use crate::live::show_recording;
 use crate::ready;
 use crate::record::{RecordEnd, Replayed, replay};
 use crate::session::Session;
@@ -40,13 +41,21 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         replay(path)?.iter().for_each(|replayed| say(&told(replayed)));
         return Ok(());
     }
+    if let Some(path) = &arguments.view_record {
+        let shown = show_recording(&arguments, path)?;
+        let stop = stop_on_signals().map_err(Failure::Signals)?;
+        arguments.ready_file.as_deref().map(|file| ready::write_view(file, &shown.url())).transpose()?;
+        say(&shown.banner());
+        shown.run(&stop);
+        return Ok(());
+    }
     let stop = stop_on_signals().map_err(Failure::Signals)?;
     let summary = match &arguments.hil {
         Some(address) => simulate(HilSettings::resolve(&arguments, address)?, &stop)?,
         None => {
             let settings = Settings::resolve(&arguments)?;
             let session = Session::new(settings.clone())?;
-            say(banner(&settings, session.fleet()).trim_end());
+            say(banner(&settings, session.fleet(), session.pilot_url().as_deref()).trim_end());
             log(&settings.notes);
             session.run(&stop)
         }

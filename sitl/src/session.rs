@@ -7,6 +7,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use crate::configuration::Settings;
 use crate::failure::Failure;
 use crate::fleet::{Clock, Fleet, Member};
+use crate::live::{LivePage, open_viewer};
 use crate::ready;
 use crate::summary::{Flight, Summary};
 use crate::terminal::{Panel, of_fleet};
@@ -21,6 +22,7 @@ const SHORT_REST: Duration = Duration::from_micros(20);
 pub struct Session {
     settings: Settings,
     fleet: Fleet,
+    page: Option<LivePage>,
 }
 
 impl Session {
@@ -32,9 +34,18 @@ impl Session {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let ready_file = settings.ready_file.as_deref();
         ready_file.map(ready::forget).transpose()?;
-        let fleet = Fleet::open(&settings, since_1970.as_micros() as u64)?;
-        ready_file.map(|path| ready::write(path, &fleet)).transpose()?;
-        Ok(Self { settings, fleet })
+        // A taken port is found before files are written.
+        let viewer = settings.view.as_ref().map(|address| open_viewer(address, None)).transpose()?;
+        let mut fleet = Fleet::open(&settings, since_1970.as_micros() as u64)?;
+        let page = viewer.map(|viewer| LivePage::new(viewer, &mut fleet, Instant::now()));
+        let url = page.as_ref().map(LivePage::pilot_url);
+        ready_file.map(|path| ready::write(path, &fleet, url.as_deref())).transpose()?;
+        Ok(Self { settings, fleet, page })
+    }
+
+    /// The address of the live page for a pilot, if there is one.
+    pub fn pilot_url(&self) -> Option<String> {
+        self.page.as_ref().map(LivePage::pilot_url)
     }
 
     /// The vehicles and their links.
@@ -45,9 +56,9 @@ impl Session {
     /// Flies until it is told to stop, the asked time is over, or no vehicle is left, and ends the files however the flights
     /// went.
     pub fn run(self, stop: &Arc<AtomicBool>) -> Summary {
-        let Self { settings, mut fleet } = self;
+        let Self { settings, mut fleet, mut page } = self;
         let start = Instant::now();
-        fly(&settings, &mut fleet, start, stop);
+        fly(&settings, &mut fleet, page.as_mut(), start, stop);
         let (members, incomplete) = fleet.finish();
         let flights = members
             .iter()
@@ -63,7 +74,13 @@ impl Session {
 }
 
 /// Flies until it is told to stop, the asked time is over, or no vehicle is left.
-fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<AtomicBool>) {
+fn fly(
+    settings: &Settings,
+    fleet: &mut Fleet,
+    mut page: Option<&mut LivePage>,
+    start: Instant,
+    stop: &Arc<AtomicBool>,
+) {
     let mut clocks: Vec<Clock> = settings
         .clocks()
         .into_iter()
@@ -77,6 +94,9 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
         // Answers do not wait for the flight.
         fleet.flush();
         let now = Instant::now();
+        if let Some(page) = &mut page {
+            page.take_orders(fleet, &mut clocks, now);
+        }
         let mut behind = false;
         for clock in &mut clocks {
             if !clock.is_over(fleet) {
@@ -88,6 +108,9 @@ fn fly(settings: &Settings, fleet: &mut Fleet, start: Instant, stop: &Arc<Atomic
         fleet.keep_logs(now);
         fleet.transfer(now);
         fleet.flush();
+        if let Some(page) = &mut page {
+            page.show(fleet, &clocks, now);
+        }
         panel.update(now, fleet.time_us(), |form| of_fleet(fleet, form));
         if !behind {
             std::thread::sleep(if expected { SHORT_REST } else { REST });

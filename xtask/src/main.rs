@@ -1,8 +1,8 @@
 //! Build tooling, run as `cargo xtask`: builds the FMU, writes modelDescription.xml, flies the demo and runs all tests.
 
 mod assets;
-mod bills;
 mod bench;
+mod bills;
 mod book;
 mod counts;
 mod crates;

@@ -9,11 +9,12 @@ use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
 use super::equipment::EquipmentChoice;
-use super::help::{FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
+use super::help::{FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE, VIEW};
 use super::ranged::{non_negative, number, whole};
+use super::view::DEFAULT_VIEW;
 use super::{
     Addressed, AirframeChoice, Clocks, Formation, HomePosition, ListFormat, MeasurementNoise, Ports,
-    TrafficChoice, WindFrom,
+    TrafficChoice, ViewAddress, WindFrom,
 };
 use super::{Conventions, LogFilter};
 use crate::fleet::LockstepPhase;
@@ -351,6 +352,23 @@ pub struct Arguments {
     )]
     pub ftp_write: Option<bool>,
 
+    /// Show the flight in a browser [default: 127.0.0.1:8088]
+    ///
+    /// Prints the address of the page. The page takes commands only with the token in that address; others can only look on.
+    /// HOST defaults to 127.0.0.1: name another address to let other machines see the page. Port 0 is any free port.
+    #[arg(
+        long, env = "LMPC_SITL_VIEW", value_name = "[HOST:]PORT", num_args = 0..=1, default_missing_value = DEFAULT_VIEW,
+        help_heading = VIEW
+    )]
+    pub view: Option<ViewAddress>,
+
+    /// Show a recorded flight in a browser (.ulg or .csv)
+    ///
+    /// A ULog of --log-dir, or a table such as FMPy's results of LmpcQuadrotor.fmu. Nothing is simulated; only --view,
+    /// --ready-file and --log go with this flag. Ctrl-C ends it.
+    #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = VIEW, hide_short_help = true)]
+    pub view_record: Option<PathBuf>,
+
     /// FMU that flies (FMI 2.0 co-simulation)
     ///
     /// As the closed loop, or as the plant under our controllers, by the inputs that it has. Variables with the names of ours are
@@ -436,6 +454,8 @@ impl Arguments {
             log_count: self.log_count.or(file.log_count),
             ftp_root: self.ftp_root.or(file.ftp_root),
             ftp_write: self.ftp_write.or(file.ftp_write),
+            view: self.view.or(file.view),
+            view_record: self.view_record.or(file.view_record),
             fmu: self.fmu.or(file.fmu),
             map: self.map.or(file.map),
             fmu_check: self.fmu_check.or(file.fmu_check),

@@ -35,6 +35,7 @@ impl HilSettings {
             ("signing-key", arguments.signing_key.is_some()),
             ("accept-signing-setup", arguments.accept_signing_setup.is_some()),
             ("rc-port", arguments.rc_port.is_some()),
+            ("view", arguments.view.is_some()),
         ] {
             if given {
                 return Err(wrong(

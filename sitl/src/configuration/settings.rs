@@ -17,8 +17,8 @@ use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{
-    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, fmu, read_plans, read_world, wind_drag,
-    wind_hold,
+    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, ViewAddress, fmu, read_plans, read_world,
+    wind_drag, wind_hold,
 };
 use crate::failure::Failure;
 use crate::files::kept_plans;
@@ -62,6 +62,8 @@ pub struct Settings {
     pub accept_signing_setup: bool,
     /// What flies in place of our closed loop or plant.
     pub fmu: Option<FmuChoice>,
+    /// Where the live page is served, if it is.
+    pub view: Option<ViewAddress>,
     /// File to write when clients can connect.
     pub ready_file: Option<PathBuf>,
     /// Whether the flight is followed in one line, and not in a panel.
@@ -133,6 +135,7 @@ impl Settings {
             signing_key: arguments.signing_key.clone(),
             fmu,
             accept_signing_setup: arguments.accept_signing_setup.unwrap_or(false),
+            view: arguments.view.clone(),
             ready_file: arguments.ready_file.clone(),
             no_panel: arguments.no_panel.unwrap_or(false),
             end_us: end_us(arguments),

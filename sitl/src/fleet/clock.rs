@@ -24,12 +24,14 @@ pub struct Clock {
     members: Range<usize>,
     time_us: u64,
     end_us: Option<u64>,
+    /// Until when it goes on although it is paused, µs.
+    step_to_us: u64,
 }
 
 impl Clock {
     /// A clock that begins to run now.
     pub fn new(speed: Speed, members: Range<usize>, end_us: Option<u64>, now: Instant) -> Self {
-        Self { pace: Pace::new(speed, now, 0), speed, members, time_us: 0, end_us }
+        Self { pace: Pace::new(speed, now, 0), speed, members, time_us: 0, end_us, step_to_us: 0 }
     }
 
     /// Whether it has come to its end, or nobody flies by it any more.
@@ -43,6 +45,25 @@ impl Clock {
         self.end_us.is_some_and(|end_us| self.time_us >= end_us)
     }
 
+    /// Whether a vehicle flies by it.
+    pub fn has(&self, member: usize) -> bool {
+        self.members.contains(&member)
+    }
+
+    /// Simulation time that was asked for.
+    pub fn speed(&self) -> Speed {
+        self.speed
+    }
+
+    /// Goes on for a time although it is paused. Whether it is paused.
+    pub fn step(&mut self, time_us: u64) -> bool {
+        let paused = self.speed == Speed::Paused;
+        if paused {
+            self.step_to_us = self.step_to_us.max(self.time_us).saturating_add(time_us);
+        }
+        paused
+    }
+
     /// Flies its vehicles on to where simulation time should be, for about a share of a burst. Whether it is still
     /// behind after that.
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> bool {
@@ -50,6 +71,9 @@ impl Clock {
         let limit_us = fleet.limit_us(self.members.clone());
         let (goal_us, longest) = match self.pace.goal_us(self.speed, now, self.time_us) {
             None => (limit_us, BURST),
+            Some(goal_us) if self.speed == Speed::Paused => {
+                (goal_us.max(self.step_to_us).min(limit_us), 4 * BURST)
+            }
             Some(goal_us) => (goal_us.min(limit_us), 4 * BURST),
         };
         self.fly_to(fleet, goal_us, longest / clocks.max(1))

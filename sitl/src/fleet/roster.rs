@@ -13,6 +13,7 @@ use super::Member;
 use super::books::Books;
 use super::kept_file::KeptFile;
 use super::lockstep::{Lockstep, Step};
+use super::onlooker::Onlooker;
 use super::reception::Reception;
 use super::signing_keeper::SigningKeeper;
 use crate::configuration::Settings;
@@ -38,6 +39,7 @@ pub struct Fleet {
     pub(super) accept_signing_setup: bool,
     pub(super) books: Books,
     pub(super) reception: Reception,
+    pub(super) onlooker: Onlooker,
     /// Does the work of clients on files.
     _files: FileThread,
     /// Whether the vehicles see one another as traffic.
@@ -97,6 +99,7 @@ impl Fleet {
             accept_signing_setup: settings.accept_signing_setup,
             books,
             reception: Reception::new(hubs.len()),
+            onlooker: Onlooker::default(),
             hubs,
             _files: files,
             shares_traffic: settings.fleet_traffic,
@@ -244,6 +247,7 @@ impl Fleet {
             {
                 lockstep.has_reported();
             }
+            self.onlooker.hear(system, time_us, &outgoing);
             if let Some(frame) = links.send(&outgoing, system) {
                 self.books.traffic(time_us, frame);
             }

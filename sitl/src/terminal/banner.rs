@@ -8,7 +8,7 @@ use crate::hil::{HilSettings, Mount};
 use crate::link::{Endpoint, LinkSpecification, Links};
 
 /// What is running, where, and how to connect to it.
-pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
+pub fn banner(settings: &Settings, fleet: &Fleet, view: Option<&str>) -> String {
     let Some(first) = fleet.members().first() else { return String::new() };
     let origin = first.autopilot().settings().origin;
     let what = match fleet.members() {
@@ -33,6 +33,9 @@ pub fn banner(settings: &Settings, fleet: &Fleet) -> String {
         if let Some(address) = member.radio_address() {
             text.push_str(&format!("  radio of system {}: UDP {address}\n", member.autopilot().system_id()));
         }
+    }
+    if let Some(url) = view {
+        text.push_str(&format!("  live page: {url}\n"));
     }
     // How to connect to one shows how to connect to all.
     for (links, specifications) in fleet.hubs().iter().zip(&settings.hubs).take(1) {

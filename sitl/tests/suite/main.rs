@@ -28,6 +28,7 @@ mod guided_attitude;
 mod hil;
 mod instruments;
 mod latency;
+mod live_page;
 mod log_download;
 mod long_answers;
 mod lossy;

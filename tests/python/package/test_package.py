@@ -1,7 +1,11 @@
 """What the wheel holds, and its programs."""
 
+import json
+import os
+import signal
 import subprocess
 import sys
+import urllib.request
 import zipfile
 from importlib import metadata
 from pathlib import Path
@@ -98,6 +102,16 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     page = (tmp_path / "flight.html").read_text()
     assert "position.x" in page and "http" not in page.lower().replace("</html", "")
     assert flight_page(Simulation().fly(0.1)).startswith("<!doctype html>")
+    command = [sys.executable, "-m", "lmpc_quadrotor", "view", str(tmp_path / "flight.csv"), "--serve"]
+    served = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "LMPC_SITL_VIEW": "127.0.0.1:0"})
+    try:
+        url = served.stdout.readline().split()[-1]
+        with urllib.request.urlopen(url + "session.json", timeout=10) as answer:
+            assert json.load(answer) == {"recording": "flight.csv"}
+    finally:
+        os.killpg(served.pid, signal.SIGINT)  # as Ctrl-C does: the program below gets it, too
+        served.wait(10)
+    assert run("view", str(tmp_path / "missing.csv"), "--serve").returncode == 4
     (tmp_path / "other.csv").write_text("time,height\n0,1\n")
     wrong = run("view", str(tmp_path / "other.csv"))
     assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z" in wrong.stderr

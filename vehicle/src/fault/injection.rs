@@ -93,6 +93,19 @@ impl Fault {
         }
     }
 
+    /// The numbers of MAV_CMD_INJECT_FAILURE that name it: FAILURE_UNIT, FAILURE_TYPE and the instance. They have no share of
+    /// the thrust: a weak rotor keeps the one that is weak by default.
+    pub fn numbers(&self) -> [u32; 3] {
+        let name = self.kind_name();
+        let name = if name.starts_with("weak") { "wrong" } else { &name };
+        let kind = (0..).zip(KINDS).find(|(_, known)| *known == name).map_or(0, |(number, _)| number);
+        match self {
+            Self::Sensor(sensor, _) => [sensor.number(), kind, 0],
+            Self::Battery(_) => [unit::BATTERY, kind, 0],
+            Self::Rotors(rotors, _) => [unit::MOTOR, kind, rotors.number()],
+        }
+    }
+
     /// Whether it changes what an instrument reads: ideal ones read nothing, they only fall silent.
     pub fn needs_readings(&self) -> bool {
         use SensorFault::{Delayed, Garbage, Slow, Wrong};
@@ -246,7 +259,10 @@ mod tests {
             ((101, 5, 3), "rotor3=weak:0.7"),
             ((101, 0, 0), "rotors=ok"),
         ] {
-            assert_eq!(Fault::of_numbers(unit, kind, instance).expect(text).to_string(), text);
+            let fault = Fault::of_numbers(unit, kind, instance).expect(text);
+            assert_eq!(fault.to_string(), text);
+            let [unit, kind, instance] = fault.numbers();
+            assert_eq!(Fault::of_numbers(unit, kind, instance), Ok(fault), "{text}");
         }
         for (unit, kind, instance) in [(5, 1, 0), (4, 8, 0), (4, 1, 2), (101, 1, 5), (101, 3, 1), (100, 5, 0)]
         {

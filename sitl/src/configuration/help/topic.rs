@@ -55,6 +55,7 @@ topics! {
     "fmu" "an FMU in place of ours" ["fmu", "map", "fmu-check"];
     "hil" "the plant for an external autopilot" ["hil", "hil-mount"];
     "configuration" "file and environment" ["config"];
+    "view" "a page in a browser" ["view", "view-record"];
     "terminal" "what is shown, completions, manual page" ["log", "no-panel", "ready-file", "generate", "help", "version"];
     "exit-codes" "how the program ends" [];
 }

@@ -1,4 +1,4 @@
-//! `--replay FILE` goes with hardly any other flag.
+//! Flags that go with hardly any other: `--replay FILE` and `--view-record FILE`.
 
 use super::Arguments;
 use crate::failure::Failure;
@@ -8,7 +8,31 @@ use crate::failure::Failure;
 /// # Errors
 /// [`Failure::Value`] that names the first such setting.
 pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
-    // Without `..`: whoever adds a setting decides whether it goes with a replay.
+    check(arguments, &["replay"], "--replay, which flies the settings of the record")
+}
+
+/// Refuses what would be ignored: nothing is simulated.
+///
+/// # Errors
+/// [`Failure::Value`] that names the first such setting.
+pub fn check_view_record(arguments: &Arguments) -> Result<(), Failure> {
+    check(arguments, &["view", "view-record", "ready-file"], "--view-record, which simulates nothing")
+}
+
+/// Refuses all settings but some with a flag.
+fn check(arguments: &Arguments, fitting: &[&str], flag: &str) -> Result<(), Failure> {
+    let mut names = given(arguments).into_iter().filter(|(name, given)| *given && !fitting.contains(name));
+    let Some((name, _)) = names.next() else { return Ok(()) };
+    let variable = name.replace('-', "_").to_uppercase();
+    let reason = format!(
+        "cannot be used with {flag}; remove the flag, `{name}` in the configuration file, or LMPC_SITL_{variable}"
+    );
+    Err(Failure::Value { name: format!("--{name}"), reason })
+}
+
+/// All settings but the configuration file and the log, and whether they are given.
+fn given(arguments: &Arguments) -> Vec<(&'static str, bool)> {
+    // Without `..`: whoever adds a setting decides whether it goes with these.
     let Arguments {
         config: _,
         link,
@@ -42,7 +66,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         equipment,
         record,
         record_size,
-        replay: _,
+        replay,
+        view,
+        view_record,
         fmu,
         map,
         fmu_check,
@@ -63,7 +89,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         log: _,
         no_panel,
     } = arguments;
-    let given = [
+    vec![
         ("link", link.is_some()),
         ("instance", instance.is_some()),
         ("system-id", system_id.is_some()),
@@ -95,6 +121,9 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("equipment", equipment.is_some()),
         ("record", record.is_some()),
         ("record-size", record_size.is_some()),
+        ("replay", replay.is_some()),
+        ("view", view.is_some()),
+        ("view-record", view_record.is_some()),
         ("fmu", fmu.is_some()),
         ("map", map.is_some()),
         ("fmu-check", fmu_check.is_some()),
@@ -113,14 +142,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
         ("ready-file", ready_file.is_some()),
         ("no-panel", no_panel.is_some()),
         ("duration", duration.is_some()),
-    ];
-    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
-    let variable = name.replace('-', "_").to_uppercase();
-    let reason = format!(
-        "cannot be used with --replay, which flies the settings of the record; remove the flag, `{name}` in the configuration \
-         file, or LMPC_SITL_{variable}"
-    );
-    Err(Failure::Value { name: format!("--{name}"), reason })
+    ]
 }
 
 #[cfg(test)]
@@ -157,6 +179,7 @@ mod tests {
         ("lockstep", "always"),
         ("traffic", "fleet"),
         ("no-panel", "true"),
+        ("view", "8088"),
     ];
 
     #[test]

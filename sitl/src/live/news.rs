@@ -1,0 +1,117 @@
+//! Modes, faults and lines for the pilot as the page shows them.
+
+use std::collections::VecDeque;
+
+use autopilot::codec::Message;
+use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity, STATUSTEXT_DATA};
+use vehicle::Vehicle;
+use vehicle::fault::{Fault, Rotors, Sensor};
+use viewer::{News, Text, VehicleNews};
+
+use crate::fleet::{Fleet, Member, Overheard};
+
+/// Lines that the page shows.
+const MOST_LINES: usize = 50;
+/// Characters of a line that goes on in the next message.
+const CHUNK: usize = 50;
+/// MAV_RESULT of what is done, and of what has begun.
+const ACCEPTED: [u8; 2] = [0, 5];
+
+/// Puts together what the page says in words.
+#[derive(Debug, Default)]
+pub struct NewsDesk {
+    lines: VecDeque<Text>,
+    next: u64,
+    /// The beginning of a line that goes on, by who says it.
+    begun: Vec<(u8, u16, String)>,
+}
+
+impl NewsDesk {
+    /// Takes in what vehicles have said.
+    pub fn hear(&mut self, heard: Vec<Overheard>) {
+        for Overheard { system, time_us, message } in heard {
+            let Message::Typed(MavMessage::STATUSTEXT(text)) = message else { continue };
+            let Some(line) = self.joined(system, &text) else { continue };
+            self.next += 1;
+            self.lines.push_back(Text {
+                number: self.next,
+                time_s: time_us as f64 / 1e6,
+                vehicle: system,
+                severity: level(text.severity),
+                text: line,
+            });
+            if self.lines.len() > MOST_LINES {
+                self.lines.pop_front();
+            }
+        }
+    }
+
+    /// Why one of these answers refuses a request, if one does.
+    pub fn refusal(&self, heard: &[Overheard]) -> Option<String> {
+        let is_refusal = |one: &Overheard| match &one.message {
+            Message::CommandAck(ack) => !ACCEPTED.contains(&ack.result),
+            Message::Typed(MavMessage::PARAM_ERROR(_)) => true,
+            _ => false,
+        };
+        heard.iter().any(is_refusal).then(|| {
+            // A copy of the desk joins the lines that came with the answer.
+            let mut desk = Self::default();
+            desk.hear(heard.to_vec());
+            let said: Vec<String> = desk.lines.into_iter().map(|line| line.text).collect();
+            if said.is_empty() { "the vehicle refused".to_owned() } else { said.join("; ") }
+        })
+    }
+
+    /// Everything as it is now.
+    pub fn news(&self, fleet: &Fleet) -> News {
+        News {
+            vehicles: fleet.members().iter().map(of_member).collect(),
+            texts: self.lines.iter().cloned().collect(),
+        }
+    }
+
+    /// A whole line, if this was its last piece.
+    fn joined(&mut self, system: u8, text: &STATUSTEXT_DATA) -> Option<String> {
+        let piece = text.text.to_str().unwrap_or_default();
+        if text.id == 0 {
+            return Some(piece.to_owned());
+        }
+        let known = |(from, id, _): &(u8, u16, String)| (*from, *id) == (system, text.id);
+        let before = self.begun.iter().position(known).map(|index| self.begun.swap_remove(index).2);
+        let line = before.unwrap_or_default() + piece;
+        if piece.chars().count() < CHUNK {
+            return Some(line.split_whitespace().collect::<Vec<_>>().join(" "));
+        }
+        self.begun.retain(|(from, _, _)| *from != system);
+        self.begun.push((system, text.id, line));
+        None
+    }
+}
+
+/// Importance as syslog has it.
+fn level(severity: MavSeverity) -> u8 {
+    severity as u8
+}
+
+fn of_member(member: &Member) -> VehicleNews {
+    let vehicle = member.autopilot().vehicle();
+    VehicleNews {
+        id: member.autopilot().system_id(),
+        mode: vehicle.identity().mode_name(vehicle.mode()).to_owned(),
+        faults: faults(vehicle),
+    }
+}
+
+/// What is broken, as it is written.
+fn faults(vehicle: &Vehicle) -> Vec<String> {
+    let faults = vehicle.faults();
+    let sensors = Sensor::ALL
+        .into_iter()
+        .map(|sensor| (faults.sensor(sensor).is_some(), Fault::Sensor(sensor, faults.sensor(sensor))));
+    let battery = (faults.battery().is_some(), Fault::Battery(faults.battery()));
+    let rotors = (1..).zip(faults.rotors()).filter_map(|(number, fault)| {
+        Some((fault.is_some(), Fault::Rotors(Rotors::numbered(number)?, fault)))
+    });
+    let all = sensors.chain([battery]).chain(rotors);
+    all.filter(|(broken, _)| *broken).map(|(_, fault)| fault.to_string()).collect()
+}

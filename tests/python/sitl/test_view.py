@@ -1,0 +1,214 @@
+"""The live page in a headless Chromium. The oracle is telemetry over MAVLink, and a projection of our own."""
+
+import math
+
+import numpy as np
+import pytest
+from browser import Page, browser, needs_browser
+from client import near
+
+SIZES = [(400, 800), (1280, 800), (3840, 2160)]
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    needs_browser()
+    with browser() as running:
+        yield running
+
+
+@pytest.fixture
+def look(chromium):
+    """Opens pages; closes them at the end, and fails for errors in their consoles."""
+    pages = []
+
+    def make(url: str, **options) -> Page:
+        pages.append(Page(chromium, url, **options))
+        return pages[-1]
+
+    yield make
+    for page in pages:
+        page.close()
+
+
+def host(url: str) -> str:
+    return url.split("//")[1].split("/")[0]
+
+
+def test_it_draws_the_vehicle_where_telemetry_says_and_a_click_flies_it_there(start, connect, look):
+    vehicle = start("--view", "127.0.0.1:0")
+    client = connect(vehicle)
+    shown = look(vehicle.ready["view"])
+    page = shown.page
+    shown.wait("page.isPilot && page.frame?.vehicles.length === 1")
+    assert page.locator("#connection").inner_text() == "live"
+    page.get_by_role("button", name="Take off").click()
+    client.wait("LOCAL_POSITION_NED", near((0, 0, -5), within=0.2), timeout=30)
+    assert page.locator("#answer").inner_text() == "take off: accepted"
+
+    page.get_by_role("button", name="Follow").click()  # the view stands still from now on
+    goal = (4.0, -3.0, -5.0)
+    page.mouse.click(*shown.project(goal))
+    client.wait("LOCAL_POSITION_NED", near(goal, within=0.15), timeout=40)
+    at = client.wait("LOCAL_POSITION_NED")
+    shown.wait("Math.hypot(...page.frame.vehicles[0].velocity) < 0.05")
+    drawn = shown.value("page.frame.vehicles[0].position")
+    assert drawn == pytest.approx((at.x, at.y, at.z), abs=0.05)
+    # Its body is where the place is on the screen, and not where it was.
+    assert shown.dark_pixels(shown.project(drawn)) > 25
+    assert shown.dark_pixels(shown.project((0, 0, -5))) < 12
+    # Nothing came from another host.
+    assert {host(url) for url in shown.requests} == {host(vehicle.ready["view"])}
+
+    page.get_by_role("button", name="Set wind").click()
+    page.get_by_text("wind: PX4 has no parameters for the wind").wait_for()
+    page.get_by_label("Fault").select_option("off")
+    page.get_by_label("Unit").select_option("rotor2")
+    page.get_by_role("button", name="Inject").click()
+    shown.wait("page.news.vehicles[0].faults.includes('rotor2=off')")
+
+
+def test_time_stands_goes_by_steps_and_runs_by_keys(start, look):
+    vehicle = start("--view", "127.0.0.1:0")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.frame")
+    shown.page.locator("#view").focus()
+    shown.page.keyboard.press(" ")
+    shown.wait("page.frame.speed === 0")
+    stood = shown.value("page.frame.time")
+    shown.page.keyboard.press(".")
+    shown.wait(f"Math.abs(page.frame.time - {stood} - 0.1) < 0.0015")
+    assert shown.page.get_by_role("button", name="Pause").get_attribute("aria-pressed") == "true"
+    shown.page.get_by_label("Speed").select_option("5")
+    shown.wait(f"page.frame.speed === 5 && page.frame.time > {stood} + 1")
+    shown.page.locator("#view").focus()
+    shown.page.keyboard.press("t")
+    shown.wait("page.frame.vehicles[0].position[2] < -4.8")
+    shown.page.keyboard.press("l")
+    shown.wait("page.frame.vehicles[0].landed && !page.frame.vehicles[0].armed")
+    assert any("Disarmed after landing" in line for line in shown.page.locator("#texts li").all_inner_texts())
+
+
+def test_who_has_no_token_only_looks_on(start, look):
+    vehicle = start("--view", "127.0.0.1:0")
+    pilot = look(vehicle.ready["view"])
+    guest = look(vehicle.ready["view"].split("#")[0])
+    for shown in (pilot, guest):
+        shown.wait("page.frame")
+    pilot.wait("page.isPilot")
+    assert guest.page.get_by_text("View only").is_visible() and not pilot.page.get_by_text("View only").is_visible()
+    assert guest.page.get_by_role("button", name="Take off").is_disabled()
+    assert "token" in guest.page.evaluate("() => window.lmpcView.page.stream.ask(1, 'arm')")
+    pilot.page.get_by_role("button", name="Arm", exact=True).click()
+    for shown in (pilot, guest):
+        shown.wait("page.frame.vehicles[0].armed")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_it_fits_every_screen_in_light_and_dark(start, look, scheme):
+    vehicle = start("--view", "127.0.0.1:0")
+    pages = [look(vehicle.ready["view"], size=size, scheme=scheme) for size in SIZES]
+    for shown, size in zip(pages, SIZES):
+        shown.wait("page.isPilot && page.frame")
+        assert shown.page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+        background = shown.page.evaluate("() => getComputedStyle(document.body).backgroundColor")
+        levels = [int(level) for level in background[4:-1].split(",")]
+        assert (np.mean(levels) > 200) == (scheme == "light"), background
+        for part in ("#view", "#horizon", "#state", "#charts figure"):
+            box = shown.page.locator(part).first.bounding_box()
+            assert box["width"] > 100 and box["height"] > 80, (size, part, box)
+
+
+def test_every_control_has_a_name_and_is_reached_by_keys(start, look):
+    vehicle = start("--view", "127.0.0.1:0", "--vehicles", "2", "--ports", "shared")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.frame?.vehicles.length === 2")
+    names = shown.page.evaluate("""() => [...document.querySelectorAll("button, input, select, canvas, section")].filter((part) => part.checkVisibility() && !part.closest("figure"))
+        .map((part) => [part.outerHTML.slice(0, 60), part.ariaLabel || part.labels?.[0]?.textContent.trim() || part.textContent.trim()])""")
+    assert len(names) > 25 and not [part for part, name in names if not name]
+    reached = set()
+    for _ in range(60):
+        shown.page.keyboard.press("Tab")
+        reached.add(shown.page.evaluate("() => document.activeElement.id || document.activeElement.dataset.action || document.activeElement.name"))
+    assert {"pause", "step", "speed", "file", "view", "follow", "vehicle", "arm", "land", "north", "kind"} <= reached
+    shown.page.locator("#view").focus()
+    shown.page.keyboard.press("2")
+    shown.wait("page.chosen === 2")
+    assert shown.page.get_by_role("radio", name="Vehicle 2").is_checked()
+    angle = "Math.atan2(view.camera.position.x - view.controls.target.x, view.camera.position.z - view.controls.target.z)"
+    before = shown.value(angle)
+    shown.page.keyboard.press("ArrowRight")
+    shown.wait(f"Math.abs({angle} - {before}) > 0.05")
+
+
+def test_ten_vehicles_are_where_they_stand(start, look):
+    vehicle = start("--view", "127.0.0.1:0", "--vehicles", "10", "--formation", "line,5", "--ports", "shared")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.frame?.vehicles.length === 10")
+    shown.page.get_by_role("button", name="Show all").click()
+    shown.wait("document.querySelectorAll('#labels .vehicle').length === 10")
+    for state in shown.value("page.frame.vehicles"):
+        assert shown.dark_pixels(shown.project(state["position"])) > 12, state["id"]
+
+
+def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
+    plan = tmp_path / "survey.waypoints"
+    home = (47.397742, 8.545594)
+    north = 20 / 111_194.9  # degrees
+    lines = ["QGC WPL 110", f"0\t1\t0\t16\t0\t0\t0\t0\t{home[0]}\t{home[1]}\t488\t1", "1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t6\t1",
+             f"2\t0\t3\t16\t0\t0\t0\t0\t{home[0] + north}\t{home[1]}\t8\t1"]
+    plan.write_text("\n".join(lines) + "\n")
+    vehicle = start("--view", "127.0.0.1:0", "--mission", str(plan), "--set", "GF_MAX_HOR_DIST=40", "--set", "GF_ACTION=1")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.scene.vehicles[0]?.mission.length > 0 && page.scene.vehicles[0].fence")
+    last = shown.value("page.scene.vehicles[0].mission.at(-1).position_m")
+    assert last == pytest.approx((20, 0, -8), abs=0.05)
+    fence = shown.value("page.scene.vehicles[0].fence")
+    assert fence["radius_m"] == 40 and fence["zones"] == []
+    shown.page.get_by_role("button", name="Show all").click()
+    shown.wait("[...document.querySelectorAll('#labels .waypoint')].some((label) => !label.hidden)")
+    expected = shown.project(last)
+    stage = shown.page.locator("#stage").bounding_box()
+    box = shown.page.locator("#labels .waypoint").last.bounding_box()
+    assert math.dist((box["x"], box["y"]), expected) < 30, (box, expected, stage)
+
+
+def test_a_table_is_replayed(start, look, tmp_path):
+    table = tmp_path / "result.csv"
+    times = np.arange(0, 10.001, 0.1)
+    rows = [f"{time:.3f},{time},{-time / 2},{-2.0},0,0.1,0,5.0" for time in times]
+    table.write_text("time,position.x,position.y,position.z,attitude.phi,attitude.theta,attitude.psi,thrust\n" + "\n".join(rows) + "\n")
+    vehicle = start("--view-record", str(table), "--view", "127.0.0.1:0", links=())
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.recording && page.frame")
+    assert shown.page.locator("#recording-name").inner_text() == "result.csv"
+    assert not shown.page.locator("#commands").is_visible()
+    shown.page.keyboard.press(" ")
+    shown.wait("page.recording.paused")
+    shown.page.get_by_role("slider", name="Time in the recording").fill("6")
+    shown.wait("page.frame.time === 6")
+    assert shown.value("page.frame.vehicles[0].position") == pytest.approx((6, -3, -2))
+    assert shown.dark_pixels(shown.project((6, -3, -2))) > 25
+    assert shown.value("page.histories.get(1).time.length") == 61
+
+
+def test_a_log_is_opened_by_the_page_itself(start, connect, look, tmp_path):
+    logs = tmp_path / "logs"
+    vehicle = start("--log-dir", str(logs), "--speed", "10", "--view", "127.0.0.1:0")
+    client = connect(vehicle)
+    client.take_off(height=2.5)
+    client.land()
+    client.wait("HEARTBEAT")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.frame")
+    log, = list(logs.rglob("*.ulg"))
+    shown.page.set_input_files("#file", log)
+    shown.wait("page.recording && page.frame")
+    heights = shown.value("page.recording.states.get(1).map((state) => -state.position[2])")
+    pyulog = pytest.importorskip("pyulog", reason="pyulog is among the packages of `cargo xtask test`")
+    position, = [topic for topic in pyulog.ULog(str(log)).data_list if topic.name == "vehicle_local_position_groundtruth"]
+    assert max(heights) == pytest.approx(-position.data["z"].min(), abs=0.02)
+    shown.page.get_by_role("button", name="Close the recording").click()
+    shown.wait("!page.recording && page.frame")
+    shown.page.set_input_files("#file", {"name": "broken.ulg", "mimeType": "application/octet-stream", "buffer": b"nothing"})
+    shown.page.get_by_text("broken.ulg: The file is no ULog.").first.wait_for()

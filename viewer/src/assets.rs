@@ -1,0 +1,96 @@
+//! The files of the page, within the program.
+
+/// A file.
+#[derive(Clone, Copy, Debug)]
+pub struct Asset {
+    /// Path in the address.
+    pub path: &'static str,
+    /// What browsers are told it is.
+    pub content_type: &'static str,
+    /// Its bytes.
+    pub content: &'static [u8],
+}
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const PLAIN: &str = "text/plain; charset=utf-8";
+const SVG: &str = "image/svg+xml";
+
+macro_rules! file {
+    ($path:literal, $content_type:expr) => {
+        Asset {
+            path: concat!("/", $path),
+            content_type: $content_type,
+            content: include_bytes!(concat!("../assets/", $path)),
+        }
+    };
+}
+
+static ASSETS: [Asset; 24] = [
+    file!("page/index.html", HTML),
+    file!("page/style.css", CSS),
+    file!("page/icon.svg", SVG),
+    file!("page/main.js", SCRIPT),
+    file!("page/stream.js", SCRIPT),
+    file!("page/frame.js", SCRIPT),
+    file!("page/scene.js", SCRIPT),
+    file!("page/craft.js", SCRIPT),
+    file!("page/grid.js", SCRIPT),
+    file!("page/surroundings.js", SCRIPT),
+    file!("page/horizon.js", SCRIPT),
+    file!("page/plots.js", SCRIPT),
+    file!("page/history.js", SCRIPT),
+    file!("page/panel.js", SCRIPT),
+    file!("page/controls.js", SCRIPT),
+    file!("page/replay.js", SCRIPT),
+    file!("page/ulog.js", SCRIPT),
+    file!("page/csv.js", SCRIPT),
+    file!("three/three.module.min.js", SCRIPT),
+    file!("three/three.core.min.js", SCRIPT),
+    file!("three/OrbitControls.js", SCRIPT),
+    file!("three/LICENSE", PLAIN),
+    file!("uplot/uPlot.esm.js", SCRIPT),
+    file!("uplot/uPlot.min.css", CSS),
+];
+
+/// The file of a path; `/` is the page.
+pub fn asset(path: &str) -> Option<&'static Asset> {
+    let path = if path == "/" { "/page/index.html" } else { path };
+    ASSETS.iter().find(|asset| asset.path == path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ASSETS, SCRIPT, asset};
+
+    #[test]
+    fn every_file_that_one_of_them_imports_is_there() {
+        for script in ASSETS.iter().filter(|asset| asset.content_type == SCRIPT) {
+            let text = std::str::from_utf8(script.content).expect("text");
+            let folder = script.path.rsplit_once('/').expect("a folder").0;
+            for import in text.split("from \"").skip(1).filter_map(|rest| rest.split('"').next()) {
+                let path = match import.strip_prefix("../") {
+                    Some(path) => format!("/{path}"),
+                    None => format!("{folder}/{}", import.trim_start_matches("./")),
+                };
+                let is_path = import.starts_with('.') || import.starts_with('/');
+                assert!(!is_path || asset(&path).is_some(), "{} imports {import}", script.path);
+            }
+        }
+    }
+
+    #[test]
+    fn the_page_asks_for_nothing_from_elsewhere() {
+        for file in ASSETS.iter().filter(|file| file.path.starts_with("/page/")) {
+            let text = std::str::from_utf8(file.content).expect("text");
+            for line in
+                text.lines().filter(|line| line.contains("//") && !line.contains("www.w3.org/2000/svg"))
+            {
+                assert!(!line.contains("http://") && !line.contains("https://"), "{}: {line}", file.path);
+            }
+        }
+        assert!(asset("/").is_some_and(|page| page.path == "/page/index.html"));
+        assert!(asset("/../Cargo.toml").is_none() && asset("/page/").is_none());
+    }
+}

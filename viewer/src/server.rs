@@ -1,0 +1,223 @@
+//! The server: a thread of its own, so that browsers cost the simulation nothing.
+
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::JoinHandle;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::ws::{Utf8Bytes, WebSocketUpgrade};
+use axum::extract::{Request, State};
+use axum::http::{HeaderValue, StatusCode, Uri, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{any, get};
+use serde::Serialize;
+use tokio::sync::{oneshot, watch};
+
+use crate::assets::asset;
+use crate::client;
+use crate::frame::Frame;
+use crate::guard;
+use crate::hub::Hub;
+use crate::news::News;
+use crate::order::Order;
+use crate::recording::Recording;
+use crate::scene::Scene;
+use crate::token::Token;
+
+/// Orders that wait for the simulation.
+const MOST_ORDERS: usize = 64;
+/// Longest message of a browser, bytes.
+const LONGEST_MESSAGE: usize = 4096;
+
+/// What every answer says: nothing from other hosts, nothing inline, in no other page, and the address goes nowhere.
+const PROTECTION: [(header::HeaderName, HeaderValue); 5] = [
+    (
+        header::CONTENT_SECURITY_POLICY,
+        HeaderValue::from_static(
+            "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; \
+             base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        ),
+    ),
+    (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+    (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+    (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
+    // Another version of the program may serve the next page.
+    (header::CACHE_CONTROL, HeaderValue::from_static("no-cache")),
+];
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewerError {
+    /// The address cannot be used.
+    #[error("cannot listen on {address}: {source}; choose another address or port")]
+    Address {
+        /// The address.
+        address: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The thread of the server cannot start.
+    #[error("cannot start the server: {0}")]
+    Start(std::io::Error),
+    /// There is no secret token.
+    #[error("cannot make a token: {0}")]
+    Token(#[from] getrandom::Error),
+}
+
+/// A running server.
+#[derive(Debug)]
+pub struct Viewer {
+    hub: Arc<Hub>,
+    address: SocketAddr,
+    orders: Receiver<Order>,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Viewer {
+    /// Listens on a host and a port; port 0 is any free one. The page opens the recording, if there is one.
+    ///
+    /// # Errors
+    /// [`ViewerError`]
+    pub fn open(host: &str, port: u16, recording: Option<Recording>) -> Result<Self, ViewerError> {
+        let unusable = |source| ViewerError::Address { address: format!("{host}:{port}"), source };
+        let bare = host.trim_start_matches('[').trim_end_matches(']');
+        let listener = TcpListener::bind((bare, port)).map_err(unusable)?;
+        listener.set_nonblocking(true).map_err(unusable)?;
+        let address = listener.local_addr().map_err(unusable)?;
+        let (sender, orders) = sync_channel(MOST_ORDERS);
+        let hub = Arc::new(Hub::new(bare.to_owned(), Token::random()?, sender, recording));
+        let (stop, stopped) = oneshot::channel();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_io()
+            .enable_time()
+            .build()
+            .map_err(ViewerError::Start)?;
+        let served = Arc::clone(&hub);
+        let run = move || {
+            runtime.block_on(async {
+                let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
+                tokio::select! {
+                    _stopped = stopped => {}
+                    _never = axum::serve(listener, router(served)) => {}
+                }
+            });
+        };
+        let thread =
+            std::thread::Builder::new().name("viewer".to_owned()).spawn(run).map_err(ViewerError::Start)?;
+        Ok(Self { hub, address, orders, stop: Some(stop), thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The address of the page for someone who may give orders.
+    pub fn pilot_url(&self) -> String {
+        // Behind a # the token goes into no request, no log and no other page.
+        format!("http://{}/#token={}", self.address, self.hub.token.secret())
+    }
+
+    /// Whether anybody looks on.
+    pub fn is_watched(&self) -> bool {
+        self.hub.browsers() > 0
+    }
+
+    /// Replaces the frame that browsers get next. Never waits.
+    pub fn show(&self, frame: &Frame) {
+        self.hub.frames.send_replace(Bytes::from(frame.encode()));
+    }
+
+    /// Replaces the scene, if it has changed.
+    pub fn show_scene(&self, scene: &Scene) {
+        publish(&self.hub.scene, "scene", scene);
+    }
+
+    /// Replaces the news, if they have changed.
+    pub fn tell(&self, news: &News) {
+        publish(&self.hub.news, "news", news);
+    }
+
+    /// The next order that a pilot has given.
+    pub fn next_order(&self) -> Option<Order> {
+        self.orders.try_recv().ok()
+    }
+}
+
+impl Drop for Viewer {
+    fn drop(&mut self) {
+        if let Some(stop) = self.stop.take() {
+            let _ended = stop.send(());
+        }
+        if let Some(thread) = self.thread.take() {
+            let _panicked = thread.join();
+        }
+    }
+}
+
+fn publish(slot: &watch::Sender<Utf8Bytes>, name: &str, content: &impl Serialize) {
+    let text = serde_json::json!({ name: content }).to_string();
+    slot.send_if_modified(|present| {
+        let differs = present.as_str() != text;
+        if differs {
+            *present = Utf8Bytes::from(text);
+        }
+        differs
+    });
+}
+
+fn router(hub: Arc<Hub>) -> Router {
+    Router::new()
+        .route("/stream", any(stream))
+        .route("/session.json", get(session))
+        .route("/recording", get(recording))
+        .fallback(get(file))
+        .layer(from_fn_with_state(Arc::clone(&hub), protect))
+        .with_state(hub)
+}
+
+/// Refuses strangers, and sets what every answer says.
+async fn protect(State(hub): State<Arc<Hub>>, request: Request, next: Next) -> Response {
+    let mut response = match guard::check(request.headers(), &hub.host) {
+        Ok(()) => next.run(request).await,
+        Err(stranger) => (StatusCode::FORBIDDEN, stranger.reason()).into_response(),
+    };
+    response.headers_mut().extend(PROTECTION.map(|(name, value)| (name, value)));
+    response
+}
+
+async fn stream(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Response {
+    upgrade
+        .max_message_size(LONGEST_MESSAGE)
+        .max_frame_size(LONGEST_MESSAGE)
+        .on_upgrade(move |socket| client::serve(socket, hub))
+}
+
+/// What the page is for.
+async fn session(State(hub): State<Arc<Hub>>) -> Response {
+    let recording = hub.recording.as_ref().map(Recording::name);
+    let session = serde_json::json!({ "recording": recording }).to_string();
+    ([(header::CONTENT_TYPE, "application/json")], session).into_response()
+}
+
+async fn recording(State(hub): State<Arc<Hub>>) -> Response {
+    match &hub.recording {
+        Some(recording) => {
+            ([(header::CONTENT_TYPE, "application/octet-stream")], recording.content()).into_response()
+        }
+        None => {
+            (StatusCode::NOT_FOUND, "There is no recording: start with --view-record FILE.\n").into_response()
+        }
+    }
+}
+
+async fn file(uri: Uri) -> Response {
+    match asset(uri.path()) {
+        Some(asset) => ([(header::CONTENT_TYPE, asset.content_type)], asset.content).into_response(),
+        None => (StatusCode::NOT_FOUND, "There is no such file.\n").into_response(),
+    }
+}
