@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use vehicle::parameters::{
     Change, FileFormat, ParameterTable, ParameterValues, SetError, Speed, Statistics, Value,
 };
+use vehicle::plan::PlanKind;
 use vehicle::{ChangeError, Refusal, Vehicle, VehicleSettings};
 
 use crate::codec::parameter_hash;
@@ -84,7 +85,11 @@ impl Parameters {
             conduct: *vehicle.conduct(),
             system_id: self.system_id,
             speed: self.speed,
-            statistics: self.statistics,
+            statistics: Statistics {
+                items: PlanKind::ALL
+                    .map(|kind| vehicle.plans().get(kind).items().len().try_into().unwrap_or(u32::MAX)),
+                ..self.statistics
+            },
         }
     }
 

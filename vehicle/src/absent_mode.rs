@@ -50,7 +50,6 @@ const ARDUPILOT: &[AbsentMode] = &[
     absent(24, "ZigZag", "upload the lines as a mission and use Auto"),
     absent(25, "SystemID", "send the signals by SET_ATTITUDE_TARGET in Guided"),
     absent(26, "Autorotate", "this is a quadrotor; use Land"),
-    absent(27, "Auto RTL", "there is no landing sequence; use RTL"),
     absent(28, "Turtle", "the vehicle cannot lie upside down; restart it"),
 ];
 

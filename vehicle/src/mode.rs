@@ -23,6 +23,8 @@ pub enum Mode {
     Return,
     /// Flies the mission.
     Mission,
+    /// Flies the landing of the mission in place of a way home (ArduPilot: AUTO_RTL). It is chosen and shown; what flies is [`Self::Mission`].
+    MissionLanding,
     /// Lands where it is.
     Land,
     /// Follows set-points (ArduPilot: guided).
@@ -75,6 +77,7 @@ impl Mode {
             | Self::Return
             | Self::SmartReturn
             | Self::Mission
+            | Self::MissionLanding
             | Self::Land
             | Self::Orbit
             | Self::Follow => Leader::Vehicle,

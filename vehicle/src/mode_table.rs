@@ -53,6 +53,7 @@ const MODES: &[Row] = &[
     // ArduCopter takes off in its guided mode.
     row(Mode::Takeoff, known(px4(4, 2), "Takeoff"), shown_as(4, "Guided")),
     row(Mode::Mission, known(px4(4, 4), "Mission"), known(3, "Auto")),
+    row(Mode::MissionLanding, None, known(27, "Auto RTL")),
     row(Mode::Return, known(px4(4, 5), "Return"), known(6, "RTL")),
     row(Mode::Land, known(px4(4, 6), "Land"), known(9, "Land")),
     row(Mode::Offboard, known(px4(6, 0), "Offboard"), known(4, "Guided")),

@@ -16,7 +16,7 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 18] = [
+const ACTIONS: [(MavCmd, CarryOut); 19] = [
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
     (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
@@ -35,6 +35,7 @@ const ACTIONS: [(MavCmd, CarryOut); 18] = [
     (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm),
     (MavCmd::MAV_CMD_RUN_PREARM_CHECKS, check),
     (MavCmd::MAV_CMD_INJECT_FAILURE, inject_failure),
+    (MavCmd::MAV_CMD_BATTERY_RESET, reset_battery),
 ];
 
 const COMMANDS: [CommandEntry; ACTIONS.len()] = {
@@ -182,9 +183,23 @@ fn check(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
         context.say(Severity::Info, "Ready to arm");
     }
     for obstacle in obstacles {
-        context.say(Severity::Warning, &format!("Preflight: {obstacle}"));
+        // Clients of ArduPilot look for its word.
+        let when = if context.identity().is_ardupilot() { "PreArm" } else { "Preflight" };
+        context.say(Severity::Warning, &format!("{when}: {obstacle}"));
     }
     Ok(())
+}
+
+/// A mask of batteries, of which there is one, and the charge in percent that it is said to have.
+fn reset_battery(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let (batteries, percent) = (command.parameter(1), command.parameter(2));
+    if batteries as u32 & 1 == 0 {
+        return Err(Refusal::denied("Battery reset denied: there is only the first battery, bit 0"));
+    }
+    if !(0.0..=100.0).contains(&percent) {
+        return Err(Refusal::denied(format!("Battery reset denied: {percent} %; allowed 0 to 100")));
+    }
+    context.vehicle.refill_battery(percent / 100.0)
 }
 
 /// ArduPilot answers whatever it cannot do now by a failure.

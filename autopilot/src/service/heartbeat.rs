@@ -65,7 +65,7 @@ pub fn last_message(vehicle: &Vehicle) -> MavMessage {
 /// Its fields: other messages have some of them, too.
 pub fn data(vehicle: &Vehicle) -> HEARTBEAT_DATA {
     HEARTBEAT_DATA {
-        custom_mode: vehicle.identity().custom_mode(vehicle.mode()),
+        custom_mode: vehicle.identity().custom_mode(vehicle.shown_mode()),
         mavtype: MavType::MAV_TYPE_QUADROTOR,
         autopilot: match vehicle.identity() {
             Identity::Px4 => MavAutopilot::MAV_AUTOPILOT_PX4,

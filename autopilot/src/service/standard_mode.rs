@@ -96,7 +96,7 @@ fn available(vehicle: &Vehicle, index: u32) -> Vec<MavMessage> {
 
 /// CURRENT_MODE.
 fn current(vehicle: &Vehicle) -> MavMessage {
-    let custom_mode = vehicle.identity().custom_mode(vehicle.mode());
+    let custom_mode = vehicle.identity().custom_mode(vehicle.shown_mode());
     MavMessage::CURRENT_MODE(CURRENT_MODE_DATA {
         standard_mode: standard(vehicle.mode()),
         custom_mode,

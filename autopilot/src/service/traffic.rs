@@ -189,8 +189,14 @@ fn collision(encounter: &Encounter) -> MavMessage {
         src: MavCollisionSrc::MAV_COLLISION_SRC_ADSB,
         action: match encounter.action {
             Action::None => MavCollisionAction::MAV_COLLISION_ACTION_NONE,
-            Action::Return | Action::Land => MavCollisionAction::MAV_COLLISION_ACTION_RTL,
-            Action::Hold | Action::Position => MavCollisionAction::MAV_COLLISION_ACTION_HOVER,
+            Action::Hold | Action::BrakeOrLand | Action::Position | Action::Altitude => {
+                MavCollisionAction::MAV_COLLISION_ACTION_HOVER
+            }
+            Action::Return
+            | Action::TraceOrReturn
+            | Action::MissionLandingOrReturn
+            | Action::TraceOrLand
+            | Action::Land => MavCollisionAction::MAV_COLLISION_ACTION_RTL,
             Action::Warn | Action::Terminate => MavCollisionAction::MAV_COLLISION_ACTION_REPORT,
         },
         threat_level: match encounter.threat {

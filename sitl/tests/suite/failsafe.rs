@@ -1,8 +1,10 @@
 //! Failsafes: every transition of the table is flown, and the documentation draws the table.
 
+use std::collections::BTreeSet;
+
 use crate::common::failsafe_bench::*;
 use vehicle::identity::Identity;
-use vehicle::{Action, Cause};
+use vehicle::{Action, Cause, Mode};
 
 /// Every action that a parameter can choose for a cause is taken and told.
 fn every_action_of(cause: Cause) {
@@ -19,10 +21,14 @@ fn every_action_as(identity: Identity, cause: Cause) {
         // Until the next heartbeat that comes by itself.
         bench.fly(1.1);
         let (vehicle, texts) = (bench.autopilot.vehicle(), bench.texts());
-        // ArduPilot's words for its battery are its own.
+        // ArduPilot's words are its own.
         let told = match cause {
-            Cause::BatteryLow if identity.is_ardupilot() => "Battery 1 is low",
-            Cause::BatteryCritical if identity.is_ardupilot() => "Battery 1 is critical",
+            _ if !identity.is_ardupilot() => cause.name(),
+            Cause::BatteryLow => "Battery 1 is low",
+            Cause::BatteryCritical => "Battery 1 is critical",
+            Cause::GroundStationLost => "GCS Failsafe",
+            Cause::Fence => "Max Alt fence breached",
+            Cause::PositionLost => "EKF Failsafe",
             _ => cause.name(),
         };
         let announced = texts.iter().any(|text| text.starts_with(told));
@@ -30,6 +36,8 @@ fn every_action_as(identity: Identity, cause: Cause) {
         match action {
             Action::None | Action::Warn => assert_eq!(vehicle.mode(), before, "{cause:?} {action:?}"),
             Action::Terminate => assert!(!vehicle.is_armed(), "{cause:?} {action:?}"),
+            // There is no mission with a landing.
+            Action::MissionLandingOrReturn => assert_eq!(vehicle.mode(), Mode::Return, "{cause:?}"),
             _ => assert_eq!(Some(vehicle.mode()), action.mode(), "{cause:?} {action:?}: {texts:?}"),
         }
         assert_eq!(state(&bench), expected_state(cause, action), "{cause:?} {action:?}");
@@ -45,6 +53,7 @@ fn ardupilots_parameters() {
         Cause::BatteryLow,
         Cause::BatteryCritical,
         Cause::BatteryEmergency,
+        Cause::PositionLost,
     ] {
         assert!(choices(Identity::ArduPilot, cause).len() >= 4, "{cause:?}");
         every_action_as(Identity::ArduPilot, cause);
@@ -119,13 +128,15 @@ fn the_documentation_draws_what_the_parameters_can_choose() {
         diagram.lines().map(str::trim).filter(|line| line.contains("-->") && !line.contains("[*]")).collect();
     drawn.sort_unstable();
     let mut meant: Vec<String> = ENDS.iter().map(|(edge, why)| format!("{edge} : {why}")).collect();
-    for action in Action::ALL.into_iter().filter(|action| *action > Action::Warn) {
+    let goal = |action: Action| action.mode().map_or("Terminated".to_owned(), |mode| format!("{mode:?}"));
+    let worse = || Action::ALL.into_iter().filter(|action| *action > Action::Warn);
+    for to in worse().map(goal).collect::<BTreeSet<_>>() {
         let identities = [Identity::Px4, Identity::ArduPilot];
         let all = |cause: Cause| identities.into_iter().flat_map(move |identity| choices(identity, cause));
-        let by = |cause: &Cause| all(*cause).any(|(_, choice)| choice == action);
+        let leads = |action: Action| action > Action::Warn && goal(action) == to;
+        let by = |cause: &Cause| all(*cause).any(|(_, choice)| leads(choice));
         let causes: Vec<String> =
             Cause::ALL.into_iter().filter(by).map(|cause| cause.name().to_lowercase()).collect();
-        let to = action.mode().map_or("Terminated".to_owned(), |mode| format!("{mode:?}"));
         meant.push(format!("Flying --> {to} : {}", causes.join(", ")));
     }
     meant.sort_unstable();

@@ -414,7 +414,7 @@ fn ardupilots_parameters_choose_what_of_the_fence_counts() {
     assert_eq!(breached(&mut bench), Some(Breach::Inside(0)));
     assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 2.0), Some(2.0));
     assert_eq!(breached(&mut bench), None);
-    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 8.0), Some(2.0), "there is no least height");
+    assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 16.0), Some(2.0), "there is no such part");
     assert_eq!(set_cast(&mut bench, "FENCE_TYPE", 1.0), Some(1.0));
     assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, [0.0; 7]), 0);
     assert_eq!(bench.parameters().pop().map(|told| told.param_value), Some(0.0));
@@ -488,6 +488,7 @@ fn nothing_leads_through_a_thin_wall() {
 fn what_is_only_looked_at_may_lie_outside() {
     for identity in [Identity::Px4, Identity::ArduPilot] {
         let mut start = settings(identity);
+        start.conduct.failsafe.fence_enabled = true;
         start.plans.set(PlanKind::Fence, Plan::new(square(&start, 30.0)));
         let mut bench = Bench::of(&start);
         let far = |command: u16| item(&start, command, 0.0, [100.0, 0.0]);
@@ -517,7 +518,8 @@ fn inclusion_zones_combine_as_the_autopilot_does_it() {
         let beside = polygon(start, true, &[[-30.0, -10.0], [-30.0, 60.0], [30.0, 60.0], [30.0, -10.0]]);
         [square(start, 40.0), beside].concat()
     };
-    let start = settings(Identity::ArduPilot);
+    let mut start = settings(Identity::ArduPilot);
+    start.conduct.failsafe.fence_enabled = true;
     let mut bench = Bench::hovering_with(&start);
     assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &zones(&start))), Some(0));
     assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED, "in one of them only");
@@ -534,7 +536,8 @@ fn inclusion_zones_combine_as_the_autopilot_does_it() {
 /// Many clients repeat the first vertex at the end of the ring.
 #[test]
 fn a_polygon_may_be_closed_by_its_first_vertex() {
-    let start = settings(Identity::ArduPilot);
+    let mut start = settings(Identity::ArduPilot);
+    start.conduct.failsafe.fence_enabled = true;
     let ring =
         polygon(&start, true, &[[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0], [-20.0, -20.0]]);
     let mut bench = Bench::hovering_with(&start);
@@ -549,6 +552,7 @@ fn ardupilot_keeps_the_mode_that_comes_back_from_a_breach() {
     const FAILED: u8 = 4;
     for (options, chosen) in [(1.0, FAILED), (0.0, 0)] {
         let mut start = settings(Identity::ArduPilot);
+        start.conduct.failsafe.fence_enabled = true;
         start.conduct.failsafe.fence_ahead = false;
         let mut bench = Bench::hovering_with(&start);
         assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", options), Some(options));

@@ -4,6 +4,7 @@ mod common;
 mod fuzzing;
 
 mod airframes;
+mod ardupilot_safety;
 mod autostart;
 mod combinations;
 mod dataflash;

@@ -137,6 +137,7 @@ def test_a_fence_is_loaded_and_kept(start, connect, shell, tmp_path):
     rows = [f"{index}\t0\t3\t5001\t4\t0\t0\t0\t{latitude + x:.7f}\t{longitude + y:.7f}\t0\t1" for index, (x, y) in enumerate(corners)]
     (tmp_path / "fence.txt").write_text("\n".join(["QGC WPL 110", *rows, ""]))
     console.ask("fence load fence.txt", "Loaded 4 fence|fence present|[Ss]ent all|Fence sent")
+    console.ask("fence enable", "[Ff]ence enabled")
     watcher.wait("SYS_STATUS", lambda status: status.onboard_control_sensors_enabled & 1 << 20)
     console.ask("mode guided", "GUIDED> |Mode GUIDED")
     console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")

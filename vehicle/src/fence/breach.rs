@@ -11,6 +11,8 @@ use super::{Inclusions, Zones};
 pub enum Breach {
     /// Higher above home than this, m.
     Height(f64),
+    /// Lower above home than this, m.
+    Floor(f64),
     /// Farther from home than this, m.
     Distance(f64),
     /// Outside of the areas to stay in.
@@ -21,10 +23,23 @@ pub enum Breach {
     Through(usize),
 }
 
+impl Breach {
+    /// What of the fence it is of, in ArduPilot's words.
+    pub fn ardupilot_name(&self) -> &'static str {
+        match self {
+            Self::Height(_) => "Max Alt",
+            Self::Floor(_) => "Min Alt",
+            Self::Distance(_) => "Circle",
+            Self::Outside | Self::Inside(_) | Self::Through(_) => "Polygon",
+        }
+    }
+}
+
 impl fmt::Display for Breach {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Height(most_m) => write!(formatter, "higher than {most_m:.0} m above home"),
+            Self::Floor(least_m) => write!(formatter, "lower than {least_m:.0} m above home"),
             Self::Distance(most_m) => write!(formatter, "farther than {most_m:.0} m from home"),
             Self::Outside => write!(formatter, "outside the fence"),
             Self::Inside(_) => write!(formatter, "in an exclusion zone"),

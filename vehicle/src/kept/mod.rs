@@ -4,6 +4,9 @@
 //! kept over the flight and in parameter files, and read back; its description says that it has no effect and what has.
 
 mod ardupilot;
+mod ardupilot_devices;
+mod ardupilot_flight;
+mod ardupilot_simulation;
 mod parameter;
 mod px4;
 mod values;

@@ -4,14 +4,20 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{KeptParameter, ardupilot, px4};
+use super::{KeptParameter, ardupilot, ardupilot_devices, ardupilot_flight, ardupilot_simulation, px4};
 
 /// Places for values: as many as there are parameters, see the test.
-const PLACES: usize = 480;
+const PLACES: usize = 1000;
 
 /// All kept parameters; the place of one is the place of its value.
 pub fn kept_parameters() -> impl Iterator<Item = (usize, &'static KeptParameter)> {
-    px4::PARAMETERS.iter().chain(ardupilot::PARAMETERS).flat_map(|group| group.iter()).enumerate()
+    let groups = px4::PARAMETERS
+        .iter()
+        .chain(ardupilot::PARAMETERS)
+        .chain(ardupilot_flight::PARAMETERS)
+        .chain(ardupilot_devices::PARAMETERS)
+        .chain(ardupilot_simulation::PARAMETERS);
+    groups.flat_map(|group| group.iter()).enumerate()
 }
 
 /// What has been set of them. It is written and read as names with values: a record or a file of another version, which has

@@ -4,7 +4,8 @@ use core::convert::identity;
 
 use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, real, switch, whole};
-use crate::vehicle::{Action, FenceOptions, FenceParts};
+use crate::radio::RadioLossAction;
+use crate::vehicle::{Action, Conduct, FenceOptions, FenceParts, FenceStart};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
@@ -12,12 +13,57 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     switch!("FENCE_ENABLE", failsafe.fence_enabled, "Enable the fence"),
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
     bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),
+    real!("FENCE_ALT_MAX", None, -1.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above home; 0 disables it, a negative one forbids arming"),
+    real!("FENCE_ALT_MIN", None, -1000.0..=10_000.0, failsafe.fence_floor_m, "m", "Lowest height above home, once the vehicle has been above it, except for landings"),
+    real!("FENCE_RADIUS", None, -1.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it, a negative one forbids arming"),
+    real!("FENCE_MARGIN", None, 0.0..=1000.0, failsafe.fence_margin_m, "m", "How far inside of the fence sticks stop, and how far above its floor the vehicle must have been for that to count"),
+    choice!("FENCE_AUTOENABLE", FENCE_STARTS, failsafe.fence_starts, "When the fence switches itself on"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     switch!("FS_CRASH_CHECK", crash.check, "Disarm a vehicle that has crashed"),
     bitmask!("LOG_BITMASK", LOGGED, log.bits, identity, identity, "What is logged"),
     whole!("LOG_DISARMED", 0..=3, log.disarmed, u8, "Log while disarmed, too: 0 off, 1 to 3 on"),
     switch!("LOG_FILE_DSRMROT", log.rotates, "Begin a new log with each flight instead of each boot"),
-    choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
+    ConductParameter {
+        get: |conduct| shown(conduct, 0, GROUND_STATION_ACTIONS, conduct.failsafe.ground_station_lost),
+        set: |conduct, value| {
+            let Some((action, unknown)) = asked(GROUND_STATION_ACTIONS, value, Action::Return) else { return false };
+            (conduct.failsafe.ground_station_lost, conduct.failsafe.unknown_numbers[0]) = (action, unknown);
+            true
+        },
+        ..choice!("FS_GCS_ENABLE", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost; any other number returns")
+    },
+    ConductParameter {
+        get: |conduct| shown(conduct, 1, ARDUPILOT_LOSS, conduct.failsafe.pilot_lost),
+        set: |conduct, value| {
+            let Some((action, unknown)) = asked(ARDUPILOT_LOSS, value, RadioLossAction::Land) else { return false };
+            (conduct.failsafe.pilot_lost, conduct.failsafe.unknown_numbers[1]) = (action, unknown);
+            true
+        },
+        ..choice!("FS_THR_ENABLE", ARDUPILOT_LOSS, failsafe.pilot_lost, "Action when the radio is lost; any other number lands")
+    },
+    ConductParameter {
+        get: |conduct| {
+            let everywhere = conduct.failsafe.position_lost_everywhere;
+            let known = EKF_ACTIONS.iter().find(|(action, number, _)| {
+                *action == conduct.failsafe.position_lost && (*number == LAND_EVERYWHERE) == everywhere
+            });
+            known.map_or(0.0, |(_, number, _)| f64::from(*number))
+        },
+        set: |conduct, value| {
+            let known = EKF_ACTIONS.iter().find(|(_, number, _)| f64::from(*number) == value);
+            if let Some((action, number, _)) = known {
+                conduct.failsafe.position_lost = *action;
+                conduct.failsafe.position_lost_everywhere = *number == LAND_EVERYWHERE;
+            }
+            known.is_some()
+        },
+        ..choice!("FS_EKF_ACTION", EKF_ACTIONS, failsafe.position_lost, "Action when the position estimate is lost")
+    },
+    real!("BATT_ARM_VOLT", None, 0.0..=100.0, failsafe.battery_limits.to_arm_v, "V", "Least voltage to arm with; 0: any"),
+    real!("BATT_ARM_MAH", None, 0.0..=100_000.0, failsafe.battery_limits.to_arm_mah, "mAh", "Least remaining charge to arm with; 0: any"),
+    whole!("ARMING_CHECK", 0..=1_048_575, arming.checks, i32, "Checks before arming, added up; 0 skips all of them, any other number makes all of them"),
+    whole!("ARMING_SKIPCHK", -1..=1_048_575, arming.skipped, i32, "Checks before arming that are skipped, added up; -1 skips all of them, any other number none"),
+    bitmask!("ARMING_MIS_ITEMS", REQUIRED_ITEMS, arming.required_items, identity, identity, "Mission items without which the vehicle does not arm"),
     real!("LAND_SPEED_HIGH", None, 0.0..=2000.0, land_fast_m_s, 100.0, "cm/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN"),
     real!("LAND_SPD_HIGH_MS", None, 0.0..=20.0, land_fast_m_s, "m/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN").other(),
     real!("BATT_LOW_VOLT", None, 0.0..=120.0, failsafe.battery_limits.low_v, "V", "Voltage below which the battery is low, after BATT_LOW_TIMER; 0: any"),
@@ -33,12 +79,12 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
             if let Some((action, ..)) = action {
                 let battery = &mut conduct.failsafe.battery;
                 battery.critical = *action;
-                // ArduPilot knows no third level: what acts at the second one lands at the latest when it is empty.
-                battery.empty = if *action > Action::Warn { (*action).max(Action::Land) } else { *action };
+                // ArduPilot knows no third level.
+                battery.empty = *action;
             }
             action.is_some()
         },
-        ..choice!("BATT_FS_CRT_ACT", BATTERY_ACTIONS, failsafe.battery.critical, "Action when the battery is critical; when almost empty the vehicle lands at the latest, unless this is 0")
+        ..choice!("BATT_FS_CRT_ACT", BATTERY_ACTIONS, failsafe.battery.critical, "Action when the battery is critical, or almost empty")
     },
 ];
 
@@ -46,26 +92,88 @@ const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Warn, 0, "Report only"),
     (Action::Return, 1, "Return"),
     (Action::Land, 2, "Land"),
-    (Action::Hold, 4, "Brake"),
+    (Action::TraceOrReturn, 3, "SmartRTL or return"),
+    (Action::BrakeOrLand, 4, "Brake or land"),
+    (Action::TraceOrLand, 5, "SmartRTL or land"),
+];
+const FENCE_STARTS: &[(FenceStart, i32, &str)] = &[
+    (FenceStart::Never, 0, "Never"),
+    (FenceStart::Takeoff, 1, "After a takeoff"),
+    (FenceStart::TakeoffExceptFloor, 2, "After a takeoff; the floor does not count on landings"),
+    (FenceStart::Armed, 3, "When armed"),
 ];
 const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::None, 0, "Nothing"),
     (Action::Return, 1, "Return"),
+    (Action::Return, 2, "Return; the former value for continuing a mission"),
+    (Action::TraceOrReturn, 3, "SmartRTL or return"),
+    (Action::TraceOrLand, 4, "SmartRTL or land"),
     (Action::Land, 5, "Land"),
-    (Action::Hold, 7, "Brake"),
+    (Action::MissionLandingOrReturn, 6, "Landing of the mission or return"),
+    (Action::BrakeOrLand, 7, "Brake or land"),
 ];
+const ARDUPILOT_LOSS: &[(RadioLossAction, i32, &str)] = &[
+    (RadioLossAction::None, 0, "Nothing"),
+    (RadioLossAction::Return, 1, "Return"),
+    (RadioLossAction::Return, 2, "Return; the former value for continuing a mission"),
+    (RadioLossAction::Land, 3, "Land"),
+    (RadioLossAction::TraceOrReturn, 4, "SmartRTL or return"),
+    (RadioLossAction::TraceOrLand, 5, "SmartRTL or land"),
+    (RadioLossAction::MissionLandingOrReturn, 6, "Landing of the mission or return"),
+    (RadioLossAction::BrakeOrLand, 7, "Brake or land"),
+];
+/// Of FS_EKF_ACTION: lands whatever the mode needs.
+const LAND_EVERYWHERE: i32 = 3;
+const EKF_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::Warn, 0, "Report only"),
+    (Action::Land, 1, "Land"),
+    (Action::Altitude, 2, "AltHold"),
+    (Action::Land, LAND_EVERYWHERE, "Land, in modes that need no position, too"),
+];
+const REQUIRED_ITEMS: &[&str] =
+    &["Land", "VTOL land", "DO_LAND_START", "Takeoff", "VTOL takeoff", "Rally point", "Return to launch"];
 const BATTERY_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Warn, 0, "Warn"),
     (Action::Land, 1, "Land"),
     (Action::Return, 2, "Return"),
+    (Action::TraceOrReturn, 3, "SmartRTL or return"),
+    (Action::TraceOrLand, 4, "SmartRTL or land"),
     (Action::Terminate, 5, "Terminate"),
-    (Action::Hold, 7, "Brake"),
+    (Action::MissionLandingOrReturn, 6, "Landing of the mission or return"),
+    (Action::BrakeOrLand, 7, "Brake or land"),
 ];
 
-const FENCE_OPTIONS: &[&str] =
-    &["No other mode while the vehicle comes back from a breach", "One of several inclusion zones is enough"];
+/// The number of an action, or the one that was set and means nothing.
+fn shown<A: PartialEq>(conduct: &Conduct, place: usize, choices: &[(A, i32, &str)], action: A) -> f64 {
+    let unknown = conduct.failsafe.unknown_numbers.get(place).copied().flatten();
+    let known = choices.iter().find(|(choice, ..)| *choice == action).map_or(0, |(_, number, _)| *number);
+    unknown.map_or(f64::from(known), f64::from)
+}
+
+/// The action of a number. One that means nothing leads to the given action, and is to be shown again, as is a second number of one.
+fn asked<A: Copy + PartialEq>(
+    choices: &[(A, i32, &str)],
+    value: f64,
+    otherwise: A,
+) -> Option<(A, Option<u8>)> {
+    if value.fract() != 0.0 || !(0.0..=100.0).contains(&value) {
+        return None;
+    }
+    let known = choices.iter().find(|(_, number, _)| f64::from(*number) == value);
+    let action = known.map_or(otherwise, |(action, ..)| *action);
+    let first = choices.iter().find(|(choice, ..)| *choice == action);
+    let shows_itself = first.is_some_and(|(_, number, _)| f64::from(*number) == value);
+    Some((action, (!shows_itself).then_some(value as u8)))
+}
+
+const FENCE_OPTIONS: &[&str] = &[
+    "No other mode while the vehicle comes back from a breach",
+    "One of several inclusion zones is enough",
+    "Reports of the margin; here of a breach ahead in any case",
+];
 const KEEPS_MODE: u32 = 1;
 const UNION: u32 = 2;
+const TELLS_MARGIN: u32 = 4;
 
 /// Bits of LOG_BITMASK, as ArduCopter has them.
 const LOGGED: &[&str] = &[
@@ -92,26 +200,37 @@ const LOGGED: &[&str] = &[
     "Video stabilization",
     "Fast harmonic notch",
 ];
-const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones"];
+const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones", "Minimum height"];
 const HEIGHT: u32 = 1;
 const DISTANCE: u32 = 2;
 const ZONES: u32 = 4;
+const FLOOR: u32 = 8;
 
 fn option_bits(options: FenceOptions) -> u32 {
-    u32::from(options.keeps_mode) * KEEPS_MODE + u32::from(options.union) * UNION
+    let margin = u32::from(options.tells_margin) * TELLS_MARGIN;
+    u32::from(options.keeps_mode) * KEEPS_MODE + u32::from(options.union) * UNION + margin
 }
 
 fn options(bits: u32) -> FenceOptions {
-    FenceOptions { keeps_mode: bits & KEEPS_MODE != 0, union: bits & UNION != 0 }
+    FenceOptions {
+        keeps_mode: bits & KEEPS_MODE != 0,
+        union: bits & UNION != 0,
+        tells_margin: bits & TELLS_MARGIN != 0,
+    }
 }
 
 fn bits(parts: FenceParts) -> u32 {
     let of = |part: bool, bit: u32| if part { bit } else { 0 };
-    of(parts.height, HEIGHT) | of(parts.distance, DISTANCE) | of(parts.zones, ZONES)
+    of(parts.height, HEIGHT) | of(parts.distance, DISTANCE) | of(parts.zones, ZONES) | of(parts.floor, FLOOR)
 }
 
 fn parts(bits: u32) -> FenceParts {
-    FenceParts { height: bits & HEIGHT != 0, distance: bits & DISTANCE != 0, zones: bits & ZONES != 0 }
+    FenceParts {
+        height: bits & HEIGHT != 0,
+        distance: bits & DISTANCE != 0,
+        zones: bits & ZONES != 0,
+        floor: bits & FLOOR != 0,
+    }
 }
 
 #[cfg(test)]

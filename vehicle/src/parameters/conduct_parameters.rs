@@ -15,11 +15,8 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("BAT_CRIT_THR", None, 0.0..=0.9, failsafe.battery_critical, "norm", "Remaining charge at which the battery is critical"),
     real!("BAT_EMERGEN_THR", None, 0.0..=0.9, failsafe.battery_emergency, "norm", "Remaining charge at which the battery is almost empty"),
     switch!("GF_PREDICT", failsafe.fence_ahead, "Act as soon as the vehicle could no longer stop before the fence", ["Beyond the fence only", "Ahead of it"]),
-    real!("GF_MAX_HOR_DIST", Some(("FENCE_RADIUS", 1.0)), 0.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it"),
-    real!("GF_MAX_VER_DIST", Some(("FENCE_ALT_MAX", 1.0)), 0.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above home; 0 disables it"),
     real!("COM_WIND_MAX", None, -1.0..=50.0, failsafe.wind_m_s, "m/s", "Wind speed that is too high to fly in; negative disables the check"),
     choice!("COM_WIND_MAX_ACT", FENCE_ACTIONS, failsafe.high_wind, "Action when the wind is too high"),
-    choice!("COM_POSCTL_NAVL", POSITION_ACTIONS, failsafe.position_lost, "Action when the position estimate is lost"),
     choice!("COM_ACT_FAIL_ACT", ROTOR_ACTIONS, failsafe.rotor_failure, "Action when a rotor fails"),
     real!("RTL_RETURN_ALT", Some(("RTL_ALT", 100.0)), 1.0..=1000.0, return_height_m, "m", "Height above home at which the vehicle returns").also(&[("RTL_ALT_M", 1.0)]),
     real!("NAV_ACC_RAD", Some(("WPNAV_RADIUS", 100.0)), 0.1..=1000.0, acceptance_radius_m, "m", "Acceptance radius of waypoints without one of their own").also(&[("WP_RADIUS_M", 1.0)]),
@@ -53,7 +50,5 @@ pub(super) const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Terminate, 4, "Terminate"),
     (Action::Land, 5, "Land"),
 ];
-const POSITION_ACTIONS: &[(Action, i32, &str)] =
-    &[(Action::Warn, 0, "Warn"), (Action::Land, 1, "Land"), (Action::Terminate, 2, "Terminate")];
 const ROTOR_ACTIONS: &[(Action, i32, &str)] =
     &[(Action::Land, 2, "Land"), (Action::Terminate, 4, "Terminate")];

@@ -175,8 +175,9 @@ mod tests {
                     assert!(seen.insert(name), "{name} twice");
                     assert!(name.len() <= LONGEST, "{name}");
                     let plain = |byte: u8| byte == b'_' || byte.is_ascii_uppercase() || byte.is_ascii_digit();
-                    // ArduPilot's modes of the mode switch have no group.
-                    let grouped = name.contains('_') || name.starts_with("FLTMODE");
+                    // Some of ArduPilot's have no group.
+                    let alone = ["FLTMODE", "SIMPLE", "TUNE"].iter().any(|start| name.starts_with(start));
+                    let grouped = name.contains('_') || alone;
                     assert!(grouped && name.bytes().all(plain), "{name}");
                 }
             }

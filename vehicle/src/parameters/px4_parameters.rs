@@ -14,6 +14,9 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     bitmask!("EKF2_GPS_CTRL", GPS_PARTS, simulated.errors.switches.gps_control, whole_bits, f64::from, "What of GPS is used; without the first bit nothing"),
     switch!("EKF2_BARO_CTRL", simulated.errors.switches.barometer_control, "Use of the barometer"),
     choice!("EKF2_MAG_TYPE", MAGNETOMETER_USES, simulated.errors.switches.magnetometer, "Use of the magnetometer"),
+    choice!("COM_POSCTL_NAVL", POSITION_ACTIONS, failsafe.position_lost, "Action when the position estimate is lost"),
+    real!("GF_MAX_HOR_DIST", None, 0.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it"),
+    real!("GF_MAX_VER_DIST", None, 0.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above home; 0 disables it"),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES, "deg", "Roll that counts as a failure; 0 disables it"),
     real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES, "deg", "Pitch that counts as a failure; 0 disables it"),
@@ -23,6 +26,8 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     whole!("CBRK_FLIGHTTERM", 0..=121_212, crash.circuit_breaker, u32, "Circuit breaker of flight termination; 121212: a failure in flight is only reported"),
 ];
 
+const POSITION_ACTIONS: &[(Action, i32, &str)] =
+    &[(Action::Warn, 0, "Warn"), (Action::Land, 1, "Land"), (Action::Terminate, 2, "Terminate")];
 /// Of a radian.
 const DEGREES: f64 = 180.0 / core::f64::consts::PI;
 const GPS_PARTS: &[&str] = &["Longitude and latitude", "Altitude", "Velocity", "Heading of two antennas"];

@@ -177,7 +177,8 @@ static ARDUPILOT_RADIO: &[ConductParameter] = &[
     flight_mode!("FLTMODE4", 3),
     flight_mode!("FLTMODE5", 4),
     flight_mode!("FLTMODE6", 5),
-    choice!("FS_THR_ENABLE", ARDUPILOT_LOSS, failsafe.pilot_lost, "Action when the radio is lost"),
+    bitmask!("SIMPLE", SLOTS, radio.simple_slots, same, same, "Positions of the mode switch in which sticks refer to the heading of arming"),
+    bitmask!("SUPER_SIMPLE", SLOTS, radio.super_simple_slots, same, same, "Positions of the mode switch in which sticks refer to the direction away from home"),
     bitmask!("FS_OPTIONS", OPTIONS, radio.options, same, same, "What goes on in spite of a failsafe"),
     whole!("FS_THR_VALUE", 910.0..=1100.0, conduct, conduct.radio.low_throttle_us, "us", "Throttle below which the receiver has lost its sender"),
     real!("RC_OVERRIDE_TIME", None, -1.0..=120.0, radio.override_s, "s", "Time for which an override of a channel counts; -1 is for ever, 0 ignores overrides"),
@@ -265,15 +266,6 @@ const fn same(bits: u32) -> u32 {
     bits
 }
 
-const ARDUPILOT_LOSS: &[(RadioLossAction, i32, &str)] = &[
-    (RadioLossAction::None, 0, "Nothing"),
-    (RadioLossAction::Return, 1, "RTL"),
-    (RadioLossAction::Land, 3, "Land"),
-    (RadioLossAction::TraceOrReturn, 4, "SmartRTL or RTL"),
-    (RadioLossAction::TraceOrLand, 5, "SmartRTL or Land"),
-    (RadioLossAction::MissionLandingOrReturn, 6, "Landing of the mission or RTL"),
-    (RadioLossAction::BrakeOrLand, 7, "Brake or Land"),
-];
 const PX4_LOSS: &[(RadioLossAction, i32, &str)] = &[
     (RadioLossAction::None, 0, "Nothing"),
     (RadioLossAction::Hold, 1, "Hold"),
@@ -293,6 +285,7 @@ const FAILURES: &[(RadioFailure, i32, &str)] = &[
     (RadioFailure::None, 0, "Works"),
     (RadioFailure::NoPulses, 1, "No pulses"),
     (RadioFailure::LowThrottle, 2, "Sticks centred, throttle at 950 us"),
+    (RadioFailure::Told, 3, "Told by the receiver"),
 ];
 const TRAINERS: &[(Trainer, i32, &str)] = &[
     (Trainer::Off, 0, "Off"),
@@ -316,4 +309,5 @@ const OPTIONS: &[&str] = &[
     "Continue with a pilot without the ground station",
     "Release the gripper",
 ];
+const SLOTS: &[&str] = &["Position 1", "Position 2", "Position 3", "Position 4", "Position 5", "Position 6"];
 const OVERRIDES: &[&str] = &["Automatic modes", "Offboard"];

@@ -14,6 +14,8 @@ pub struct Statistics {
     pub run_us: u64,
     /// When the counts were reset, s since 1970.
     pub reset_unix_s: u64,
+    /// Items of mission, fence and rally plan.
+    pub items: [u32; 3],
 }
 
 /// One of the counts.
@@ -27,11 +29,20 @@ pub enum Statistic {
     RunTime,
     /// When the counts were reset, s since 2016; setting it to 0 resets them.
     Reset,
+    /// Items of the mission.
+    MissionItems,
+    /// Items of the fence.
+    FenceItems,
+    /// Rally points.
+    RallyPoints,
 }
 
 impl Statistic {
     /// All of them with their names.
-    pub const ALL: [(&'static str, Self); 4] = [
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("FENCE_TOTAL", Self::FenceItems),
+        ("MIS_TOTAL", Self::MissionItems),
+        ("RALLY_TOTAL", Self::RallyPoints),
         ("STAT_BOOTCNT", Self::Boots),
         ("STAT_FLTTIME", Self::FlightTime),
         ("STAT_RESET", Self::Reset),
@@ -47,12 +58,18 @@ impl Statistic {
             Self::Reset => {
                 "Time of the last reset of the statistics, in seconds since 2016; set it to 0 to reset them"
             }
+            Self::MissionItems => "Number of mission items, home included (read-only)",
+            Self::FenceItems => "Number of items of the fence (read-only)",
+            Self::RallyPoints => "Number of rally points (read-only)",
         }
     }
 
     /// Its unit.
     pub fn unit(self) -> &'static str {
-        if self == Self::Boots { "" } else { "s" }
+        match self {
+            Self::FlightTime | Self::RunTime | Self::Reset => "s",
+            Self::Boots | Self::MissionItems | Self::FenceItems | Self::RallyPoints => "",
+        }
     }
 
     /// What it may be set to.
@@ -67,6 +84,9 @@ impl Statistic {
             Self::FlightTime => statistics.flight_us / 1_000_000,
             Self::RunTime => statistics.run_us / 1_000_000,
             Self::Reset => statistics.reset_unix_s.saturating_sub(RESET_EPOCH_S),
+            Self::MissionItems => u64::from(statistics.items[0]),
+            Self::FenceItems => u64::from(statistics.items[1]),
+            Self::RallyPoints => u64::from(statistics.items[2]),
         }
     }
 }

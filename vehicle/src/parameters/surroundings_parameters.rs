@@ -43,7 +43,8 @@ pub static PX4_SURROUNDINGS: &[ConductParameter] = &[
 /// Those that are there if the vehicle presents itself as ArduPilot.
 #[rustfmt::skip] // As above.
 pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
-    whole!("AVOID_ENABLE", 7_u8, avoided, "What is avoided, added up: 1 fence, 2 what the proximity sensor sees, 4 beacons; only 2 changes anything here"),
+    whole!("AVOID_ENABLE", 7_u8, avoided, "What is avoided, added up: 1 fence, 2 what the proximity sensor sees, 4 beacons; in Loiter sticks do not lead over the fence"),
+    real!("AVOID_BACKUP_SPD", None, 0.0..=2.0, surroundings.backing_m_s, "m/s", "Speed with which sticks that are let go or lead outwards back away from the margin of the fence"),
     real!("AVOID_MARGIN", None, 1.0..=10.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Loiter and Guided mode"),
     whole!("PRX1_TYPE", 17_u8, proximity_kind, "Proximity sensor: 0 none; any other kind is the lidar of --world and what companions send"),
     whole!("RNGFND1_TYPE", 100_u8, rangefinder_kind, "Downward rangefinder: 0 none; any other kind is the simulated one"),

@@ -330,7 +330,7 @@ fn turn(source: &Source<'_>) -> Step {
     let to = match (source.value(4) > 0.5, direction) {
         (true, TurnDirection::CounterClockwise) => TurnTo::By(-angle_rad),
         (true, _) => TurnTo::By(angle_rad),
-        (false, _) => TurnTo::Heading(angle_rad, direction),
+        (false, _) => TurnTo::Heading(angle_rad % core::f64::consts::TAU, direction),
     };
     let rate_rad_s = source.angle_rad(2).filter(|rate_rad_s| *rate_rad_s > 0.0);
     Step::Condition(Condition::Yaw(Turn { to, rate_rad_s }))

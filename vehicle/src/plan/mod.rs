@@ -26,6 +26,7 @@ mod kind;
 mod look;
 mod place;
 mod program;
+pub mod return_path;
 mod site;
 pub mod step;
 mod store;

@@ -67,6 +67,15 @@ pub enum RadioFailure {
     NoPulses,
     /// The sticks are centred, and the throttle is at 950 µs.
     LowThrottle,
+    /// It says itself that it has lost its sender.
+    Told,
+}
+
+impl RadioFailure {
+    /// Whether nothing of what it shows counts.
+    pub fn is_silence(self) -> bool {
+        matches!(self, Self::NoPulses | Self::Told)
+    }
 }
 
 /// How a vehicle reads its radio.
@@ -80,6 +89,12 @@ pub struct RadioSettings {
     pub mode_channel: f64,
     /// Modes of its six positions: ArduPilot's numbers, or PX4's of COM_FLTMODE1.
     pub modes: [f64; 6],
+    /// Positions of the mode switch, as bits, in which sticks refer to the heading of arming (SIMPLE).
+    #[serde(default)]
+    pub simple_slots: u32,
+    /// Positions of it in which they refer to the direction away from home (SUPER_SIMPLE).
+    #[serde(default)]
+    pub super_simple_slots: u32,
     /// PX4's switches.
     pub switches: Switches,
     /// Where sticks may come from.
@@ -126,6 +141,8 @@ impl RadioSettings {
             axes: Axes { roll: 1.0, pitch: 2.0, throttle: 3.0, yaw: 4.0 },
             mode_channel: if ardupilot { 5.0 } else { 0.0 },
             modes: if ardupilot { [7.0, 9.0, 6.0, 3.0, 5.0, 0.0] } else { [-1.0; 6] },
+            simple_slots: 0,
+            super_simple_slots: 0,
             switches: Switches::default(),
             inputs: InputChoice::Either,
             lost_exceptions: 0,

@@ -115,6 +115,11 @@ impl Battery {
         self.terminal_v = cell_voltage_v(high) * f64::from(self.pack.cells);
     }
 
+    /// Charges it, or discharges it, to a share of its capacity.
+    pub fn refill(&mut self, share: f64, capacity_ah: f64) {
+        self.drawn_as = (1.0 - share.clamp(0.0, 1.0)) * capacity_ah * 3600.0;
+    }
+
     /// Voltage without the drop that the current makes, V.
     pub fn resting_voltage_v(&self) -> f64 {
         self.voltage_v + self.current_a * self.pack.resistance_ohm

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::arming_settings::ArmingSettings;
 use super::battery_pack::BatteryPack;
 use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
@@ -78,6 +79,12 @@ pub struct Conduct {
     /// The trail that leads back.
     #[serde(default)]
     pub trail: TrailSettings,
+    /// Whether a mission that was left begins anew (ArduPilot: MIS_RESTART).
+    #[serde(default)]
+    pub mission_restarts: bool,
+    /// What is checked before arming.
+    #[serde(default)]
+    pub arming: ArmingSettings,
     /// When a failsafe begins, and what it does.
     #[serde(default)]
     pub failsafe: FailsafeSettings,
@@ -169,6 +176,8 @@ impl Conduct {
             guided_options: 0,
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
+            mission_restarts: false,
+            arming: ArmingSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
             simulated: Simulated::default(),
             kept: KeptValues::default(),

@@ -1,16 +1,13 @@
 //! What the failsafe looks at, and what it asks for.
 
 use super::failsafe::{Action, Cause, Change, Failsafe, Weakness};
+use super::failsafe_response::{Response, announced, cleared, crossed, releases_gripper, response};
 use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::situation::Situation;
+use crate::equipment::Operation;
 use crate::fence::Breach;
-use crate::mode::{Leader, Mode, Needs};
-use crate::radio::RadioLossAction;
-
-/// Bits of FS_OPTIONS: missions go on without the ground station, and so do modes that are flown by sticks.
-const MISSION_GOES_ON: u32 = 2;
-const STICKS_GO_ON: u32 = 16;
+use crate::mode::{Mode, Needs};
 
 impl Failsafe {
     /// Whether a cause is there now.
@@ -20,7 +17,11 @@ impl Failsafe {
         match cause {
             Cause::RotorFailure => situation.lost_rotor.is_some(),
             Cause::PositionLost => {
-                situation.armed && situation.mode.needs() == Needs::Place && !situation.knows_its_place()
+                // In ArduPilot it lasts until the place is known again, whatever mode it has led to.
+                let lasts = situation.identity.is_ardupilot() && self.is_present(cause);
+                let by_mode = situation.mode.needs() == Needs::Place;
+                let needed = by_mode || lasts || settings.position_lost_everywhere;
+                situation.armed && needed && !situation.knows_its_place()
             }
             // ArduPilot does not arm without its radio, either.
             Cause::PilotLost => {
@@ -64,50 +65,45 @@ impl Failsafe {
         present: bool,
     ) -> Option<Change> {
         let change = self.see(cause, present, situation.time_us);
-        let action = action_in(situation, cause);
+        let response = response(situation, cause);
         match change {
-            Some(_) if action == Action::None => {}
-            Some(Change::Begun) if cause == Cause::PilotLost && stands_armed(situation) => {
-                proposal.stop_rotors("Radio failsafe: disarmed on the ground");
+            Some(_) if response.action == Action::None => {}
+            Some(Change::Begun) if response.disarms => {
+                proposal.stop_rotors(format!("{} - Disarming", name(situation, cause)));
             }
-            Some(Change::Begun) => self.act(situation, proposal, cause, action),
-            Some(Change::Ended) => {
-                let cleared = match cause {
-                    Cause::PilotLost if situation.identity.is_ardupilot() => {
-                        "Radio Failsafe Cleared".to_owned()
-                    }
-                    _ => format!("Failsafe cleared: {}", cause.cleared()),
-                };
-                proposal.say(Severity::Info, cleared);
-            }
+            Some(Change::Begun) => self.act(situation, proposal, cause, response),
+            Some(Change::Ended) => proposal.say(Severity::Info, cleared(situation, cause)),
             None => {}
         }
         change
     }
 
-    fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, action: Action) {
+    fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, response: Response) {
+        let Response { action, goes_on, .. } = response;
         let flying = situation.flies();
-        let acts =
-            flying && self.goes_before(action, Action::of_mode(situation.mode)) && !goes_on(situation, cause);
-        let why = self.name(situation, cause);
+        let acts = flying && goes_on.is_none() && self.goes_before(action, Action::of_mode(situation.mode));
+        let why = format!("{}{}", name(situation, cause), self.details(situation, cause));
         tracing::debug!(cause = why, ?action, flying, acts, "failsafe");
-        let details = self.details(situation, cause);
         if !acts {
-            let meanwhile = match (flying, action > Action::Warn) {
-                (true, true) => {
+            let meanwhile = match (flying, goes_on) {
+                (true, Some(words)) => format!(" - {words}"),
+                (true, None) if action > Action::Warn => {
                     format!(": staying in {} mode", situation.identity.mode_name(situation.mode))
                 }
                 _ => String::new(),
             };
-            proposal.say(severity(action), format!("{why}{details}{meanwhile}"));
+            proposal.say(severity(action), format!("{why}{meanwhile}"));
             return;
         }
-        proposal.say(severity(action), format!("{why}{details}: {}", action.doing()));
+        proposal.say(severity(action), format!("{why}: {}", action.doing()));
+        if releases_gripper(situation, cause) {
+            proposal.operate(Operation::Grip { grabs: false });
+        }
         self.engage(cause, action);
         match action.mode() {
-            Some(Mode::Return) if cause == Cause::PilotLost && traces_back(situation) => {
-                proposal.enter(Mode::SmartReturn);
-            }
+            // What it does already goes on.
+            Some(mode) if mode == situation.mode && mode != Mode::Mission => {}
+            Some(Mode::Mission) => proposal.join_landing(),
             Some(mode) => proposal.enter(mode),
             None => proposal.terminate(),
         }
@@ -132,19 +128,8 @@ impl Failsafe {
     pub fn tell_crossing(&self, situation: &Situation, proposal: &mut Proposal, breach: Breach) {
         let action = situation.conduct.failsafe.action(Cause::Fence);
         if action != Action::None {
-            proposal.say(severity(action), format!("Fence breached ({breach})"));
-        }
-    }
-
-    /// What has happened, for the pilot.
-    fn name(&self, situation: &Situation, cause: Cause) -> &'static str {
-        match cause {
-            Cause::Fence if situation.fence_is_ahead => "Fence ahead",
-            // Clients of ArduPilot look for its words.
-            Cause::BatteryLow if situation.identity.is_ardupilot() => "Battery 1 is low",
-            Cause::BatteryCritical if situation.identity.is_ardupilot() => "Battery 1 is critical",
-            Cause::PilotLost if situation.identity.is_ardupilot() => "Radio Failsafe",
-            _ => cause.name(),
+            let what = crossed(situation, breach);
+            proposal.say(severity(action), format!("{what} ({breach})"));
         }
     }
 
@@ -173,7 +158,9 @@ impl Failsafe {
                 cause,
                 Cause::RotorFailure | Cause::PositionLost | Cause::SetPointsLost | Cause::BatteryLow
             );
-            !others && situation.conduct.failsafe.action(*cause) > Action::Warn
+            // ArduPilot says what of the fence it is.
+            let told = *cause == Cause::Fence && situation.identity.is_ardupilot();
+            !others && !told && situation.conduct.failsafe.action(*cause) > Action::Warn
         };
         self.present().filter(speaks).map(|cause| format!("failsafe: {}", lower(cause)))
     }
@@ -188,7 +175,7 @@ impl Failsafe {
         }
         let lost =
             !situation.can_fly(mode) || mode.needs() == Needs::Place && self.is_present(Cause::PositionLost);
-        if lost && situation.conduct.failsafe.position_lost >= Action::Land {
+        if lost && situation.conduct.failsafe.position_lost >= Action::Altitude {
             let name = situation.identity.mode_name(mode);
             return Err(Refusal::later(format!(
                 "{name} mode rejected: position lost, only landing is possible"
@@ -198,64 +185,9 @@ impl Failsafe {
     }
 }
 
-/// Whether a mode goes on without its ground station, by FS_OPTIONS.
-fn goes_on(situation: &Situation, cause: Cause) -> bool {
-    let bit = match (cause, situation.mode) {
-        (Cause::GroundStationLost, Mode::Mission) => MISSION_GOES_ON,
-        (Cause::GroundStationLost, mode) if mode.leader() == Leader::Sticks => STICKS_GO_ON,
-        _ => 0,
-    };
-    situation.identity.is_ardupilot() && situation.conduct.radio.options & bit != 0
-}
-
-/// What is done about a cause in the present mode.
-fn action_in(situation: &Situation, cause: Cause) -> Action {
-    let action = situation.conduct.failsafe.action(cause);
-    if cause == Cause::PilotLost && action > Action::Warn {
-        if goes_on_without_pilot(situation) {
-            return Action::Warn;
-        }
-        if situation.conduct.failsafe.pilot_lost == RadioLossAction::TraceOrLand && !situation.has_trail {
-            return Action::Land;
-        }
-        let mode = action.mode();
-        // Without a place there is no way home.
-        if mode.is_some_and(|mode| mode != Mode::Land && !situation.can_fly(mode)) {
-            return Action::Land;
-        }
-    }
-    action
-}
-
-/// Whether it flies home the way that it came, without its pilot.
-fn traces_back(situation: &Situation) -> bool {
-    let traces = [RadioLossAction::TraceOrReturn, RadioLossAction::TraceOrLand];
-    situation.has_trail && traces.contains(&situation.conduct.failsafe.pilot_lost)
-}
-
-/// Whether the present mode is one that parameters let go on without the pilot.
-fn goes_on_without_pilot(situation: &Situation) -> bool {
-    let radio = &situation.conduct.radio;
-    let (bits, mission, automatic, offboard, landing) = if situation.identity.is_ardupilot() {
-        (radio.options, 1, 0, 4, 8)
-    } else {
-        (radio.lost_exceptions, 1, 2, 4, 2)
-    };
-    let bit = match situation.mode {
-        Mode::Mission => mission,
-        Mode::Land => landing,
-        mode => match mode.leader() {
-            Leader::Sticks => 0,
-            Leader::SetPoints => offboard,
-            Leader::Vehicle => automatic,
-        },
-    };
-    bits & bit != 0
-}
-
-/// ArduPilot disarms at once without its radio on the ground.
-fn stands_armed(situation: &Situation) -> bool {
-    situation.identity.is_ardupilot() && situation.armed && situation.landed
+/// What has happened, for the pilot.
+fn name(situation: &Situation, cause: Cause) -> String {
+    announced(situation, cause).unwrap_or_else(|| cause.name().to_owned())
 }
 
 /// How severe a cause with this action is.

@@ -3,12 +3,14 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
+use super::failsafe::FenceStart;
 use super::motion::Motion;
 use super::notice::Refusal;
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
 use super::steering::{Steering, SteeringKind};
 use crate::fence::Breach;
+use crate::mode::Mode;
 
 /// An attitude that leads outside is left this late, s.
 const REACTION_S: f64 = 0.5;
@@ -35,10 +37,25 @@ pub struct FenceRecord {
     pub latest: Option<(Breach, u64)>,
 }
 
+/// Whether the fence has switched itself on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+enum ByItself {
+    /// Not yet.
+    #[default]
+    Waits,
+    /// Until the vehicle stands.
+    On,
+    /// Somebody has switched it off in this flight.
+    Off,
+}
+
 /// Looks for breaches.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct FenceWatch {
     record: FenceRecord,
+    by_itself: ByItself,
+    /// Whether the vehicle has been above the floor, and does not come down to land.
+    floor_counts: bool,
 }
 
 impl FenceWatch {
@@ -47,9 +64,57 @@ impl FenceWatch {
         &self.record
     }
 
+    /// Whether the fence has switched itself on.
+    pub fn is_on_by_itself(&self) -> bool {
+        self.by_itself == ByItself::On
+    }
+
+    /// Whether the floor counts: the vehicle has been above it, and does not come down to land.
+    pub fn floor_counts(&self) -> bool {
+        self.floor_counts
+    }
+
+    /// Somebody switches it on or off.
+    pub fn switch(&mut self, on: bool) {
+        if !on && self.is_on_by_itself() {
+            self.by_itself = ByItself::Off;
+        }
+    }
+
+    /// Switches the fence on or off by itself, and its floor: a vehicle that starts or lands is below that.
+    fn start(&mut self, situation: &Situation) {
+        let settings = &situation.conduct.failsafe;
+        let in_the_air = situation.armed && !situation.landed;
+        let wanted = match settings.fence_starts {
+            FenceStart::Never => false,
+            FenceStart::Armed => situation.armed,
+            FenceStart::Takeoff | FenceStart::TakeoffExceptFloor => {
+                in_the_air && situation.mode != Mode::Takeoff
+            }
+        };
+        self.by_itself = match self.by_itself {
+            ByItself::Waits if wanted => ByItself::On,
+            _ if !situation.armed => ByItself::Waits,
+            now => now,
+        };
+        let lands = matches!(situation.mode, Mode::Land | Mode::Return | Mode::SmartReturn);
+        self.floor_counts = in_the_air
+            && !lands
+            && (self.floor_counts || height_m(situation) > settings.fence_floor_m + settings.fence_margin_m);
+    }
+
+    /// The floor, if the vehicle is below it.
+    fn below_floor(&self, situation: &Situation) -> Option<Breach> {
+        let settings = &situation.conduct.failsafe;
+        let looked_at = situation.fence_is_on && settings.fence_parts.floor && self.floor_counts;
+        (looked_at && height_m(situation) < settings.fence_floor_m)
+            .then_some(Breach::Floor(settings.fence_floor_m))
+    }
+
     /// Looks whether the vehicle is, or cannot help coming, where it must not be. Returns a breach that was ahead and is crossed now.
     pub fn watch(&mut self, situation: &Situation) -> Option<Breach> {
-        let here = situation.breach_at(&situation.outputs.position_m);
+        self.start(situation);
+        let here = situation.breach_at(&situation.outputs.position_m).or_else(|| self.below_floor(situation));
         if here.is_none() && !situation.time_us.is_multiple_of(PREDICTION_PERIOD_US) {
             return None;
         }
@@ -69,6 +134,11 @@ impl FenceWatch {
         self.record.count = self.record.count.saturating_add(1);
         self.record.latest = Some((breach, time_us));
     }
+}
+
+/// Height above home, m.
+fn height_m(situation: &Situation) -> f64 {
+    situation.home.position_m.z - situation.outputs.position_m.z
 }
 
 /// What of the fence the vehicle cannot help breaching when it brakes within limits.
@@ -153,7 +223,9 @@ pub fn check_set_point(situation: &Situation, set_point: &PositionSetPoint) -> R
 mod tests {
     use nalgebra::Vector3;
 
-    use super::{AxisTarget, Breach, FenceWatch, PositionSetPoint, check_goal, check_set_point};
+    use super::{
+        AxisTarget, Breach, FenceStart, FenceWatch, Mode, PositionSetPoint, check_goal, check_set_point,
+    };
     use crate::vehicle::scene::Scene;
     use crate::vehicle::set_point::YawTarget;
 
@@ -193,6 +265,43 @@ mod tests {
         watch.watch(&scene.situation());
         assert_eq!(watch.record().now, None);
         assert_eq!(check_goal(&scene.situation(), "Takeoff", &Vector3::new(80.0, 0.0, -10.0)), Ok(()));
+    }
+
+    /// A floor begins to count above it, and a landing may pass it.
+    #[test]
+    fn the_floor_counts_once_it_has_been_left_below() {
+        let mut scene = scene();
+        let settings = &mut scene.conduct.failsafe;
+        (settings.fence_parts.floor, settings.fence_floor_m, settings.fence_ahead) = (true, 20.0, false);
+        let mut watch = FenceWatch::default();
+        let mut at = |height_m: f64, mode: Mode| {
+            scene.come_to([0.0, 0.0, -height_m], [0.0; 3]);
+            scene.mode = mode;
+            watch.watch(&scene.situation());
+            watch.record().now
+        };
+        assert_eq!(at(10.0, Mode::Position), None, "it climbs");
+        assert_eq!(at(25.0, Mode::Position), None);
+        assert_eq!(at(19.0, Mode::Position), Some(Breach::Floor(20.0)));
+        assert_eq!(at(19.0, Mode::Return), None, "it lands");
+        assert_eq!(at(10.0, Mode::Position), None, "it is below by right");
+    }
+
+    #[test]
+    fn a_fence_that_starts_with_arming_ends_with_it_and_can_be_switched_off() {
+        let mut scene = Scene::on_the_ground();
+        scene.conduct.failsafe.fence_starts = FenceStart::Armed;
+        let mut watch = FenceWatch::default();
+        let mut is_on = |armed: bool, switched_off: bool| {
+            scene.armed = armed;
+            if switched_off {
+                watch.switch(false);
+            }
+            watch.watch(&scene.situation());
+            watch.is_on_by_itself()
+        };
+        assert_eq!([is_on(false, false), is_on(true, false), is_on(true, true)], [false, true, false]);
+        assert_eq!([is_on(true, false), is_on(false, false), is_on(true, false)], [false, false, true]);
     }
 
     #[test]

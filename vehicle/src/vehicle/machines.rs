@@ -20,6 +20,7 @@ use super::receiver::Receiver;
 use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::simple_flight::SimpleFlight;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
@@ -58,6 +59,8 @@ pub struct Machines {
     pub receiver: Receiver,
     /// What the pilot asks for by switches and gestures.
     pub pilot_watch: PilotWatch,
+    /// What the pilot's sticks refer to.
+    pub simple: SimpleFlight,
     /// Modes that lean as the sticks say.
     pub stick_flight: StickFlight,
     /// Set-points.

@@ -1,5 +1,6 @@
 //! The position mode: sticks command velocity.
 
+use super::fence_keeping::keep_inside;
 use super::proposal::Proposal;
 use super::situation::Situation;
 use super::steering::SteeringKind;
@@ -12,6 +13,7 @@ pub fn fly_by_velocity(situation: &Situation, proposal: &mut Proposal) {
     let outputs = situation.outputs;
     let yaw_rate = situation.limits().yaw_rate_rad_s;
     let set_point = sticks.set_point(situation.conduct, outputs.attitude_rad.z, yaw_rate);
+    let set_point = keep_inside(situation, set_point);
     let flies = proposal.steering().kind() != SteeringKind::Idle;
     if flies || set_point.leads_up(outputs.position_m.z) {
         proposal.follow(situation, &set_point);

@@ -37,6 +37,7 @@
 //! ```
 
 mod arming_obstacle;
+mod arming_settings;
 mod attitude_flight;
 mod autostart;
 mod battery;
@@ -51,7 +52,9 @@ mod crash_watch;
 mod decided;
 mod descent;
 mod failsafe;
+mod failsafe_response;
 mod failsafe_watch;
+mod fence_keeping;
 mod fence_watch;
 mod follow;
 mod follow_settings;
@@ -93,6 +96,7 @@ mod scene;
 mod set_point;
 mod settings;
 mod setup;
+mod simple_flight;
 mod simulated;
 mod situation;
 mod smart_return;
@@ -118,6 +122,7 @@ pub use change_error::ChangeError;
 pub use conduct::Conduct;
 pub use failsafe::{
     Action, BatteryActions, BatteryLimits, Cause, Failsafe, FailsafeSettings, FenceOptions, FenceParts,
+    FenceStart, Weakness,
 };
 pub use fence_watch::FenceRecord;
 pub use follow_settings::{FollowHeading, FollowHeight, FollowSettings};

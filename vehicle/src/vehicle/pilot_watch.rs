@@ -71,6 +71,11 @@ impl PilotWatch {
         wishes
     }
 
+    /// The position of the mode switch, from 0.
+    pub fn switch_position(&self) -> Option<usize> {
+        self.modes.counted()
+    }
+
     /// The mode of the mode switch, by its custom mode.
     pub fn switched_mode(&self, situation: &Situation) -> Option<u32> {
         let slot = *situation.conduct.radio.modes.get(self.modes.counted()?)? as i32;

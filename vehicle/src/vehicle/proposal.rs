@@ -34,6 +34,8 @@ pub enum Request {
     See(Cause, bool),
     /// Something is asked of the equipment.
     Operate(Operation),
+    /// The landing of the mission, or without one the way home.
+    JoinLanding,
     /// The fence is to be switched on or off.
     EnableFence(bool),
     /// The rotors are to stop; the text says why.
@@ -277,6 +279,11 @@ impl<'a> Proposal<'a> {
     /// Asks that the rotors stop and says why.
     pub fn stop_rotors(&mut self, why: impl Into<String>) {
         self.requests.push(Request::StopRotors(why.into()));
+    }
+
+    /// Flies to the landing of the mission, or without one home.
+    pub fn join_landing(&mut self) {
+        self.requests.push(Request::JoinLanding);
     }
 
     /// Asks that the flight ends at once.

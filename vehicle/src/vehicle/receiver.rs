@@ -138,7 +138,7 @@ impl Receiver {
         let ever = self.received_us.is_some();
         // ArduPilot's simulation has a radio all the time, unless that fails: what overrides gave back is centred. PX4's timeout has
         // passed already.
-        let fails = identity.is_ardupilot() && settings.failure == RadioFailure::NoPulses;
+        let fails = identity.is_ardupilot() && settings.failure.is_silence();
         let silent = ever && chosen.is_none() && !(fails && self.received_us.is_some_and(young));
         let gone = silent && (fails || !identity.is_ardupilot());
         let released = silent && !gone;
@@ -171,7 +171,7 @@ impl Receiver {
         timeout_s: f64,
         time_us: u64,
     ) -> Option<Pulses> {
-        if settings.failure == RadioFailure::NoPulses {
+        if settings.failure.is_silence() {
             return None;
         }
         let life_s = if identity.is_ardupilot() { settings.override_s } else { timeout_s };

@@ -81,6 +81,10 @@ pub struct Situation<'a> {
     pub breach: Option<Breach>,
     /// Whether that still lies ahead.
     pub fence_is_ahead: bool,
+    /// Whether the fence is switched on, by hand or by itself.
+    pub fence_is_on: bool,
+    /// Whether its floor counts.
+    pub fence_floor_counts: bool,
     /// Whether the latest set-point is young enough to fly on.
     pub set_points_are_recent: bool,
     /// Whether the set-point that is steered to asks for a heading.
@@ -208,7 +212,7 @@ impl<'a> Situation<'a> {
 
     /// The fence as it is looked at; `None` while it is switched off.
     pub fn fence(&self) -> Option<Fence<'a>> {
-        self.conduct.failsafe.fence_enabled.then(|| self.whole_fence())
+        self.fence_is_on.then(|| self.whole_fence())
     }
 
     /// The fence, switched on or off.

@@ -51,9 +51,11 @@ impl SmartReturn {
     /// Leaves the place of now behind, in every mode but its own.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let settings = &situation.conduct.trail;
-        if situation.knows_its_place()
-            && self.trail.leave(situation.outputs.position_m, settings, situation.time_us)
-        {
+        if !situation.knows_its_place() {
+            if self.trail.starve(situation.time_us) {
+                proposal.say(Severity::Critical, "SmartRTL deactivated: bad position");
+            }
+        } else if self.trail.leave(situation.outputs.position_m, settings, situation.time_us) {
             proposal.say(Severity::Critical, "SmartRTL deactivated: buffer full");
         }
     }

@@ -1,5 +1,6 @@
 //! The vehicle's state and one tick of it.
 
+mod ardupilot_arming;
 mod arming;
 mod decision;
 mod equipment;
@@ -45,6 +46,7 @@ use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
+use super::simple_flight::SimpleFlight;
 use super::situation::Situation;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
@@ -118,6 +120,7 @@ impl Vehicle {
             turn: CommandedTurn::default(),
             receiver: Receiver::default(),
             pilot_watch: PilotWatch::default(),
+            simple: SimpleFlight::default(),
             stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
@@ -196,6 +199,7 @@ impl Vehicle {
         }
         let (situation, parts) = self.situation_and_machines();
         let crossed = parts.fence.watch(&situation);
+        parts.simple.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
         parts.failsafe.feel_battery(&situation);
         if let Some(breach) = crossed {
@@ -234,7 +238,7 @@ impl Vehicle {
                 parts.stick_flight.step_by_thrust(situation, proposal);
             }
             Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
-            Mode::Mission => match parts.mission.step(situation, proposal) {
+            Mode::Mission | Mode::MissionLanding => match parts.mission.step(situation, proposal) {
                 Helm::Mission => {}
                 Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
                 Helm::Return => parts.return_home.step(situation, proposal),
@@ -348,9 +352,16 @@ fn situation<'a>(
         lost_rotor: machines.rotors.lost_rotor(),
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
+        fence_is_on: conduct.failsafe.fence_enabled || machines.fence.is_on_by_itself(),
+        fence_floor_counts: machines.fence.floor_counts(),
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_turns: machines.offboard.turns(),
-        pilot: *machines.receiver.pilot(),
+        pilot: machines.simple.seen(
+            machines.receiver.pilot(),
+            machines.pilot_watch.switch_position(),
+            [conduct.radio.simple_slots, conduct.radio.super_simple_slots],
+            outputs.attitude_rad.z,
+        ),
         has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
     }

@@ -16,6 +16,9 @@ pub struct SurroundingsSettings {
     pub go_without_data: bool,
     /// What is avoided: bits (ArduPilot: AVOID_ENABLE).
     pub avoided: u8,
+    /// How fast it backs away from the fence, m/s (ArduPilot: AVOID_BACKUP_SPD).
+    #[serde(default = "slow")]
+    pub backing_m_s: f64,
     /// Kind of the instrument that measures around, zero for none (ArduPilot: PRX1_TYPE).
     pub proximity_kind: u8,
     /// Kind of the downward rangefinder, zero for none (ArduPilot: RNGFND1_TYPE).
@@ -30,6 +33,11 @@ pub struct SurroundingsSettings {
     pub remote_id: bool,
     /// Whether it does not arm before it can (ArduPilot: bit 0 of DID_OPTIONS; PX4: COM_ARM_ODID = 2).
     pub remote_id_to_arm: bool,
+}
+
+/// Records of before it could be chosen have this one.
+fn slow() -> f64 {
+    0.75
 }
 
 /// When traffic is too near, and what is done then.
@@ -95,6 +103,7 @@ impl Default for SurroundingsSettings {
             obstacle_delay_s: 0.4,
             go_without_data: false,
             avoided: 3,
+            backing_m_s: slow(),
             proximity_kind: 0,
             rangefinder_kind: 0,
             rangefinder_farthest_m: 40.0,

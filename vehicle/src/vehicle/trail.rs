@@ -90,6 +90,13 @@ impl Trail {
         !self.active
     }
 
+    /// The place is not known. Returns whether that has lasted too long, and the trail had to be given up.
+    pub fn starve(&mut self, time_us: u64) -> bool {
+        let gives_up = self.active && time_us > self.left_us + FULL_US;
+        self.active &= !gives_up;
+        gives_up
+    }
+
     /// Cuts what it can do without.
     pub fn clean(&mut self, settings: &TrailSettings) {
         simplify(&mut self.places_m, BESIDE * settings.accuracy_m);
@@ -208,6 +215,16 @@ mod tests {
         let places = trail.places_m();
         assert_eq!(places.len(), 3, "{places:?}");
         assert!((places[1] - Vector3::new(20.0, 0.0, -10.0)).norm() < 2.5, "{places:?}");
+    }
+
+    /// ArduPilot's SMART_RTL gives up after 15 s without a position.
+    #[test]
+    fn a_trail_without_places_is_given_up() {
+        let (mut trail, _) = walk(&[[0.0, 0.0], [60.0, 0.0]], &TrailSettings::default());
+        let left_us = trail.left_us;
+        assert!(!trail.starve(left_us + 15_000_000) && trail.is_active());
+        assert!(trail.starve(left_us + 15_000_001) && !trail.is_active());
+        assert!(!trail.starve(left_us + 16_000_000), "it is told once");
     }
 
     /// A zigzag that nothing can be cut from fills it up, and after a while it is given up.

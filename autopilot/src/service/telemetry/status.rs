@@ -7,7 +7,7 @@ use mavlink::dialects::ardupilotmega::{
     SYSTEM_TIME_DATA,
 };
 use vehicle::fence::Breach;
-use vehicle::{LandedState, Vehicle};
+use vehicle::{LandedState, Vehicle, Weakness};
 
 use crate::codec::{boot_ms, boot_us};
 
@@ -91,11 +91,13 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
 /// By the thresholds at which the failsafe acts.
 fn charge_state(vehicle: &Vehicle) -> MavBatteryChargeState {
     let (remaining, settings) = (vehicle.battery_remaining(), &vehicle.conduct().failsafe);
-    if remaining < settings.battery_emergency {
+    let is_weak = |weakness: Weakness| vehicle.failsafe().is_weak(weakness);
+    // By its voltage ArduPilot's battery is critical at the worst.
+    if remaining < settings.battery_emergency && !vehicle.identity().is_ardupilot() {
         MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_EMERGENCY
-    } else if remaining < settings.battery_critical {
+    } else if remaining < settings.battery_critical || is_weak(Weakness::Critical) {
         MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_CRITICAL
-    } else if remaining < settings.battery_low {
+    } else if remaining < settings.battery_low || is_weak(Weakness::Low) {
         MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_LOW
     } else {
         MavBatteryChargeState::MAV_BATTERY_CHARGE_STATE_OK
@@ -190,6 +192,7 @@ pub fn fence_status(vehicle: &Vehicle) -> MavMessage {
     let record = vehicle.fence_record();
     let (breach_type, breach_time) = match record.latest {
         None => (FenceBreach::FENCE_BREACH_NONE, 0),
+        Some((Breach::Floor(_), time_us)) => (FenceBreach::FENCE_BREACH_MINALT, boot_ms(time_us)),
         Some((Breach::Height(_), time_us)) => (FenceBreach::FENCE_BREACH_MAXALT, boot_ms(time_us)),
         Some((_, time_us)) => (FenceBreach::FENCE_BREACH_BOUNDARY, boot_ms(time_us)),
     };

@@ -59,7 +59,7 @@ impl Happenings {
     /// Appends what has happened.
     pub fn look(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>) {
         let (vehicle, time) = (source.vehicle, source.vehicle.time_us() as f64);
-        let mode = vehicle.identity().custom_mode(vehicle.mode());
+        let mode = vehicle.identity().custom_mode(vehicle.shown_mode());
         if self.mode.replace(mode) != Some(mode) {
             let number = f64::from(mode);
             numbers(into, MODE, "QMBB", &[time, number, number, UNKNOWN_REASON]);

@@ -63,6 +63,7 @@ pub fn parameter(identity: Identity, cause: Cause) -> &'static str {
         Cause::HighWind => "COM_WIND_MAX_ACT",
         Cause::Fence => "GF_ACTION",
         Cause::BatteryLow | Cause::BatteryCritical | Cause::BatteryEmergency => "COM_LOW_BAT_ACT",
+        Cause::PositionLost if identity.is_ardupilot() => "FS_EKF_ACTION",
         Cause::PositionLost => "COM_POSCTL_NAVL",
         Cause::RotorFailure => "COM_ACT_FAIL_ACT",
     }
@@ -120,7 +121,10 @@ pub fn spoil(bench: &mut Bench, cause: Cause) {
             // As long as its last position is believed.
             bench.fly(5.5);
         }
-        Cause::Fence if bench.autopilot.identity().is_ardupilot() => set(bench, "FENCE_ALT_MAX", 8.0),
+        Cause::Fence if bench.autopilot.identity().is_ardupilot() => {
+            set(bench, "FENCE_ALT_MAX", 8.0);
+            set(bench, "FENCE_ENABLE", 1.0);
+        }
         Cause::Fence => set(bench, "GF_MAX_VER_DIST", 8.0),
         Cause::RotorFailure => inject(bench, FailureUnit::FAILURE_UNIT_SYSTEM_MOTOR),
         Cause::PilotLost => {
@@ -157,7 +161,11 @@ pub fn choices(identity: Identity, cause: Cause) -> Vec<(u8, Action)> {
         let mut conduct = Conduct::new(identity.is_ardupilot());
         (parameter.set)(&mut conduct, f64::from(number)).then(|| (number, conduct.failsafe.action(cause)))
     };
-    (0..=10).filter_map(choice).collect()
+    let named = (parameter.names)();
+    (0..=10)
+        .filter(|number| named.iter().any(|name| name.value == i32::from(*number)))
+        .filter_map(choice)
+        .collect()
 }
 
 /// The state that the latest HEARTBEAT tells.

@@ -14,10 +14,20 @@ pub enum Action {
     Warn,
     /// Hands over to the sticks.
     Position,
+    /// Hands over to the sticks, and holds its height.
+    Altitude,
     /// Holds its place.
     Hold,
+    /// The same, or without a place lands.
+    BrakeOrLand,
     /// Flies home, or to a nearer rally point, and lands.
     Return,
+    /// Flies home the way that it came, or else straight.
+    TraceOrReturn,
+    /// Goes on with the landing of the mission, or else flies home.
+    MissionLandingOrReturn,
+    /// Flies home the way that it came, or else lands.
+    TraceOrLand,
     /// Lands where it is; without an estimate of its place level, by its sink rate.
     Land,
     /// Stops the rotors.
@@ -26,16 +36,31 @@ pub enum Action {
 
 impl Action {
     /// All actions.
-    pub const ALL: [Self; 7] =
-        [Self::None, Self::Warn, Self::Position, Self::Hold, Self::Return, Self::Land, Self::Terminate];
+    pub const ALL: [Self; 12] = [
+        Self::None,
+        Self::Warn,
+        Self::Position,
+        Self::Altitude,
+        Self::Hold,
+        Self::BrakeOrLand,
+        Self::Return,
+        Self::TraceOrReturn,
+        Self::MissionLandingOrReturn,
+        Self::TraceOrLand,
+        Self::Land,
+        Self::Terminate,
+    ];
 
-    /// The mode that carries it out; `None` for what is no mode.
+    /// The mode that carries it out, if nothing is missing for it; `None` for what is no mode.
     pub fn mode(self) -> Option<Mode> {
         match self {
             Self::None | Self::Warn | Self::Terminate => None,
             Self::Position => Some(Mode::Position),
-            Self::Hold => Some(Mode::Hold),
+            Self::Altitude => Some(Mode::Altitude),
+            Self::Hold | Self::BrakeOrLand => Some(Mode::Hold),
             Self::Return => Some(Mode::Return),
+            Self::TraceOrReturn | Self::TraceOrLand => Some(Mode::SmartReturn),
+            Self::MissionLandingOrReturn => Some(Mode::Mission),
             Self::Land => Some(Mode::Land),
         }
     }
@@ -44,11 +69,12 @@ impl Action {
     pub fn without_pilot(action: RadioLossAction) -> Self {
         match action {
             RadioLossAction::None => Self::None,
-            RadioLossAction::Hold | RadioLossAction::BrakeOrLand => Self::Hold,
-            RadioLossAction::Return
-            | RadioLossAction::TraceOrReturn
-            | RadioLossAction::TraceOrLand
-            | RadioLossAction::MissionLandingOrReturn => Self::Return,
+            RadioLossAction::Hold => Self::Hold,
+            RadioLossAction::BrakeOrLand => Self::BrakeOrLand,
+            RadioLossAction::Return => Self::Return,
+            RadioLossAction::TraceOrReturn => Self::TraceOrReturn,
+            RadioLossAction::TraceOrLand => Self::TraceOrLand,
+            RadioLossAction::MissionLandingOrReturn => Self::MissionLandingOrReturn,
             RadioLossAction::Land => Self::Land,
             RadioLossAction::Terminate | RadioLossAction::Disarm => Self::Terminate,
         }
@@ -57,7 +83,8 @@ impl Action {
     /// The action that a mode is already: a return is not called off to hold, a landing not to return.
     pub fn of_mode(mode: Mode) -> Self {
         match mode {
-            Mode::Return | Mode::SmartReturn => Self::Return,
+            Mode::Return => Self::Return,
+            Mode::SmartReturn => Self::TraceOrReturn,
             Mode::Land => Self::Land,
             _ => Self::None,
         }
@@ -69,8 +96,11 @@ impl Action {
             Self::None => "no action",
             Self::Warn => "warning only",
             Self::Position => "switching to position mode",
-            Self::Hold => "holding",
+            Self::Altitude => "switching to altitude mode",
+            Self::Hold | Self::BrakeOrLand => "holding",
             Self::Return => "returning",
+            Self::TraceOrReturn | Self::TraceOrLand => "returning along its path",
+            Self::MissionLandingOrReturn => "flying to the mission's landing",
             Self::Land => "landing",
             Self::Terminate => "stopping the rotors",
         }

@@ -13,6 +13,10 @@ pub struct FailsafeSettings {
     pub ground_station_timeout_s: f64,
     /// What is done then (NAV_DLL_ACT).
     pub ground_station_lost: Action,
+    /// A number of FS_GCS_ENABLE, and one of FS_THR_ENABLE, that means nothing: the vehicle returns by the one and lands by the other, as
+    /// ArduPilot does, and shows the number again.
+    #[serde(default)]
+    pub unknown_numbers: [Option<u8>; 2],
     /// What is done when set-points stop (COM_OBL_RC_ACT).
     pub set_points_lost: Action,
     /// Remaining shares of the battery below which it is low, critical and empty (BAT_LOW_THR, BAT_CRIT_THR, BAT_EMERGEN_THR).
@@ -45,12 +49,24 @@ pub struct FailsafeSettings {
     pub fence_radius_m: f64,
     /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
     pub fence_height_m: f64,
+    /// Lowest above home, m (ArduPilot: FENCE_ALT_MIN).
+    #[serde(default)]
+    pub fence_floor_m: f64,
+    /// How far inside of its borders sticks stop, m (ArduPilot: FENCE_MARGIN).
+    #[serde(default)]
+    pub fence_margin_m: f64,
+    /// Whether it is switched on by itself (ArduPilot: FENCE_AUTOENABLE).
+    #[serde(default)]
+    pub fence_starts: FenceStart,
     /// Strongest wind, m/s; not positive: any (COM_WIND_MAX).
     pub wind_m_s: f64,
     /// What is done in a stronger one (COM_WIND_MAX_ACT).
     pub high_wind: Action,
-    /// What is done without an estimate of the place (COM_POSCTL_NAVL).
+    /// What is done without an estimate of the place (COM_POSCTL_NAVL; ArduPilot: FS_EKF_ACTION).
     pub position_lost: Action,
+    /// Whether that holds for modes that need no place, too.
+    #[serde(default)]
+    pub position_lost_everywhere: bool,
     /// What is done when the pilot is lost (NAV_RCL_ACT; ArduPilot: FS_THR_ENABLE).
     #[serde(default = "returns")]
     pub pilot_lost: RadioLossAction,
@@ -77,11 +93,28 @@ pub struct FenceParts {
     pub distance: bool,
     /// The zones.
     pub zones: bool,
+    /// The least height.
+    #[serde(default)]
+    pub floor: bool,
+}
+
+/// When the fence is switched on by itself, until the vehicle stands again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FenceStart {
+    /// Not.
+    #[default]
+    Never,
+    /// After a takeoff.
+    Takeoff,
+    /// After a takeoff; ArduPilot switches only the floor off for the landing.
+    TakeoffExceptFloor,
+    /// When it is armed.
+    Armed,
 }
 
 impl Default for FenceParts {
     fn default() -> Self {
-        Self { height: true, distance: true, zones: true }
+        Self { height: true, distance: true, zones: true, floor: false }
     }
 }
 
@@ -98,6 +131,12 @@ pub struct BatteryLimits {
     pub critical_mah: f64,
     /// A voltage counts when it has been low for so long, s.
     pub low_s: f64,
+    /// Least voltage, V, and remaining charge, mA·h, to arm with; 0: any.
+    #[serde(default)]
+    pub to_arm_v: f64,
+    #[allow(missing_docs)] // With the one above.
+    #[serde(default)]
+    pub to_arm_mah: f64,
     /// Whether the voltage is looked at without the drop that the current makes.
     pub at_rest: bool,
 }
@@ -105,7 +144,16 @@ pub struct BatteryLimits {
 /// No voltage, as packs have one to twelve cells; ArduPilot has 10.5 V, for three of them.
 impl Default for BatteryLimits {
     fn default() -> Self {
-        Self { low_v: 0.0, critical_v: 0.0, low_mah: 0.0, critical_mah: 0.0, low_s: 10.0, at_rest: false }
+        Self {
+            low_v: 0.0,
+            critical_v: 0.0,
+            low_mah: 0.0,
+            critical_mah: 0.0,
+            low_s: 10.0,
+            to_arm_v: 0.0,
+            to_arm_mah: 0.0,
+            at_rest: false,
+        }
     }
 }
 
@@ -116,12 +164,15 @@ pub struct FenceOptions {
     pub keeps_mode: bool,
     /// Whether it is enough to be in one of several zones to stay in; else the vehicle stays where all of them are.
     pub union: bool,
+    /// Whether the way to the fence is told within its margin.
+    #[serde(default)]
+    pub tells_margin: bool,
 }
 
 /// PX4's.
 impl Default for FenceOptions {
     fn default() -> Self {
-        Self { keeps_mode: false, union: true }
+        Self { keeps_mode: false, union: true, tells_margin: false }
     }
 }
 
@@ -158,6 +209,7 @@ impl Default for FailsafeSettings {
         Self {
             ground_station_timeout_s: 10.0,
             ground_station_lost: Action::None,
+            unknown_numbers: [None; 2],
             set_points_lost: Action::Hold,
             battery_low: 0.15,
             battery_critical: 0.07,
@@ -171,9 +223,13 @@ impl Default for FailsafeSettings {
             fence_options: FenceOptions::default(),
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
+            fence_floor_m: -10.0,
+            fence_margin_m: 0.0,
+            fence_starts: FenceStart::Never,
             wind_m_s: -1.0,
             high_wind: Action::Warn,
             position_lost: Action::Land,
+            position_lost_everywhere: false,
             pilot_lost: RadioLossAction::Return,
             rotor_failure: Action::Land,
         }
@@ -181,8 +237,8 @@ impl Default for FailsafeSettings {
 }
 
 impl FailsafeSettings {
-    /// The defaults, which differ by convention: ArduPilot returns at the fence and lets nobody choose another mode until it is back, stays
-    /// where all inclusion zones are, and misses its ground station after 5 s.
+    /// The defaults, which differ by convention: ArduPilot's fence is off; it returns at it and lets nobody choose another mode until it is back, stays
+    /// where all inclusion zones are, misses its ground station after 5 s, and only warns of a weak battery.
     pub fn new(ardupilot: bool) -> Self {
         let px4 = Self::default();
         if !ardupilot {
@@ -190,8 +246,13 @@ impl FailsafeSettings {
         }
         Self {
             fence: Action::Return,
-            fence_options: FenceOptions { keeps_mode: true, union: false },
+            fence_enabled: false,
+            fence_radius_m: 300.0,
+            fence_height_m: 100.0,
+            fence_margin_m: 2.0,
+            fence_options: FenceOptions { keeps_mode: true, union: false, tells_margin: false },
             ground_station_timeout_s: 5.0,
+            battery: BatteryActions::WARN,
             ..px4
         }
     }

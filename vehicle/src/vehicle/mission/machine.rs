@@ -9,6 +9,7 @@ use super::super::situation::Situation;
 use super::super::speeds::SpeedChange;
 use super::super::steering::{Steering, SteeringKind};
 use super::actions::Actions;
+use super::announcement;
 use super::course::Course;
 use super::jumps::Jumps;
 use super::leg::{Leg, Turn};
@@ -35,6 +36,10 @@ pub struct Mission {
     actions: Actions,
     /// Whether it waits in its own mode.
     paused: bool,
+    /// Whether it flies its landing in place of a way home.
+    lands: bool,
+    /// The step that was told last.
+    told: Option<usize>,
     /// Steps that were reached since the last look.
     reached: Vec<u16>,
 }
@@ -75,6 +80,16 @@ impl Mission {
     /// Number of the step that is flown, or will be.
     pub fn current(&self) -> usize {
         self.current
+    }
+
+    /// Whether it flies its landing in place of a way home.
+    pub fn lands(&self) -> bool {
+        self.lands
+    }
+
+    /// From now on it does.
+    pub fn land(&mut self) {
+        self.lands = true;
     }
 
     /// Whether it waits in its own mode.
@@ -180,6 +195,7 @@ impl Mission {
             self.progress = Progress::NotStarted;
         }
         self.give_up(None);
+        self.lands = false;
         self.current = index.max(self.program.first());
         if situation.mode == Mode::Mission && !self.paused {
             self.take_over(situation, proposal);
@@ -217,6 +233,9 @@ impl Mission {
     /// Its mode is entered.
     pub fn enter(&mut self, situation: &Situation, proposal: &mut Proposal) {
         match self.progress {
+            Progress::Started if situation.conduct.mission_restarts && !self.lands => {
+                self.begin(situation, proposal);
+            }
             Progress::NotStarted | Progress::Started => self.take_over(situation, proposal),
             Progress::Complete => self.begin(situation, proposal),
         }
@@ -224,7 +243,7 @@ impl Mission {
 
     /// Its mode is left.
     pub fn leave(&mut self, proposal: &mut Proposal) {
-        self.paused = false;
+        (self.paused, self.lands) = (false, false);
         self.course.give_up(None);
         proposal.change_speeds(SpeedChange::InMission(false));
     }
@@ -274,6 +293,9 @@ impl Mission {
                     return false;
                 }
             };
+            if self.told.replace(self.current) != Some(self.current) {
+                announcement::begin(&step, self.current, situation, proposal);
+            }
             let route = Route::new(&self.program, self.current, &self.jumps, situation, proposal);
             match self.course.step(&step, &route, situation, proposal) {
                 TaskProgress::Going => break,
@@ -301,6 +323,7 @@ impl Mission {
         proposal: &mut Proposal,
     ) -> bool {
         let index = self.current;
+        announcement::end(step, index, situation, proposal);
         self.give_up(turn);
         self.reach(index);
         if *step == Navigate::ReturnToLaunch {
@@ -382,6 +405,7 @@ impl Mission {
 
     /// Goes on from where the vehicle is.
     fn take_over(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        self.told = None;
         proposal.change_speeds(SpeedChange::InMission(true));
         self.course.take_over(situation, proposal);
     }
@@ -390,6 +414,7 @@ impl Mission {
     fn give_up(&mut self, turn: Option<Turn>) {
         self.course.give_up(turn);
         self.actions.clear();
+        self.told = None;
     }
 
     fn complete(&mut self, situation: &Situation, proposal: &mut Proposal) {

@@ -15,6 +15,7 @@
 //! `actions` what is done on the way, `jumps` how often each jump was made. They look at a situation and ask in a proposal.
 
 mod actions;
+mod announcement;
 mod circle_turns;
 mod course;
 mod jumps;

@@ -15,6 +15,18 @@ const LARGEST_LEAN_RAD: f64 = 0.52;
 impl Vehicle {
     /// Everything that speaks against arming now; empty if nothing does.
     pub fn arming_obstacles(&self) -> Vec<ArmingObstacle> {
+        let mut obstacles = self.all_obstacles();
+        if self.identity().is_ardupilot() {
+            if self.conduct().arming.skips_all() {
+                obstacles.retain(|obstacle| obstacle.subject.is_of_mode());
+            } else {
+                obstacles.extend(self.ardupilot_obstacles());
+            }
+        }
+        obstacles
+    }
+
+    fn all_obstacles(&self) -> Vec<ArmingObstacle> {
         let situation = self.situation();
         let mut obstacles = Vec::new();
         if !situation.landed {
@@ -80,6 +92,7 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| {
             parts.landing.arm(situation.time_us);
             parts.smart_return.arm(situation);
+            parts.simple.arm(situation.outputs.attitude_rad.z);
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }

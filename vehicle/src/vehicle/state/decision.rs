@@ -54,6 +54,11 @@ impl Vehicle {
                         self.decided.say(Severity::Warning, format!("Mission: {refusal}"));
                     }
                 }
+                Request::JoinLanding => {
+                    if self.join_landing().is_err() {
+                        self.enter(Mode::Return);
+                    }
+                }
                 Request::EnableFence(enabled) => self.enable_fence(enabled),
                 Request::StopRotors(why) => self.stop_rotors(&why),
                 Request::Terminate => self.terminate(),

@@ -4,7 +4,7 @@ use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_rally_points, check_reach, check_way};
 use super::Vehicle;
 use crate::mode::Mode;
-use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, command, compile};
+use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, command, compile, return_path};
 
 impl Vehicle {
     /// Replaces a plan.
@@ -61,13 +61,16 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
     pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        self.fly_mission(first)?;
+        self.machines.failsafe.release();
+        Ok(())
+    }
+
+    /// The same by itself: what the failsafe does goes on.
+    fn fly_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
         self.may_enter(Mode::Mission)?;
         self.situation().refuse_without_rotor()?;
-        self.consult(|parts, situation, proposal| {
-            parts.mission.start(situation, proposal, first)?;
-            parts.failsafe.release();
-            Ok(())
-        })
+        self.consult(|parts, situation, proposal| parts.mission.start(situation, proposal, first))
     }
 
     /// Pauses: PX4 holds in its own mode for that, ArduPilot within the mission's mode or the guided one.
@@ -126,12 +129,24 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without such a landing, and as [`Vehicle::start_mission`].
     pub fn start_landing(&mut self) -> Result<(), Refusal> {
+        self.join_landing()?;
+        self.machines.failsafe.release();
+        Ok(())
+    }
+
+    /// The same by itself: what the failsafe does goes on.
+    pub(super) fn join_landing(&mut self) -> Result<(), Refusal> {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let items = self.plans().get(PlanKind::Mission).items();
-        let index = command::landing_start(items, &site, &here_m).ok_or_else(|| {
+        let joined = return_path::joined(items, &site, &here_m);
+        let index = joined.or_else(|| command::landing_start(items, &site, &here_m)).ok_or_else(|| {
             Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned())
         })?;
-        self.start_mission(Some(index))
+        self.fly_mission(Some(index))?;
+        if self.identity().is_ardupilot() {
+            self.machines.mission.land();
+        }
+        Ok(())
     }
 
     /// Makes an item the current one; with `reset` the jumps count anew.

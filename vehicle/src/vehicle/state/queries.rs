@@ -161,6 +161,14 @@ impl Vehicle {
         self.decided.mode()
     }
 
+    /// The mode that clients are shown.
+    pub fn shown_mode(&self) -> Mode {
+        match self.mode() {
+            Mode::Mission if self.machines.mission.lands() => Mode::MissionLanding,
+            mode => mode,
+        }
+    }
+
     /// The failsafe.
     pub fn failsafe(&self) -> &Failsafe {
         &self.machines.failsafe

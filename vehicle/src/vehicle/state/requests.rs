@@ -83,8 +83,22 @@ impl Vehicle {
         self.machines.failsafe.hear_ground_station(heard);
     }
 
+    /// Charges the battery, or discharges it, to a share of its capacity.
+    ///
+    /// # Errors
+    /// [`Refusal::Denied`] while the rotors follow the voltage of a battery of their own.
+    pub fn refill_battery(&mut self, share: f64) -> Result<(), Refusal> {
+        if self.kept_configuration().airframe.battery.sag {
+            return Err(Refusal::denied("Battery reset denied: the rotors drain a battery of their own"));
+        }
+        let capacity_ah = self.battery_capacity_ah();
+        self.machines.battery.refill(share, capacity_ah);
+        Ok(())
+    }
+
     /// Switches the fence on or off.
     pub fn enable_fence(&mut self, enabled: bool) {
+        self.machines.fence.switch(enabled);
         let mut conduct = *self.conduct();
         if conduct.failsafe.fence_enabled != enabled {
             conduct.failsafe.fence_enabled = enabled;
@@ -160,6 +174,10 @@ impl Vehicle {
         match mode {
             Mode::Takeoff => return self.take_off(None),
             Mode::Mission => return self.start_mission(None),
+            Mode::MissionLanding if !situation.flies() => {
+                return Err(Refusal::Failed("Auto RTL mode rejected: not flying".to_owned()));
+            }
+            Mode::MissionLanding => return self.start_landing(),
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
@@ -193,8 +211,7 @@ impl Vehicle {
     fn returns_from_fence(&self, situation: &Situation) -> bool {
         let acts = self.machines.failsafe.engaged().is_some_and(|(cause, _)| cause == Cause::Fence);
         let crossed = situation.breach.is_some() && !situation.fence_is_ahead;
-        let keeps =
-            situation.conduct.failsafe.fence_options.keeps_mode && situation.conduct.failsafe.fence_enabled;
+        let keeps = situation.conduct.failsafe.fence_options.keeps_mode && situation.fence_is_on;
         keeps && acts && crossed && situation.armed && !situation.landed
     }
 

@@ -51,7 +51,7 @@ fn nav_state(mode: Mode) -> u8 {
         Mode::Altitude => 1,
         Mode::Acro => 10,
         Mode::Position | Mode::PositionHold => 2,
-        Mode::Mission => 3,
+        Mode::Mission | Mode::MissionLanding => 3,
         Mode::Hold => 4,
         Mode::Return => 5,
         Mode::Offboard => 14,

@@ -1,0 +1,149 @@
+//! Sticks do not lead over the fence: ArduPilot's avoidance (AVOID_ENABLE).
+
+use nalgebra::{Vector2, Vector3};
+
+use super::set_point::{AxisTarget, PositionSetPoint};
+use super::situation::Situation;
+use crate::fence::{Fence, Zone};
+
+/// Of AVOID_ENABLE.
+const FENCE: u8 = 1;
+/// How fast the speed towards a border falls with the room, 1/s.
+const GAIN_PER_S: f64 = 1.0;
+/// Share of the acceleration that braking plans with.
+const SHARE: f64 = 0.5;
+/// How far apart places are whose room is compared, m.
+const APART_M: f64 = 0.05;
+
+/// A velocity that leads over the fence, or into its margin, is slowed down; one that begins there leads back.
+pub fn keep_inside(situation: &Situation, set_point: PositionSetPoint) -> PositionSetPoint {
+    let applies = situation.identity.is_ardupilot()
+        && situation.conduct.surroundings.avoided & FENCE != 0
+        && !situation.landed;
+    let Some(fence) = situation.fence().filter(|_| applies) else { return set_point };
+    let [AxisTarget::Velocity(north), AxisTarget::Velocity(east), AxisTarget::Velocity(down)] =
+        set_point.axes
+    else {
+        return set_point;
+    };
+    let over_ground = keep_over_ground(situation, &fence, Vector2::new(north, east));
+    let down = keep_height(situation, &fence, down);
+    let velocity = Vector3::new(over_ground.x, over_ground.y, down);
+    PositionSetPoint { axes: velocity.data.0[0].map(AxisTarget::Velocity), ..set_point }
+}
+
+fn keep_over_ground(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -> Vector2<f64> {
+    let margin_m = situation.conduct.failsafe.fence_margin_m;
+    let acceleration = situation.limits().acceleration_horizontal_m_s2;
+    let here = situation.outputs.position_m.xy();
+    let mut keep = |room_m: &dyn Fn(Vector2<f64>) -> f64| {
+        let slope = |axis: Vector2<f64>| room_m(here + axis * APART_M) - room_m(here - axis * APART_M);
+        let inwards = Vector2::new(slope(Vector2::x()), slope(Vector2::y()));
+        let Some(outwards) = (-inwards).try_normalize(f64::EPSILON) else { return };
+        let allowed = allowed_m_s(situation, room_m(here) - margin_m, acceleration);
+        let too_fast = velocity.dot(&outwards) - allowed;
+        if too_fast > 0.0 {
+            velocity -= outwards * too_fast;
+        }
+    };
+    if fence.radius_m > 0.0 {
+        keep(&|place| fence.radius_m - (place - fence.home_m.xy()).norm());
+    }
+    for zone in fence.zones.iter().flat_map(|zones| &zones.zones) {
+        keep(&|place| room_m(zone, place));
+    }
+    velocity
+}
+
+/// How far a place is on the right side of a zone's border, m.
+fn room_m(zone: &Zone, place: Vector2<f64>) -> f64 {
+    let distance_m = zone.shape.distance_m(place.into());
+    if zone.forbids(place.into()) { -distance_m } else { distance_m }
+}
+
+/// A velocity down that keeps above the floor, if that counts, and below the ceiling.
+fn keep_height(situation: &Situation, fence: &Fence, down_m_s: f64) -> f64 {
+    let settings = &situation.conduct.failsafe;
+    let height_m = fence.home_m.z - situation.outputs.position_m.z;
+    let acceleration = situation.limits().acceleration_vertical_m_s2;
+    let allowed = |room_m: f64| allowed_m_s(situation, room_m - settings.fence_margin_m, acceleration);
+    let mut down_m_s = down_m_s;
+    if fence.height_m > 0.0 {
+        down_m_s = down_m_s.max(-allowed(fence.height_m - height_m));
+    }
+    if settings.fence_parts.floor && situation.fence_floor_counts {
+        down_m_s = down_m_s.min(allowed(height_m - settings.fence_floor_m));
+    }
+    down_m_s
+}
+
+/// The fastest towards a border with so much room before it, m/s; negative beyond it.
+fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2: f64) -> f64 {
+    if room_m < 0.0 {
+        return (GAIN_PER_S * room_m).max(-situation.conduct.surroundings.backing_m_s);
+    }
+    let brakes_m_s2 = SHARE * acceleration_m_s2;
+    let bend_m = brakes_m_s2 / (GAIN_PER_S * GAIN_PER_S);
+    if room_m < bend_m {
+        return GAIN_PER_S * room_m;
+    }
+    // Constant braking down to where the gain takes over.
+    libm::sqrt(2.0 * brakes_m_s2 * (room_m - 0.5 * bend_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AxisTarget, PositionSetPoint, keep_inside};
+    use crate::identity::Identity;
+    use crate::vehicle::Conduct;
+    use crate::vehicle::scene::Scene;
+    use crate::vehicle::set_point::YawTarget;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let settings = &mut scene.conduct.failsafe;
+        (settings.fence_enabled, settings.fence_radius_m, settings.fence_height_m) = (true, 15.0, 30.0);
+        settings.fence_margin_m = 3.0;
+        scene
+    }
+
+    /// The velocity that is left of one.
+    fn kept(scene: &Scene, velocity_m_s: [f64; 3]) -> [f64; 3] {
+        let asked = PositionSetPoint { axes: velocity_m_s.map(AxisTarget::Velocity), yaw: YawTarget::Hold };
+        keep_inside(&scene.situation(), asked).axes.map(|axis| match axis {
+            AxisTarget::Velocity(velocity_m_s) => velocity_m_s,
+            other => panic!("{other:?}"),
+        })
+    }
+
+    #[test]
+    fn what_leads_outwards_ends_at_the_margin() {
+        let mut scene = scene();
+        let mut at = |north_m: f64| {
+            scene.come_to([north_m, 0.0, -10.0], [0.0; 3]);
+            kept(&scene, [5.0, 1.0, 0.0])
+        };
+        assert!(at(0.0)[0] > at(6.0)[0] && at(6.0)[0] > 1.0, "the nearer, the slower");
+        let [north, east, _] = at(11.5);
+        assert!((north - 0.5).abs() < 1e-6 && (east - 1.0).abs() < 1e-6, "{north} {east}");
+        assert!(at(12.0)[0].abs() < 1e-6);
+        assert!((at(14.0)[0] + 0.75).abs() < 1e-6, "it backs away");
+        scene.come_to([12.0, 0.0, -10.0], [0.0; 3]);
+        assert_eq!(kept(&scene, [-5.0, 0.0, 0.0]), [-5.0, 0.0, 0.0], "inwards it may go");
+        scene.conduct.surroundings.avoided = 2;
+        assert_eq!(kept(&scene, [5.0, 0.0, 0.0]), [5.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_climb_ends_below_the_ceiling() {
+        let mut scene = scene();
+        let mut climb = |height_m: f64| {
+            scene.come_to([0.0, 0.0, -height_m], [0.0; 3]);
+            -kept(&scene, [0.0, 0.0, -2.0])[2]
+        };
+        assert_eq!(climb(10.0), 2.0);
+        assert!((climb(26.5) - 0.5).abs() < 1e-9);
+        assert!((climb(29.0) + 0.75).abs() < 1e-9);
+    }
+}
