@@ -13,6 +13,8 @@ use clap::builder::PossibleValuesParser;
 
 #[path = "../tests/suite/fuzzing/mod.rs"]
 mod fuzzing;
+#[path = "../tests/suite/common/seal.rs"]
+mod seal;
 
 use fuzzing::TARGETS;
 

@@ -14,6 +14,7 @@ mod equations;
 mod kalman;
 mod laguerre;
 mod models;
+mod posed_program;
 mod published;
 mod quadratic_program;
 mod quadratic_program_scale;

@@ -63,3 +63,6 @@ mod traffic;
 mod vehicle_loss;
 mod wind_drag;
 mod wind_hold;
+
+// Where the fuzzer's example has it, too.
+use common::seal;

@@ -11,7 +11,7 @@ use sitl::signing::{Kept, SecretKey};
 use vehicle::parameters::{FileFormat, ParameterTable, ParameterValues, Speed, Statistics, render};
 
 use super::bytes::Bytes;
-use super::seal::sealed;
+use crate::seal::sealed;
 
 /// Ticks that a vehicle from a file flies.
 const TICKS: usize = 50;

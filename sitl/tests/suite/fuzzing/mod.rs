@@ -3,8 +3,6 @@
 mod bytes;
 mod files;
 mod flight;
-#[path = "../common/seal.rs"]
-mod seal;
 mod signatures;
 mod simulator;
 
