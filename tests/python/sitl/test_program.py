@@ -207,7 +207,7 @@ def test_bash_completes_flags_topics_and_choices(program):
 def test_the_manual_page_has_flags_and_topics(program):
     page = run(program, "--generate", "man").stdout
     assert "\n.TH lmpc-sitl 1 " in page, page[:200]
-    for heading in ("NAME", "OPTIONS", "LINKS", "EXIT-CODES"):
+    for heading in ("NAME", "SYNOPSIS", "LINKS", "EXIT-CODES"):
         assert f"\n.SH {heading}\n" in page, heading
 
 

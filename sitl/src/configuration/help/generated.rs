@@ -78,24 +78,30 @@ impl Form {
     }
 }
 
-/// The manual page: all flags, and then what is to be known of each topic.
+/// The manual page: a section for each topic, with its flags and what is to be known beside them.
 fn manual(command: Command, page: &mut Vec<u8>) -> io::Result<()> {
-    // What stands behind the help is a list of topics, which are sections here.
-    let manual = Man::new(command.after_help(None::<&str>));
-    manual.render_title(page)?;
-    manual.render_name_section(page)?;
-    manual.render_synopsis_section(page)?;
-    manual.render_description_section(page)?;
-    manual.render_options_section(page)?;
+    let head = Man::new(command.clone());
+    head.render_title(page)?;
+    head.render_name_section(page)?;
+    head.render_synopsis_section(page)?;
+    head.render_description_section(page)?;
     for topic in TOPICS {
-        let mut section = Roff::new();
-        section.control("SH", [topic.name.to_uppercase().as_str()]).control("nf", []);
-        for line in topic.text.lines() {
-            section.text([roman(line)]);
+        // What the short help leaves out would have no description here.
+        let flags = topic
+            .command(&command)
+            .mut_args(|argument| argument.help_heading(topic.name).hide_short_help(false));
+        Man::new(flags).render_options_section(page)?;
+        let mut text = Roff::new();
+        if topic.flags.is_empty() {
+            text.control("SH", [topic.name.to_uppercase().as_str()]);
         }
-        section.control("fi", []).to_writer(page)?;
+        text.control("PP", []).control("nf", []);
+        for line in topic.text.lines() {
+            text.text([roman(line)]);
+        }
+        text.control("fi", []).to_writer(page)?;
     }
-    manual.render_version_section(page)
+    head.render_version_section(page)
 }
 
 #[cfg(test)]
@@ -118,11 +124,17 @@ mod tests {
     }
 
     #[test]
-    fn the_manual_page_has_a_section_for_each_topic() {
+    fn the_manual_page_has_one_section_for_each_topic_and_describes_each_flag() {
         let page = Form::Manual.text();
         for topic in TOPICS {
-            let heading = topic.name.to_uppercase();
-            assert!(page.lines().any(|line| line.starts_with(".SH") && line.contains(&heading)), "{heading}");
+            let heading = format!(".SH {}", topic.name.to_uppercase());
+            assert_eq!(page.lines().filter(|line| **line == heading).count(), 1, "{heading}");
+        }
+        for argument in command().get_arguments() {
+            let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+            // Up to what roff writes in other ways.
+            let words = help.split(['-', '`', '\'', '.']).next().unwrap_or_default();
+            assert!(page.contains(words), "{:?}: {words}", argument.get_long());
         }
     }
 

@@ -28,7 +28,7 @@ pub fn help() -> Arg {
             },
             values: || topic::names().map(PossibleValue::new).collect(),
         })
-        .help("Print this help, or all about a topic")
+        .help("Print the short help, or all about a topic")
         .long_help(
             "Print the short help, or all about a topic\n\nThe name of a flag finds its topic; `all` prints all of them.",
         )
