@@ -42,7 +42,7 @@ fn hovering() -> Autopilot {
 fn tick(vehicle: &mut Autopilot) {
     vehicle.tick().expect("the flight goes on");
     vehicle.transfer(0, |_| Some(true));
-    for (sequence, outgoing) in vehicle.take_outgoing().into_iter().enumerate() {
+    for (sequence, outgoing) in vehicle.take_outgoing().enumerate() {
         let sender = (VEHICLE.0, outgoing.component);
         black_box(Frame::encode(&outgoing.message, Version::Two, sequence as u8, sender));
     }
