@@ -9,7 +9,7 @@ use vehicle::fault::ScheduledFault;
 use vehicle::parameters::Speed;
 
 use super::equipment::EquipmentChoice;
-use super::help::{FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE, VIEW};
+use super::help::{FILES, FLEET, FMU, HIL, LINKS, SIMULATION, VEHICLE};
 use super::ranged::{non_negative, number, whole};
 use super::view::DEFAULT_VIEW;
 use super::{
@@ -358,7 +358,7 @@ pub struct Arguments {
     /// HOST defaults to 127.0.0.1: name another address to let other machines see the page. Port 0 is any free port.
     #[arg(
         long, env = "LMPC_SITL_VIEW", value_name = "[HOST:]PORT", num_args = 0..=1, default_missing_value = DEFAULT_VIEW,
-        help_heading = VIEW
+        help_heading = LINKS
     )]
     pub view: Option<ViewAddress>,
 
@@ -366,7 +366,7 @@ pub struct Arguments {
     ///
     /// A ULog of --log-dir, or a table such as FMPy's results of LmpcQuadrotor.fmu. Nothing is simulated; only --view,
     /// --ready-file and --log go with this flag. Ctrl-C ends it.
-    #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = VIEW, hide_short_help = true)]
+    #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_record: Option<PathBuf>,
 
     /// FMU that flies (FMI 2.0 co-simulation)

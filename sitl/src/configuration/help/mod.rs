@@ -26,8 +26,6 @@ pub const FLEET: &str = "Several vehicles";
 pub const SIMULATION: &str = "Simulation";
 /// What is written and read.
 pub const FILES: &str = "Records, logs and files";
-/// The page in a browser.
-pub const VIEW: &str = "Live page";
 /// Models of others.
 pub const FMU: &str = "FMU in place of ours";
 /// Hardware and software in the loop.

@@ -20,8 +20,9 @@ use super::bytes::{Bytes, command, framed, position_target};
 const PIECES: usize = 600;
 /// After these every bounded memory has been filled once.
 const WARM_UP: usize = 200;
-/// What a case may hold more at its end than after that, bytes: some plans, open files and descriptions of parameters.
-const GROWTH: i64 = 512 * 1024;
+/// What a case may hold more at its end than after that, bytes: some plans, open files and descriptions of parameters, which alone
+/// are half of it.
+const GROWTH: i64 = 768 * 1024;
 /// Turns of long answers in a tick.
 const TURNS: usize = 1;
 /// What the decoder may hold: less than the longest frame.
