@@ -145,8 +145,10 @@ fn choose_inputs(map: &Map, role: ForeignRole, inputs: &mut [Vec<Channel>]) -> R
     let wrench = explicit(input::THRUST) || explicit(input::TORQUE);
     let rotors = has(input::ROTOR_COMMAND) && (explicit(input::ROTOR_COMMAND) || !wrench);
     if role == ForeignRole::Plant && rotors && wrench {
-        return Err("[variables] maps rotor.command, and thrust or torque; a plant is driven by one of both"
-            .to_owned());
+        return Err(
+            "[variables] maps rotor.command, and thrust or torque; a plant is driven by one of the two"
+                .to_owned(),
+        );
     }
     let dropped: Vec<usize> = match role {
         ForeignRole::ClosedLoop => OF_PLANTS.to_vec(),
