@@ -92,7 +92,7 @@ fn counted(program: &Path, name: &str, times: u64) -> Result<u64, Failure> {
     }
     total(&said).ok_or_else(|| Failure::Answer {
         what: VALGRIND,
-        detail: "it says nothing of the instructions that it has collected".to_owned(),
+        detail: "its output has no line “Collected”".to_owned(),
     })
 }
 
@@ -107,7 +107,7 @@ fn compared(reference: &Counts, counts: &Counts) -> (String, Vec<String>) {
     let mut exceeded = Vec::new();
     for (name, now) in &counts.instructions {
         let Some(before) = reference.instructions.get(name) else {
-            exceeded.push(format!("{name}: {now}, of which there is no reference"));
+            exceeded.push(format!("{name}: {now}, but the reference has no entry"));
             continue;
         };
         let ratio = *now as f64 / *before as f64;
@@ -128,7 +128,7 @@ fn remedy(reference: &Counts, counts: &Counts) -> String {
         return update.to_owned();
     }
     let (before, now) = (&reference.compiler, &counts.compiler);
-    format!("the reference is of another compiler, {before}, this is {now}: {update}")
+    format!("the reference was made with another compiler, {before}; this one is {now}; {update}")
 }
 
 #[cfg(test)]

@@ -124,7 +124,7 @@ enum Task {
     },
     /// Measures the controllers, the engine, the FMU and the vehicle beside their peers: target/bench/report.html, report.md, results.json.
     ///
-    /// Peers come from the registry of Python packages; one that cannot be installed is reported missing.
+    /// Peers come from the registry of Python packages; the report names those that cannot be installed.
     Bench {
         #[command(flatten)]
         options: bench::Options,
@@ -135,9 +135,9 @@ enum Task {
     Crates,
     /// Counts the instructions of a control period, a simulated second, an FMU step and a vehicle tick, and compares with counts/reference.json.
     ///
-    /// Fails when one takes a tenth more. Needs valgrind.
+    /// Fails when one takes over a tenth more. Needs valgrind.
     Counts {
-        /// Makes what is counted the reference.
+        /// Makes the new counts the reference.
         #[arg(long)]
         update: bool,
     },

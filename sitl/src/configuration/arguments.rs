@@ -45,9 +45,9 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_LOG", value_name = "LEVEL")]
     pub log: Option<LogFilter>,
 
-    /// One line, not a panel, follows the flight [default: false]
+    /// Show one status line instead of the panel [default: false]
     ///
-    /// On a terminal. Elsewhere there is neither.
+    /// Either appears on a terminal only.
     #[arg(
         long, env = "LMPC_SITL_NO_PANEL", value_name = "true|false", num_args = 0..=1, default_missing_value = "true",
         hide_short_help = true
@@ -352,10 +352,11 @@ pub struct Arguments {
     )]
     pub ftp_write: Option<bool>,
 
-    /// Show the flight in a browser [default: 127.0.0.1:8088]
+    /// Show the flight in a browser
     ///
-    /// Prints the address of the page. The page takes commands only with the token in that address; others can only look on.
+    /// Prints the address of the page. Only a page with the token in that address can send commands; others can only watch.
     /// HOST defaults to 127.0.0.1: name another address to let other machines see the page. Port 0 is any free port.
+    /// [default: off; 127.0.0.1:8088 without a value]
     #[arg(
         long, env = "LMPC_SITL_VIEW", value_name = "[HOST:]PORT", num_args = 0..=1, default_missing_value = DEFAULT_VIEW,
         help_heading = LINKS
@@ -364,15 +365,15 @@ pub struct Arguments {
 
     /// Show a recorded flight in a browser (.ulg or .csv)
     ///
-    /// A ULog of --log-dir, or a table such as FMPy's results of LmpcQuadrotor.fmu. Nothing is simulated; only --view,
-    /// --ready-file and --log go with this flag. Ctrl-C ends it.
+    /// FILE is a ULog, such as those of --log-dir, or a table, such as FMPy's results of LmpcQuadrotor.fmu. Nothing is
+    /// simulated; only --view, --ready-file and --log go with this flag. Ctrl-C ends the program.
     #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_record: Option<PathBuf>,
 
     /// FMU that flies (FMI 2.0 co-simulation)
     ///
-    /// As the closed loop, or as the plant under our controllers, by the inputs that it has. Variables with the names of ours are
-    /// found by themselves; --map names others. Each vehicle has an instance of its own, in a process of its own. With --hil it
+    /// It flies as the closed loop, or as the plant under our controllers, depending on its inputs. Variables with our names are
+    /// found without a map; --map names others. Each vehicle has an instance of its own, in a process of its own. With --hil it
     /// is the plant of the external autopilot. Exit code 6 means that it crashed, hung or reported an error.
     #[arg(long, env = "LMPC_SITL_FMU", value_name = "FILE.fmu", help_heading = FMU, hide_short_help = true)]
     pub fmu: Option<PathBuf>,
@@ -384,7 +385,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_MAP", value_name = "FILE.toml", help_heading = FMU, hide_short_help = true)]
     pub map: Option<PathBuf>,
 
-    /// List the variables that --fmu is flown by, and exit
+    /// List which variables of --fmu are used, and exit
     ///
     /// With units, conversions and start values. The FMU's code does not run. [default: false]
     #[arg(

@@ -138,7 +138,7 @@ impl Map {
                     misplaced(&name, "variables").map_err(place)?;
                     let entry = known(&name).and_then(|()| entry(&name, given)).map_err(place)?;
                     if self.entries.insert(name.clone(), entry).is_some() {
-                        return Err(place(format!("{name} is mapped twice; keep one of both")));
+                        return Err(place(format!("{name} is mapped twice; keep only one of them")));
                     }
                 }
             }
@@ -158,17 +158,21 @@ impl Map {
                 }
                 DeValue::Array(_) => {
                     misplaced(&name, "parameters").map_err(place)?;
-                    return Err(place(format!("{name} is a number, true, false or a text")));
+                    return Err(place(format!("{name} must be a number, true, false or a text in quotes")));
                 }
                 DeValue::Boolean(value) => Value::Boolean(*value),
                 DeValue::String(value) => Value::Text(value.to_string()),
                 other => match number(other) {
                     Some(value) => Value::Number(value),
-                    None => return Err(place(format!("{name} is a number, true, false or a text"))),
+                    None => {
+                        return Err(place(format!(
+                            "{name} must be a number, true, false or a text in quotes"
+                        )));
+                    }
                 },
             };
             if self.parameters.insert(name.clone(), parsed).is_some() {
-                return Err(place(format!("{name} is set twice; keep one of both")));
+                return Err(place(format!("{name} is set twice; keep only one of them")));
             }
         }
         Ok(())
@@ -356,7 +360,10 @@ mod tests {
             ("[frame]\nworld = \"NEU\"", "world = \"NEU\"; allowed are three right-handed axes"),
             ("step_timeout = 0", "step_timeout is a time from 0.01 to 3600 s"),
             ("variables = 3", "it is a table: [variables]"),
-            ("[parameters]\na = [1]", "line 2, `a = [1]`: a is a number, true, false or a text"),
+            (
+                "[parameters]\na = [1]",
+                "line 2, `a = [1]`: a must be a number, true, false or a text in quotes",
+            ),
             ("x = = 3", "line 1, `x = = 3`: "),
             (
                 "[variables]\nthrust = \"F\"\npreload = [\"a.so\"]",
@@ -366,9 +373,9 @@ mod tests {
             ("[frame]\nworld = \"ENU\"\nstep_timeout = 3", "step_timeout stands below [frame]"),
             (
                 "[variables]\nposition.x = \"a\"\n\"position.x\" = \"b\"",
-                "position.x is mapped twice; keep one of both",
+                "position.x is mapped twice; keep only one of them",
             ),
-            ("[parameters]\na.b = 1\n\"a.b\" = 2", "a.b is set twice; keep one of both"),
+            ("[parameters]\na.b = 1\n\"a.b\" = 2", "a.b is set twice; keep only one of them"),
             (
                 "[variables]\nposition.x = \"a\"\nposition.x = \"b\"",
                 "line 3, `position.x = \"b\"`: duplicate key",

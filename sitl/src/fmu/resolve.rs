@@ -132,7 +132,9 @@ fn check_explicit(map: &Map, role: ForeignRole) -> Result<(), String> {
     let groups = others.iter().filter_map(|group| INPUTS.get(*group));
     for signal in groups.flat_map(Group::signals) {
         if matches!(map.entries.get(&signal), Some(Entry::Variable { .. })) {
-            return Err(format!("[variables] maps {signal}, but a {role} is not told it"));
+            return Err(format!(
+                "[variables] maps {signal}, but a {role} does not get it; remove it from the map"
+            ));
         }
     }
     Ok(())
@@ -145,8 +147,10 @@ fn choose_inputs(map: &Map, role: ForeignRole, inputs: &mut [Vec<Channel>]) -> R
     let wrench = explicit(input::THRUST) || explicit(input::TORQUE);
     let rotors = has(input::ROTOR_COMMAND) && (explicit(input::ROTOR_COMMAND) || !wrench);
     if role == ForeignRole::Plant && rotors && wrench {
-        return Err("[variables] maps rotor.command, and thrust or torque; a plant is driven by one of both"
-            .to_owned());
+        return Err(
+            "[variables] maps rotor.command, and thrust or torque; a plant is driven by one of the two; remove the other"
+                .to_owned(),
+        );
     }
     let dropped: Vec<usize> = match role {
         ForeignRole::ClosedLoop => OF_PLANTS.to_vec(),

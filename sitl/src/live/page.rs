@@ -118,7 +118,7 @@ impl LivePage {
             return if stepped {
                 Ok(())
             } else {
-                Err("pause first: only paused time goes by steps".to_owned())
+                Err("pause first: time can be stepped only while it is paused".to_owned())
             };
         }
         let member = fleet.members().get(number).ok_or("no such vehicle")?;

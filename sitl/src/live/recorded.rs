@@ -29,11 +29,11 @@ pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecordi
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let wrong = |reason: &str| Failure::Content { path: path.to_owned(), reason: reason.to_owned() };
     if !["ulg", "csv"].iter().any(|known| extension == *known) {
-        return Err(wrong("the page reads .ulg and .csv; a record (.lmpc) is flown again by --replay"));
+        return Err(wrong("the page reads .ulg and .csv; to fly a record (.lmpc) again, use --replay"));
     }
     let bytes = std::fs::metadata(path).map_err(|source| Failure::read(path, source))?.len();
     if bytes > MOST_BYTES {
-        return Err(wrong("larger than 1 GB; cut it into parts"));
+        return Err(wrong("larger than 1 GB; open a shorter recording"));
     }
     let recording = Recording::read(path).map_err(|source| Failure::read(path, source))?;
     let address = arguments.view.clone().unwrap_or_default();

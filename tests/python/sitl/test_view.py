@@ -211,4 +211,4 @@ def test_a_log_is_opened_by_the_page_itself(start, connect, look, tmp_path):
     shown.page.get_by_role("button", name="Close the recording").click()
     shown.wait("!page.recording && page.frame")
     shown.page.set_input_files("#file", {"name": "broken.ulg", "mimeType": "application/octet-stream", "buffer": b"nothing"})
-    shown.page.get_by_text("broken.ulg: The file is no ULog.").first.wait_for()
+    shown.page.get_by_text("broken.ulg: The file is not a ULog.").first.wait_for()

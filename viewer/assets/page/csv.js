@@ -13,7 +13,7 @@ export function readCsv(text) {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
   const names = cells(lines[0] ?? "");
   const missing = NEEDED.filter((name) => !names.includes(name));
-  if (missing.length > 0) throw new Error(`The table has no column ${missing.join(", ")}; write time and position.x, .y, .z of the FMU.`);
+  if (missing.length > 0) throw new Error(`The table has no column ${missing.join(", ")}; export time, position.x, position.y and position.z from the FMU.`);
   const column = new Map(names.map((name, index) => [name, index]));
   const [times, states] = [[], []];
   for (const line of lines.slice(1)) {

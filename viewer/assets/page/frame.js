@@ -11,7 +11,7 @@ const REALS = [
 /** The vehicles of a message of the stream. Throws if the page is older or newer than the program. */
 export function decode(buffer) {
   const data = new DataView(buffer);
-  if (data.getUint8(0) !== VERSION) throw new Error("The program is another version than this page: load the page again.");
+  if (data.getUint8(0) !== VERSION) throw new Error("This page is from another version than the program: reload the page.");
   const count = data.getUint8(1);
   const stride = data.getUint8(2);
   const vehicles = [];

@@ -23,7 +23,7 @@ function indexAt(times, time) {
 
 export class Recording {
   constructor(name, { times, states }) {
-    if (times.length === 0) throw new Error("The file has no rows: there is nothing to show.");
+    if (times.length === 0) throw new Error("The file has no rows. Open a file with a flight in it.");
     Object.assign(this, { name, times, states });
     this.time = times[0];
     this.factor = 1;

@@ -35,7 +35,7 @@ export class Stream {
     socket.onclose = () => {
       this.on.state("lost");
       this.on.controls(false);
-      for (const answer of this.waiting.values()) answer("the connection was lost");
+      for (const answer of this.waiting.values()) answer("the connection was lost; try again");
       this.waiting.clear();
       setTimeout(() => this.open(), this.pause);
       this.pause = Math.min(2 * this.pause, LONGEST_PAUSE_MS);
@@ -55,7 +55,7 @@ export class Stream {
 
   /** Asks a vehicle for something. Resolves with why it is refused, or null. */
   ask(vehicle, action, parameters = {}) {
-    if (this.socket.readyState !== WebSocket.OPEN) return Promise.resolve("not connected");
+    if (this.socket.readyState !== WebSocket.OPEN) return Promise.resolve("not connected; wait for the connection, or reload the page");
     const order = this.next;
     this.next += 1;
     this.socket.send(JSON.stringify({ order, vehicle, please: { action, ...parameters } }));

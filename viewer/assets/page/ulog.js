@@ -91,7 +91,7 @@ class Latest {
 /** Times, s, and states of one vehicle. Throws with what is wrong. */
 export function readUlog(buffer) {
   const data = new DataView(buffer);
-  if (data.byteLength < HEADER || MAGIC.some((byte, index) => data.getUint8(index) !== byte)) throw new Error("The file is no ULog.");
+  if (data.byteLength < HEADER || MAGIC.some((byte, index) => data.getUint8(index) !== byte)) throw new Error("The file is not a ULog.");
   const rows = topics(data);
   const truth = (name) => (rows.get(`${name}_groundtruth`).length > 0 ? rows.get(`${name}_groundtruth`) : rows.get(name));
   const latest = Object.fromEntries([
@@ -100,7 +100,7 @@ export function readUlog(buffer) {
     ["land", rows.get("vehicle_land_detected")], ["battery", rows.get("battery_status")], ["wind", rows.get("wind")],
   ].map(([name, list]) => [name, new Latest(list)]));
   const places = latest.position.rows;
-  if (places.length === 0) throw new Error("The log has no vehicle_local_position: there is nothing to draw.");
+  if (places.length === 0) throw new Error("The log has no topic vehicle_local_position: nothing can be drawn. Open a log that contains it.");
   const [first, last] = [places[0]("timestamp"), places[places.length - 1]("timestamp")];
   const [times, states] = [[], []];
   for (let time = first; time <= last; time += PERIOD_S * 1e6) {

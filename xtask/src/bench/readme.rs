@@ -27,8 +27,7 @@ pub fn check(workspace: &Workspace) -> Result<(), Failure> {
     if text == wanted {
         return Ok(());
     }
-    let detail =
-        "has another table of figures than bench/results/results.json; run `cargo xtask bench --table`";
+    let detail = "has a table of figures that differs from bench/results/results.json; run `cargo xtask bench --table`";
     Err(Failure::Figures { file: "README.md", detail: detail.to_owned() })
 }
 
@@ -47,7 +46,11 @@ fn texts(workspace: &Workspace) -> Result<(String, String), Failure> {
     let marked = text.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
     let (before, after) = marked.ok_or_else(|| Failure::Figures {
         file: "README.md",
-        detail: "has no marks for the table of figures".to_owned(),
+        detail: format!(
+            "lacks the lines around the table of figures; put back {} and {}",
+            BEGIN.trim(),
+            END.trim()
+        ),
     })?;
     let wanted = format!("{before}{BEGIN}{}{END}{after}", figures::table(&results)?);
     Ok((text, wanted))

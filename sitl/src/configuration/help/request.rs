@@ -28,9 +28,9 @@ pub fn help() -> Arg {
             },
             values: || topic::names().map(PossibleValue::new).collect(),
         })
-        .help("Print the short help, or all about a topic")
+        .help("Print the short help, or that of a topic")
         .long_help(
-            "Print the short help, or all about a topic\n\nThe name of a flag finds its topic; `all` prints all of them.",
+            "Print the short help, or that of a topic\n\nThe name of a flag finds its topic; `all` prints all topics.",
         )
 }
 

@@ -43,20 +43,20 @@ topics! {
     "fence" "areas to stay in or out of" [];
     "camera" "camera and gimbal" ["equipment"];
     "fleet" "several vehicles" ["vehicles", "ports", "formation", "clocks"];
-    "time" "speed, lock-step, end and seed" ["speed", "lockstep", "lockstep-period", "lockstep-timeout", "duration", "seed"];
+    "time" "speed, lock-step, duration and seed" ["speed", "lockstep", "lockstep-period", "lockstep-timeout", "duration", "seed"];
     "wind" "wind and gusts" ["wind", "gusts"];
     "sensors" "what the vehicle measures" ["sensors", "noise", "kalman"];
-    "obstacles" "what stands around" ["world"];
+    "obstacles" "what stands in the way" ["world"];
     "traffic" "other aircraft" ["traffic"];
     "faults" "what breaks, and when" ["fault"];
     "record" "records and replays" ["record", "record-size", "replay"];
     "log" "flight logs and traffic logs" ["log-dir", "log-start", "log-size", "log-count", "tlog"];
-    "files" "files that clients reach, and errors of files" ["ftp-root", "ftp-write"];
+    "files" "files that clients can reach, and file errors" ["ftp-root", "ftp-write"];
     "fmu" "an FMU in place of ours" ["fmu", "map", "fmu-check"];
     "hil" "the plant for an external autopilot" ["hil", "hil-mount"];
-    "configuration" "file and environment" ["config"];
+    "configuration" "configuration file and environment variables" ["config"];
     "view" "a page in a browser" ["view", "view-record"];
-    "terminal" "what is shown, completions, manual page" ["log", "no-panel", "ready-file", "generate", "help", "version"];
+    "terminal" "output, completions, manual page" ["log", "no-panel", "ready-file", "generate", "help", "version"];
     "exit-codes" "how the program ends" [];
 }
 

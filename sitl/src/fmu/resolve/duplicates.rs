@@ -10,13 +10,13 @@ use super::super::signals::{Group, INPUTS, OUTPUTS};
 pub(super) fn refuse_duplicates(mapping: &Mapping) -> Result<(), String> {
     if let Some((first, second)) = twice(&mapping.inputs) {
         return Err(format!(
-            "{}; give each its own input, or map one of both to false",
+            "{}; give each its own input, or map one of the two to false",
             pair(&INPUTS, first, second)
         ));
     }
     if let Some((first, second)) = twice(&mapping.outputs) {
         return Err(format!(
-            "{}; give each its own output, or a constant to what does not move",
+            "{}; give each its own output, or map one to a constant if it does not change",
             pair(&OUTPUTS, first, second)
         ));
     }
@@ -40,7 +40,7 @@ fn pair(groups: &[Group], first: &Channel, second: &Channel) -> String {
     let names = if one == other {
         format!("the variable `{one}`")
     } else {
-        format!("the variables `{one}` and `{other}`, which have one value reference")
+        format!("the variables `{one}` and `{other}`, which share a value reference")
     };
     format!("{} and {} are both mapped to {names}", signal(first), signal(second))
 }

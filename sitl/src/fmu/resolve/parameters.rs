@@ -228,10 +228,10 @@ fn written(variable: &Variable, value: &Value) -> Result<StartValue, String> {
         (Kind::Enumeration { items }, Value::Number(number))
             if !items.is_empty() && !items.iter().any(|(_, item)| f64::from(*item) == *number) =>
         {
-            Err(format!("there is no item of the number {number}; allowed are {}", listed(items)))
+            Err(format!("there is no item with the number {number}; allowed are {}", listed(items)))
         }
         (Kind::Integer | Kind::Enumeration { .. }, Value::Number(number)) => {
-            whole(*number).map(StartValue::Integer).ok_or_else(|| format!("{number} is no whole number"))
+            whole(*number).map(StartValue::Integer).ok_or_else(|| format!("{number} is not a whole number"))
         }
         (Kind::Enumeration { items }, Value::Text(text)) => {
             let item = items.iter().find(|(name, _)| name == text);

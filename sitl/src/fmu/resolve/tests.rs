@@ -81,7 +81,7 @@ fn rotors_go_before_thrust_and_torques_unless_the_map_names_those() {
     assert!(!by_wrench.takes(input::ROTOR_COMMAND) && by_wrench.takes(input::TORQUE));
     assert!(!by_wrench.shows(output::ROTOR_SPEED));
     let both = "[variables]\nthrust = \"thrust\"\nrotor.command.1 = \"rotor.command[1]\"\n";
-    assert!(resolve(both, &rows).expect_err("both").contains("driven by one of both"));
+    assert!(resolve(both, &rows).expect_err("both").contains("driven by one of the two"));
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn mistakes_are_named_with_their_remedy() {
         (
             "[parameters]\nactuation = 3",
             with(("actuation", "parameter", "Enumeration declaredType=\"Actuation\"")),
-            "[parameters] actuation: there is no item of the number 3; allowed are rotor_speeds (1), wrench (2)",
+            "[parameters] actuation: there is no item with the number 3; allowed are rotor_speeds (1), wrench (2)",
         ),
         (
             "[parameters]\ngain = true",
