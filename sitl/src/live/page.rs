@@ -114,7 +114,7 @@ impl LivePage {
                 return Err(format!("a step takes 0.001 to {LONGEST_STEP_S} s, not {time_s}"));
             }
             let clock = clocks.iter_mut().find(|clock| clock.has(number));
-            let stepped = clock.is_some_and(|clock| clock.step((time_s * 1e6) as u64));
+            let stepped = clock.is_some_and(|clock| clock.step((time_s * 1e6).round() as u64));
             return if stepped {
                 Ok(())
             } else {
@@ -123,6 +123,8 @@ impl LivePage {
         }
         let member = fleet.members().get(number).ok_or("no such vehicle")?;
         let request = Request::of(action, member.autopilot())?;
+        // What was said before is no answer.
+        self.news.hear(fleet.take_overheard());
         for message in request.messages {
             fleet.ask(number, message, now);
             let heard = fleet.take_overheard();
