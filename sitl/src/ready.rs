@@ -41,7 +41,8 @@ pub fn write(path: &Path, fleet: &Fleet, view: Option<&str>) -> Result<(), Failu
         "vehicles": vehicles.collect::<Vec<_>>(),
         "view": view,
     });
-    write_content(path, &content)
+    // Whoever reads the address of the page with its token may fly.
+    write_content(path, &content, if view.is_some() { Readers::Owner } else { Readers::All })
 }
 
 /// The same for the simulator of an external autopilot.
@@ -55,7 +56,7 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
         "links": [format!("simulator of an external autopilot on TCP {address}")],
         "vehicles": [],
     });
-    write_content(path, &content)
+    write_content(path, &content, Readers::All)
 }
 
 /// The same for the page of a recorded flight.
@@ -63,10 +64,10 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::File`]
 pub fn write_view(path: &Path, view: &str) -> Result<(), Failure> {
-    write_content(path, &serde_json::json!({ "process_id": std::process::id(), "view": view }))
+    let content = serde_json::json!({ "process_id": std::process::id(), "view": view });
+    write_content(path, &content, Readers::All)
 }
 
-fn write_content(path: &Path, content: &serde_json::Value) -> Result<(), Failure> {
-    replace(path, format!("{content}\n").as_bytes(), Readers::All)
-        .map_err(|source| Failure::write(path, source))
+fn write_content(path: &Path, content: &serde_json::Value, readers: Readers) -> Result<(), Failure> {
+    replace(path, format!("{content}\n").as_bytes(), readers).map_err(|source| Failure::write(path, source))
 }

@@ -23,6 +23,12 @@ struct Introduction {
     token: String,
 }
 
+/// What is left of an order that cannot be read: the number that its answer needs.
+#[derive(Deserialize)]
+struct Numbered {
+    order: u64,
+}
+
 /// Serves a browser until it leaves. What it is too slow for is replaced by what is newer.
 pub async fn serve(mut socket: WebSocket, hub: Arc<Hub>) {
     let Some(_seat) = hub.seat() else { return };
@@ -83,7 +89,10 @@ impl Pilot<'_> {
         };
         let SentOrder { order, vehicle, please } = match serde_json::from_str(text) {
             Ok(sent) => sent,
-            Err(error) => return refused(None, format!("not an order: {error}")),
+            Err(error) => {
+                let number = serde_json::from_str(text).ok().map(|Numbered { order }| order);
+                return refused(number, format!("not an order: {error}"));
+            }
         };
         if !self.is_trusted {
             let reason = "view only: open the address with the token that lmpc-sitl printed";

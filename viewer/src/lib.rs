@@ -14,6 +14,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod assets;
+mod bounded_listener;
 mod client;
 mod frame;
 mod guard;

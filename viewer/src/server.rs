@@ -1,6 +1,6 @@
 //! The server: a thread of its own, so that browsers cost the simulation nothing.
 
-use std::net::{SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::JoinHandle;
@@ -17,6 +17,7 @@ use serde::Serialize;
 use tokio::sync::{oneshot, watch};
 
 use crate::assets::asset;
+use crate::bounded_listener::BoundedListener;
 use crate::client;
 use crate::frame::Frame;
 use crate::guard;
@@ -102,7 +103,7 @@ impl Viewer {
                 let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
                 tokio::select! {
                     _stopped = stopped => {}
-                    _never = axum::serve(listener, router(served)) => {}
+                    _never = axum::serve(BoundedListener::new(listener), router(served)) => {}
                 }
             });
         };
@@ -118,8 +119,15 @@ impl Viewer {
 
     /// The address of the page for someone who may give orders.
     pub fn pilot_url(&self) -> String {
+        // What listens everywhere is reached here by loopback.
+        let ip = match self.address.ip() {
+            IpAddr::V4(ip) if ip.is_unspecified() => IpAddr::V4(Ipv4Addr::LOCALHOST),
+            IpAddr::V6(ip) if ip.is_unspecified() => IpAddr::V6(Ipv6Addr::LOCALHOST),
+            ip => ip,
+        };
+        let address = SocketAddr::new(ip, self.address.port());
         // Behind a # the token goes into no request, no log and no other page.
-        format!("http://{}/#token={}", self.address, self.hub.token.secret())
+        format!("http://{address}/#token={}", self.hub.token.secret())
     }
 
     /// Whether anybody looks on.

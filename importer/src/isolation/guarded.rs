@@ -265,7 +265,10 @@ fn spawn((program, arguments): &(PathBuf, Vec<String>), library_folder: &Path) -
     let folders = std::iter::once(library_folder.to_owned()).chain(std::env::split_paths(&usual));
     let searched = std::env::join_paths(folders.filter(|folder| !folder.as_os_str().is_empty()));
     let mut command = Command::new(program);
-    command.env(SEARCHED, searched.map_err(io::Error::other)?);
+    // No list has room for a folder whose name has the separator in it; an FMU that needs nothing beside it starts without.
+    if let Ok(searched) = searched {
+        command.env(SEARCHED, searched);
+    }
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     // An interrupt at the terminal is for us: the flight ends, then the FMU.
     #[cfg(unix)]

@@ -84,7 +84,8 @@ impl Clock {
         let speeds = self.members.clone().filter_map(|number| fleet.members().get(number));
         let mut news = speeds.map(|member| member.autopilot().speed()).filter(|speed| *speed != self.speed);
         let Some(speed) = news.next() else { return };
-        self.speed = speed;
+        // A step is of the pause in which it was asked for.
+        (self.speed, self.step_to_us) = (speed, 0);
         for number in self.members.clone() {
             let Some(member) = fleet.member_mut(number) else { continue };
             if member.autopilot.speed() != speed {

@@ -97,7 +97,7 @@ fn of_member(member: &Member) -> VehicleNews {
     let vehicle = member.autopilot().vehicle();
     VehicleNews {
         id: member.autopilot().system_id(),
-        mode: vehicle.identity().mode_name(vehicle.mode()).to_owned(),
+        mode: vehicle.identity().mode_name(vehicle.shown_mode()).to_owned(),
         faults: faults(vehicle),
     }
 }

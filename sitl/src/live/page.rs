@@ -104,17 +104,25 @@ impl LivePage {
         clocks: &mut [Clock],
         now: Instant,
     ) -> Result<(), String> {
-        let mut members = fleet.members().iter();
-        let number = members.position(|member| member.autopilot().system_id() == system);
-        let flying =
-            number.filter(|number| fleet.members().get(*number).is_some_and(|one| one.loss().is_none()));
-        let number = flying.ok_or_else(|| format!("no vehicle {system} flies"))?;
+        // Time is everybody's: where the vehicle is lost, any other stands for it.
+        let of_all = matches!(action, Action::Step { .. } | Action::Speed { .. });
+        let mut flying = fleet
+            .members()
+            .iter()
+            .enumerate()
+            .filter(|(_, member)| member.loss().is_none())
+            .map(|(number, member)| (number, member.autopilot().system_id() == system));
+        let number = match flying.clone().find(|(_, is_asked)| *is_asked) {
+            Some((number, _)) => number,
+            None if of_all => flying.next().ok_or("no vehicle flies")?.0,
+            None => return Err(format!("no vehicle {system} flies")),
+        };
         if let Action::Step { time_s } = action {
             if !(0.001..=LONGEST_STEP_S).contains(time_s) {
                 return Err(format!("a step takes 0.001 to {LONGEST_STEP_S} s, not {time_s}"));
             }
             let clock = clocks.iter_mut().find(|clock| clock.has(number));
-            let stepped = clock.is_some_and(|clock| clock.step((time_s * 1e6) as u64));
+            let stepped = clock.is_some_and(|clock| clock.step((time_s * 1e6).round() as u64));
             return if stepped {
                 Ok(())
             } else {
@@ -123,6 +131,8 @@ impl LivePage {
         }
         let member = fleet.members().get(number).ok_or("no such vehicle")?;
         let request = Request::of(action, member.autopilot())?;
+        // What was said before is no answer.
+        self.news.hear(fleet.take_overheard());
         for message in request.messages {
             fleet.ask(number, message, now);
             let heard = fleet.take_overheard();

@@ -93,7 +93,7 @@ fn of_many(members: &[Member]) -> Row {
     let armed = vehicles().filter(|vehicle| vehicle.is_armed()).count();
     let mut modes = BTreeMap::new();
     for vehicle in vehicles() {
-        *modes.entry(vehicle.identity().mode_name(vehicle.mode())).or_insert(0) += 1;
+        *modes.entry(vehicle.identity().mode_name(vehicle.shown_mode())).or_insert(0) += 1;
     }
     let modes: Vec<String> = modes.into_iter().map(|(mode, count)| format!("{count} {mode}")).collect();
     let state = match lost {
@@ -156,7 +156,7 @@ fn state(member: &Member) -> Segment {
         return Segment::new(STATE, "lost");
     }
     let armed = if vehicle.is_armed() { "armed" } else { "disarmed" };
-    Segment::new(STATE, format!("{armed} {}", vehicle.identity().mode_name(vehicle.mode())))
+    Segment::new(STATE, format!("{armed} {}", vehicle.identity().mode_name(vehicle.shown_mode())))
 }
 
 /// Where the mission is, if there is one.

@@ -64,18 +64,18 @@ impl Failsafe {
         cause: Cause,
         present: bool,
     ) -> Option<Change> {
-        let change = self.see(cause, present, situation.time_us);
+        // Mostly there is none: what it would lead to is not looked for.
+        let change = self.see(cause, present, situation.time_us)?;
         let response = response(situation, cause);
         match change {
-            Some(_) if response.action == Action::None => {}
-            Some(Change::Begun) if response.disarms => {
+            _ if response.action == Action::None => {}
+            Change::Begun if response.disarms => {
                 proposal.stop_rotors(format!("{} - Disarming", name(situation, cause)));
             }
-            Some(Change::Begun) => self.act(situation, proposal, cause, response),
-            Some(Change::Ended) => proposal.say(Severity::Info, cleared(situation, cause)),
-            None => {}
+            Change::Begun => self.act(situation, proposal, cause, response),
+            Change::Ended => proposal.say(Severity::Info, cleared(situation, cause)),
         }
-        change
+        Some(change)
     }
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, cause: Cause, response: Response) {

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
-use crate::fence::{Fence, Zone};
+use crate::fence::{Fence, Inclusions, Zone};
 
 /// Of AVOID_ENABLE.
 const FENCE: u8 = 1;
@@ -49,8 +49,15 @@ fn keep_over_ground(situation: &Situation, fence: &Fence, mut velocity: Vector2<
     if fence.radius_m > 0.0 {
         keep(&|place| fence.radius_m - (place - fence.home_m.xy()).norm());
     }
-    for zone in fence.zones.iter().flat_map(|zones| &zones.zones) {
+    let zones = || fence.zones.iter().flat_map(|zones| &zones.zones);
+    let alone = |zone: &Zone| !zone.inclusion || fence.inclusions == Inclusions::All;
+    for zone in zones().filter(|zone| alone(zone)) {
         keep(&|place| room_m(zone, place));
+    }
+    // It is enough to be in one of the others: that with the most room.
+    if zones().any(|zone| !alone(zone)) {
+        let others = || zones().filter(|zone| !alone(zone));
+        keep(&|place| others().map(|zone| room_m(zone, place)).fold(f64::NEG_INFINITY, f64::max));
     }
     velocity
 }
@@ -94,6 +101,7 @@ fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2: f64) -> f6
 #[cfg(test)]
 mod tests {
     use super::{AxisTarget, PositionSetPoint, keep_inside};
+    use crate::fence::{Shape, Zone};
     use crate::identity::Identity;
     use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
@@ -133,6 +141,23 @@ mod tests {
         assert_eq!(kept(&scene, [-5.0, 0.0, 0.0]), [-5.0, 0.0, 0.0], "inwards it may go");
         scene.conduct.surroundings.avoided = 2;
         assert_eq!(kept(&scene, [5.0, 0.0, 0.0]), [5.0, 0.0, 0.0]);
+    }
+
+    /// Two areas far from one another: where one is enough, sticks are free in it.
+    #[test]
+    fn another_area_leads_nobody_out_of_the_one_that_is_enough() {
+        let mut scene = scene();
+        let area = |north_m: f64| Zone {
+            shape: Shape::Circle { centre_m: [north_m, 0.0], radius_m: 10.0 },
+            inclusion: true,
+        };
+        scene.zones.zones = vec![area(0.0), area(100.0)];
+        scene.come_to([-2.0, 0.0, -10.0], [0.0; 3]);
+        assert!(kept(&scene, [-1.0, 0.0, 0.0])[0] > 0.0, "it is not where both are");
+        scene.conduct.failsafe.fence_options.union = true;
+        assert_eq!(kept(&scene, [-1.0, 0.0, 0.0]), [-1.0, 0.0, 0.0]);
+        scene.come_to([-7.0, 0.0, -10.0], [0.0; 3]);
+        assert!(kept(&scene, [-1.0, 0.0, 0.0])[0].abs() < 1e-6, "it ends at the margin");
     }
 
     #[test]

@@ -19,10 +19,10 @@ function attitude([w, x, y, z], target) {
   return target.set(y, -z, -x, w).normalize();
 }
 
-/** A line whose points are given one after the other. */
-function growingLine(material) {
+/** A line with room for so many points, which are given later. */
+function growingLine(material, most) {
   const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * TRAIL), 3));
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(3 * most), 3));
   geometry.setDrawRange(0, 0);
   const line = new Line(geometry, material);
   line.frustumCulled = false;
@@ -41,8 +41,8 @@ export class Craft {
       trail: new LineBasicMaterial(), target: new MeshBasicMaterial({ wireframe: true }),
       drop: new LineDashedMaterial({ dashSize: 0.4, gapSize: 0.3 }),
     };
-    this.trail = growingLine(this.materials.trail);
-    this.drop = growingLine(this.materials.drop);
+    this.trail = growingLine(this.materials.trail, TRAIL);
+    this.drop = growingLine(this.materials.drop, 2);
     this.target = new Mesh(new OctahedronGeometry(0.35), this.materials.target);
     this.shadow = new Mesh(new CircleGeometry(0.5, 24), new MeshBasicMaterial({ color: 0, transparent: true, opacity: 0.25 }));
     this.shadow.rotation.x = -Math.PI / 2;
@@ -125,6 +125,6 @@ export class Craft {
     const parts = [this.body, this.trail, this.drop, this.target, this.shadow];
     this.scene.remove(...parts);
     for (const part of [...parts, ...this.shape.children]) part.geometry?.dispose();
-    for (const material of Object.values(this.materials)) material.dispose();
+    for (const material of [...Object.values(this.materials), this.shadow.material]) material.dispose();
   }
 }

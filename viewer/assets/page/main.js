@@ -15,7 +15,7 @@ const find = (id) => document.getElementById(id);
 
 const page = {
   frame: null, news: { vehicles: [], texts: [] }, scene: { vehicles: [], obstacles: [] }, chosen: null, histories: new Map(),
-  recording: null, stream: null, isPilot: false, dirty: false,
+  recording: null, stream: null, connection: null, isPilot: false, dirty: false,
 };
 
 const controls = new Controls((action, parameters) => page.stream.ask(page.chosen, action, parameters), {
@@ -109,10 +109,16 @@ function connect() {
       allow();
     },
     state: (state) => {
-      find("connection").dataset.state = state;
-      find("connection").textContent = { connecting: "connecting", live: "live", lost: "connection lost, trying again" }[state];
+      page.connection = state;
+      if (!page.recording) tellConnection();
     },
   });
+}
+
+function tellConnection() {
+  const texts = { connecting: "connecting", live: "live", lost: "connection lost, trying again" };
+  find("connection").dataset.state = page.connection;
+  find("connection").textContent = texts[page.connection];
 }
 
 function allow() {
@@ -155,8 +161,7 @@ find("file").addEventListener("change", async ({ target }) => {
 });
 find("close").addEventListener("click", () => {
   show(null);
-  find("connection").textContent = "live";
-  find("connection").dataset.state = "live";
+  tellConnection();
 });
 find("seek").addEventListener("input", ({ target }) => page.recording?.seek(Number(target.value)));
 find("follow").addEventListener("click", () => follow(!view.follows));

@@ -56,6 +56,7 @@ export class Stream {
   /** Asks a vehicle for something. Resolves with why it is refused, or null. */
   ask(vehicle, action, parameters = {}) {
     if (this.socket.readyState !== WebSocket.OPEN) return Promise.resolve("not connected; wait for the connection, or reload the page");
+    if (vehicle === null) return Promise.resolve("there is no vehicle yet");
     const order = this.next;
     this.next += 1;
     this.socket.send(JSON.stringify({ order, vehicle, please: { action, ...parameters } }));

@@ -15,6 +15,8 @@ const WANTED = [
   "vehicle_local_position_setpoint", "vehicle_status", "vehicle_land_detected", "battery_status", "wind",
 ];
 const PERIOD_S = 1 / 30;
+/** A time stamp that is later than this, s, is no flight but a broken file. */
+const LONGEST_S = 86400;
 
 /** Messages of the file: kind and bytes. What is cut off at the end is left out. */
 function* messages(data) {
@@ -101,7 +103,8 @@ export function readUlog(buffer) {
   ].map(([name, list]) => [name, new Latest(list)]));
   const places = latest.position.rows;
   if (places.length === 0) throw new Error("The log has no topic vehicle_local_position: nothing can be drawn. Open a log that contains it.");
-  const [first, last] = [places[0]("timestamp"), places[places.length - 1]("timestamp")];
+  const first = places[0]("timestamp");
+  const last = Math.min(places[places.length - 1]("timestamp"), first + LONGEST_S * 1e6);
   const [times, states] = [[], []];
   for (let time = first; time <= last; time += PERIOD_S * 1e6) {
     const now = Object.fromEntries(Object.entries(latest).map(([name, list]) => [name, list.at(time)]));

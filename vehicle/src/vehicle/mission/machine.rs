@@ -141,6 +141,10 @@ impl Mission {
             .map_err(|reason| Refusal::denied(format!("Mission rejected: {reason}")))?;
         if let Some(first) = first {
             self.set_current(situation, proposal, first, true)?;
+            if situation.mode != Mode::Mission {
+                // It begins at that one, also where a mission that was left begins anew.
+                self.progress = Progress::NotStarted;
+            }
         }
         self.paused = false;
         if situation.mode != Mode::Mission {

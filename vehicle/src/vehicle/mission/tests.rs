@@ -159,6 +159,26 @@ fn ardupilot_pauses_in_its_mode() {
     assert_eq!(next_reached(&mut mission, &mut scene), [0]);
 }
 
+/// MIS_RESTART is of missions that are entered, not of an item that is asked for, such as the landing.
+#[test]
+fn an_item_that_is_asked_for_is_flown_where_missions_begin_anew() {
+    let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+    scene.conduct.mission_restarts = true;
+    let steps = [10.0, 20.0, 30.0].map(|north_m| waypoint([north_m, 0.0, -10.0]));
+    let mut mission = entered(&steps, &mut scene);
+    assert_eq!(next_reached(&mut mission, &mut scene), [0]);
+    scene.show(|_, proposal| mission.leave(proposal));
+    scene.mode = Mode::Hold;
+    scene.show(|situation, proposal| mission.start(situation, proposal, Some(2)).unwrap());
+    scene.mode = Mode::Mission;
+    scene.show(|situation, proposal| mission.enter(situation, proposal));
+    assert_eq!(mission.current(), 2);
+    tick(&mut mission, &mut scene);
+    scene.show(|_, proposal| mission.leave(proposal));
+    scene.show(|situation, proposal| mission.enter(situation, proposal));
+    assert_eq!(mission.current(), 0);
+}
+
 #[test]
 fn a_last_action_completes_it_once() {
     let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
