@@ -15,7 +15,7 @@ os.environ.setdefault("MAVLINK20", "1")
 
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
-from flight import INTERVAL, OFFBOARD, SILENCE, TRAJECTORY, VELOCITY, arguments, beat, connect, receive, remedy, verdict  # noqa: E402
+from flight import INTERVAL, OFFBOARD, SILENCE, TRAJECTORY, VELOCITY, arguments, beat, connect, receive, remedy, round_trip, verdict  # noqa: E402
 
 COUNT = 5
 START = f"--vehicles {COUNT} --ports shared --formation circle,6"
@@ -30,7 +30,7 @@ class Fleet:
         self.flown = {}  # system: time in s and position of each report
         self.armed, self.answers = {}, {}
         self.beaten = -math.inf
-        self.longest_gap = 0.0  # between two reports of a vehicle, s
+        self.longest_lag = 0.0  # between two reports of a vehicle, and until it has answered, s
         # In lock-step no time passes until all have a set-point, so that all begin together.
         end = time.monotonic() + 5
         while len(self.armed) < COUNT and time.monotonic() < end:
@@ -48,11 +48,11 @@ class Fleet:
             self.read(0.5)
         for system in sorted(self.armed):
             self.idle(system)
-        self.longest_gap = 0.0
+        self.longest_lag = 0.0
 
     def fail(self, reason: str):
         """Ends the program with one line."""
-        raise SystemExit(reason + remedy(self.longest_gap))
+        raise SystemExit(reason + remedy(self.longest_lag))
 
     def read(self, timeout: float = SILENCE):
         """Takes a message in; returns the vehicle whose place it tells, if it does."""
@@ -62,6 +62,8 @@ class Fleet:
                 self.fail("the vehicles have fallen silent")
             return None
         system, kind = message.get_srcSystem(), message.get_type()
+        if self.flown:
+            self.longest_lag = max(self.longest_lag, round_trip(message, self.now))
         if kind == "HEARTBEAT" and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID:
             self.armed[system] = bool(message.base_mode & ARMED)
         elif kind == "COMMAND_ACK":
@@ -71,10 +73,10 @@ class Fleet:
             if reports and at <= reports[-1][0]:
                 return system  # told again, because nothing has answered it
             if reports:
-                self.longest_gap = max(self.longest_gap, at - reports[-1][0])
+                self.longest_lag = max(self.longest_lag, at - reports[-1][0])
             reports.append((at, (message.x, message.y, message.z)))
             if self.now - self.beaten >= 1:
-                beat(self.connection)
+                beat(self.connection, self.now)
                 self.beaten = self.now
             return system
         return None
@@ -196,8 +198,8 @@ def follow_and_measure(system: int):
 
 
 fleet.until(lambda: fleet.now > begin + TURN + 1, TURN + 2, "the turn", follow_and_measure)
-missed = verdict("farthest from the moving point", 100 * late, 25, "cm", remedy(fleet.longest_gap))
-missed |= verdict("two vehicles came nearer than 4 m by", max(0.0, 4 - nearest), 0.1, "m", remedy(fleet.longest_gap))
+missed = verdict("farthest from the moving point", 100 * late, 25, "cm", remedy(fleet.longest_lag))
+missed |= verdict("two vehicles came nearer than 4 m by", max(0.0, 4 - nearest), 0.1, "m", remedy(fleet.longest_lag))
 fleet.command(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH)
 fleet.until(lambda: not any(fleet.armed.values()), 60, "landing")
 away = max(math.dist(fleet.place(system)[:2], starts[system]) for system in starts)

@@ -46,8 +46,17 @@ def connect(address: str):
     return connection
 
 
-def beat(connection):
+def beat(connection, now: float = 0.0):
+    """A heartbeat; from a time of the vehicle on, s, also the question how far it flies until it is answered."""
     connection.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+    if now > 0:
+        connection.mav.timesync_send(0, int(now * 1e9))
+
+
+def round_trip(message, now: float) -> float:
+    """How far the vehicle has flown between the question and this message, s; 0 if that is no answer."""
+    answers = message.get_type() == "TIMESYNC" and message.tc1 != 0 and message.ts1 != 0
+    return now - message.ts1 / 1e9 if answers else 0.0
 
 
 def receive(connection, kind=None, timeout: float = SILENCE):
@@ -76,7 +85,7 @@ class Flight:
         self.latest = {}  # the vehicle's last message of each kind
         self.flown = []  # time in s, position, velocity
         self.asked = []  # time in s, position or None, velocity or None
-        self.longest_gap = 0.0  # between two reports, s
+        self.longest_lag = 0.0  # between two reports, and until the vehicle has answered, s
         self.beaten = -math.inf
         self.spoken = False  # whether a set-point has gone since the last report
         self.idle()
@@ -84,11 +93,11 @@ class Flight:
         # The first report comes at once, the others at the interval: from the second one on, each is answered.
         self.tick()
         self.receive("LOCAL_POSITION_NED", 0.5)
-        self.longest_gap = 0.0
+        self.longest_lag = 0.0
 
     def fail(self, reason: str):
         """Ends the program with one line."""
-        raise SystemExit(reason + remedy(max(self.longest_gap, self.lag())))
+        raise SystemExit(reason + remedy(max(self.longest_lag, self.lag())))
 
     def lag(self) -> float:
         """How far the vehicle's time is ahead of what this program has read, s: it goes on with what has come and was not read yet."""
@@ -108,12 +117,14 @@ class Flight:
             if message is None or message.get_srcSystem() != self.target[0]:
                 continue
             self.latest[message.get_type()] = message
+            if self.flown:
+                self.longest_lag = max(self.longest_lag, round_trip(message, self.now))
             if message.get_type() == "LOCAL_POSITION_NED":
                 at = message.time_boot_ms / 1e3
                 if self.flown and at <= self.now:
                     continue  # the same again
                 if self.flown:
-                    self.longest_gap = max(self.longest_gap, at - self.now)
+                    self.longest_lag = max(self.longest_lag, at - self.now)
                 self.flown.append((at, (message.x, message.y, message.z), (message.vx, message.vy, message.vz)))
                 self.spoken = False
             if message.get_type() in kinds:
@@ -132,7 +143,7 @@ class Flight:
                 self.fail("the vehicle has fallen silent")
             self.spoken = False
         if self.now - self.beaten >= 1:
-            beat(self.connection)
+            beat(self.connection, self.now)
             self.beaten = self.now
 
     @property
@@ -268,7 +279,7 @@ class Flight:
         return max(values)
 
     def verdict(self, what: str, value: float, bound: float, unit: str) -> int:
-        return verdict(what, value, bound, unit, remedy(self.longest_gap))
+        return verdict(what, value, bound, unit, remedy(self.longest_lag))
 
     def since(self, start: float):
         """What has been flown since a time."""

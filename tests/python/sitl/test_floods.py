@@ -117,8 +117,15 @@ class Quiet:
         data, ancillary, *_ = self.link.recvmsg(2048, 64)
         seconds, nanoseconds = struct.unpack("qq", ancillary[0][2][:16])
         arrived = seconds + nanoseconds * 1e-9
-        number, payload = int.from_bytes(data[7:10], "little"), data[10 : 10 + data[1]].ljust(255, b"\0")
-        if data[5] != 1:
+        # Frames of MAVLink 2, unsigned, one behind the other.
+        while data:
+            length = 12 + data[1]
+            self.take_frame(data[:length], arrived)
+            data = data[length:]
+
+    def take_frame(self, frame: bytes, arrived: float):
+        number, payload = int.from_bytes(frame[7:10], "little"), frame[10 : 10 + frame[1]].ljust(255, b"\0")
+        if frame[5] != 1:
             return  # somebody else's, forwarded
         if number == mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED:
             self.positions.append((arrived, arrived - int.from_bytes(payload[:4], "little") / 1000))
