@@ -1,9 +1,10 @@
 //! The plant's doubles, bit for bit: a flight that was recorded flies again.
 
+use crate::common::physics::all_physics;
 use nalgebra::{Quaternion, Vector3};
 use quadrotor::{
-    Airframe, BatteryPack, Disturbance, Environment, InitialState, Plant, PlantInputs, PlantState, RigidBody,
-    RotorAerodynamics, RotorFault, RotorSpin, Wrench,
+    Airframe, Disturbance, Environment, InitialState, Plant, PlantInputs, PlantState, RigidBody, RotorFault,
+    Wrench,
 };
 
 /// SplitMix64: the same numbers on every machine.
@@ -90,22 +91,7 @@ fn inputs(numbers: &mut Numbers) -> PlantInputs {
 }
 
 fn everything() -> Airframe {
-    Airframe {
-        products_of_inertia_kg_m2: [0.004, -0.006, 0.003],
-        centre_of_gravity_m: [0.01, -0.02, 0.03],
-        rotor_spin: RotorSpin { inertia_kg_m2: 1e-4, fall_time_ratio: 2.0 },
-        rotor_aerodynamics: RotorAerodynamics {
-            drag_coefficient_n_s2_m: 1e-4,
-            inflow_coefficient_n_s2_m: 2e-4,
-            translational_lift_coefficient_n_s2_m2: 3e-3,
-            ground_effect: true,
-            ..RotorAerodynamics::default()
-        },
-        drag_n_s_m: [0.1, 0.2, 0.3],
-        body_drag_n_s_m: [0.05, 0.04, 0.1],
-        battery: BatteryPack { sag: true, resistance_ohm: 0.15, ..BatteryPack::default() },
-        ..Airframe::default()
-    }
+    Airframe { inertia_kg_m2: Airframe::default().inertia_kg_m2, ..all_physics() }
 }
 
 /// All that a plant says of random states, and short flights from them.

@@ -1,7 +1,7 @@
 //! What is answered to a parameter that is not there, cannot be changed or cannot have a value: PARAM_ERROR.
 
 use crate::common;
-use crate::common::Bench;
+use crate::common::{Bench, set_parameter};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
@@ -28,16 +28,6 @@ fn read(name: &str, param_index: i16) -> MavMessage {
     })
 }
 
-fn set(name: &str, value: f32) -> MavMessage {
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    })
-}
-
 #[test]
 fn every_refusal_is_answered_with_its_reason() {
     use MavParamError as Error;
@@ -50,18 +40,24 @@ fn every_refusal_is_answered_with_its_reason() {
         assert_eq!(errors(&mut bench, read("NO_SUCH_NAME", -1)), told("NO_SUCH_NAME", -1, unknown));
         assert_eq!(errors(&mut bench, read("", count as i16)), told("", count as i16, unknown));
         assert_eq!(errors(&mut bench, read("", count as i16 - 1)), []);
-        assert_eq!(errors(&mut bench, set("NO_SUCH_NAME", 1.0)), told("NO_SUCH_NAME", -1, unknown));
+        assert_eq!(errors(&mut bench, set_parameter("NO_SUCH_NAME", 1.0)), told("NO_SUCH_NAME", -1, unknown));
         // What has no meaning here is not kept, either: it would be a lie.
-        assert_eq!(errors(&mut bench, set("SIM_FLOAT_EXCEPT", 1.0)), told("SIM_FLOAT_EXCEPT", -1, unknown));
+        assert_eq!(
+            errors(&mut bench, set_parameter("SIM_FLOAT_EXCEPT", 1.0)),
+            told("SIM_FLOAT_EXCEPT", -1, unknown)
+        );
         for value in [-1.0, 1e9, f32::NAN, f32::INFINITY] {
             assert_eq!(
-                errors(&mut bench, set("FRAME_MASS", value)),
+                errors(&mut bench, set_parameter("FRAME_MASS", value)),
                 told("FRAME_MASS", -1, range),
                 "{value}"
             );
         }
-        assert_eq!(errors(&mut bench, set(hover, 0.9)), told(hover, -1, Error::MAV_PARAM_ERROR_READ_ONLY));
-        assert_eq!(errors(&mut bench, set("FRAME_MASS", 0.75)), []);
+        assert_eq!(
+            errors(&mut bench, set_parameter(hover, 0.9)),
+            told(hover, -1, Error::MAV_PARAM_ERROR_READ_ONLY)
+        );
+        assert_eq!(errors(&mut bench, set_parameter("FRAME_MASS", 0.75)), []);
         assert_eq!(errors(&mut bench, read("FRAME_MASS", -1)), []);
     }
 }

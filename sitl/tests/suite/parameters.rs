@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use crate::common::Bench;
+use crate::common::{Bench, set_parameter};
 use autopilot::Autopilot;
 use autopilot::codec::Message;
 use clap::Parser;
@@ -41,16 +41,6 @@ fn read(name: &str) -> MavMessage {
     })
 }
 
-fn set(name: &str, value: f32) -> MavMessage {
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    })
-}
-
 /// Clients take an answer for theirs by the name that they have asked for; MAVSDK drops those without an index.
 #[test]
 fn former_names_are_answered_and_never_listed() {
@@ -71,16 +61,16 @@ fn former_names_are_answered_and_never_listed() {
     for (former, present, value) in
         [("LIM_SPEED_H", "LIM_SPEED_HORIZ", 6.0), ("SNSR_BDY_RT_NS", "SENS_RATE_NOISE", 0.25)]
     {
-        let heard = answers(&mut bench, set(former, value));
+        let heard = answers(&mut bench, set_parameter(former, value));
         let heard: Vec<_> = heard.iter().map(|told| (name_of(told), told.param_value)).collect();
         assert_eq!(heard, [(present.to_owned(), value), (former.to_owned(), value)]);
     }
-    let heard = answers(&mut bench, set("LIM_TILT_A", -1.0));
+    let heard = answers(&mut bench, set_parameter("LIM_TILT_A", -1.0));
     assert_eq!(heard.iter().map(name_of).collect::<Vec<_>>(), ["LIM_TILT_A"]);
     assert_eq!(bench.texts(), ["LIM_TILT_A = -1 rad/s^2; allowed 0.1 to 500 rad/s^2"]);
-    answers(&mut bench, set("LIM_TILT", 45.0));
+    answers(&mut bench, set_parameter("LIM_TILT", 45.0));
     assert_eq!(bench.texts(), ["LIM_TILT = 45 rad; allowed 0.05 to 1.2 rad (3 to 69 deg)"]);
-    assert!(answers(&mut bench, set("FRAME_MAS", 1.0)).is_empty());
+    assert!(answers(&mut bench, set_parameter("FRAME_MAS", 1.0)).is_empty());
     assert_eq!(bench.texts(), ["unknown parameter FRAME_MAS; did you mean FRAME_MASS?"]);
     assert!(bench.heard.iter().all(|message| !matches!(message, Message::Typed(MavMessage::PARAM_VALUE(_)))));
 }
@@ -197,7 +187,7 @@ fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
     };
     answers(&mut bench, MavMessage::PARAM_SET(paper));
     bench.heard.clear();
-    let heard = answers(&mut bench, set("ROTOR_TIME_CONST", 0.3));
+    let heard = answers(&mut bench, set_parameter("ROTOR_TIME_CONST", 0.3));
     assert_eq!(heard.iter().map(|told| told.param_value).collect::<Vec<_>>(), [before[0].param_value]);
     let text = bench.texts().concat();
     assert!(text.starts_with("ROTOR_TIME_CONST: the north loop is unstable: errors double every"), "{text}");
@@ -206,7 +196,7 @@ fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
         "{text}"
     );
     let text = {
-        answers(&mut bench, set("FRAME_INERTIA_X", 1e-5));
+        answers(&mut bench, set_parameter("FRAME_INERTIA_X", 1e-5));
         bench.texts().concat()
     };
     assert!(text.contains("airframe.inertia.x") && text.contains("must be at least"), "{text}");
@@ -214,11 +204,11 @@ fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
     assert!(bench.is_near([0.0, 0.0, bench.position()[2]]), "{:?}", bench.position());
 
     // Accepted, and told why it is doubtful.
-    answers(&mut bench, set("SENS_RATE_NOISE", 0.9));
+    answers(&mut bench, set_parameter("SENS_RATE_NOISE", 0.9));
     let text = bench.texts().concat();
     assert!(text.starts_with("SENS_RATE_NOISE: measurement noise"), "{text}");
     bench.heard.clear();
-    answers(&mut bench, set("LIM_SPEED_HORIZ", 5.0));
+    answers(&mut bench, set_parameter("LIM_SPEED_HORIZ", 5.0));
     assert_eq!(bench.texts(), Vec::<String>::new());
 }
 
