@@ -13,7 +13,8 @@ use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
 /// ```
 ///
 /// Rows of G have length 1 and stand in the order limit, sample, direction; G is the same at every sample, z₀ and b are not. It
-/// serves to compare and to check solvers. It allocates, and is derived from the design by a way of its own.
+/// serves to compare and to check solvers. It allocates, and walks the prediction as the controller does: a check of the solver, not of
+/// the prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PosedProgram {
     /// L⁻¹.
