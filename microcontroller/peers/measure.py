@@ -140,7 +140,7 @@ def main() -> None:
     parser.add_argument("--gcc", default="arm-none-eabi-", help="prefix of the compiler's programs")
     parser.add_argument("--qemu", default="qemu-system-arm")
     parser.add_argument("--flag", action="append", default=[], help="a flag for the compiler; can be repeated")
-    parser.add_argument("--limit-s", type=float, default=300.0, help="longest run of a peer, s")
+    parser.add_argument("--limit-s", type=float, default=1200.0, help="longest run of a peer, s")
     arguments = parser.parse_args()
     print(f"{'controller':<16} {'solver':<8} {'median':>10} {'99 %':>10} {'worst':>10} {'iterations':>10} {'unsolved':>8} {'flash':>8} {'memory':>8}")
     for task in json.loads(arguments.programs.read_text()):

@@ -24,7 +24,7 @@ use flight::Loop;
 use recording::{ONE, TWO};
 
 /// Room for the controllers, which are read once, when the firmware starts.
-const HEAP: usize = 96 * 1024;
+const HEAP: usize = 32 * 1024;
 
 #[global_allocator]
 static ALLOCATOR: LlffHeap = LlffHeap::empty();

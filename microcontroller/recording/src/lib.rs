@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 
 /// Laguerre terms per input that a controller of the cascade has room for.
 pub const TERMS: usize = 8;
-/// Unknowns of programs of one and of two inputs.
+/// Unknowns of programs of one input.
 pub const ONE: usize = unknowns(1, TERMS);
-/// The same of two.
+/// The same of two inputs.
 pub const TWO: usize = unknowns(2, TERMS);
 
 /// A controller of N states and P inputs with at most E unknowns, under constant limits.
