@@ -65,7 +65,10 @@ pub fn run(workspace: &Workspace, progress: &Progress, install: bool, peers: boo
         Some(compiler) => compiler,
         None => {
             provide(workspace, progress, vec![Need::StandardLibrary(TARGET)], install)?;
-            let missing = || Failure::Needs { needs: String::new() };
+            let missing = || Failure::Missing {
+                program: format!("Rust's standard library for {TARGET}"),
+                remedy: "rustup target add thumbv7em-none-eabihf",
+            };
             Compiler::find(workspace, TARGET)?.ok_or_else(missing)?
         }
     };
