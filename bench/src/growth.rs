@@ -5,12 +5,12 @@ use lmpc::{
     StateSpaceMpcDesign, StateSpaceMpcWeights, unknowns,
 };
 use quadrotor::{Configuration, HoverLoops, LinearLoop, Simulation};
+use recording::{TERMS, TWO};
 use serde::Serialize;
 
 use crate::Failure;
 use crate::flight::fly;
 use crate::median::median;
-use crate::shipped::{TERMS, TWO};
 use crate::stopwatch::Stopwatch;
 
 /// Moves per input that state-space MPC has room for here.

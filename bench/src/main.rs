@@ -4,6 +4,7 @@
 //! programs ─► the shipped programs along flights, for solvers in Python      control ─► ours and solvers in C, sample by sample
 //! search   ─► the state that takes each solver the longest                   growth  ─► cost against the size of a program
 //! engine   ─► the closed loop and the plant                                  fmu     ─► an FMU, step by step
+//! recording ─► the shipped controllers with flights, as a microcontroller reads them
 //! ```
 
 mod adversary;
@@ -17,6 +18,7 @@ mod median;
 mod peer;
 mod pick;
 mod program;
+mod recording;
 mod reference;
 mod shipped;
 mod solver;
@@ -72,6 +74,8 @@ enum Task {
     Growth,
     /// Times the engine
     Engine,
+    /// Writes the shipped controllers with flights for a microcontroller
+    Recording,
     /// Times an FMU of FMI 2.0
     Fmu {
         /// The file
@@ -103,6 +107,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Task::Search { peer } => write(out, &adversary::search(&peer::load_all(peer)?, seed, quick)?),
         Task::Growth => write(out, &growth::measure(quick)?),
         Task::Engine => write(out, &engine::measure(quick)?),
+        Task::Recording => Ok(fs::write(out, recording::record()?)?),
         Task::Fmu { file, output } => write(out, &fmu::measure(file, output, quick)?),
     }
 }

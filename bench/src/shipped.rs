@@ -1,17 +1,12 @@
 //! The loops of the cascade with the controllers that fly.
 
-use lmpc::{PosedProgram, StabilizedMpc, unknowns};
+use lmpc::{PosedProgram, StabilizedMpc};
 use quadrotor::{Configuration, HoverLoops, LinearLoop};
+use recording::{ONE, TWO};
 
 use crate::Failure;
 use crate::flight::{Moment, fly};
 use crate::program::{PosedSample, Program};
-
-/// Laguerre terms per input that the smaller programs of the cascade have room for.
-pub const TERMS: usize = 8;
-/// Unknowns of programs of one and of two inputs.
-pub const ONE: usize = unknowns(1, TERMS);
-pub const TWO: usize = unknowns(2, TERMS);
 
 /// Names of the loops.
 pub const NAMES: [&str; 4] = ["position", "altitude", "roll and pitch", "yaw"];

@@ -1,6 +1,6 @@
 //! The one shape of a control step.
 
-use crate::{ControllerState, Sample, Step};
+use crate::{ControllerState, Precision, Sample, Step};
 
 /// A receding-horizon control law for a plant of N states, P inputs and Q outputs: a sample in, a step out.
 ///
@@ -17,8 +17,8 @@ use crate::{ControllerState, Sample, Step};
 ///
 /// Each remembers `measured`, and holds its input when that is not finite. A step allocates nothing and does not panic,
 /// whatever the numbers are.
-pub trait Controller<const N: usize, const P: usize, const Q: usize, const W: usize> {
+pub trait Controller<const N: usize, const P: usize, const Q: usize, const W: usize, T: Precision = f64> {
     /// One sample: from what is known at sample k to u(k), which the state takes as applied. Report a different
     /// input with [`ControllerState::apply`] before the next sample.
-    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P>;
+    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T>;
 }

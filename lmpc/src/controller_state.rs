@@ -4,31 +4,25 @@ use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use crate::relaxable::RelaxableWarmStart;
-use crate::{Sample, Solution, Status, Step};
-
-/// Relative difference that the actuators' own arithmetic may make between an input asked for and applied.
-const ROUNDING: f64 = 1e-9;
+use crate::{Precision, Sample, Solution, Status, Step};
 
 /// All that a [`Controller`](crate::Controller) of N states and P inputs remembers from one sample to the next: the
 /// last state, the last input, and the active set of its last solution, of up to W limits. A law without limits
 /// needs no room for them: W = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ControllerState<const N: usize, const P: usize, const W: usize = 0> {
-    measured: SVector<f64, N>,
+#[serde(bound = "T: Precision")]
+pub struct ControllerState<const N: usize, const P: usize, const W: usize = 0, T = f64> {
+    measured: SVector<T, N>,
     /// v(k−1) = u(k−1) − u_r(k−1): the part of the applied input that feedback added.
-    feedback: SVector<f64, P>,
-    input_reference: SVector<f64, P>,
+    feedback: SVector<T, P>,
+    input_reference: SVector<T, P>,
     pub(crate) warm_start: RelaxableWarmStart<W>,
 }
 
-impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
+impl<const N: usize, const P: usize, const W: usize, T: Precision> ControllerState<N, P, W, T> {
     /// A controller that takes over a plant whose last state was `measured`, under the input `applied`
     /// of which `input_reference` was feed-forward.
-    pub fn new(
-        measured: SVector<f64, N>,
-        applied: SVector<f64, P>,
-        input_reference: SVector<f64, P>,
-    ) -> Self {
+    pub fn new(measured: SVector<T, N>, applied: SVector<T, P>, input_reference: SVector<T, P>) -> Self {
         Self {
             measured,
             feedback: applied - input_reference,
@@ -44,7 +38,7 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
 
     /// Reports the input that was applied in truth, so that saturation further down cannot wind the
     /// integral action up. A value that is not finite is ignored.
-    pub fn apply(&mut self, applied: &SVector<f64, P>) {
+    pub fn apply(&mut self, applied: &SVector<T, P>) {
         let feedback = applied - self.input_reference;
         if finite(&feedback) {
             self.feedback = feedback;
@@ -56,19 +50,19 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
     ///
     /// For inputs that saturate on kicks of a few samples: the state feedback of a kick that was cut off is
     /// still there when the state has come back, and the integral action waits.
-    pub fn apply_holding_integral(&mut self, applied: &SVector<f64, P>, integral: &SVector<f64, P>) {
+    pub fn apply_holding_integral(&mut self, applied: &SVector<T, P>, integral: &SVector<T, P>) {
         let cut = applied - self.applied();
         for input in 0..P {
             // Rounding of the actuators' own arithmetic is not saturation.
             let held = self.feedback[input] - integral[input];
-            if libm::fabs(cut[input]) > ROUNDING * (1.0 + libm::fabs(applied[input])) && held.is_finite() {
+            if cut[input].abs() > T::ACTUATORS * (T::one() + applied[input].abs()) && held.is_finite() {
                 self.feedback[input] = held;
             }
         }
     }
 
     /// Replaces v(k−1), for a plant whose input axes have turned since. A value that is not finite is ignored.
-    pub fn turn_feedback(&mut self, turned: impl Fn(&SVector<f64, P>) -> SVector<f64, P>) {
+    pub fn turn_feedback(&mut self, turned: impl Fn(&SVector<T, P>) -> SVector<T, P>) {
         let feedback = turned(&self.feedback);
         if finite(&feedback) {
             self.feedback = feedback;
@@ -78,8 +72,8 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
     /// The same memory in other coordinates of the state and of the input.
     pub fn map(
         &self,
-        state: impl Fn(&SVector<f64, N>) -> SVector<f64, N>,
-        input: impl Fn(&SVector<f64, P>) -> SVector<f64, P>,
+        state: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+        input: impl Fn(&SVector<T, P>) -> SVector<T, P>,
     ) -> Self {
         Self {
             measured: state(&self.measured),
@@ -90,31 +84,31 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
     }
 
     /// v(k−1), the part of the applied input that feedback added.
-    pub fn feedback(&self) -> SVector<f64, P> {
+    pub fn feedback(&self) -> SVector<T, P> {
         self.feedback
     }
 
     /// u_r(k−1), the part that was feed-forward.
-    pub fn input_reference(&self) -> SVector<f64, P> {
+    pub fn input_reference(&self) -> SVector<T, P> {
         self.input_reference
     }
 
     /// The last measured state, x(k−1).
-    pub fn measured(&self) -> SVector<f64, N> {
+    pub fn measured(&self) -> SVector<T, N> {
         self.measured
     }
 
     /// The input that was applied last, u(k−1).
-    pub fn applied(&self) -> SVector<f64, P> {
+    pub fn applied(&self) -> SVector<T, P> {
         self.feedback + self.input_reference
     }
 
     /// Takes over what a law has decided at a sample and says so; holds the input if any of it is not finite.
     pub(crate) fn take<const Q: usize>(
         &mut self,
-        sample: &Sample<'_, N, P, Q>,
-        decision: &Decision<P>,
-    ) -> Step<P> {
+        sample: &Sample<'_, N, P, Q, T>,
+        decision: &Decision<P, T>,
+    ) -> Step<P, T> {
         let before = self.applied();
         let accepted = finite(&sample.measured) && finite(&(sample.input_reference + decision.feedback));
         if accepted {
@@ -135,31 +129,31 @@ impl<const N: usize, const P: usize, const W: usize> ControllerState<N, P, W> {
 }
 
 /// What a law has decided at a sample.
-pub(crate) struct Decision<const P: usize> {
+pub(crate) struct Decision<const P: usize, T> {
     /// v(k), what feedback adds to the input.
-    feedback: SVector<f64, P>,
-    integral: SVector<f64, P>,
+    feedback: SVector<T, P>,
+    integral: SVector<T, P>,
     status: Status,
     iterations: u32,
     active: usize,
 }
 
-impl<const P: usize> Decision<P> {
+impl<const P: usize, T: Precision> Decision<P, T> {
     /// Feedback v(k) from a gain, `integral` of which is the integral action of this sample.
-    pub(crate) fn linear(feedback: SVector<f64, P>, integral: SVector<f64, P>) -> Self {
+    pub(crate) fn linear(feedback: SVector<T, P>, integral: SVector<T, P>) -> Self {
         Self { feedback, integral, status: Status::Optimal, iterations: 0, active: 0 }
     }
 
     /// Feedback v(k) from a program with `active` limits.
-    pub(crate) fn program(feedback: SVector<f64, P>, status: Status, iterations: u32, active: usize) -> Self {
+    pub(crate) fn program(feedback: SVector<T, P>, status: Status, iterations: u32, active: usize) -> Self {
         Self { feedback, integral: SVector::zeros(), status, iterations, active }
     }
 
     /// The first move Δv that a solution stands for, on top of v(k−1); none if the solution is of no use.
     pub(crate) fn solved<const E: usize>(
-        previous: SVector<f64, P>,
-        first_move: SVector<f64, P>,
-        solution: &Solution<E>,
+        previous: SVector<T, P>,
+        first_move: SVector<T, P>,
+        solution: &Solution<E, T>,
         status: Status,
     ) -> Self {
         let usable = matches!(status, Status::Optimal | Status::Relaxed);
@@ -174,6 +168,6 @@ impl<const P: usize> Decision<P> {
     }
 }
 
-fn finite<const R: usize>(vector: &SVector<f64, R>) -> bool {
+fn finite<const R: usize, T: Precision>(vector: &SVector<T, R>) -> bool {
     vector.iter().all(|value| value.is_finite())
 }

@@ -1,9 +1,11 @@
 //! Inner loops over slices of equal length.
 
+use crate::Precision;
+
 /// Σ aᵢ bᵢ in four partial sums, which the compiler turns into vector instructions.
 #[inline]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
+pub(crate) fn dot<T: Precision>(a: &[T], b: &[T]) -> T {
+    let mut sums = [T::zero(); 4];
     let (a_chunks, a_rest) = a.as_chunks::<4>();
     let (b_chunks, b_rest) = b.as_chunks::<4>();
     for (x, y) in a_chunks.iter().zip(b_chunks) {
@@ -11,35 +13,35 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x * y).sum();
+    let rest: T = a_rest.iter().zip(b_rest).map(|(x, y)| *x * *y).sum();
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// Σ |aᵢ bᵢ|: what the rounding of their dot product is relative to.
-pub(crate) fn dot_of_magnitudes(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| libm::fabs(x * y)).sum()
+pub(crate) fn dot_of_magnitudes<T: Precision>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).map(|(x, y)| (*x * *y).abs()).sum()
 }
 
 /// a ← a − t b.
 #[inline]
-pub(crate) fn subtract_scaled(a: &mut [f64], b: &[f64], t: f64) {
+pub(crate) fn subtract_scaled<T: Precision>(a: &mut [T], b: &[T], t: T) {
     for (x, y) in a.iter_mut().zip(b) {
-        *x -= t * y;
+        *x -= t * *y;
     }
 }
 
 /// The least of some numbers, infinity of none; NaN counts as none.
 #[inline]
-pub(crate) fn least(values: &[f64]) -> f64 {
-    let smaller = |a: f64, b: f64| if b < a { b } else { a };
-    let mut lanes = [f64::INFINITY; 4];
+pub(crate) fn least<T: Precision>(values: &[T]) -> T {
+    let smaller = |a: T, b: T| if b < a { b } else { a };
+    let mut lanes = [T::INFINITY; 4];
     let (chunks, rest) = values.as_chunks::<4>();
     for chunk in chunks {
         for lane in 0..4 {
             lanes[lane] = smaller(lanes[lane], chunk[lane]);
         }
     }
-    rest.iter().chain(&lanes).fold(f64::INFINITY, |least, value| smaller(least, *value))
+    rest.iter().chain(&lanes).fold(T::INFINITY, |least, value| smaller(least, *value))
 }
 
 #[cfg(test)]
@@ -63,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_least_is_found_at_any_place() {
-        assert_eq!(least(&[]), f64::INFINITY);
+        assert_eq!(least::<f64>(&[]), f64::INFINITY);
         for place in 0..11 {
             let mut values = [2.0, f64::NAN, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, f64::INFINITY, 2.5];
             values[place] = -1.0;

@@ -4,14 +4,10 @@ use nalgebra::SVector;
 
 use crate::active_set::ActiveSet;
 use crate::dense::{dot, subtract_scaled};
-use crate::{Outcome, WarmStart};
-
-/// By how much the steps may have missed the point that they lead to, as a share of its size, without a look whether it keeps all
-/// constraints: a tenth of what the least tolerant programs take for rounding.
-const ROUNDING: f64 = 1e-13;
+use crate::{Outcome, Precision, WarmStart};
 
 /// Constraints n·z ≤ b with unit normals n, of z with at most N elements.
-pub(crate) trait Constraints<const N: usize> {
+pub(crate) trait Constraints<const N: usize, T> {
     /// Number of unknowns; elements beyond are zero.
     fn unknowns(&self) -> usize;
 
@@ -19,30 +15,30 @@ pub(crate) trait Constraints<const N: usize> {
     fn count(&self) -> usize;
 
     /// The unit normal of a constraint.
-    fn normal(&self, constraint: usize) -> SVector<f64, N>;
+    fn normal(&self, constraint: usize) -> SVector<T, N>;
 
     /// b of a constraint.
-    fn bound(&self, constraint: usize) -> f64;
+    fn bound(&self, constraint: usize) -> T;
 
     /// The constraint that z violates most, by more than rounding, among those that are not active.
-    fn most_violated(&mut self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize>;
+    fn most_violated(&mut self, z: &SVector<T, N>, active: &[usize]) -> Option<usize>;
 }
 
 /// One run of the dual method of Goldfarb and Idnani (1983): the point nearest to z₀ that keeps all constraints.
-pub(crate) struct DualSearch<'a, const N: usize, C: Constraints<N>> {
+pub(crate) struct DualSearch<'a, const N: usize, T, C: Constraints<N, T>> {
     constraints: &'a mut C,
-    z_0: SVector<f64, N>,
-    pub(crate) z: SVector<f64, N>,
-    pub(crate) active: ActiveSet<N>,
+    z_0: SVector<T, N>,
+    pub(crate) z: SVector<T, N>,
+    pub(crate) active: ActiveSet<N, T>,
     pub(crate) iterations: u32,
 }
 
-impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
+impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T, C> {
     /// A search that begins at the unconstrained optimum, or with the constraints that were active before as far as they
     /// still push instead of pull.
     pub(crate) fn new<const W: usize>(
         constraints: &'a mut C,
-        z_0: SVector<f64, N>,
+        z_0: SVector<T, N>,
         warm_start: &WarmStart<W>,
     ) -> Self {
         let active = ActiveSet::empty(constraints.unknowns());
@@ -60,7 +56,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
             if bound.is_finite() {
                 // A repeated constraint depends on itself and is not added again.
                 let split = self.active.split(&self.constraints.normal(constraint));
-                self.active.add(constraint, &split, bound, 0.0);
+                self.active.add(constraint, &split, bound, T::zero());
             }
         }
         while let Some(column) = self.active.solve_multipliers(&self.z_0) {
@@ -85,7 +81,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
                 self.meet_active();
                 is_exact = true;
                 let rounding_squared = (self.z - stepped_to).norm_squared();
-                if rounding_squared <= ROUNDING * ROUNDING * self.z.norm_squared() {
+                if rounding_squared <= T::STEPS * T::STEPS * self.z.norm_squared() {
                     return Outcome::Optimal;
                 }
             }
@@ -96,7 +92,7 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
     fn activate(&mut self, constraint: usize, iteration_limit: u32) -> Result<(), Outcome> {
         let normal = self.constraints.normal(constraint);
         let bound = self.constraints.bound(constraint);
-        let mut multiplier = 0.0;
+        let mut multiplier = T::zero();
         loop {
             if self.iterations >= iteration_limit {
                 return Err(Outcome::IterationLimit);
@@ -106,15 +102,15 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
             let sinking = self.active.exchange(&split);
             // How far until the first active multiplier is used up, and until the constraint is met.
             let leaving = self.first_to_leave(&sinking);
-            let until_met = if split.rest_squared > 0.0 {
+            let until_met = if split.rest_squared > T::zero() {
                 let along = dot(normal.as_slice(), self.z.as_slice());
-                (along - bound).max(0.0) / split.rest_squared
+                (along - bound).max(T::zero()) / split.rest_squared
             } else {
-                f64::INFINITY
+                T::INFINITY
             };
-            let until_leaving = leaving.map_or(f64::INFINITY, |(_, t)| t);
+            let until_leaving = leaving.map_or(T::INFINITY, |(_, t)| t);
             let t = until_met.min(until_leaving);
-            if t == f64::INFINITY {
+            if t == T::INFINITY {
                 return Err(Outcome::Infeasible);
             }
             subtract_scaled(self.z.as_mut_slice(), split.rest.as_slice(), t);
@@ -140,10 +136,10 @@ impl<'a, const N: usize, C: Constraints<N>> DualSearch<'a, N, C> {
         self.z = self.active.nearest(&self.z_0);
     }
 
-    fn first_to_leave(&self, sinking: &SVector<f64, N>) -> Option<(usize, f64)> {
-        let mut first: Option<(usize, f64)> = None;
+    fn first_to_leave(&self, sinking: &SVector<T, N>) -> Option<(usize, T)> {
+        let mut first: Option<(usize, T)> = None;
         for (column, &multiplier) in self.active.multipliers().iter().enumerate() {
-            if sinking[column] > 0.0 {
+            if sinking[column] > T::zero() {
                 let until = multiplier / sinking[column];
                 if first.is_none_or(|(_, earliest)| until < earliest) {
                     first = Some((column, until));

@@ -1,9 +1,11 @@
 //! The stationary Kalman predictor.
 
 use nalgebra::{DMatrix, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
+use crate::precision::converted;
 use crate::validate::{self, symmetrized};
-use crate::{DesignError, StateSpace, solve_riccati};
+use crate::{DesignError, Precision, StateSpace, solve_riccati};
 
 /// Covariances of the noise in x⁺ = A x + B u + w, y = C x + D u + v (24)–(25).
 #[derive(Clone, Debug, PartialEq)]
@@ -92,12 +94,13 @@ impl KalmanDesign {
 
 /// The run-time predictor (26) for N states, P inputs and Q outputs: no allocation. A
 /// [direct term](StateSpace#the-direct-term-d) D u(k) is subtracted from the measurement by the caller.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct KalmanPredictor<const N: usize, const P: usize, const Q: usize> {
-    a: SMatrix<f64, N, N>,
-    b: SMatrix<f64, N, P>,
-    c: SMatrix<f64, Q, N>,
-    gain: SMatrix<f64, N, Q>,
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub struct KalmanPredictor<const N: usize, const P: usize, const Q: usize, T = f64> {
+    a: SMatrix<T, N, N>,
+    b: SMatrix<T, N, P>,
+    c: SMatrix<T, Q, N>,
+    gain: SMatrix<T, N, Q>,
 }
 
 impl<const N: usize, const P: usize, const Q: usize> KalmanPredictor<N, P, Q> {
@@ -117,15 +120,27 @@ impl<const N: usize, const P: usize, const Q: usize> KalmanPredictor<N, P, Q> {
             gain: SMatrix::from_fn(|i, j| design.gain()[(i, j)]),
         })
     }
+}
+
+impl<const N: usize, const P: usize, const Q: usize, T: Precision> KalmanPredictor<N, P, Q, T> {
+    /// The same predictor in another precision.
+    pub fn to_precision<U: Precision>(&self) -> KalmanPredictor<N, P, Q, U> {
+        KalmanPredictor {
+            a: converted(&self.a),
+            b: converted(&self.b),
+            c: converted(&self.c),
+            gain: converted(&self.gain),
+        }
+    }
 
     /// x̂(k+1|k) from x̂(k|k−1), the input u(k) and the measurement y(k). A result that is not finite is
     /// replaced by the prediction without the measurement, or by the old estimate.
     pub fn predict(
         &self,
-        estimate: &SVector<f64, N>,
-        input: &SVector<f64, P>,
-        measurement: &SVector<f64, Q>,
-    ) -> SVector<f64, N> {
+        estimate: &SVector<T, N>,
+        input: &SVector<T, P>,
+        measurement: &SVector<T, Q>,
+    ) -> SVector<T, N> {
         // x̂(k+1|k) = A x̂(k|k−1) + B u(k) + K (y(k) − C x̂(k|k−1))
         let open_loop = self.a * estimate + self.b * input;
         let corrected = open_loop + self.gain * (measurement - self.c * estimate);

@@ -3,17 +3,18 @@
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, RowDVector, RowSVector, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
 use crate::bounds::Bounds;
 use crate::controller_state::Decision;
 use crate::laguerre_walk::LaguerreWalk;
 use crate::limit_row::{LimitRow, limit_rows};
 use crate::model_increment::ModelIncrement;
+use crate::precision::converted;
 use crate::relaxable::RelaxableProgram;
-use crate::{Controller, ControllerState, DesignError, Limit, LmpcDesign, Sample, StateFeedback, Step};
-
-/// Violation that rounding may leave, relative to the bound and to what the left-hand side adds up.
-const ROUNDING: f64 = 1e-9;
+use crate::{
+    Controller, ControllerState, DesignError, Limit, LmpcDesign, Precision, Sample, StateFeedback, Step,
+};
 
 /// Constrained Laguerre MPC for a plant of N states, P inputs and Q outputs, with E ≥ ΣN + 1 unknowns: the
 /// Laguerre coefficients and one slack.
@@ -22,41 +23,43 @@ const ROUNDING: f64 = 1e-9;
 /// step is one matrix–vector product; else an exact solver runs, warm-started from the last active set.
 /// When no η keeps them, they are relaxed by a common slack that is charged quadratically, soft limits
 /// before hard ones, and the status says so.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LaguerreMpc<const N: usize, const P: usize, const Q: usize, const E: usize> {
-    unconstrained: StateFeedback<N, P, Q>,
-    model_increment: Option<ModelIncrement<N, P>>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub struct LaguerreMpc<const N: usize, const P: usize, const Q: usize, const E: usize, T = f64> {
+    unconstrained: StateFeedback<N, P, Q, T>,
+    model_increment: Option<ModelIncrement<N, P, T>>,
     /// Ψ, E×N and E×Q, in η; zero for the slack.
-    psi_state: SMatrix<f64, E, N>,
-    psi_output: SMatrix<f64, E, Q>,
+    psi_state: SMatrix<T, E, N>,
+    psi_output: SMatrix<T, E, Q>,
     /// L(0)ᵀ: Δu(k) = L(0)ᵀ η.
-    first_move: SMatrix<f64, P, E>,
-    rows: Vec<KnownPart<N, P, Q>>,
-    program: RelaxableProgram<E>,
+    first_move: SMatrix<T, P, E>,
+    rows: Vec<KnownPart<N, P, Q, T>>,
+    program: RelaxableProgram<E, T>,
 }
 
 /// What of a limit's left-hand side is known before η is chosen, and what it is at the unconstrained η.
-#[derive(Clone, Debug, PartialEq)]
-struct KnownPart<const N: usize, const P: usize, const Q: usize> {
-    state: RowSVector<f64, N>,
-    output: RowSVector<f64, Q>,
-    unconstrained_state: RowSVector<f64, N>,
-    unconstrained_output: RowSVector<f64, Q>,
-    input: RowSVector<f64, P>,
-    step: RowSVector<f64, P>,
-    measured: RowSVector<f64, N>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+struct KnownPart<const N: usize, const P: usize, const Q: usize, T> {
+    state: RowSVector<T, N>,
+    output: RowSVector<T, Q>,
+    unconstrained_state: RowSVector<T, N>,
+    unconstrained_output: RowSVector<T, Q>,
+    input: RowSVector<T, P>,
+    step: RowSVector<T, P>,
+    measured: RowSVector<T, N>,
     bound: usize,
 }
 
 /// What the limits need of one sample.
-struct Known<const N: usize, const P: usize, const Q: usize> {
-    delta: SVector<f64, N>,
-    error: SVector<f64, Q>,
+struct Known<const N: usize, const P: usize, const Q: usize, T> {
+    delta: SVector<T, N>,
+    error: SVector<T, Q>,
     /// u_r(k) + v(k−1)
-    input: SVector<f64, P>,
+    input: SVector<T, P>,
     /// u_r(k) − u_r(k−1)
-    step: SVector<f64, P>,
-    measured: SVector<f64, N>,
+    step: SVector<T, P>,
+    measured: SVector<T, N>,
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> LaguerreMpc<N, P, Q, E> {
@@ -97,17 +100,34 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> LaguerreMpc
         let controller = Self::new(design, limits)?;
         Ok(Self { model_increment: Some(ModelIncrement::new(design.model().plant())?), ..controller })
     }
+}
+
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precision>
+    LaguerreMpc<N, P, Q, E, T>
+{
+    /// The same controller in another precision.
+    pub fn to_precision<U: Precision>(&self) -> LaguerreMpc<N, P, Q, E, U> {
+        LaguerreMpc {
+            unconstrained: self.unconstrained.to_precision(),
+            model_increment: self.model_increment.as_ref().map(ModelIncrement::to_precision),
+            psi_state: converted(&self.psi_state),
+            psi_output: converted(&self.psi_output),
+            first_move: converted(&self.first_move),
+            rows: self.rows.iter().map(KnownPart::to_precision).collect(),
+            program: self.program.to_precision(),
+        }
+    }
 
     /// The law without limits.
-    pub fn unconstrained(&self) -> &StateFeedback<N, P, Q> {
+    pub fn unconstrained(&self) -> &StateFeedback<N, P, Q, T> {
         &self.unconstrained
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize> Controller<N, P, Q, W>
-    for LaguerreMpc<N, P, Q, E>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize, T: Precision>
+    Controller<N, P, Q, W, T> for LaguerreMpc<N, P, Q, E, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
+    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
         let increment = self.model_increment.as_ref().map_or(sample.increment, |model| {
             model.that_led_to(&sample.deviation, &(state.feedback() + sample.disturbance))
         });
@@ -130,7 +150,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
+impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q, f64> {
     fn new(row: &LimitRow, coefficient_gain: &DMatrix<f64>) -> Self {
         // At η = −Ω⁻¹Ψx the left-hand side is (known − g Ω⁻¹Ψ) x.
         let unconstrained = row.known.columns(0, N + Q) - &row.decision * coefficient_gain;
@@ -145,47 +165,60 @@ impl<const N: usize, const P: usize, const Q: usize> KnownPart<N, P, Q> {
             bound: row.bound,
         }
     }
+}
 
-    fn upper(&self, upper: &[f64]) -> f64 {
-        upper.get(self.bound).copied().unwrap_or(f64::INFINITY)
+impl<const N: usize, const P: usize, const Q: usize, T: Precision> KnownPart<N, P, Q, T> {
+    fn to_precision<U: Precision>(&self) -> KnownPart<N, P, Q, U> {
+        KnownPart {
+            state: converted(&self.state),
+            output: converted(&self.output),
+            unconstrained_state: converted(&self.unconstrained_state),
+            unconstrained_output: converted(&self.unconstrained_output),
+            input: converted(&self.input),
+            step: converted(&self.step),
+            measured: converted(&self.measured),
+            bound: self.bound,
+        }
+    }
+
+    fn upper(&self, upper: &[T]) -> T {
+        upper.get(self.bound).copied().unwrap_or(T::INFINITY)
     }
 
     /// The known part but for \[Δx_m; y − r\].
-    fn base(&self, known: &Known<N, P, Q>) -> f64 {
+    fn base(&self, known: &Known<N, P, Q, T>) -> T {
         (self.input * known.input + self.step * known.step + self.measured * known.measured).x
     }
 
     /// What the state does without further moves.
-    fn drift(&self, known: &Known<N, P, Q>) -> f64 {
+    fn drift(&self, known: &Known<N, P, Q, T>) -> T {
         (self.state * known.delta + self.output * known.error).x
     }
 
-    fn holds_unconstrained(&self, known: &Known<N, P, Q>, upper: &[f64]) -> bool {
+    fn holds_unconstrained(&self, known: &Known<N, P, Q, T>, upper: &[T]) -> bool {
         let (upper, base) = (self.upper(upper), self.base(known));
         let feedback = (self.unconstrained_state * known.delta + self.unconstrained_output * known.error).x;
-        let size = libm::fabs(upper).max(libm::fabs(base)).max(libm::fabs(feedback));
-        base + feedback <= upper + ROUNDING * size
+        let size = upper.abs().max(base.abs()).max(feedback.abs());
+        base + feedback <= upper + T::LIMIT * size
     }
 }
 
 /// What the limits leave for η at one sample.
-struct Rooms<'a, const N: usize, const P: usize, const Q: usize> {
-    rows: &'a [KnownPart<N, P, Q>],
-    known: &'a Known<N, P, Q>,
-    upper: &'a [f64],
+struct Rooms<'a, const N: usize, const P: usize, const Q: usize, T> {
+    rows: &'a [KnownPart<N, P, Q, T>],
+    known: &'a Known<N, P, Q, T>,
+    upper: &'a [T],
 }
 
-impl<const N: usize, const P: usize, const Q: usize> Bounds for Rooms<'_, N, P, Q> {
-    fn bound(&self, row: usize) -> f64 {
+impl<const N: usize, const P: usize, const Q: usize, T: Precision> Bounds<T> for Rooms<'_, N, P, Q, T> {
+    fn bound(&self, row: usize) -> T {
         let row = &self.rows[row];
         row.upper(self.upper) - row.base(self.known) - row.drift(self.known)
     }
 
-    fn size(&self, row: usize) -> f64 {
+    fn size(&self, row: usize) -> T {
         let row = &self.rows[row];
-        libm::fabs(row.upper(self.upper))
-            + libm::fabs(row.base(self.known))
-            + libm::fabs(row.drift(self.known))
+        row.upper(self.upper).abs() + row.base(self.known).abs() + row.drift(self.known).abs()
     }
 }
 

@@ -18,6 +18,7 @@
 //! | C, D and directions of a limited signal; its relaxation | [`SignalLimit`] | |
 //! | z₀, G, b of the program that it makes, for another solver | [`PosedProgram`] | |
 //! | Σ xᵀQx + ΔuᵀRΔu of a flight; designs compared by it | [`ClosedLoop`], [`Trial`], [`DesignSearch`] | |
+//! | the numbers of a step: `f64`, or `f32` | [`Precision`] | |
 //! | F, Φ, H of the state-space MPC | [`StateSpaceMpcDesign`] | (28)–(34) |
 //! | x̂(k+1 given k), K, P of the predictor | [`KalmanDesign`], [`KalmanPredictor`] | (24)–(27) |
 //!
@@ -35,6 +36,9 @@
 //!     ├─► StateSpaceMpcWeights ─► StateSpaceMpcDesign, Limit ────────┼─► StateSpaceMpc ─┘
 //!     └─► NoiseCovariance ─► KalmanDesign ───────────────────────────┼─► KalmanPredictor
 //! ```
+//!
+//! A design is made in `f64`. What flies is generic over its [`Precision`], the last parameter of its type, `f64` unless named: `to_precision` converts
+//! it, and serde saves it, so that a microcontroller need not design. Read only what was saved: indices in it are taken as they are.
 //!
 //! Every step of the design returns a [`DesignError`] when a precondition is violated. Of the const generics, N, P and Q
 //! are the numbers of states, inputs and outputs of the plant. E is the capacity of a program, at least its
@@ -74,6 +78,7 @@ mod model_increment;
 mod moves_walk;
 mod optimal_gain;
 mod posed_program;
+mod precision;
 mod prediction;
 mod quadratic_program;
 mod reachability;
@@ -111,6 +116,7 @@ pub use limit::{Limit, Quantity};
 pub use limited_signals::MovedSignals;
 pub use model_increment::ModelIncrement;
 pub use posed_program::PosedProgram;
+pub use precision::Precision;
 pub use prediction::Prediction;
 pub use quadratic_program::{Outcome, QuadraticProgram, Solution, WarmStart};
 pub use reachability::{uncontrollable_eigenvalues, unobservable_eigenvalues};

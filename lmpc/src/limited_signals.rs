@@ -4,9 +4,10 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use nalgebra::{DMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
 use crate::sparse_columns::SparseColumns;
-use crate::{DesignError, Sample, SignalLimit, StabilizedDesign, validate};
+use crate::{DesignError, Precision, Sample, SignalLimit, StabilizedDesign, validate};
 
 /// Most components of a limited signal.
 const COMPONENTS: usize = 3;
@@ -26,30 +27,32 @@ pub(crate) const FEW_SIGNALS: usize = 96;
 /// ```
 ///
 /// What does not depend on z are the signals of the plan without limits: whether it keeps them is a plain comparison.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct LimitedSignals {
-    limits: Vec<PlacedLimit>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub(crate) struct LimitedSignals<T> {
+    limits: Vec<PlacedLimit<T>>,
     count: usize,
-    of_increment: SparseColumns,
-    of_error: SparseColumns,
-    of_plan: SparseColumns,
+    of_increment: SparseColumns<T>,
+    of_error: SparseColumns<T>,
+    of_plan: SparseColumns<T>,
     /// Where the columns of each component are in [`LimitedSignals::of_plan`].
     plan_of_component: [Range<usize>; COMPONENTS],
     /// m, which limit, and which of its samples that is, in the order of m.
     by_sample: Vec<(usize, usize, usize)>,
     /// One over the length of each row in z and the slack, in the order of [`LimitedSignals::place`].
-    scales: Vec<f64>,
+    scales: Vec<T>,
 }
 
 /// A limit on the samples on which a plan moves it.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PlacedLimit {
-    pub(crate) directions: Vec<[f64; COMPONENTS]>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub(crate) struct PlacedLimit<T> {
+    pub(crate) directions: Vec<[T; COMPONENTS]>,
     /// Length of the longest direction.
-    pub(crate) longest: f64,
-    pub(crate) relaxation: f64,
+    pub(crate) longest: T,
+    pub(crate) relaxation: T,
     /// The largest of its rows' [`LimitedSignals::scale`].
-    pub(crate) largest_scale: f64,
+    pub(crate) largest_scale: T,
     pub(crate) samples: usize,
     components: usize,
     /// Index of its first bound among [`Sample::upper`].
@@ -60,33 +63,52 @@ pub(crate) struct PlacedLimit {
     first: [usize; COMPONENTS],
     first_row: usize,
     /// C and D.
-    state: SparseColumns,
-    input: SparseColumns,
+    state: SparseColumns<T>,
+    input: SparseColumns<T>,
 }
 
-impl PlacedLimit {
+impl<T: Precision> PlacedLimit<T> {
+    /// The same limit in another precision.
+    fn to_precision<U: Precision>(&self) -> PlacedLimit<U> {
+        let number = |value: T| U::of(value.to_f64());
+        PlacedLimit {
+            directions: self.directions.iter().map(|direction| direction.map(number)).collect(),
+            longest: number(self.longest),
+            relaxation: number(self.relaxation),
+            largest_scale: number(self.largest_scale),
+            samples: self.samples,
+            components: self.components,
+            first_bound: self.first_bound,
+            first_moved: self.first_moved,
+            first: self.first,
+            first_row: self.first_row,
+            state: self.state.to_precision(),
+            input: self.input.to_precision(),
+        }
+    }
+
     /// The constraint of a direction at a sample.
     pub(crate) fn row(&self, sample: usize, direction: usize) -> usize {
         self.first_row + sample * self.directions.len() + direction
     }
 
     /// Its values among those of [`Sample::upper`](crate::Sample::upper), as far as there are.
-    pub(crate) fn bounds<'a>(&self, upper: &'a [f64]) -> &'a [f64] {
+    pub(crate) fn bounds<'a>(&self, upper: &'a [T]) -> &'a [T] {
         let bounds = upper.get(self.first_bound..).unwrap_or_default();
         &bounds[..bounds.len().min(self.directions.len())]
     }
 
     /// The sample of the longest signal, and its |signal|². Several samples are looked at side by side.
     #[inline]
-    pub(crate) fn longest_signal(&self, signals: &[f64]) -> (usize, f64) {
-        let mut longest = (0, 0.0);
+    pub(crate) fn longest_signal(&self, signals: &[T]) -> (usize, T) {
+        let mut longest = (0, T::zero());
         for first in (0..self.samples).step_by(BLOCK) {
             let samples = BLOCK.min(self.samples - first);
-            let mut squares = [0.0; BLOCK];
+            let mut squares = [T::zero(); BLOCK];
             for component in 0..self.components {
                 let values = &signals[self.first[component] + first..][..samples];
                 for (square, value) in squares.iter_mut().zip(values) {
-                    *square += value * value;
+                    *square += *value * *value;
                 }
             }
             for (within, square) in squares.into_iter().enumerate() {
@@ -98,15 +120,15 @@ impl PlacedLimit {
 
     /// The components at a sample among all signals.
     #[inline]
-    pub(crate) fn at(&self, sample: usize, signals: &[f64]) -> [f64; COMPONENTS] {
+    pub(crate) fn at(&self, sample: usize, signals: &[T]) -> [T; COMPONENTS] {
         core::array::from_fn(|component| {
-            if component < self.components { signals[self.first[component] + sample] } else { 0.0 }
+            if component < self.components { signals[self.first[component] + sample] } else { T::zero() }
         })
     }
 
     /// C x + D u.
-    fn signal(&self, state: &[f64], input: &[f64]) -> [f64; COMPONENTS] {
-        let mut signal = [0.0; COMPONENTS];
+    fn signal(&self, state: &[T], input: &[T]) -> [T; COMPONENTS] {
+        let mut signal = [T::zero(); COMPONENTS];
         self.state.add_product(state, &mut signal);
         self.input.add_product(input, &mut signal);
         signal
@@ -130,8 +152,8 @@ struct SignalAt {
 }
 
 /// A constraint: a direction of a limit at a sample.
-pub(crate) struct Place<'a> {
-    pub(crate) limit: &'a PlacedLimit,
+pub(crate) struct Place<'a, T> {
+    pub(crate) limit: &'a PlacedLimit<T>,
     pub(crate) sample: usize,
     pub(crate) direction: usize,
 }
@@ -161,7 +183,7 @@ impl Motion {
     }
 }
 
-impl LimitedSignals {
+impl LimitedSignals<f64> {
     /// Places limits on their samples. `slack_unit` is the slack that its element of z stands for.
     ///
     /// # Errors
@@ -285,8 +307,24 @@ impl LimitedSignals {
         self.plan_of_component[component] =
             self.of_plan.add_block(before, count, terms, |row, at| rows[row].of_plan[(component, at)]);
     }
+}
 
-    pub(crate) fn limits(&self) -> &[PlacedLimit] {
+impl<T: Precision> LimitedSignals<T> {
+    /// The same signals in another precision.
+    pub(crate) fn to_precision<U: Precision>(&self) -> LimitedSignals<U> {
+        LimitedSignals {
+            limits: self.limits.iter().map(PlacedLimit::to_precision).collect(),
+            count: self.count,
+            of_increment: self.of_increment.to_precision(),
+            of_error: self.of_error.to_precision(),
+            of_plan: self.of_plan.to_precision(),
+            plan_of_component: self.plan_of_component.clone(),
+            by_sample: self.by_sample.clone(),
+            scales: self.scales.iter().map(|scale| U::of(scale.to_f64())).collect(),
+        }
+    }
+
+    pub(crate) fn limits(&self) -> &[PlacedLimit<T>] {
         &self.limits
     }
 
@@ -296,12 +334,12 @@ impl LimitedSignals {
     }
 
     /// One over the length of a constraint's normal in z and the slack.
-    pub(crate) fn scale(&self, row: usize) -> f64 {
+    pub(crate) fn scale(&self, row: usize) -> T {
         self.scales[row]
     }
 
     /// Where a constraint is.
-    pub(crate) fn place(&self, row: usize) -> Place<'_> {
+    pub(crate) fn place(&self, row: usize) -> Place<'_, T> {
         let after = self.limits.partition_point(|limit| limit.first_row <= row);
         // A limit that no plan moves has no row.
         let limit = &self.limits[after - 1];
@@ -318,10 +356,10 @@ impl LimitedSignals {
     /// Each signal of the plan without limits, `input` being u_r(k) + v(k−1). S must be their number or more.
     pub(crate) fn unlimited<const N: usize, const P: usize, const Q: usize, const S: usize>(
         &self,
-        sample: &Sample<'_, N, P, Q>,
-        input: &SVector<f64, P>,
-    ) -> [f64; S] {
-        let mut known = [0.0; S];
+        sample: &Sample<'_, N, P, Q, T>,
+        input: &SVector<T, P>,
+    ) -> [T; S] {
+        let mut known = [T::zero(); S];
         for limit in &self.limits {
             let held = limit.signal(sample.measured.as_slice(), input.as_slice());
             let moved = sample.moved.get(limit.first_moved..).unwrap_or_default();
@@ -330,7 +368,7 @@ impl LimitedSignals {
                 known.fill(held[component]);
                 let moved = moved.get(component * limit.samples..).unwrap_or_default();
                 for (value, moved) in known.iter_mut().zip(moved) {
-                    *value += moved;
+                    *value += *moved;
                 }
             }
         }
@@ -340,20 +378,20 @@ impl LimitedSignals {
     }
 
     /// Sets the signals to those at z.
-    pub(crate) fn set_at(&self, unlimited: &[f64], z: &[f64], signals: &mut [f64]) {
+    pub(crate) fn set_at(&self, unlimited: &[T], z: &[T], signals: &mut [T]) {
         signals[..self.count].copy_from_slice(&unlimited[..self.count]);
         self.of_plan.add_product(z, signals);
     }
 
     /// What z adds to the left side of a constraint: a vector of the elements of z.
-    pub(crate) fn normal<const E: usize>(&self, place: &Place<'_>) -> SVector<f64, E> {
+    pub(crate) fn normal<const E: usize>(&self, place: &Place<'_, T>) -> SVector<T, E> {
         let mut normal = SVector::zeros();
         let limit = place.limit;
         let direction = &limit.directions[place.direction];
         for (component, share) in direction.iter().enumerate().take(limit.components) {
             let row = limit.first[component] + place.sample;
             let columns = self.plan_of_component[component].clone();
-            self.of_plan.for_each_in_row(columns, row, |at, factor| normal[at] += share * factor);
+            self.of_plan.for_each_in_row(columns, row, |at, factor| normal[at] += *share * factor);
         }
         normal
     }
@@ -361,9 +399,9 @@ impl LimitedSignals {
     /// By how much a reference moves the signals: `ahead` tells x_r(k+m) − x_r(k) and u_r(k+m) − u_r(k).
     pub(crate) fn moved<const N: usize, const P: usize>(
         &self,
-        ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>),
-    ) -> MovedSignals {
-        let mut moved = MovedSignals { values: [0.0; SIGNALS], count: self.count };
+        ahead: impl Fn(usize) -> (SVector<T, N>, SVector<T, P>),
+    ) -> MovedSignals<T> {
+        let mut moved = MovedSignals { values: [T::zero(); SIGNALS], count: self.count };
         let mut latest = (usize::MAX, (SVector::zeros(), SVector::zeros()));
         for &(m, limit, sample) in &self.by_sample {
             if m != latest.0 {
@@ -383,19 +421,19 @@ impl LimitedSignals {
 /// How far the motion of a reference moves the limited signals of a controller: see
 /// [`StabilizedMpc::moved`](crate::StabilizedMpc::moved).
 #[derive(Clone, Debug, PartialEq)]
-pub struct MovedSignals {
-    values: [f64; SIGNALS],
+pub struct MovedSignals<T = f64> {
+    values: [T; SIGNALS],
     count: usize,
 }
 
-impl MovedSignals {
+impl<T> MovedSignals<T> {
     /// In the order of [`Sample::moved`].
-    pub fn values(&self) -> &[f64] {
+    pub fn values(&self) -> &[T] {
         &self.values[..self.count]
     }
 }
 
-pub(crate) fn along(direction: &[f64; COMPONENTS], signal: &[f64; COMPONENTS]) -> f64 {
+pub(crate) fn along<T: Precision>(direction: &[T; COMPONENTS], signal: &[T; COMPONENTS]) -> T {
     direction[0] * signal[0] + direction[1] * signal[1] + direction[2] * signal[2]
 }
 

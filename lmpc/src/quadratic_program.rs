@@ -10,11 +10,8 @@ use crate::active_set::ActiveSet;
 use crate::bounds::{Bounds, GivenBounds};
 use crate::dense::{dot, dot_of_magnitudes, subtract_scaled};
 use crate::dual_search::{Constraints, DualSearch};
-use crate::{DesignError, validate};
-
-/// How far beyond its bound a constraint counts as met, relative to what its bound is made of and to the terms that its
-/// left-hand side adds up. Nothing here compares with a number that has a unit: the solution of a problem in other units is the same.
-const FEASIBILITY: f64 = 1e-12;
+use crate::precision::converted;
+use crate::{DesignError, Precision, validate};
 
 /// min ½ xᵀHx + fᵀx subject to G x ≤ h, with at most N unknowns, H and G known at design time. Of vectors of
 /// N elements those beyond the unknowns are zero.
@@ -23,16 +20,17 @@ const FEASIBILITY: f64 = 1e-12;
 /// H = L Lᵀ, in which the cost is the distance from the unconstrained optimum. It starts there, adds the
 /// most violated constraint in each iteration and keeps all multipliers non-negative, so that it ends
 /// with the exact optimum or with a proof that there is none.
-#[derive(Clone, Debug, PartialEq)]
-pub struct QuadraticProgram<const N: usize> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub struct QuadraticProgram<const N: usize, T = f64> {
     unknowns: usize,
     /// L⁻¹: f in the coordinates of z.
     /// Boxed, so that large programs can be moved and built on small stacks.
-    inverse_factor: Box<SMatrix<f64, N, N>>,
+    inverse_factor: Box<SMatrix<T, N, N>>,
     /// Rows of G L⁻ᵀ, scaled to unit length.
-    normals: Vec<SVector<f64, N>>,
+    normals: Vec<SVector<T, N>>,
     /// One over the length before scaling.
-    scales: Vec<f64>,
+    scales: Vec<T>,
 }
 
 /// How a solution ended.
@@ -50,9 +48,9 @@ pub enum Outcome {
 
 /// A solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution<const N: usize> {
+pub struct Solution<const N: usize, T = f64> {
     /// The optimum, if [`Outcome::Optimal`].
-    pub x: SVector<f64, N>,
+    pub x: SVector<T, N>,
     /// How it ended.
     pub outcome: Outcome,
     /// Constraints added, and removed again.
@@ -60,7 +58,7 @@ pub struct Solution<const N: usize> {
     /// How many constraints hold with equality.
     pub active: usize,
     /// Lagrange multipliers of those, in the order of [`WarmStart::constraints`]; zero beyond.
-    pub multipliers: SVector<f64, N>,
+    pub multipliers: SVector<T, N>,
 }
 
 /// The constraints that were active in the last solution, as far as there is room: where the next one starts.
@@ -148,6 +146,18 @@ impl<const N: usize> QuadraticProgram<N> {
         }
         Ok(Self { unknowns, inverse_factor, normals, scales })
     }
+}
+
+impl<const N: usize, T: Precision> QuadraticProgram<N, T> {
+    /// The same program in another precision.
+    pub fn to_precision<U: Precision>(&self) -> QuadraticProgram<N, U> {
+        QuadraticProgram {
+            unknowns: self.unknowns,
+            inverse_factor: Box::new(converted(&self.inverse_factor)),
+            normals: self.normals.iter().map(converted).collect(),
+            scales: self.scales.iter().map(|scale| U::of(scale.to_f64())).collect(),
+        }
+    }
 
     /// Number of unknowns n.
     pub fn unknowns(&self) -> usize {
@@ -165,11 +175,11 @@ impl<const N: usize> QuadraticProgram<N> {
     /// `iteration_limit` bounds the work: each iteration costs O(N (N + M)).
     pub fn solve(
         &self,
-        f: &SVector<f64, N>,
-        h: &[f64],
+        f: &SVector<T, N>,
+        h: &[T],
         warm_start: &mut WarmStart<N>,
         iteration_limit: u32,
-    ) -> Solution<N> {
+    ) -> Solution<N, T> {
         self.solve_with(f, &GivenBounds(h), warm_start, iteration_limit)
     }
 
@@ -177,11 +187,11 @@ impl<const N: usize> QuadraticProgram<N> {
     /// be remembered.
     pub(crate) fn solve_with<const W: usize>(
         &self,
-        f: &SVector<f64, N>,
-        h: &impl Bounds,
+        f: &SVector<T, N>,
+        h: &impl Bounds<T>,
         warm_start: &mut WarmStart<W>,
         iteration_limit: u32,
-    ) -> Solution<N> {
+    ) -> Solution<N, T> {
         // ½ xᵀHx + fᵀx = ½ ‖z − z₀‖² + const with z₀ = −L⁻¹ f
         let z_0 = self.unconstrained(f);
         let magnitude = z_0.amax();
@@ -202,9 +212,9 @@ impl<const N: usize> QuadraticProgram<N> {
     }
 
     /// −L⁻¹ f
-    fn unconstrained(&self, f: &SVector<f64, N>) -> SVector<f64, N> {
+    fn unconstrained(&self, f: &SVector<T, N>) -> SVector<T, N> {
         let n = self.unknowns;
-        let mut z = SVector::<f64, N>::zeros();
+        let mut z = SVector::<T, N>::zeros();
         for column in 0..n {
             // L⁻¹ is lower triangular.
             let factor = self.inverse_factor.column(column);
@@ -215,13 +225,13 @@ impl<const N: usize> QuadraticProgram<N> {
 
     fn solution(
         &self,
-        z: &SVector<f64, N>,
-        active: &ActiveSet<N>,
+        z: &SVector<T, N>,
+        active: &ActiveSet<N, T>,
         outcome: Outcome,
         iterations: u32,
-    ) -> Solution<N> {
+    ) -> Solution<N, T> {
         // x = L⁻ᵀ z
-        let mut x = SVector::<f64, N>::zeros();
+        let mut x = SVector::<T, N>::zeros();
         for (column, value) in x.iter_mut().take(self.unknowns).enumerate() {
             *value = dot(
                 &self.inverse_factor.column(column).as_slice()[column..self.unknowns],
@@ -239,12 +249,12 @@ impl<const N: usize> QuadraticProgram<N> {
 }
 
 /// The constraints of a program with its right-hand side.
-struct Rows<'a, const N: usize, H: Bounds> {
-    program: &'a QuadraticProgram<N>,
+struct Rows<'a, const N: usize, T, H> {
+    program: &'a QuadraticProgram<N, T>,
     h: &'a H,
 }
 
-impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
+impl<const N: usize, T: Precision, H: Bounds<T>> Constraints<N, T> for Rows<'_, N, T, H> {
     fn unknowns(&self) -> usize {
         self.program.unknowns
     }
@@ -253,25 +263,25 @@ impl<const N: usize, H: Bounds> Constraints<N> for Rows<'_, N, H> {
         self.program.constraints()
     }
 
-    fn normal(&self, constraint: usize) -> SVector<f64, N> {
+    fn normal(&self, constraint: usize) -> SVector<T, N> {
         self.program.normals[constraint]
     }
 
-    fn bound(&self, constraint: usize) -> f64 {
+    fn bound(&self, constraint: usize) -> T {
         self.h.bound(constraint) * self.program.scales[constraint]
     }
 
-    fn most_violated(&mut self, z: &SVector<f64, N>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<T, N>, active: &[usize]) -> Option<usize> {
         let n = self.program.unknowns;
         let z = &z.as_slice()[..n];
-        let (mut worst, mut least) = (None, 0.0);
+        let (mut worst, mut least) = (None, T::zero());
         for (constraint, (normal, scale)) in self.program.normals.iter().zip(&self.program.scales).enumerate()
         {
             let normal = &normal.as_slice()[..n];
-            let bound = self.h.bound(constraint) * scale;
+            let bound = self.h.bound(constraint) * *scale;
             let slack = bound - dot(normal, z);
             if slack < least
-                && slack < -FEASIBILITY * (dot_of_magnitudes(normal, z) + self.h.size(constraint) * scale)
+                && slack < -T::CONSTRAINT * (dot_of_magnitudes(normal, z) + self.h.size(constraint) * *scale)
                 && !active.contains(&constraint)
             {
                 (worst, least) = (Some(constraint), slack);

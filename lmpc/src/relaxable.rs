@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::bounds::Bounds;
 use crate::capacity::{SLACKS, iteration_limit};
 use crate::limit_row::LimitRow;
-use crate::{DesignError, Outcome, QuadraticProgram, Solution, Status, WarmStart};
+use crate::{DesignError, Outcome, Precision, QuadraticProgram, Solution, Status, WarmStart};
 
 /// Weight of the slack against the largest element of H: constraints give way when they must, not to save
 /// cost.
@@ -17,10 +17,11 @@ const SLACK_WEIGHT: f64 = 1e4;
 /// either, s = 1 for all.
 ///
 /// E must hold the unknowns and the slack; what it has beyond stays zero.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RelaxableProgram<const E: usize> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub(crate) struct RelaxableProgram<const E: usize, T = f64> {
     /// With no slack, with slack for soft rows, with slack for all.
-    stages: [QuadraticProgram<E>; STAGES],
+    stages: [QuadraticProgram<E, T>; STAGES],
     iteration_limit: u32,
 }
 
@@ -68,14 +69,24 @@ impl<const E: usize> RelaxableProgram<E> {
             iteration_limit: iteration_limit(size, g.nrows()),
         })
     }
+}
+
+impl<const E: usize, T: Precision> RelaxableProgram<E, T> {
+    /// The same program in another precision.
+    pub(crate) fn to_precision<U: Precision>(&self) -> RelaxableProgram<E, U> {
+        RelaxableProgram {
+            stages: self.stages.each_ref().map(QuadraticProgram::to_precision),
+            iteration_limit: self.iteration_limit,
+        }
+    }
 
     /// Solves it for one f and one h, given row by row.
     pub(crate) fn solve<const W: usize>(
         &self,
-        f: &SVector<f64, E>,
-        h: &impl Bounds,
+        f: &SVector<T, E>,
+        h: &impl Bounds<T>,
         warm_start: &mut RelaxableWarmStart<W>,
-    ) -> (Solution<E>, Status) {
+    ) -> (Solution<E, T>, Status) {
         let [strict, further @ ..] = &self.stages;
         let [warm, further_warm @ ..] = &mut warm_start.stages;
         let mut solution = strict.solve_with(f, h, warm, self.iteration_limit);

@@ -3,18 +3,23 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
+use crate::Precision;
+
 /// Rows that are summed up side by side: as many as a processor has room for while it goes through the columns.
 const ROWS: usize = 8;
 
 /// A matrix in tiles of a few neighbouring rows, of which each holds the columns that are not zero in all of its rows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct SparseColumns {
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub(crate) struct SparseColumns<T> {
     tiles: Vec<Tile>,
-    columns: Vec<Column>,
+    columns: Vec<Column<T>>,
 }
 
 /// Neighbouring rows, at most [`ROWS`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Tile {
     rows: Range<usize>,
     /// Where its columns are.
@@ -22,14 +27,15 @@ struct Tile {
 }
 
 /// A column of a tile, with zeros in the rows that the tile does not have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Column {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+struct Column<T> {
     /// Element of the vector that it is multiplied by.
     source: usize,
-    values: [f64; ROWS],
+    values: [T; ROWS],
 }
 
-impl SparseColumns {
+impl SparseColumns<f64> {
     /// Adds the elements that `value` tells of a block of rows, from `first_row` on, and of all columns. Returns where they are, for
     /// [`SparseColumns::for_each_in_row`].
     pub(crate) fn add_block(
@@ -57,9 +63,20 @@ impl SparseColumns {
         }
         before..self.tiles.len()
     }
+}
+
+impl<T: Precision> SparseColumns<T> {
+    /// The same matrix in another precision.
+    pub(crate) fn to_precision<U: Precision>(&self) -> SparseColumns<U> {
+        let column = |column: &Column<T>| Column {
+            source: column.source,
+            values: column.values.map(|value| U::of(value.to_f64())),
+        };
+        SparseColumns { tiles: self.tiles.clone(), columns: self.columns.iter().map(column).collect() }
+    }
 
     /// sums ← sums + A x.
-    pub(crate) fn add_product(&self, x: &[f64], sums: &mut [f64]) {
+    pub(crate) fn add_product(&self, x: &[T], sums: &mut [T]) {
         for tile in &self.tiles {
             let product = product(&self.columns[tile.columns.clone()], x);
             for (sum, product) in sums[tile.rows.clone()].iter_mut().zip(product) {
@@ -69,7 +86,7 @@ impl SparseColumns {
     }
 
     /// A row of the block that is at `block`, told element by element.
-    pub(crate) fn for_each_in_row(&self, block: Range<usize>, row: usize, mut tell: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_in_row(&self, block: Range<usize>, row: usize, mut tell: impl FnMut(usize, T)) {
         let Some(tile) = self.tiles[block].iter().find(|tile| tile.rows.contains(&row)) else { return };
         for column in &self.columns[tile.columns.clone()] {
             tell(column.source, column.values[row - tile.rows.start]);
@@ -79,12 +96,12 @@ impl SparseColumns {
 
 /// The product of a tile. Its sums are kept in registers, and put together only where they are returned.
 #[inline(never)]
-fn product(columns: &[Column], x: &[f64]) -> [f64; ROWS] {
-    let mut sums = [0.0; ROWS];
+fn product<T: Precision>(columns: &[Column<T>], x: &[T]) -> [T; ROWS] {
+    let mut sums = [T::zero(); ROWS];
     for column in columns {
         let factor = x[column.source];
         for (sum, value) in sums.iter_mut().zip(&column.values) {
-            *sum += value * factor;
+            *sum += *value * factor;
         }
     }
     sums

@@ -3,18 +3,18 @@
 use core::iter;
 
 use nalgebra::{DMatrix, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
 use crate::controller_state::Decision;
 use crate::dense::{dot, least};
 use crate::dual_search::{Constraints, DualSearch};
 use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS, along};
+use crate::precision::converted;
 use crate::{
-    Controller, ControllerState, DesignError, Outcome, Sample, SignalLimit, StabilizedDesign, StateFeedback,
-    Status, Step, WarmStart,
+    Controller, ControllerState, DesignError, Outcome, Precision, Sample, SignalLimit, StabilizedDesign,
+    StateFeedback, Status, Step, WarmStart,
 };
 
-/// How far beyond its bound a limit counts as met, relative to the size of the numbers in it.
-const FEASIBILITY: f64 = 1e-9;
 /// The slack from which limits count as relaxed: a thousandth of their relaxations.
 const RELAXED: f64 = 1e-3;
 /// Limits of which the least bound is known beforehand. Those beyond are looked at direction by direction.
@@ -36,15 +36,16 @@ const ITERATIONS: u32 = 100;
 /// ```
 ///
 /// What the reference itself will move by is not in these sums: [`Sample::moved`] tells it where it is known.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StabilizedMpc<const N: usize, const P: usize, const Q: usize, const E: usize> {
-    unconstrained: StateFeedback<N, P, Q>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub struct StabilizedMpc<const N: usize, const P: usize, const Q: usize, const E: usize, T = f64> {
+    unconstrained: StateFeedback<N, P, Q, T>,
     unknowns: usize,
     /// L(0)ᵀ L⁻ᵀ: what z adds to the first move of the plan without limits.
-    first_move: SMatrix<f64, P, E>,
-    signals: LimitedSignals,
+    first_move: SMatrix<T, P, E>,
+    signals: LimitedSignals<T>,
     /// 1/√c: the slack per element of z that stands for it.
-    slack_unit: f64,
+    slack_unit: T,
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedMpc<N, P, Q, E> {
@@ -94,15 +95,30 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             slack_unit,
         })
     }
+}
+
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precision>
+    StabilizedMpc<N, P, Q, E, T>
+{
+    /// The same controller in another precision.
+    pub fn to_precision<U: Precision>(&self) -> StabilizedMpc<N, P, Q, E, U> {
+        StabilizedMpc {
+            unconstrained: self.unconstrained.to_precision(),
+            unknowns: self.unknowns,
+            first_move: converted(&self.first_move),
+            signals: self.signals.to_precision(),
+            slack_unit: U::of(self.slack_unit.to_f64()),
+        }
+    }
 
     /// The law without limits.
-    pub fn unconstrained(&self) -> &StateFeedback<N, P, Q> {
+    pub fn unconstrained(&self) -> &StateFeedback<N, P, Q, T> {
         &self.unconstrained
     }
 
     /// By how much a reference moves the limited signals, for [`Sample::moved`]: `ahead` tells x_r(k+m) − x_r(k) and
     /// u_r(k+m) − u_r(k). It is called once for each limited sample m, in their order.
-    pub fn moved(&self, ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>)) -> MovedSignals {
+    pub fn moved(&self, ahead: impl Fn(usize) -> (SVector<T, N>, SVector<T, P>)) -> MovedSignals<T> {
         self.signals.moved(ahead)
     }
 
@@ -112,22 +128,22 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     }
 
     /// σ that an element of z stands for.
-    fn slack_of(&self, z: &SVector<f64, E>) -> f64 {
+    fn slack_of(&self, z: &SVector<T, E>) -> T {
         z[self.unknowns - 1] * self.slack_unit
     }
 
     /// What limits make of the plan without them, with room for S signals; `None` when it keeps them.
     fn limited<const W: usize, const S: usize>(
         &self,
-        state: &mut ControllerState<N, P, W>,
-        sample: &Sample<'_, N, P, Q>,
-    ) -> Option<Decision<P>> {
+        state: &mut ControllerState<N, P, W, T>,
+        sample: &Sample<'_, N, P, Q, T>,
+    ) -> Option<Decision<P, T>> {
         let mut program = self.program::<S>(sample, &(sample.input_reference + state.feedback()));
         if !program.is_finite() {
             return None;
         }
         let warm_start = state.warm_start.strict();
-        if warm_start.is_empty() && program.worst(&program.unlimited, 0.0, &[]).is_none() {
+        if warm_start.is_empty() && program.worst(&program.unlimited, T::zero(), &[]).is_none() {
             return None;
         }
         let mut search = DualSearch::new(&mut program, SVector::zeros(), warm_start);
@@ -145,7 +161,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             - self.unconstrained.state_gain() * sample.increment
             - self.unconstrained.output_gain() * sample.error;
         let status = match outcome {
-            Outcome::Optimal if self.slack_of(&search.z) > RELAXED => Status::Relaxed,
+            Outcome::Optimal if self.slack_of(&search.z) > T::of(RELAXED) => Status::Relaxed,
             Outcome::Optimal => Status::Optimal,
             // The slack meets all limits; in floating point they may come out as if not.
             Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
@@ -157,37 +173,36 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     /// The program of one sample.
     fn program<'a, const S: usize>(
         &'a self,
-        sample: &'a Sample<'_, N, P, Q>,
-        input: &SVector<f64, P>,
-    ) -> Program<'a, N, P, Q, E, S> {
+        sample: &'a Sample<'_, N, P, Q, T>,
+        input: &SVector<T, P>,
+    ) -> Program<'a, N, P, Q, E, S, T> {
         let limits = self.signals.limits();
-        let least_of = |index: usize| {
-            limits.get(index).map_or(f64::NEG_INFINITY, |limit| least(limit.bounds(sample.upper)))
-        };
+        let least_of =
+            |index: usize| limits.get(index).map_or(-T::INFINITY, |limit| least(limit.bounds(sample.upper)));
         Program {
             controller: self,
             upper: sample.upper,
             least: core::array::from_fn(least_of),
             unlimited: self.signals.unlimited(sample, input),
-            signals: [0.0; S],
+            signals: [T::zero(); S],
         }
     }
 }
 
 /// The limits of one sample, as constraints of z, with room for S signals.
-struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize> {
-    controller: &'a StabilizedMpc<N, P, Q, E>,
-    upper: &'a [f64],
+struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T> {
+    controller: &'a StabilizedMpc<N, P, Q, E, T>,
+    upper: &'a [T],
     /// The least bound of each of the first limits.
-    least: [f64; LEAST],
+    least: [T; LEAST],
     /// The signals of the plan without limits, z = 0.
-    unlimited: [f64; S],
+    unlimited: [T; S],
     /// The signals at the z that was looked at last.
-    signals: [f64; S],
+    signals: [T; S],
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize>
-    Program<'_, N, P, Q, E, S>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T: Precision>
+    Program<'_, N, P, Q, E, S, T>
 {
     /// Whether its numbers can be calculated with.
     fn is_finite(&self) -> bool {
@@ -195,17 +210,17 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
     }
 
     /// The constraint that some signals violate most under a slack σ, by more than rounding, among those that are not active.
-    fn worst(&self, signals: &[f64; S], slack: f64, active: &[usize]) -> Option<usize> {
+    fn worst(&self, signals: &[T; S], slack: T, active: &[usize]) -> Option<usize> {
         let placed = &self.controller.signals;
-        let (mut worst, mut most) = (None, 0.0);
+        let (mut worst, mut most) = (None, T::zero());
         for (index, limit) in placed.limits().iter().enumerate() {
             let give = limit.relaxation * slack;
-            let least_bound = self.least.get(index).map_or(f64::NEG_INFINITY, |bound| bound + give);
+            let least_bound = self.least.get(index).map_or(-T::INFINITY, |bound| *bound + give);
             // Up to this length no signal breaks the limit by more than rounding, and more than the worst so far:
             // |direction · signal| ≤ |direction| |signal|.
-            let kept = |most: f64| {
-                let room = (least_bound * (1.0 + FEASIBILITY) - most / limit.largest_scale) / limit.longest;
-                if room > 0.0 { room * room } else { f64::NEG_INFINITY }
+            let kept = |most: T| {
+                let room = (least_bound * (T::one() + T::LIMIT) - most / limit.largest_scale) / limit.longest;
+                if room > T::zero() { room * room } else { -T::INFINITY }
             };
             let mut squared_room = kept(most);
             // Most limits end here. The longest signal of the others is likely to leave the rest nothing to look at.
@@ -222,15 +237,15 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
                 for (side, (direction, bound)) in
                     limit.directions.iter().zip(limit.bounds(self.upper)).enumerate()
                 {
-                    let (value, upper) = (along(direction, &signal), bound + give);
+                    let (value, upper) = (along(direction, &signal), *bound + give);
                     if value <= upper {
                         continue;
                     }
                     let constraint = limit.row(sample, side);
                     let scale = placed.scale(constraint);
                     let room = (upper - value) * scale;
-                    let size: f64 = signal.iter().map(|component| libm::fabs(*component)).sum();
-                    let rounding = FEASIBILITY * (libm::fabs(upper) + size) * scale;
+                    let size: T = signal.iter().map(|component| component.abs()).sum();
+                    let rounding = T::LIMIT * (upper.abs() + size) * scale;
                     if room < most && room < -rounding && !active.contains(&constraint) {
                         (worst, most) = (Some(constraint), room);
                         squared_room = kept(most);
@@ -242,8 +257,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize> Constraints<E>
-    for Program<'_, N, P, Q, E, S>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T: Precision>
+    Constraints<E, T> for Program<'_, N, P, Q, E, S, T>
 {
     fn unknowns(&self) -> usize {
         self.controller.unknowns
@@ -253,34 +268,34 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
         self.controller.signals.rows()
     }
 
-    fn normal(&self, constraint: usize) -> SVector<f64, E> {
+    fn normal(&self, constraint: usize) -> SVector<T, E> {
         let controller = self.controller;
         let place = controller.signals.place(constraint);
-        let mut normal: SVector<f64, E> = controller.signals.normal(&place);
+        let mut normal: SVector<T, E> = controller.signals.normal(&place);
         normal[controller.unknowns - 1] = -place.limit.relaxation * controller.slack_unit;
         normal * controller.signals.scale(constraint)
     }
 
-    fn bound(&self, constraint: usize) -> f64 {
+    fn bound(&self, constraint: usize) -> T {
         let signals = &self.controller.signals;
         let place = signals.place(constraint);
         let unlimited =
             along(&place.limit.directions[place.direction], &place.limit.at(place.sample, &self.unlimited));
-        let upper = place.limit.bounds(self.upper).get(place.direction).copied().unwrap_or(f64::INFINITY);
+        let upper = place.limit.bounds(self.upper).get(place.direction).copied().unwrap_or(T::INFINITY);
         (upper - unlimited) * signals.scale(constraint)
     }
 
-    fn most_violated(&mut self, z: &SVector<f64, E>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<T, E>, active: &[usize]) -> Option<usize> {
         let controller = self.controller;
         controller.signals.set_at(&self.unlimited, z.as_slice(), &mut self.signals);
         self.worst(&self.signals, controller.slack_of(z), active)
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize> Controller<N, P, Q, W>
-    for StabilizedMpc<N, P, Q, E>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize, T: Precision>
+    Controller<N, P, Q, W, T> for StabilizedMpc<N, P, Q, E, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
+    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
         let decision = if self.signals.count() <= FEW_SIGNALS {
             self.limited::<W, FEW_SIGNALS>(state, sample)
         } else {

@@ -3,36 +3,42 @@
 use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
 use crate::bounds::Bounds;
 use crate::controller_state::Decision;
 use crate::limit_row::limit_rows;
 use crate::moves_walk::MovesWalk;
+use crate::precision::converted;
 use crate::relaxable::RelaxableProgram;
-use crate::{Controller, ControllerState, DesignError, Limit, Sample, StateSpaceMpcDesign, Step, validate};
+use crate::{
+    Controller, ControllerState, DesignError, Limit, Precision, Sample, StateSpaceMpcDesign, Step, validate,
+};
 
 /// State-space MPC for a plant of N states, P inputs and Q outputs, with E ≥ P N_c + 1 unknowns: the moves of all
 /// inputs and one slack.
 ///
 /// It goes by the deviation from the reference trajectory, and limits of the state bound that deviation. It has no
 /// integral action of its own: what disturbs the plant must be estimated and told.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StateSpaceMpc<const N: usize, const P: usize, const Q: usize, const E: usize> {
-    gradient_state: SMatrix<f64, E, N>,
-    gradient_input: SMatrix<f64, E, P>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+pub struct StateSpaceMpc<const N: usize, const P: usize, const Q: usize, const E: usize, T = f64> {
+    gradient_state: SMatrix<T, E, N>,
+    gradient_input: SMatrix<T, E, P>,
     /// One block per previewed sample, from y(k) on.
-    gradient_reference: Vec<SMatrix<f64, E, Q>>,
-    program: RelaxableProgram<E>,
-    known: Vec<Known<N, P>>,
+    gradient_reference: Vec<SMatrix<T, E, Q>>,
+    program: RelaxableProgram<E, T>,
+    known: Vec<Known<N, P, T>>,
 }
 
 /// What of a limit is known before the moves are chosen.
-#[derive(Clone, Debug, PartialEq)]
-struct Known<const N: usize, const P: usize> {
-    state: SVector<f64, N>,
-    driving: SVector<f64, P>,
-    input: SVector<f64, P>,
-    step: SVector<f64, P>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "T: Precision")]
+struct Known<const N: usize, const P: usize, T> {
+    state: SVector<T, N>,
+    driving: SVector<T, P>,
+    input: SVector<T, P>,
+    step: SVector<T, P>,
     bound: usize,
 }
 
@@ -73,10 +79,32 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StateSpaceM
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize> Controller<N, P, Q, W>
-    for StateSpaceMpc<N, P, Q, E>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precision>
+    StateSpaceMpc<N, P, Q, E, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W>, sample: &Sample<'_, N, P, Q>) -> Step<P> {
+    /// The same controller in another precision.
+    pub fn to_precision<U: Precision>(&self) -> StateSpaceMpc<N, P, Q, E, U> {
+        let known = |known: &Known<N, P, T>| Known {
+            state: converted(&known.state),
+            driving: converted(&known.driving),
+            input: converted(&known.input),
+            step: converted(&known.step),
+            bound: known.bound,
+        };
+        StateSpaceMpc {
+            gradient_state: converted(&self.gradient_state),
+            gradient_input: converted(&self.gradient_input),
+            gradient_reference: self.gradient_reference.iter().map(converted).collect(),
+            program: self.program.to_precision(),
+            known: self.known.iter().map(known).collect(),
+        }
+    }
+}
+
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize, T: Precision>
+    Controller<N, P, Q, W, T> for StateSpaceMpc<N, P, Q, E, T>
+{
+    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
         let feedback = state.feedback();
         let driving = feedback + sample.disturbance;
         let input = sample.input_reference + feedback;
@@ -97,20 +125,20 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: us
 }
 
 /// What the limits leave for the moves at one sample.
-struct Rooms<'a, const N: usize, const P: usize, const Q: usize> {
-    rows: &'a [Known<N, P>],
-    sample: &'a Sample<'a, N, P, Q>,
-    driving: &'a SVector<f64, P>,
-    input: &'a SVector<f64, P>,
-    step: &'a SVector<f64, P>,
+struct Rooms<'a, const N: usize, const P: usize, const Q: usize, T> {
+    rows: &'a [Known<N, P, T>],
+    sample: &'a Sample<'a, N, P, Q, T>,
+    driving: &'a SVector<T, P>,
+    input: &'a SVector<T, P>,
+    step: &'a SVector<T, P>,
 }
 
-impl<const N: usize, const P: usize, const Q: usize> Rooms<'_, N, P, Q> {
+impl<const N: usize, const P: usize, const Q: usize, T: Precision> Rooms<'_, N, P, Q, T> {
     /// The bound, and what of the left-hand side is known.
-    fn terms(&self, row: usize) -> [f64; 5] {
+    fn terms(&self, row: usize) -> [T; 5] {
         let known = &self.rows[row];
         [
-            self.sample.upper.get(known.bound).copied().unwrap_or(f64::INFINITY),
+            self.sample.upper.get(known.bound).copied().unwrap_or(T::INFINITY),
             -known.state.dot(&self.sample.deviation),
             -known.driving.dot(self.driving),
             -known.input.dot(self.input),
@@ -119,12 +147,12 @@ impl<const N: usize, const P: usize, const Q: usize> Rooms<'_, N, P, Q> {
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize> Bounds for Rooms<'_, N, P, Q> {
-    fn bound(&self, row: usize) -> f64 {
+impl<const N: usize, const P: usize, const Q: usize, T: Precision> Bounds<T> for Rooms<'_, N, P, Q, T> {
+    fn bound(&self, row: usize) -> T {
         self.terms(row).into_iter().sum()
     }
 
-    fn size(&self, row: usize) -> f64 {
-        self.terms(row).into_iter().map(libm::fabs).sum()
+    fn size(&self, row: usize) -> T {
+        self.terms(row).into_iter().map(|term| term.abs()).sum()
     }
 }

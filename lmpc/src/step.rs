@@ -18,14 +18,14 @@ pub enum Status {
 
 /// The outcome of one control step with P inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<const P: usize> {
+pub struct Step<const P: usize, T = f64> {
     /// u(k), the input to apply. Report what was applied instead, if it differs, with
     /// [`ControllerState::apply`](crate::ControllerState::apply).
-    pub input: SVector<f64, P>,
+    pub input: SVector<T, P>,
     /// Δu(k) = u(k) − u(k−1), feed-forward included.
-    pub increment: SVector<f64, P>,
+    pub increment: SVector<T, P>,
     /// −K_y (y − r), the share of the integral action in Δu; zero from a step that a program solved.
-    pub integral: SVector<f64, P>,
+    pub integral: SVector<T, P>,
     /// How the input was found.
     pub status: Status,
     /// Iterations of the solver; 0 when the unconstrained optimum or the last active set was right.

@@ -9,6 +9,7 @@ mod crates;
 mod demo;
 mod fmu;
 mod image;
+mod microcontroller;
 mod optimum;
 mod paper;
 mod paths;
@@ -133,6 +134,17 @@ enum Task {
     Book,
     /// Packages lmpc, quadrotor and fmi as for a registry, and compiles them with the oldest dependencies that they allow.
     Crates,
+    /// Flies the controllers of the cascade in single precision on an emulated Cortex-M4F: instructions, load, memory, accuracy.
+    ///
+    /// Needs qemu-system-arm. Fails if commands differ from double precision, or all controllers take more than a tenth of 168 MHz.
+    Microcontroller {
+        /// Installs what is missing for it: the standard library by rustup, qemu-system-arm by apt-get if this is root.
+        #[arg(long)]
+        install: bool,
+        /// Runs OSQP and TinyMPC along the same flights, too: their generated code, by arm-none-eabi-gcc with newlib and libstdc++.
+        #[arg(long)]
+        peers: bool,
+    },
     /// Counts the instructions of a control period, a simulated second, an FMU step and a vehicle tick, and compares with counts/reference.json.
     ///
     /// Fails when one takes over a tenth more. Needs valgrind.
@@ -229,6 +241,9 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Bench { options } => bench::run(&workspace, &progress, options),
         Task::Book => book::build(&workspace, &progress),
         Task::Counts { update } => counts::run(&workspace, &progress, *update),
+        Task::Microcontroller { install, peers } => {
+            microcontroller::run(&workspace, &progress, *install, *peers)
+        }
         Task::Crates => crates::check(&workspace, &progress),
         Task::Test { package: true } => test::run_package(&workspace, &progress),
         Task::Test { package: false } => test::run_all(&workspace, &progress),

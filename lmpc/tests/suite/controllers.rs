@@ -2,7 +2,7 @@
 
 use lmpc::{
     Augmented, Controller, ControllerState, Discretization, LaguerreBasis, LaguerreMpc, Limit, LmpcDesign,
-    Quantity, Reference, Sample, StateFeedback, StateSpace, StateSpaceMpc, StateSpaceMpcDesign,
+    Precision, Quantity, Reference, Sample, StateFeedback, StateSpace, StateSpaceMpc, StateSpaceMpcDesign,
     StateSpaceMpcWeights, Status, Step, Weighting, Weights, unknowns,
 };
 use nalgebra::{RowVector2, Vector1, Vector2, dmatrix};
@@ -17,7 +17,7 @@ const W: usize = unknowns(1, MOVES);
 /// |Δu| ≤ 0.2, |u| ≤ 1
 const UPPER: [f64; 4] = [0.2, 0.2, 1.0, 1.0];
 
-type Law = dyn Controller<2, 1, 1, W>;
+type Law<T = f64> = dyn Controller<2, 1, 1, W, T>;
 
 fn plant() -> StateSpace {
     double_integrators(&[1.0], TIME, Discretization::ZeroOrderHold)
@@ -29,6 +29,11 @@ fn advanced(x: Vector2<f64>, u: f64) -> Vector2<f64> {
 
 /// Every law on the same plant with the same weights, and whether it keeps limits.
 fn laws() -> Vec<(&'static str, Box<Law>, bool)> {
+    laws_in()
+}
+
+/// The same in any precision.
+fn laws_in<T: Precision>() -> Vec<(&'static str, Box<Law<T>>, bool)> {
     let plant = plant();
     let model = Augmented::new(&plant);
     let weights = Weights::output(&model, 1.0, 1.0).unwrap();
@@ -44,20 +49,30 @@ fn laws() -> Vec<(&'static str, Box<Law>, bool)> {
     let moves = StateSpaceMpcDesign::with_weights(&plant, &weights, 60, MOVES).unwrap();
     type Laguerre = LaguerreMpc<2, 1, 1, { unknowns(1, TERMS) }>;
     let by_model = Laguerre::with_model_increment(&design, &limits).unwrap();
+    let without_limits = StateFeedback::from_design(&design).unwrap();
+    let regulator = StateFeedback::new(design.dlqr().gain()).unwrap();
+    let laguerre = Laguerre::new(&design, &limits).unwrap();
+    let state_space = StateSpaceMpc::<2, 1, 1, W>::new(&moves, &limits).unwrap();
     vec![
-        ("Laguerre MPC without limits", Box::new(StateFeedback::from_design(&design).unwrap()), false),
-        ("DLQR", Box::new(StateFeedback::new(design.dlqr().gain()).unwrap()), false),
-        ("Laguerre MPC", Box::new(Laguerre::new(&design, &limits).unwrap()), true),
-        ("Laguerre MPC, model increment", Box::new(by_model), true),
-        ("state-space MPC", Box::new(StateSpaceMpc::<2, 1, 1, W>::new(&moves, &limits).unwrap()), true),
+        ("Laguerre MPC without limits", Box::new(without_limits.to_precision()), false),
+        ("DLQR", Box::new(regulator.to_precision()), false),
+        ("Laguerre MPC", Box::new(laguerre.to_precision()), true),
+        ("Laguerre MPC, model increment", Box::new(by_model.to_precision()), true),
+        ("state-space MPC", Box::new(state_space.to_precision()), true),
     ]
 }
 
 /// One sample of a law on the way to a goal.
-fn towards(law: &Law, state: &mut ControllerState<2, 1, W>, measured: &Vector2<f64>, goal: f64) -> Step<1> {
-    let reference = Reference::set_point(Vector2::new(goal, 0.0), Vector1::zeros());
-    let sample = reference.sample(&RowVector2::new(1.0, 0.0), &state.measured(), measured);
-    law.step(state, &Sample { upper: &UPPER, ..sample })
+fn towards<T: Precision>(
+    law: &Law<T>,
+    state: &mut ControllerState<2, 1, W, T>,
+    measured: &Vector2<f64>,
+    goal: f64,
+) -> Step<1, T> {
+    let reference = Reference::set_point(Vector2::new(T::of(goal), T::zero()), Vector1::zeros());
+    let output = RowVector2::new(T::one(), T::zero());
+    let sample = reference.sample(&output, &state.measured(), &measured.map(T::of));
+    law.step(state, &Sample { upper: &UPPER.map(T::of), ..sample })
 }
 
 #[test]
@@ -76,6 +91,35 @@ fn every_law_arrives_and_those_with_limits_keep_them() {
             (x, input) = (advanced(x, step.input.x), step.input.x);
         }
         assert!((x - Vector2::new(5.0, 0.0)).norm() < 1e-3, "{name}: {x}");
+        assert_eq!(active > 0, *limited, "{name}");
+    }
+}
+
+/// The way to a goal 5 m away: the inputs of 600 samples, how many held at limits, and where it ends.
+fn flown<T: Precision>(law: &Law<T>) -> (Vec<f64>, usize, Vector2<f64>) {
+    let (mut state, mut x) = (ControllerState::at_rest(), Vector2::zeros());
+    let mut active = 0;
+    let inputs = (0..600).map(|_| {
+        let step = towards(law, &mut state, &x, 5.0);
+        active += step.active;
+        x = advanced(x, step.input.x.to_f64());
+        step.input.x.to_f64()
+    });
+    (inputs.collect(), active, x)
+}
+
+/// The same designs in single precision: inputs within a 500th of their limit of those in double precision, at every sample of a flight
+/// on which limits are active, and the same end.
+#[test]
+fn every_law_flies_in_single_precision_as_in_double() {
+    for ((name, double, limited), (_, single, _)) in laws_in::<f64>().iter().zip(&laws_in::<f32>()) {
+        let (expected, _, _) = flown(&**double);
+        let (inputs, active, end) = flown(&**single);
+        let apart = expected.iter().zip(&inputs).map(|(one, other)| (one - other).abs());
+        let furthest = apart.fold(0.0, f64::max);
+        assert!(furthest < 2e-3, "{name}: {furthest}");
+        assert!(furthest > 0.0, "{name} did not calculate in single precision");
+        assert!((end - Vector2::new(5.0, 0.0)).norm() < 2e-3, "{name}: {end}");
         assert_eq!(active > 0, *limited, "{name}");
     }
 }
@@ -112,11 +156,16 @@ fn a_saved_state_goes_on_as_the_original() {
 
 #[test]
 fn no_step_allocates() {
-    for (name, law, _) in &laws() {
+    no_step_allocates_in::<f64>();
+    no_step_allocates_in::<f32>();
+}
+
+fn no_step_allocates_in<T: Precision>() {
+    for (name, law, _) in &laws_in::<T>() {
         let (mut state, mut x) = (ControllerState::at_rest(), Vector2::zeros());
         let allocations = allocation_counter::measure(|| {
             for _ in 0..50 {
-                x = advanced(x, towards(&**law, &mut state, &x, 5.0).input.x);
+                x = advanced(x, towards(&**law, &mut state, &x, 5.0).input.x.to_f64());
             }
         });
         assert_eq!(allocations.count_total, 0, "{name}");

@@ -137,6 +137,23 @@ fn what_is_not_finite_is_left_out_of_the_prediction() {
     assert!((agreed - open_loop).norm() < 1e-15);
 }
 
+/// A thousand predictions of a motion, in single precision and in double: no further apart than a ten-thousandth of what moves.
+#[test]
+fn single_precision_predicts_as_double() {
+    let design = KalmanDesign::new(&plant(), &noise()).unwrap();
+    let predictor = KalmanPredictor::<2, 1, 1>::new(&plant(), &design).unwrap();
+    let single = predictor.to_precision::<f32>();
+    let (mut estimate, mut estimate_single) = (Vector2::zeros(), Vector2::<f32>::zeros());
+    for k in 0..1000 {
+        let phase = f64::from(k) * TIME;
+        let (input, measurement) = (Vector1::new(-phase.sin()), Vector1::new(phase.sin()));
+        estimate = predictor.predict(&estimate, &input, &measurement);
+        estimate_single = single.predict(&estimate_single, &input.cast(), &measurement.cast());
+        let apart = (estimate - estimate_single.cast()).norm();
+        assert!(apart < 1e-4, "{k}: {apart}");
+    }
+}
+
 #[test]
 fn a_predictor_of_other_sizes_than_its_design_is_refused() {
     let design = KalmanDesign::new(&plant(), &noise()).unwrap();

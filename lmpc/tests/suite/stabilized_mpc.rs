@@ -207,6 +207,44 @@ fn a_step_allocates_nothing_and_repeats_to_the_bit() {
     assert_eq!(one, two);
 }
 
+/// In single precision a flight along a limit of the speed has the inputs of double precision to a 500th of their limit, ends where that
+/// ends, and allocates nothing.
+#[test]
+fn single_precision_flies_as_double() {
+    let design = usual().design(1);
+    let upper = [0.5, 0.5, 0.8, 0.8];
+    let law = Law::new(&design, &limits(0..40, 1.0), SLACK_COST).unwrap();
+    let single = law.to_precision::<f32>();
+    assert_eq!(law.to_precision::<f64>(), law);
+    let (mut start, mut start_single) = (at_rest(5.0), at_rest(5.0));
+    let mut expected = state(&start);
+    let mut state = ControllerState::<3, 1, E, f32>::at_rest();
+    let upper_single = upper.map(|bound| bound as f32);
+    let mut active = 0;
+    for k in 0..300 {
+        let input = law.step(&mut expected, &sample(&start, &upper)).input.x;
+        let seen = sample(&start_single, &[]);
+        let seen = Sample {
+            measured: seen.measured.cast(),
+            increment: seen.increment.cast(),
+            error: seen.error.cast(),
+            upper: &upper_single,
+            ..Sample::default()
+        };
+        let mut step = None;
+        let allocations = allocation_counter::measure(|| step = Some(single.step(&mut state, &seen)));
+        assert_eq!(allocations.count_total, 0);
+        let step = step.expect("a step");
+        assert!((f64::from(step.input.x) - input).abs() < 1e-3, "sample {k}: {} {input}", step.input.x);
+        active += usize::from(step.active > 0);
+        start = after(&design, &start, input);
+        start_single = after(&design, &start_single, f64::from(step.input.x));
+    }
+    assert!(active > 5);
+    let apart = (start_single.error[0] - start.error[0]).abs();
+    assert!(apart < 1e-3, "{apart}");
+}
+
 fn sample_of(upper: &[f64]) -> Sample<'_, 3, 1, 1> {
     Sample { error: Vector1::new(-5.0), upper, ..Sample::default() }
 }

@@ -80,9 +80,7 @@ pub fn run(workspace: &Workspace, progress: &Progress, options: &Options) -> Res
     if options.table {
         return readme::write(workspace);
     }
-    let interpreter = python::interpreter()?;
-    let python = python::environment(workspace, progress, &interpreter, Packages::Bench)?;
-    let absent = peers::install(workspace, progress, &python)?;
+    let (python, absent) = environment(workspace, progress)?;
     let programs = progress
         .timed("Building what is measured; in release the first time takes several minutes", || {
             build(workspace, &options.profile)
@@ -109,6 +107,14 @@ pub fn run(workspace: &Workspace, progress: &Progress, options: &Options) -> Res
     }
     progress.print_summary();
     Ok(())
+}
+
+/// A Python with the peers, and the names of those that cannot be installed.
+pub fn environment(workspace: &Workspace, progress: &Progress) -> Result<(Python, Vec<String>), Failure> {
+    let interpreter = python::interpreter()?;
+    let python = python::environment(workspace, progress, &interpreter, Packages::Bench)?;
+    let absent = peers::install(workspace, progress, &python)?;
+    Ok((python, absent))
 }
 
 /// The programs that measure and are measured: our own, and the vehicle.

@@ -15,8 +15,8 @@ pub struct Compiler {
     program: PathBuf,
     /// Where its source of the standard library lies, whose paths nobody wants to see in a library.
     pub source: PathBuf,
-    /// Whether the standard library is compiled first.
-    builds_standard_library: bool,
+    /// Parts of the standard library that are compiled first, if any.
+    compiles: Option<&'static str>,
 }
 
 impl Compiler {
@@ -41,7 +41,8 @@ impl Compiler {
                 } else {
                     has_standard_library(libraries, target)
                 };
-                is_there.then(|| Self { program: program.clone(), source, builds_standard_library })
+                let compiles = builds_standard_library.then(|| parts(target));
+                is_there.then(|| Self { program: program.clone(), source, compiles })
             }
         };
         Ok(known.iter().find_map(found(false)).or_else(|| known.iter().find_map(found(true))))
@@ -50,13 +51,23 @@ impl Compiler {
     /// Has a command of cargo use it.
     pub fn apply(&self, build: &mut Command) {
         build.env("RUSTC", &self.program);
-        if self.builds_standard_library {
+        if let Some(parts) = self.compiles {
             // Stable compilers refuse -Z without this. The default features have backtraces, which nobody would see.
             build
-                .args(["-Zbuild-std=std,panic_unwind", "-Zbuild-std-features=panic-unwind"])
+                .args([&format!("-Zbuild-std={parts}"), "-Zbuild-std-features=panic-unwind"])
                 .env("RUSTC_BOOTSTRAP", "1");
         }
     }
+}
+
+/// What there is of the standard library for a target.
+fn parts(target: &str) -> &'static str {
+    if has_system(target) { "std,panic_unwind" } else { "core,alloc" }
+}
+
+/// Whether programs of a target run under an operating system.
+fn has_system(target: &str) -> bool {
+    !target.contains("-none-")
 }
 
 fn answer(workspace: &Workspace, program: &Path, question: &[&str]) -> Result<String, Failure> {
@@ -67,8 +78,9 @@ fn answer(workspace: &Workspace, program: &Path, question: &[&str]) -> Result<St
 }
 
 fn has_standard_library(libraries: &Path, target: &str) -> bool {
+    let library = if has_system(target) { "libstd-" } else { "libcore-" };
     libraries.join(target).join("lib").read_dir().is_ok_and(|mut files| {
-        files.any(|file| file.is_ok_and(|file| file.file_name().to_string_lossy().starts_with("libstd-")))
+        files.any(|file| file.is_ok_and(|file| file.file_name().to_string_lossy().starts_with(library)))
     })
 }
 

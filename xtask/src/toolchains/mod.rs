@@ -13,9 +13,12 @@ mod emulator;
 mod linker;
 mod machine;
 mod need;
+mod system_emulator;
 mod toolchain;
 
+pub use compiler::Compiler;
 pub use emulator::Emulator;
 pub use linker::zig_environment;
 pub use need::{Need, provide};
+pub use system_emulator::SystemEmulator;
 pub use toolchain::Toolchain;

@@ -1,0 +1,103 @@
+//! The numbers that a control step calculates with.
+
+use core::iter::Sum;
+
+use nalgebra::{RealField, SMatrix};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Numbers that a control step calculates with: `f64`, in which all is designed and which every type here has unless another is
+/// named, or `f32`, for processors that have nothing else in hardware.
+///
+/// A controller is designed in `f64` and converted by its `to_precision`. The tolerances follow the precision; each is relative to the
+/// numbers that it judges.
+pub trait Precision:
+    RealField + Copy + Default + Sum + Serialize + DeserializeOwned + sealed::Sealed
+{
+    /// No bound.
+    const INFINITY: Self;
+    /// How far beyond its bound a limit of predicted signals counts as met.
+    const LIMIT: Self;
+    /// The same of a constraint of a quadratic program by itself, whose numbers are taken as exact.
+    const CONSTRAINT: Self;
+    /// Below this share of a unit normal that is left after removing the active normals, it depends on them.
+    const DEPENDENT: Self;
+    /// By how much the steps of a search may have missed the point that they lead to, without a look whether it keeps all constraints:
+    /// less than what the least tolerant programs take for rounding.
+    const STEPS: Self;
+    /// Difference that the actuators' own arithmetic may make between an input asked for and applied.
+    const ACTUATORS: Self;
+
+    /// The number nearest to a double.
+    fn of(value: f64) -> Self;
+
+    /// The double of the same value.
+    fn to_f64(self) -> f64;
+
+    /// Whether it is no number.
+    fn is_nan(self) -> bool;
+}
+
+impl Precision for f64 {
+    const INFINITY: Self = Self::INFINITY;
+    const LIMIT: Self = 1e-9;
+    const CONSTRAINT: Self = 1e-12;
+    const DEPENDENT: Self = 1e-7;
+    const STEPS: Self = 1e-13;
+    const ACTUATORS: Self = 1e-9;
+
+    #[inline]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self
+    }
+
+    #[inline]
+    fn is_nan(self) -> bool {
+        self.is_nan()
+    }
+}
+
+/// Of seven decimal digits the sums of a step leave five.
+impl Precision for f32 {
+    const INFINITY: Self = Self::INFINITY;
+    const LIMIT: Self = 1e-5;
+    const CONSTRAINT: Self = 1e-5;
+    const DEPENDENT: Self = 1e-3;
+    const STEPS: Self = 1e-6;
+    const ACTUATORS: Self = 1e-5;
+
+    #[inline]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+
+    #[inline]
+    fn is_nan(self) -> bool {
+        self.is_nan()
+    }
+}
+
+mod sealed {
+    /// Tolerances are known of these alone.
+    pub trait Sealed {}
+
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+/// The same matrix in another precision.
+pub(crate) fn converted<T: Precision, U: Precision, const R: usize, const C: usize>(
+    matrix: &SMatrix<T, R, C>,
+) -> SMatrix<U, R, C> {
+    matrix.map(|value| U::of(value.to_f64()))
+}
