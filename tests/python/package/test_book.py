@@ -11,7 +11,10 @@ import pytest
 from lmpc_quadrotor.pytest_plugin.options import Options
 
 #: Pages whose blocks are parts of one program.
-PROGRAMS = ["python/start", "python/simulate", "python/control", "python/gym", "tutorials/own-plant", "explanations/why-laguerre"]
+PROGRAMS = [
+    "python/start", "python/simulate", "python/control", "python/gym", "tutorials/monte-carlo", "tutorials/own-plant",
+    "explanations/why-laguerre",
+]  # fmt: skip
 
 
 def blocks(repository, page):
