@@ -1,11 +1,13 @@
-"""Writes the tables of variables and parameters into their pages while MkDocs builds the book.
+"""Writes the tables of variables, parameters and failsafe actions into their pages while MkDocs builds the book.
 
 The variables come from modelDescription.xml.
-The parameters come from the JSON that `lmpc-sitl --list-parameters=json` prints, in the file named by LMPC_BOOK_PARAMETERS.
+The parameters come from the JSON that `lmpc-sitl --list-parameters=json` prints, in the file named by LMPC_BOOK_PARAMETERS;
+with `--autopilot ardupilot`, in that named by LMPC_BOOK_ARDUPILOT_PARAMETERS.
 """
 
 import json
 import os
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,6 +16,11 @@ from mkdocs.exceptions import PluginError
 ROOT = Path(__file__).resolve().parent.parent
 FMU_VARIABLES = "<!-- fmu-variables -->"
 VEHICLE_PARAMETERS = "<!-- vehicle-parameters -->"
+#: Markers of the actions of each autopilot, and where its parameters are.
+ACTIONS = {
+    "<!-- failsafe-actions -->": "LMPC_BOOK_PARAMETERS",
+    "<!-- ardupilot-failsafe-actions -->": "LMPC_BOOK_ARDUPILOT_PARAMETERS",
+}
 HEADINGS = {
     "input": "Inputs",
     "output": "Outputs",
@@ -28,6 +35,9 @@ def on_page_markdown(markdown: str, **_) -> str:
         return markdown.replace(FMU_VARIABLES, fmu_variables())
     if VEHICLE_PARAMETERS in markdown:
         return markdown.replace(VEHICLE_PARAMETERS, vehicle_parameters())
+    for marker, variable in ACTIONS.items():
+        if marker in markdown:
+            markdown = markdown.replace(marker, actions(markdown, variable))
     return markdown
 
 
@@ -53,18 +63,36 @@ def fmu_variables() -> str:
     return "\n".join(lines)
 
 
-def vehicle_parameters() -> str:
-    path = os.environ.get("LMPC_BOOK_PARAMETERS")
+def parameters(variable: str) -> list[dict]:
+    path = os.environ.get(variable)
     if path is None:
-        raise PluginError("LMPC_BOOK_PARAMETERS must name the output of `lmpc-sitl --list-parameters=json`; `cargo xtask book` sets it")
+        raise PluginError(f"{variable} must name the output of `lmpc-sitl --list-parameters=json`; `cargo xtask book` sets it")
+    return json.loads(Path(path).read_text(encoding="utf-8"))
+
+
+def actions(page: str, variable: str) -> str:
+    """What can be chosen by the parameters that the page names; the default is bold."""
+    named = set(re.findall(r"`([A-Z][A-Z0-9_]+)`", page))
+    lines = ["| parameter | what it chooses | values |", "| --- | --- | --- |"]
+    for parameter in parameters(variable):
+        if parameter["name"] in named and parameter["values"]:
+            values = [f"{each['value']} {each['name']}" for each in parameter["values"]]
+            shown = [f"**{text}**" if each["value"] == parameter["value"] else text for text, each in zip(values, parameter["values"])]
+            lines.append(row(f"`{parameter['name']}`", parameter["description"], ", ".join(shown)))
+    if len(lines) == 2:
+        raise PluginError(f"none of the parameters in {variable} is named in the page of failsafes")
+    return "\n".join(lines)
+
+
+def vehicle_parameters() -> str:
     groups = {}
-    for parameter in json.loads(Path(path).read_text(encoding="utf-8")):
+    for parameter in parameters("LMPC_BOOK_PARAMETERS"):
         groups.setdefault(parameter["group"], []).append(parameter)
     lines = []
-    for group, parameters in groups.items():
+    for group, members in groups.items():
         lines += ["", f"## {group}", "", "| name | default | allowed | meaning |", "| --- | --- | --- | --- |"]
         lines += [row(names(parameter), *(parameter_cell(parameter, key) for key in ("value", "range", "description")))
-                  for parameter in parameters]
+                  for parameter in members]
     return "\n".join(lines)
 
 

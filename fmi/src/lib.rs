@@ -1,5 +1,9 @@
 #![doc = include_str!("../README.md")]
 //!
+//! # What becomes of a model
+//!
+#![doc = include_str!("parts.svg")]
+//!
 //! # Map
 //!
 //! Calls arrive in [`fmi2`] or [`fmi3`], where `guard` checks the instance and whether the call is allowed; the other modules are

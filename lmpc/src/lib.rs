@@ -1,5 +1,9 @@
 #![doc = include_str!("../README.md")]
 //!
+//! # The example's flight
+//!
+#![doc = include_str!("climb.svg")]
+//!
 //! # From symbol to type
 //!
 //! | object | type | equation |

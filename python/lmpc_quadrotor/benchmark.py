@@ -1,4 +1,4 @@
-"""How fast vehicles fly on this machine, beside gym-pybullet-drones where that is installed."""
+"""How fast vehicles fly on this machine, beside other simulators where those are installed."""
 
 import argparse
 import os
@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .benchmark_peers import PEERS
 from .fleet import Fleet
 
 #: Simulated s of each measurement.
@@ -42,36 +43,42 @@ def _vector(count: int, action: str) -> float | None:
     return _rate(count, lambda: environments.step(actions))
 
 
-def _pybullet(count: int) -> float | None:
-    """HoverAviary of gym-pybullet-drones: 240 Hz physics, 48 Hz control of `count` drones in one world."""
-    try:
-        from gym_pybullet_drones.envs.CtrlAviary import CtrlAviary  # type: ignore[import-not-found, unused-ignore]
-    except ImportError:
-        return None
-    world = CtrlAviary(num_drones=count, pyb_freq=240, ctrl_freq=48, gui=False)
-    world.reset(seed=1)
-    speeds = np.full((count, 4), world.HOVER_RPM)
-    steps = 48
-    begun = time.perf_counter()
-    for _ in range(steps):
-        world.step(speeds)
-    return count * 1.0 / (time.perf_counter() - begun)
+def _shown(what: str, rate: float | str) -> None:
+    figure = rate if isinstance(rate, str) else f"{rate:10.0f}"
+    print(f"  {what:<54} {figure}", flush=True)
+
+
+def _measure_ours(count: int) -> None:
+    print("this package; the engine's steps of 1 ms, seen every 20 ms")
+    for name, actuation in [("plant, rotor speeds", "rotors"), ("body rates", "rates"), ("position references", "reference")]:
+        _shown(f"Fleet, {name}", _fleet(count, actuation))
+    for action in ("rotors", "rates", "position"):
+        rate = _vector(count, action)
+        _shown(f"Hover-v0, vector, action = {action}", "gymnasium is not installed" if rate is None else rate)
+
+
+def _measure_peers(count: int) -> None:
+    print("others; what they simulate differs")
+    for peer in PEERS:
+        try:
+            rate: float | str = peer.rate(count)
+        except ImportError:
+            rate = "not installed, so not measured"
+        except Exception as failure:  # noqa: BLE001: whatever a peer fails with is reported, and the rest is measured
+            rate = f"failed: {type(failure).__name__}: {failure}"
+        _shown(f"{peer.name}: {peer.what}", rate)
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Measures and prints a table."""
     parser = argparse.ArgumentParser(prog="python -m lmpc_quadrotor benchmark", description=__doc__)
     parser.add_argument("--vehicles", type=int, default=1000, help="vehicles at once (default: 1000)")
-    count = parser.parse_args(arguments).vehicles
-    print(f"{count} vehicles, {os.cpu_count()} cores; vehicle-seconds per second of the wall clock")
-    for name, actuation in [("plant, rotor speeds", "rotors"), ("body rates", "rates"), ("position references", "reference")]:
-        print(f"  Fleet, {name:<33} {_fleet(count, actuation):10.0f}", flush=True)
-    for action in ("rotors", "rates", "position"):
-        rate = _vector(count, action)
-        shown = "gymnasium is not installed" if rate is None else f"{rate:10.0f}"
-        print(f"  Hover-v0, vector, action = {action:<13} {shown}", flush=True)
-    drones = min(count, 10)
-    rate = _pybullet(drones)
-    shown = "not installed, so not measured" if rate is None else f"{rate:10.0f}"
-    print(f"  gym-pybullet-drones, {drones} drones, 240 Hz  {shown}")
+    parser.add_argument("--no-peers", action="store_true", help="measures this package only")
+    chosen = parser.parse_args(arguments)
+    if chosen.vehicles < 1:
+        parser.error(f"--vehicles {chosen.vehicles}: allowed is 1 or more")
+    print(f"{chosen.vehicles} vehicles, {os.cpu_count()} cores; vehicle-seconds per second of the wall clock")
+    _measure_ours(chosen.vehicles)
+    if not chosen.no_peers:
+        _measure_peers(chosen.vehicles)
     return 0

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .tables import Numbers, Values, structured
+from .tables import Numbers, Values, by_name, list_of_names, structured
 from .times import microseconds
 
 
@@ -34,7 +34,9 @@ class Fleet:
         actuation: str = "reference",
         threads: int | None = None,
     ) -> None:
-        self._native = _native.Fleet(count, dict(parameters or {}), dict(inputs or {}), actuation, threads)
+        self._native = _native.Fleet(
+            count, by_name("parameters", parameters), by_name("inputs", inputs), actuation, threads
+        )
 
     def __len__(self) -> int:
         return len(self._native)
@@ -61,7 +63,7 @@ class Fleet:
 
     def set(self, inputs: Values) -> None:
         """Sets inputs of all vehicles: they act from now on. Raises `ParameterError`; nothing has changed then."""
-        self._native.set_inputs(dict(inputs))
+        self._native.set_inputs(by_name("inputs", inputs))
 
     def advance(self, duration: float) -> None:
         """All flights go on for a time, s, under the present inputs. One that diverges does not raise: see `failed`."""
@@ -69,7 +71,7 @@ class Fleet:
 
     def read(self, names: Iterable[str]) -> Numbers:
         """Some outputs now: a row for each vehicle, a column for each name."""
-        return self._native.read(list(names))
+        return self._native.read(list_of_names("names", names))
 
     def __getitem__(self, name: str) -> Numbers:
         return self._native.read([name])[:, 0]
@@ -85,7 +87,7 @@ class Fleet:
 
         `table["position.x"][:, 3]` is the way north of the fourth vehicle; `time` counts from now.
         """
-        names = self._native.output_names() if outputs is None else list(outputs)
+        names = self._native.output_names() if outputs is None else list_of_names("outputs", outputs)
         times, rows = self._native.record(microseconds("duration", duration), microseconds("step", step, 1), names)
         return structured(times / 1e6, names, rows)
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .tables import Numbers, Value, Values, structured
+from .tables import Numbers, Value, Values, by_name, list_of_names, structured
 from .times import microseconds
 
 
@@ -37,7 +37,7 @@ class Simulation:
         *,
         actuation: str = "reference",
     ) -> None:
-        self._native = _native.Simulation(dict(parameters or {}), dict(inputs or {}), actuation)
+        self._native = _native.Simulation(by_name("parameters", parameters), by_name("inputs", inputs), actuation)
 
     @classmethod
     def from_saved(cls, saved: bytes) -> "Simulation":
@@ -78,7 +78,7 @@ class Simulation:
         Raises `ParameterError` for a name that there is not, a value that is out of range, and parameters of the start
         (`initial.…`); nothing has changed then.
         """
-        self._native.set_parameters(dict(parameters))
+        self._native.set_parameters(by_name("parameters", parameters))
 
     @property
     def inputs(self) -> dict[str, float]:
@@ -87,7 +87,7 @@ class Simulation:
 
     def set(self, inputs: Values) -> None:
         """Sets inputs: they act from now on. Raises `ParameterError`; nothing has changed then."""
-        self._native.set_inputs(dict(inputs))
+        self._native.set_inputs(by_name("inputs", inputs))
 
     @property
     def outputs(self) -> dict[str, float]:
@@ -96,7 +96,7 @@ class Simulation:
 
     def read(self, names: Iterable[str]) -> Numbers:
         """Some outputs now, in the order of their names."""
-        return self._native.read(list(names))
+        return self._native.read(list_of_names("names", names))
 
     def __getitem__(self, name: str) -> float:
         return float(self._native.read([name])[0])
@@ -123,7 +123,7 @@ class Simulation:
         `pandas.DataFrame` takes it as it is. `inputs` is called with the time at the beginning of each step and returns inputs
         to set; without it the present ones stay.
         """
-        names = self._native.output_names() if outputs is None else list(outputs)
+        names = self._native.output_names() if outputs is None else list_of_names("outputs", outputs)
         begin, step_us = self._native.time_us, microseconds("step", step, 1)
         end = begin + microseconds("duration", duration)
         if inputs is None:

@@ -7,6 +7,7 @@ mod arrays;
 mod control;
 mod errors;
 mod flight;
+mod whole;
 
 use pyo3::prelude::*;
 

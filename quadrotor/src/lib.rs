@@ -1,5 +1,9 @@
 #![doc = include_str!("../README.md")]
 //!
+//! # The example's flight
+//!
+#![doc = include_str!("flight.svg")]
+//!
 //! # How it is made
 //!
 //! The controllers are those of Chipofya, Lee and Chong (2015).

@@ -32,11 +32,9 @@ class Flight:
     places: np.ndarray
 
 
+@plt.rc_context({"font.size": 9, "text.color": INK, "axes.labelcolor": INK, "xtick.color": QUIET, "ytick.color": QUIET, "grid.color": "#e4e8ec"})
 def draw(table: Path, log: Path, picture: Path) -> Path:
     """Draws a flight of the FMU from its table and one of the vehicle from its log."""
-    plt.rcdefaults()
-    plt.rcParams.update({"font.size": 9, "text.color": INK, "axes.labelcolor": INK, "xtick.color": QUIET, "ytick.color": QUIET,
-                         "grid.color": "#e4e8ec"})
     # An opaque card: legible on light and dark pages.
     figure = plt.figure(figsize=(10, 4.9), facecolor="white")
     climb = figure.add_axes((0.0, 0.02, 0.43, 0.88), projection="3d", computed_zorder=False)

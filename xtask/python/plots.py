@@ -16,25 +16,26 @@ ROTORS = {"front": "#0072b2", "right": "#d55e00", "back": "#56b4e9", "left": "#e
 TORQUES = {"phi": "#0072b2", "theta": "#d55e00", "psi": "#cc79a7"}
 REFERENCE = {"color": "#333333", "linestyle": (0, (5, 3)), "linewidth": 1.2}
 
-plt.rcParams.update(
-    {
-        "figure.dpi": 110,
-        "figure.constrained_layout.use": True,
-        "font.size": 9,
-        "axes.grid": True,
-        "grid.color": "#dddddd",
-        "axes.axisbelow": True,
-        "axes.titlesize": 10,
-        "legend.framealpha": 0.9,
-    }
-)
+#: Only while something is drawn, so that pictures do not depend on what was drawn before.
+STYLE = {
+    "figure.dpi": 110,
+    "figure.constrained_layout.use": True,
+    "font.size": 9,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "axes.axisbelow": True,
+    "axes.titlesize": 10,
+    "legend.framealpha": 0.9,
+}
 
 
+@plt.rc_context(STYLE)
 def draw_path(flight, result: np.ndarray, folder: Path) -> Path:
     """Draws the path of a flight and returns the file."""
     return _save(_path_figure(flight, result), folder / f"{flight.name}-path.png")
 
 
+@plt.rc_context(STYLE)
 def draw(flight, result: np.ndarray, limits: dict, folder: Path) -> list[Path]:
     """Draws path, axes and actuators of a flight, and returns the files."""
     return [

@@ -16,15 +16,20 @@ pub fn build(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> 
     let python = python::environment(workspace, progress, &interpreter, Packages::Book)?;
     let vehicle = progress
         .timed("Building the MAVLink vehicle", || program::build(workspace, VEHICLE, Beside::Nothing))?;
-    let parameters = workspace.target("book-parameters.json");
-    let mut list = Command::new(vehicle);
-    list.arg("--list-parameters=json");
-    files::write(&parameters, &process::output(&mut list, "listing the parameters")?)?;
+    let mut parameters = Vec::new();
+    for autopilot in ["px4", "ardupilot"] {
+        let path = workspace.target(&format!("book-parameters-{autopilot}.json"));
+        let mut list = Command::new(&vehicle);
+        list.args(["--autopilot", autopilot, "--list-parameters=json"]);
+        files::write(&path, &process::output(&mut list, "listing the parameters")?)?;
+        parameters.push(path);
+    }
     let mut command = python.command();
     command
         .args(["-m", "mkdocs", "--quiet", "build", "--strict", "--config-file"])
         .arg(workspace.book().join("mkdocs.yml"))
-        .env("LMPC_BOOK_PARAMETERS", &parameters)
+        .env("LMPC_BOOK_PARAMETERS", &parameters[0])
+        .env("LMPC_BOOK_ARDUPILOT_PARAMETERS", &parameters[1])
         // The theme's announcement of its successor is not about the book.
         .env("NO_MKDOCS_2_WARNING", "1");
     let status = progress.timed("Building the book", || process::status(&mut command))?;

@@ -26,8 +26,8 @@ class Task(Protocol):
 class Hover:
     """A point at random within 2 m of the middle on each axis, to fly to and stay at."""
 
-    preview = 0
-    interval = 0.0
+    preview: int = 0
+    interval: float = 0.0
 
     def begin(self, generator: np.random.Generator, count: int) -> Numbers:
         return generator.uniform(-2.0, 2.0, (count, 3))
@@ -39,8 +39,8 @@ class Hover:
 class Track:
     """A point that moves on a figure of eight, 3 m by 1.5 m, once in 6 to 12 s, begun anywhere on it."""
 
-    preview = 4
-    interval = 0.1
+    preview: int = 4
+    interval: float = 0.1
 
     def begin(self, generator: np.random.Generator, count: int) -> Numbers:
         return np.column_stack(

@@ -33,17 +33,17 @@ class Sitl:
         #: Where record, logs and output are.
         self.folder = folder
         #: The record, which `replay_command` flies again.
-        self.record = folder / "flight.lmpc"
+        self.record: Path = folder / "flight.lmpc"
         #: What the program has said.
-        self.log = folder / "output.txt"
+        self.log: Path = folder / "output.txt"
         #: How long the start took, until the vehicle could be armed, ms.
-        self.start_ms = 0.0
+        self.start_ms: float = 0.0
         #: By which signal or on which request it has to end is ours: anything else is a failure.
         self._asked = False
         folder.mkdir(parents=True, exist_ok=True)
         begun = time.monotonic()
         ready, self._watch = folder / "ready.json", Watch()
-        self.command = [
+        self.command: list[str] = [
             sitl_path(), "--ready-file", str(ready), "--link", "tcpin:127.0.0.1:0", "--link", self._watch.link,
             "--record", str(self.record), "--log-dir", str(folder / "logs"), *options.flags(),
         ]  # fmt: skip

@@ -9,6 +9,7 @@ use super::bases::LaguerreBasis;
 use super::models::StateSpace;
 use crate::arrays::{array2, complex, matrix};
 use crate::errors::{self, ArgumentError};
+use crate::whole::Whole;
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
@@ -118,11 +119,12 @@ impl LmpcDesign {
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
         bases: Vec<PyRef<'_, LaguerreBasis>>,
-        horizon: usize,
+        horizon: Whole,
         weighting: &str,
         alpha: f64,
         degree: f64,
     ) -> PyResult<Self> {
+        let Whole(horizon) = horizon;
         let weighting = match weighting {
             "terminal" => Weighting::Terminal { lambda: degree },
             "exponential" => Weighting::exponential(alpha, degree),
@@ -273,11 +275,12 @@ impl StateSpaceMpcDesign {
         plant: &StateSpace,
         output_weight: &Bound<'_, PyAny>,
         move_weight: &Bound<'_, PyAny>,
-        horizon: usize,
-        moves: usize,
+        horizon: Whole,
+        moves: Whole,
         increment_weight: Option<&Bound<'_, PyAny>>,
         terminal: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let (Whole(horizon), Whole(moves)) = (horizon, moves);
         let plant = plant.0.clone();
         let weights = StateSpaceMpcWeights {
             output: matrix("output_weight", output_weight)?,

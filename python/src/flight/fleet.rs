@@ -19,6 +19,7 @@ use super::simulation::instants;
 use super::vehicle::{MOTION, Vehicle};
 use crate::arrays::{matrix, vector};
 use crate::errors::{ArgumentError, ParameterError};
+use crate::whole::Whole;
 
 /// A vehicle of a fleet.
 struct Member {
@@ -150,12 +151,13 @@ impl Fleet {
     #[pyo3(signature = (count, parameters, inputs, actuation = "reference", threads = None))]
     fn new(
         python: Python<'_>,
-        count: usize,
+        count: Whole,
         parameters: &Bound<'_, PyDict>,
         inputs: &Bound<'_, PyDict>,
         actuation: &str,
-        threads: Option<usize>,
+        threads: Option<Whole>,
     ) -> PyResult<Self> {
+        let (Whole(count), threads) = (count, threads.map(|threads| threads.0));
         if count == 0 {
             return Err(ArgumentError::new_err("count = 0; expected 1 vehicle or more"));
         }

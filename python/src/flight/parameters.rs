@@ -50,7 +50,13 @@ pub fn set(
             set(configuration, number.ok_or_else(|| wrong(&format!("one of {}", names())))?);
         }
         Access::Boolean { set, .. } => {
-            set(configuration, value.is_truthy().map_err(|_| wrong("True or False"))?);
+            // Not whatever Python takes for true: "no" and "False" would be.
+            let truth = value.extract::<bool>().ok().or_else(|| match value.extract::<f64>().ok()? {
+                0.0 => Some(false),
+                1.0 => Some(true),
+                _ => None,
+            });
+            set(configuration, truth.ok_or_else(|| wrong("True or False"))?);
         }
     }
     parameter.check(configuration).map_err(|refusal| ParameterError::new_err(refusal.to_string()))

@@ -229,6 +229,9 @@ A, B, C = DOUBLE_INTEGRATOR
         (lambda: Dlqr(np.eye(2), B, np.eye(2), [[1.0]], degree=1.5), "degree: degree of stability λ = 1.5 is outside (0, 1]"),
         (lambda: Dlqr(np.eye(2), B, np.eye(2), [[-1.0]]), "R is not positive definite"),
         (lambda: Limit.range("output", 1, [0]), "quantity = \"output\"; allowed are 'increment', 'input' and 'state'"),
+        (lambda: LaguerreBasis(-1, 0.5), "-1 is not allowed; expected a whole number, 0 or more\nwhile processing 'terms'"),
+        (lambda: LaguerreBasis(2.5, 0.5), "2.5 is not allowed; expected a whole number, 0 or more\nwhile processing 'terms'"),
+        (lambda: Limit.range("input", 1, [-3]), "-3 is not allowed; expected a whole number, 0 or more\nwhile processing 'samples'"),
         (lambda: SignalLimit.input_range(2, 1, [0], -1.0), "relaxation = -1 is outside (0, ∞)"),
         (lambda: next(limited())[1].step([1.0]), "measured has 1 elements, expected 2"),
         (lambda: next(limited())[1].step([1.0, 0.0], upper=[1.0]), "upper has 1 elements, expected 2"),
@@ -238,7 +241,7 @@ A, B, C = DOUBLE_INTEGRATOR
 def test_errors_name_the_argument_its_value_and_what_is_allowed(make, message):
     with pytest.raises(ValueError) as error:
         make()
-    assert message in str(error.value)
+    assert message in "\n".join([str(error.value), *getattr(error.value, "__notes__", [])])
 
 
 def test_designs_that_fail_say_why():

@@ -120,5 +120,10 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
 def test_benchmark_prints_its_table():
     answer = run("benchmark", "--vehicles", "2")
     assert answer.returncode == 0, answer
-    assert "Fleet, body rates" in answer.stdout and "gym-pybullet-drones" in answer.stdout
-    assert np.isfinite(float(answer.stdout.split("plant, rotor speeds")[1].split()[0]))
+    assert np.isfinite(float(answer.stdout.split("Fleet, plant, rotor speeds")[1].split()[0]))
+    for peer in ("gym-pybullet-drones", "PyBullet", "crazyflow"):
+        (line,) = [line for line in answer.stdout.splitlines() if line.startswith(f"  {peer}: ")]
+        assert line.endswith("not installed, so not measured") or float(line.split()[-1]) > 0, line
+    assert "crazyflow" not in run("benchmark", "--vehicles", "1", "--no-peers").stdout
+    wrong = run("benchmark", "--vehicles", "0")
+    assert wrong.returncode == 2 and "--vehicles 0: allowed is 1 or more" in wrong.stderr
