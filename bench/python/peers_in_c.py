@@ -15,22 +15,28 @@ FLAGS = ["-O3", "-march=native", "-DNDEBUG", "-shared", "-fPIC", "-w"]
 def compile_all(sources: Path, out: Path) -> tuple[list[Path], dict[str, str]]:
     """The libraries, and why others are missing."""
     out.mkdir(parents=True, exist_ok=True)
-    compiler = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
-    if compiler is None:
+    if compiler() is None:
         return [], {"DAQP, qpOASES, HPIPM": "there is no C compiler"}
     libraries, missing = [], {}
     for name, arguments in (("daqp", daqp), ("qpoases", qpoases), ("hpipm", hpipm)):
         library = out / f"{name}.so"
         try:
-            options = arguments(out)
-            subprocess.run([compiler, *FLAGS, f"-I{sources}", "-o", library, sources / f"{name}.c", *options, "-lm"],
-                           check=True, capture_output=True, text=True)
+            build(sources / f"{name}.c", library, [f"-I{sources}", *arguments(out)])
             libraries.append(library)
         except subprocess.CalledProcessError as failure:
             missing[name] = (failure.stderr or "").strip().splitlines()[-1:][0] if failure.stderr else str(failure)
         except FileNotFoundError as failure:
             missing[name] = str(failure)
     return libraries, missing
+
+
+def compiler() -> str | None:
+    return next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+
+
+def build(source: Path, library: Path, options: list) -> None:
+    """Compiles a file, with all that its options name, into a library."""
+    subprocess.run([compiler() or "cc", *FLAGS, "-o", library, source, *options, "-lm"], check=True, capture_output=True, text=True)
 
 
 def daqp(out: Path) -> list:

@@ -12,7 +12,7 @@ from pathlib import Path
 import charts
 from tables import Table, digits, duration, memory, nothing, ratio, small
 
-#: What was tried and failed, kept by hand.
+#: What was tried: what was gained, and what failed. Kept by hand.
 ATTEMPTS = Path(__file__).parent.parent / "attempts.md"
 
 STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#1d2329}
@@ -157,7 +157,7 @@ def sections(results: dict) -> list:
     missing = Table(["missing", "why"])
     for name, why in sorted(results["missing"].items()):
         missing.add(name, why)
-    parts += [("h2", "What is missing"), missing, ("h2", "What was tried and failed")]
+    parts += [("h2", "What is missing"), missing, ("h2", "What was tried")]
     parts += [line[2:] for line in ATTEMPTS.read_text(encoding="utf-8").splitlines() if line.startswith("* ")]
     return parts
 

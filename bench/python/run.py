@@ -81,9 +81,9 @@ class Run:
         tasks = self.work / "tasks.json"
         self.program("programs")
         (self.work / "figures.json").rename(tasks)
-        jobs = [(name, "dense", 0) for name in ("Osqp", "Piqp", "ProxQp", "Quadprog")]
-        jobs += [(name, "horizon", moves) for name in ("Osqp", "Piqp", "ProxQp", "Clarabel") for moves in MOVES]
-        jobs += [("tinympc", "horizon", moves) for moves in MOVES]
+        jobs = [(name, "dense", 0) for name in ("Osqp", "OsqpEmbedded", "Piqp", "ProxQp", "Quadprog")]
+        horizon = ("Osqp", "OsqpEmbedded", "Piqp", "ProxQp", "Clarabel", "hpipm", "tinympc")
+        jobs += [(name, "horizon", moves) for name in horizon for moves in MOVES]
         random.Random(1).shuffle(jobs)
         found = []
         for name, kind, moves in jobs:

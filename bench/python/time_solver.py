@@ -11,9 +11,11 @@ import sys
 
 import numpy as np
 
+import hpipm_ocp
 import solvers
 import tiny
 from horizon import Horizon
+from osqp_embedded import OsqpEmbedded
 from statistics_of import summary
 
 #: Passes over the samples, of which the shortest time of each counts.
@@ -50,13 +52,16 @@ def measured(task: dict, name: str, kind: str, moves: int, quick: bool) -> list[
     limited = [task["moments"][at]["limited"] for at in moments]
     if name == "tinympc":
         return tiny.measured(task, moments, moves, limited)
+    if name == "hpipm":
+        return hpipm_ocp.measured(task, moments, moves, limited, 1 if quick else PASSES)
+    solver = OsqpEmbedded if name == OsqpEmbedded.__name__ else getattr(solvers, name)
     hessian, left, samples = dense(task, moments) if kind == "dense" else horizon(task, moments, moves)
     found = []
     for warm in (False, True):
-        passes = [solvers.run(getattr(solvers, name), hessian, left, samples, warm) for _ in range(1 if quick else PASSES)]
+        passes = [solvers.run(solver, hessian, left, samples, warm) for _ in range(1 if quick else PASSES)]
         times = [min(each) for each in zip(*(one[0] for one in passes))]
         _, failures, most, _ = passes[0]
-        found.append({"loop": task["program"]["name"], "solver": getattr(solvers, name).name, "kind": kind, "moves": moves, "warm": warm,
+        found.append({"loop": task["program"]["name"], "solver": solver.name, "kind": kind, "moves": moves, "warm": warm,
                       "unknowns": hessian.shape[0], "rows": left.shape[0], "failures": failures, "most_iterations": most,
                       "times_ns": {"all": summary(times), "limited": summary([t for t, at in zip(times, limited) if at])}})
     return found

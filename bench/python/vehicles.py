@@ -5,6 +5,7 @@ import os
 import resource
 import statistics
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 
@@ -26,15 +27,20 @@ def processor_time(arguments: list, seconds: float) -> float:
 
 
 def resident(program: Path, vehicles: int) -> float:
-    """Bytes of a process with so many vehicles, two seconds after it began."""
-    process = subprocess.Popen([program, "--link", "tcpin:0", "--vehicles", str(vehicles)], stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL)
-    try:
-        time.sleep(2)
-        return int(Path(f"/proc/{process.pid}/status").read_text().split("VmRSS:")[1].split()[0]) * 1024
-    finally:
-        process.terminate()
-        process.wait()
+    """Bytes of a process with so many vehicles, when it says that it is ready."""
+    with tempfile.TemporaryDirectory() as folder:
+        ready = Path(folder) / "ready"
+        process = subprocess.Popen([program, "--link", "tcpin:0", "--vehicles", str(vehicles), "--ready-file", ready],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            while not ready.exists():
+                if process.poll() is not None:
+                    raise SystemExit(f"{program} did not start")
+                time.sleep(0.01)
+            return int(Path(f"/proc/{process.pid}/status").read_text().split("VmRSS:")[1].split()[0]) * 1024
+        finally:
+            process.terminate()
+            process.wait()
 
 
 def growth(program: Path, quick: bool) -> list[dict]:

@@ -1,5 +1,6 @@
 //! Many flights at once.
 
+use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -176,17 +177,7 @@ impl Fleet {
     ) -> Result<Self, FleetError> {
         let threads = pool(threads)?;
         let refused = |vehicle: usize| move |error| FleetError::Configuration { vehicle, error };
-        // The first vehicle of each kind, and the kind of each vehicle.
-        let mut first: Vec<usize> = Vec::new();
-        let mut kinds = Vec::with_capacity(configurations.len());
-        for (vehicle, configuration) in configurations.iter().enumerate() {
-            let known = |kind: &usize| is_same(&configurations[first[*kind]], configuration);
-            let kind = (0..first.len()).rev().find(known).unwrap_or(first.len());
-            if kind == first.len() {
-                first.push(vehicle);
-            }
-            kinds.push(kind);
-        }
+        let (first, kinds) = by_kind(configurations);
         let members = threads.install(|| {
             let design =
                 |vehicle: &usize| PreparedDesign::new(&configurations[*vehicle]).map_err(refused(*vehicle));
@@ -210,6 +201,24 @@ impl Fleet {
     pub fn outputs(&self) -> Vec<Outputs> {
         self.map(|_, simulation| simulation.outputs())
     }
+}
+
+/// The first vehicle of each kind, and the kind of each vehicle.
+fn by_kind(configurations: &[Configuration]) -> (Vec<usize>, Vec<usize>) {
+    let mut first: Vec<usize> = Vec::new();
+    let mut known: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+    let kind = |(vehicle, configuration): (usize, &Configuration)| {
+        let alike = known.entry(configuration.fingerprint()).or_default();
+        let same = |kind: &&usize| is_same(&configurations[first[**kind]], configuration);
+        if let Some(kind) = alike.iter().find(same) {
+            return *kind;
+        }
+        alike.push(first.len());
+        first.push(vehicle);
+        first.len() - 1
+    };
+    let kinds = configurations.iter().enumerate().map(kind).collect();
+    (first, kinds)
 }
 
 fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, FleetError> {

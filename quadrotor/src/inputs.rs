@@ -86,9 +86,12 @@ impl Inputs {
             (None, Some(target)) => Target::Attitude(target),
             (None, None) => Target::Reference(self.reference),
         };
+        let mut inputs = ControlInputs { target, plan: None, armed: self.armed, shaping: self.shaping };
         // A plan is large, and mostly there is none to be copied.
-        let plan = self.plan.as_ref().copied();
-        ControlInputs { target, plan, armed: self.armed, shaping: self.shaping }
+        if self.plan.is_some() {
+            inputs.plan = self.plan;
+        }
+        inputs
     }
 
     /// Refuses what is not finite, the reference also while something else is flown. The control loop checks what it is

@@ -92,6 +92,10 @@ impl Model for ClosedLoop {
         self.0.outputs()
     }
 
+    fn are_finite(outputs: &Outputs) -> bool {
+        outputs::are_finite(outputs)
+    }
+
     fn retune(&mut self, configuration: &Configuration) -> Result<(), FlightError> {
         Ok(self.0.reconfigure(&configuration.resolved()?)?)
     }

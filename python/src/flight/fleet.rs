@@ -120,13 +120,16 @@ fn members(
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<Member>> {
     let mut designed: Vec<(Configuration, Commands)> = Vec::new();
+    let mut alike: HashMap<u64, Vec<usize>> = HashMap::new();
     let mut kinds = Vec::with_capacity(settings.len());
     for setting in settings {
-        let kind = designed.iter().rposition(|known| *known == setting).unwrap_or_else(|| {
+        let alike = alike.entry(setting.0.fingerprint()).or_default();
+        let known = alike.iter().copied().find(|kind| designed[*kind] == setting);
+        kinds.push(known.unwrap_or_else(|| {
+            alike.push(designed.len());
             designed.push(setting);
             designed.len() - 1
-        });
-        kinds.push(kind);
+        }));
     }
     let designed = quadrotor::Fleet::of(designed, threads).map_err(no_threads)?;
     let vehicles = designed

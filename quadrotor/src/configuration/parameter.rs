@@ -104,11 +104,14 @@ impl Access {
         }
     }
 
-    /// The same, and no zero has another sign.
-    pub(crate) fn same_bits(&self, one: &Configuration, other: &Configuration) -> bool {
+    /// The bits of the value that a configuration has here: those of a zero tell its sign.
+    pub(crate) fn bits(&self, configuration: &Configuration) -> u64 {
         match *self {
-            Self::Real { get, .. } => get(one).to_bits() == get(other).to_bits(),
-            _ => self.same(one, other),
+            Self::Real { get, .. } => get(configuration).to_bits(),
+            Self::Integer { get, .. } | Self::Enumeration { get, .. } => {
+                u64::from(get(configuration).cast_unsigned())
+            }
+            Self::Boolean { get, .. } => u64::from(get(configuration)),
         }
     }
 }

@@ -41,10 +41,9 @@ impl Configuration {
         Self { controllers: Controllers { mass_factor, ..self.controllers }, ..*self }
     }
 
-    /// The same with a belief in these moments of inertia, kg·m².
-    pub(crate) fn with_inertia_kg_m2(&self, inertia_kg_m2: &Vector3<f64>) -> Self {
-        let inertia_kg_m2 = (inertia_kg_m2 / self.controllers.mass_factor).into();
-        Self { airframe: Airframe { inertia_kg_m2, ..self.airframe }, ..*self }
+    /// Believes in these moments of inertia, kg·m².
+    pub(crate) fn believe_inertia_kg_m2(&mut self, inertia_kg_m2: &Vector3<f64>) {
+        self.airframe.inertia_kg_m2 = (inertia_kg_m2 / self.controllers.mass_factor).into();
     }
 
     /// Drag per mass that the controllers believe in, along the world axes, 1/s.

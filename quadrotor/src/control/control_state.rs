@@ -135,7 +135,7 @@ impl ControlState {
             // Another vehicle, not another belief.
             let inertia = self.learned.in_place_of_belief(other).believed_inertia_kg_m2();
             let share = one.controllers.mass_factor / other.controllers.mass_factor;
-            believed = believed.with_inertia_kg_m2(&(inertia * share));
+            believed.believe_inertia_kg_m2(&(inertia * share));
         }
         if self.armed {
             self.cascade.hand_over(before, after);
@@ -241,8 +241,8 @@ impl ControlState {
         }
         let clocks = self.clocks(&design.configuration.controllers);
         let due = Due::at(&clocks, time_us);
-        // Where nothing is measured nothing is refused: most samples are these, and none of them copies the state.
-        let before = (inputs.armed && (due.any() || self.takes_over(inputs))).then_some(*self);
+        // A takeover is measured more than once, and may be refused in its midst: only it copies the state.
+        let before = (inputs.armed && self.takes_over(inputs)).then(|| *self);
         let advanced = self.advance(design, inputs, instruments, (due, time_us));
         match (advanced, before) {
             (Ok(()), _) => self.next_us = clocks.next_instant_us(time_us),
@@ -252,7 +252,8 @@ impl ControlState {
         advanced
     }
 
-    /// Takes inputs in, and runs the controllers that are due. An error may leave it half done.
+    /// Takes inputs in, and runs the controllers that are due. An error may leave it half done if it takes over a vehicle; else
+    /// nothing has changed.
     fn advance(
         &mut self,
         design: &LoopDesign,
@@ -260,11 +261,23 @@ impl ControlState {
         instruments: &mut impl Instruments,
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
+        let goes_on = inputs.armed && due.any() && !self.takes_over(inputs);
+        let measured = goes_on.then(|| instruments.read(time_us).checked(time_us)).transpose()?;
         self.take(&design.configuration, inputs, instruments, time_us)?;
-        if self.armed {
-            self.control(design, inputs, instruments, (due, time_us))?;
+        if !self.armed {
+            return Ok(());
         }
-        Ok(())
+        if let Target::Reference(reference) = &inputs.target {
+            self.guidance.watch(reference, &design.configuration.limits, time_us);
+        }
+        if !due.any() {
+            return Ok(());
+        }
+        let measurement = match measured {
+            Some(measurement) => measurement,
+            None => instruments.read(time_us).checked(time_us)?,
+        };
+        self.control(design, inputs, &measurement, (due, time_us))
     }
 
     /// Whether reference and controllers take over the vehicle under these inputs, if they are armed.
@@ -310,16 +323,9 @@ impl ControlState {
         &mut self,
         design: &LoopDesign,
         inputs: &ControlInputs,
-        instruments: &mut impl Instruments,
+        measurement: &Measurement,
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
-        if let Target::Reference(reference) = &inputs.target {
-            self.guidance.watch(reference, &design.configuration.limits, time_us);
-        }
-        if !due.any() {
-            return Ok(());
-        }
-        let measurement = instruments.read(time_us).checked(time_us)?;
         if due.attitude {
             self.learn(&design.configuration, &measurement.motion, time_us);
         }

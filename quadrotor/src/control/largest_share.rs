@@ -33,7 +33,8 @@ impl Bound {
 pub(super) fn largest_share(bounds: &[Bound], most: f64) -> (f64, f64) {
     let mut share: f64 = 1.0;
     let mut keep = |size: f64, room: f64| {
-        if size > 0.0 {
+        // Most bounds leave room for all of it, and need no division.
+        if size > 0.0 && room < size {
             share = share.min(room / size);
         }
     };
@@ -41,16 +42,17 @@ pub(super) fn largest_share(bounds: &[Bound], most: f64) -> (f64, f64) {
     for bound in bounds {
         keep(bound.size, bound.room + bound.gain.max(0.0) * most);
     }
+    if most <= 0.0 {
+        return (share, 0.0);
+    }
     let gaining = || bounds.iter().filter(|bound| bound.gain > 0.0);
-    if most > 0.0 {
-        // (size·s − room)/gain ≤ g for those that gain, g ≤ (room − size·s)/−gain for those that lose
-        for one in gaining() {
-            for other in bounds.iter().filter(|bound| bound.gain < 0.0) {
-                keep(
-                    one.size / one.gain - other.size / other.gain,
-                    one.room / one.gain - other.room / other.gain,
-                );
-            }
+    // (size·s − room)/gain ≤ g for those that gain, g ≤ (room − size·s)/−gain for those that lose
+    for one in gaining() {
+        for other in bounds.iter().filter(|bound| bound.gain < 0.0) {
+            keep(
+                one.size / one.gain - other.size / other.gain,
+                one.room / one.gain - other.room / other.gain,
+            );
         }
     }
     let needed = gaining().map(|bound| (bound.size * share - bound.room) / bound.gain).fold(0.0, f64::max);

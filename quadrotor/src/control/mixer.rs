@@ -117,11 +117,12 @@ impl Mixer {
         let tilt = self.tilting_thrusts_n(tilting_n_m);
         let mean = (thrust_n / 4.0).clamp(weakest, strongest);
         let most = self.most_given(mean, least_thrust_n);
-        let (least, largest) = self.yaw_bounds(&tilt, mean);
-        let (share, to_tilt) = largest_share(&tilt_bounds(&least, &largest, 0.0), most);
+        let whole = self.yaw_bounds(&tilt, mean);
+        let (share, to_tilt) = largest_share(&tilt_bounds(&whole.0, &whole.1, 0.0), most);
         let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
-        let range = |mean: f64| {
-            let (least, largest) = self.yaw_bounds(&tilt, mean);
+        let range = |left: f64| {
+            // Mostly nothing gives way.
+            let (least, largest) = if left == mean { whole } else { self.yaw_bounds(&tilt, left) };
             let ends = |bounds: &[YawBound; 4]| {
                 bounds.iter().map(|bound| bound.room - share * bound.size).fold(f64::INFINITY, f64::min)
             };

@@ -64,16 +64,30 @@ impl DesignCache {
 
 /// Whether two configurations are the same, bit for bit. Equal ones can differ in the signs of their zeros.
 pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
-    let places = |configuration: &Configuration| {
-        configuration.airframe.layout.rotors.map(|rotor| [rotor.x.to_bits(), rotor.y.to_bits()])
-    };
-    one == other
-        && places(one) == places(other)
-        && PARAMETERS.iter().all(|parameter| parameter.access.same_bits(one, other))
+    one == other && bits(one).eq(bits(other))
+}
+
+/// The bits of all parameters, and of the rotors' places.
+fn bits(configuration: &Configuration) -> impl Iterator<Item = u64> + '_ {
+    let rotors = configuration.airframe.layout.rotors.iter();
+    let places = rotors.flat_map(|rotor| [rotor.x.to_bits(), rotor.y.to_bits()]);
+    PARAMETERS.iter().map(|parameter| parameter.access.bits(configuration)).chain(places)
+}
+
+impl Configuration {
+    /// A number that is the same for configurations that are the same, bit for bit, and hardly ever for others: a key to look for
+    /// those that are alike among many. It says nothing beyond this version.
+    pub fn fingerprint(&self) -> u64 {
+        // FNV-1a by words; the turn brings the upper bits, in which numbers differ most, to all others.
+        bits(self).fold(0xcbf2_9ce4_8422_2325, |hash: u64, bits| {
+            (hash.rotate_left(23) ^ bits).wrapping_mul(0x0100_0000_01b3)
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use alloc::collections::BTreeSet;
     use alloc::sync::Arc;
 
     use super::DesignCache;
@@ -115,6 +129,17 @@ mod tests {
         other.airframe.layout.rotors[0].y = -0.0;
         assert_eq!(configuration, other);
         assert!(cache.find(&other).is_none());
+    }
+
+    #[test]
+    fn fingerprints_are_those_of_the_bits() {
+        let fingerprints: BTreeSet<u64> =
+            (0..1_000).map(|vehicle| of_mass(0.5 + 1e-6 * f64::from(vehicle)).fingerprint()).collect();
+        assert_eq!(fingerprints.len(), 1_000);
+        assert_eq!(of_mass(0.6).fingerprint(), of_mass(0.6).fingerprint());
+        let mut other = Configuration::default();
+        other.airframe.layout.rotors[0].y = -0.0;
+        assert_ne!(other.fingerprint(), Configuration::default().fingerprint());
     }
 
     #[test]

@@ -125,7 +125,7 @@ impl WayPlan {
     /// Position, velocity, acceleration and jerk so many seconds after its beginning; between two jumps of the jerk the snap is
     /// zero. The heading is zero.
     pub fn at(&self, time_s: f64) -> PositionReference {
-        let motions = self.axes.map(|axis| axis.at(time_s));
+        let motions = self.axes.each_ref().map(|axis| axis.at(time_s));
         let turn = Rotation2::new(self.bearing_rad);
         let world = |part: fn(&Motion) -> f64| {
             let [along, across, down] = motions.each_ref().map(part);

@@ -11,6 +11,7 @@ impl Airframe {
     /// f = −C (v − w) − R D Rᵀ (v − w), along the axes of the world and along those of the body: the second term is the drag
     /// of Faessler, Franchi, Scaramuzza 2018, "Differential flatness of quadrotor dynamics subject to rotor drag for accurate
     /// tracking of high-speed trajectories" (there per mass). It acts at the rotors' centre, whose velocity is v.
+    #[inline(always)]
     pub(crate) fn drag<T: Real>(&self, body: &RigidBody<T>, wind_m_s: &Vector3<T>) -> External<T> {
         let mut airspeed = body.velocity_m_s - wind_m_s;
         let centre: Vector3<T> = -constant::<T>(self.centre_of_gravity_m);

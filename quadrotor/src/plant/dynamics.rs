@@ -64,6 +64,7 @@ impl Plant {
     }
 
     /// All that acts on the plant.
+    #[inline(always)]
     pub(crate) fn forces<T: Real>(
         &self,
         state: &PlantState<T>,
@@ -80,6 +81,7 @@ impl Plant {
     }
 
     /// All that acts on the plant but the ground: thrust and torques that drive it, and the rest.
+    #[inline(always)]
     pub(crate) fn loads<T: Real>(
         &self,
         state: &PlantState<T>,
@@ -113,6 +115,7 @@ impl Plant {
 
     /// Accelerations of the rotors, rad/s², ω̇ = (ω_goal − ω) / τ as far as they are sound, and the share of the battery's charge
     /// that is drawn per second.
+    #[inline(always)]
     fn drive<T: Real>(
         &self,
         state: &PlantState<T>,

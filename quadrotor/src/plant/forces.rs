@@ -25,6 +25,7 @@ impl<T: Real> Forces<T> {
     }
 
     /// The time derivative of the state.
+    #[inline(always)]
     pub(crate) fn derivative(&self, airframe: &Airframe, state: &PlantState<T>) -> PlantState<T> {
         PlantState {
             body: state.body.derivative(airframe, &self.wrench, &self.external),

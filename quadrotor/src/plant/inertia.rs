@@ -40,6 +40,7 @@ impl Airframe {
 
     /// Angular acceleration of the body, FRD, rad/s², at a body rate, rad/s, under a torque, N·m: Euler's equation
     /// J ω̇ = τ − ω × Jω, the second line of (3).
+    #[inline(always)]
     pub(crate) fn angular_acceleration_rad_s2<T: Real>(
         &self,
         rate_rad_s: &Vector3<T>,

@@ -121,6 +121,7 @@ impl<T: Scalar + Copy> PlantState<T> {
     }
 
     /// Made of each of the numbers of both states.
+    #[inline(always)]
     pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
         &self,
         other: &PlantState<U>,

@@ -39,6 +39,7 @@ impl<T: Real> Default for External<T> {
 
 impl<T: Real> RigidBody<T> {
     /// Time derivative under rotor wrench and external force and torque.
+    #[inline(always)]
     pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench<T>, external: &External<T>) -> Self {
         let rate = self.body_rate_rad_s;
         let torque = rotors.torque_n_m + external.torque_n_m;
@@ -52,6 +53,7 @@ impl<T: Real> RigidBody<T> {
     }
 
     /// Acceleration, NED, m/s², under a thrust and an external force, NED, N.
+    #[inline(always)]
     pub(crate) fn acceleration_m_s2(
         &self,
         airframe: &Airframe,
@@ -72,6 +74,7 @@ impl<T: Real> RigidBody<T> {
 
 impl<T: Scalar + Copy> RigidBody<T> {
     /// Made of each of the numbers of both bodies.
+    #[inline(always)]
     pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
         &self,
         other: &RigidBody<U>,

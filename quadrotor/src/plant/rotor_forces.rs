@@ -26,6 +26,7 @@ pub(crate) struct Surroundings<T> {
 
 impl<T: Real> RotorForces<T> {
     /// Of the rotors of a plant in this state.
+    #[inline(always)]
     pub(crate) fn new(
         airframe: &Airframe,
         state: &PlantState<T>,
@@ -36,6 +37,16 @@ impl<T: Real> RotorForces<T> {
             let wrench = wrench_of_rotors(airframe, &state.rotor_speed_rad_s);
             return Self { wrench, lateral_n: Vector3::zeros() };
         }
+        Self::of_each(airframe, state, around, branches)
+    }
+
+    /// The same, rotor by rotor: with what the air does to each of them, about a centre of mass that may be anywhere.
+    fn of_each(
+        airframe: &Airframe,
+        state: &PlantState<T>,
+        around: &Surroundings<T>,
+        branches: &mut impl Branches,
+    ) -> Self {
         let (k1, k2) = (airframe.thrust_coefficient_n_s2, airframe.torque_coefficient_n_m_s2);
         let aerodynamics = &airframe.rotor_aerodynamics;
         let body = &state.body;

@@ -30,6 +30,17 @@ impl<const N: usize> Prior<N> {
         SMatrix::from_diagonal(&self.deviation.component_mul(&self.deviation))
     }
 
+    /// D of [`BoundedEstimate::forget`]. Neighbours are often remembered for the same time.
+    fn kept(&self, time_s: f64) -> SVector<f64, N> {
+        let mut latest = (f64::NAN, f64::NAN);
+        self.memory_s.map(|memory_s| {
+            if memory_s != latest.0 {
+                latest = (memory_s, libm::exp(-time_s / memory_s));
+            }
+            latest.1
+        })
+    }
+
     fn clamped(&self, mean: &SVector<f64, N>) -> SVector<f64, N> {
         let [least, most] = &self.range;
         SVector::from_fn(|i, _| mean[i].max(least[i]).min(most[i]))
@@ -58,7 +69,7 @@ impl<const N: usize> BoundedEstimate<N> {
 
     /// Forgets for a time, s: P ← D P D + (1 − D²) P₀ with D = e^(−t/T) for each number. A covariance stays one.
     pub(crate) fn forget(&mut self, prior: &Prior<N>, time_s: f64) {
-        let kept = prior.memory_s.map(|memory_s| libm::exp(-time_s / memory_s));
+        let kept = prior.kept(time_s);
         for i in 0..N {
             for j in 0..N {
                 self.covariance[(i, j)] *= kept[i] * kept[j];
@@ -86,10 +97,13 @@ impl<const N: usize> BoundedEstimate<N> {
         let expected = row.dot(&spread) + variance;
         let gain = SVector::from_fn(|i, _| if learned[i] { spread[i] / expected } else { 0.0 });
         let mean = self.mean + gain * self.innovation(row, value);
-        // Joseph's form, which stays symmetric and positive: (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ
-        let kept = SMatrix::<f64, N, N>::identity() - gain * row.transpose();
-        let covariance = kept * self.covariance * kept.transpose() + gain * gain.transpose() * variance;
-        let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, multiplied out: P − k sᵀ − s kᵀ + k (hᵀs + r) kᵀ with s = P h. It stays
+        // exactly symmetric.
+        let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| {
+            self.covariance[(i, j)] - (gain[i] * spread[j] + spread[i] * gain[j])
+                + (gain[i] * gain[j]) * expected
+        });
+        let finite = |numbers: &[f64]| numbers.iter().fold(true, |all, number| all & number.is_finite());
         // No measurement makes anything less certain.
         let narrower = (0..N)
             .all(|i| covariance[(i, i)] >= 0.0 && covariance[(i, i)] <= self.covariance[(i, i)] * ROUNDING);

@@ -133,7 +133,7 @@ impl MassAndDrag {
         if configuration.controllers.learning {
             let inertia_kg_m2 = configuration.believed_inertia_kg_m2() * self.inertia_share(configuration);
             learned.controllers.mass_factor = self.mass_factor();
-            learned = learned.with_inertia_kg_m2(&inertia_kg_m2);
+            learned.believe_inertia_kg_m2(&inertia_kg_m2);
             learned.airframe.drag_n_s_m = self.drag_n_s_m(configuration).into();
         }
         learned
