@@ -194,7 +194,9 @@ impl Follow {
     /// it may and as the vehicle can follow.
     fn turn_around(&mut self, target: &TargetMotion, left_rad: f64, situation: &Situation) -> f64 {
         let (limits, distance_m) = (situation.limits(), self.place.distance_m);
-        let left_m_s = limits.speed_horizontal_m_s - target.velocity_m_s.xy().norm();
+        // Beside the velocity of the target; where both add up, the speed is kept anyway.
+        let (most_m_s, target_m_s) = (limits.speed_horizontal_m_s, target.velocity_m_s.xy().norm());
+        let left_m_s = libm::sqrt((most_m_s * most_m_s - target_m_s * target_m_s).max(0.0));
         let inward_m_s2 = AROUND_SHARE * limits.acceleration_horizontal_m_s2;
         let fastest_m_s = situation
             .conduct
