@@ -11,6 +11,7 @@ ROTOR = 1
 
 options = arguments(__doc__, "failure.png")
 flight = Flight(options.connect)
+flight.set_parameter("SYS_FAILURE_EN", 1)
 flight.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000)
 flight.take_off()
 flight.go_to(START)

@@ -183,6 +183,17 @@ class Flight:
                     return
         self.fail(f"command {number} was not answered")
 
+    def set_parameter(self, name: str, value: float):
+        """Sets a parameter, and waits until the vehicle tells its value."""
+        for _ in range(5):
+            self.mav.param_set_send(*self.target, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32)
+            end = time.monotonic() + 1
+            while (left := end - time.monotonic()) > 0:
+                told = self.receive("PARAM_VALUE", left)
+                if told is not None and told.param_id == name:
+                    return
+        self.fail(f"parameter {name} was not set")
+
     def until(self, condition, seconds: float, what: str, each_tick=lambda: None):
         """Flies until a condition holds, doing something with each report."""
         end = self.now + seconds

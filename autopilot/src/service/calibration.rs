@@ -1,5 +1,5 @@
 //! MAV_CMD_PREFLIGHT_CALIBRATION: the vehicle has to stand still for a while. It takes time, so it is answered "in progress" until it
-//! is over, and can be cancelled.
+//! is over, and can be cancelled. ArduPilot's clients expect one answer, when it is over: there it is over at once.
 
 use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
 use vehicle::{Refusal, Severity, Vehicle};
@@ -93,6 +93,10 @@ impl Service for Calibrations {
         }
         match unit.and_then(|unit| may_begin(&context.vehicle).map(|()| unit)) {
             Ok(unit) => {
+                if context.identity().is_ardupilot() {
+                    say(context, Severity::Info, &format!("calibration done: {unit}"));
+                    return Ok(Progress::Done);
+                }
                 let begun_us = context.vehicle.time_us();
                 self.running = Some(Calibration { origin: *origin, unit, begun_us, told: 0 });
                 say(context, Severity::Info, &format!("calibration started: 2 {unit}"));

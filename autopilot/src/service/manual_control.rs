@@ -9,13 +9,14 @@ use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, boot_ms, id};
 use crate::context::Context;
 use crate::envelope::Origin;
-use crate::stream::{Build, Group, Stream};
+use crate::stream::{Group, Stream};
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_DO_AUX_FUNCTION as u16)];
 
 const STREAMS: &[Stream] = &[
     Stream::new(RC_CHANNELS_DATA::ID, [5.0, 20.0], rc_channels).of(Group::RcChannels),
-    Stream::on_request(RC_CHANNELS_RAW_DATA::ID, Build::Vehicle(rc_channels_raw)),
+    // DroneKit knows no other one, and asks ArduPilot for the group.
+    Stream::new(RC_CHANNELS_RAW_DATA::ID, [0.0, 0.0], rc_channels_raw).of(Group::RcChannels),
 ];
 
 /// Hands sticks and pulses on to the vehicle.

@@ -19,6 +19,9 @@ use crate::turns::Turns;
 
 /// Name under which clients request the hash, and with which QGroundControl confirms its cache.
 const HASH_CHECK: &str = "_HASH_CHECK";
+/// PX4 tells a changed parameter once more, after this time, µs: MAVSDK takes the first one for the answer to its request, and only
+/// the second one for news.
+const AGAIN_US: u64 = 500_000;
 /// Index of what is not in the list.
 const NO_INDEX: u16 = u16::MAX;
 /// Index in PARAM_ERROR of what was asked for by its name.
@@ -41,6 +44,8 @@ pub struct ParameterProtocol {
     /// Lists that are being sent, one for each peer.
     lists: BTreeMap<PeerId, Next>,
     turns: Turns,
+    /// Parameters that have been changed and are told once more, by index, and when, µs.
+    changed: BTreeMap<usize, u64>,
 }
 
 impl Service for ParameterProtocol {
@@ -74,6 +79,14 @@ impl Service for ParameterProtocol {
             id::PARAM_REQUEST_READ => request_read(context, origin, frame),
             id::PARAM_REQUEST_LIST => self.request_list(context, origin),
             _ => self.set(context, origin, frame),
+        }
+    }
+
+    fn tick(&mut self, context: &mut Context) {
+        let now_us = context.vehicle.time_us();
+        while let Some((&index, _)) = self.changed.iter().find(|(_, at_us)| **at_us <= now_us) {
+            self.changed.remove(&index);
+            send_value(context, index, Destination::Everyone);
         }
     }
 
@@ -123,8 +136,10 @@ impl ParameterProtocol {
     fn set(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         if frame.payload().name(6) == HASH_CHECK {
             self.lists.remove(&origin.peer);
-        } else {
-            set(context, origin, frame);
+        } else if let Some(index) = set(context, origin, frame)
+            && !context.identity().is_ardupilot()
+        {
+            self.changed.insert(index, context.vehicle.time_us() + AGAIN_US);
         }
     }
 }
@@ -176,14 +191,16 @@ fn error_code(error: &SetError) -> MavParamError {
     }
 }
 
-/// PARAM_SET: the new value goes to everyone; a refusal is answered with the present one and says why.
-fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
+/// PARAM_SET: the new value goes to everyone; a refusal is answered with the present one and says why. Returns what was changed.
+fn set(context: &mut Context, origin: &Origin, frame: &Frame) -> Option<usize> {
     let payload = frame.payload();
     let name = payload.name(6);
     let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
     let known = stability_warnings(context);
     let result = context.parameters.set(&name, value, &mut context.vehicle);
-    if let Some(index) = context.parameters.table().index_of(&name) {
+    let index = context.parameters.table().index_of(&name);
+    let changed = index.filter(|_| result.is_ok());
+    if let Some(index) = index {
         let listed = context.parameters.table().entries().get(index).is_some_and(|entry| entry.id == name);
         if result.is_ok() {
             send_value(context, index, Destination::Everyone);
@@ -201,6 +218,7 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) {
             context.say(Severity::Warning, &format!("{name}: {warning}"));
         }
     }
+    changed
 }
 
 /// What is worth a warning about the vehicle's closed loop.

@@ -45,7 +45,10 @@ impl Request {
             Action::Fault { fault } => {
                 let fault: Fault = fault.parse().map_err(|error| format!("{error}"))?;
                 let [unit, kind, instance] = fault.numbers().map(|number| number as f32);
-                vec![long(MavCmd::MAV_CMD_INJECT_FAILURE, [unit, kind, instance, 0.0, 0.0, 0.0, 0.0])]
+                vec![
+                    parameter(system, "SYS_FAILURE_EN", 1.0),
+                    long(MavCmd::MAV_CMD_INJECT_FAILURE, [unit, kind, instance, 0.0, 0.0, 0.0, 0.0]),
+                ]
             }
             Action::Wind { speed_m_s, from_deg } => wind(*speed_m_s, *from_deg, autopilot)?,
             Action::Speed { factor } => vec![parameter(system, SPEED_PARAMETER, *factor)],

@@ -9,7 +9,7 @@ use vehicle::estimation::SensorModel;
 use vehicle::fault::{Fault, ScheduledFault, Sensor, SensorFault};
 use vehicle::identity::Identity;
 use vehicle::world::WindSettings;
-use vehicle::{LandedState, Mode};
+use vehicle::{LandedState, Mode, VehicleSettings};
 
 /// MAV_RESULT.
 const TEMPORARILY_REJECTED: u8 = 1;
@@ -293,10 +293,9 @@ fn broken_instruments_read_what_their_faults_say() {
 }
 
 #[test]
-fn a_parameter_forbids_it() {
-    let mut start = settings(Identity::Px4);
-    start.conduct.failure_injection = false;
-    let mut bench = Bench::of(&start);
+fn a_parameter_forbids_it_as_px4_begins() {
+    assert!(VehicleSettings::new(Identity::ArduPilot).conduct.failure_injection);
+    let mut bench = Bench::of(&VehicleSettings::new(Identity::Px4));
     assert_eq!(inject(&mut bench, 4.0, OFF, 0.0), DENIED);
     assert!(bench.texts().iter().any(|text| text.contains("set SYS_FAILURE_EN to 1")), "{:?}", bench.texts());
     assert_eq!(bench.autopilot.vehicle().faults(), vehicle::fault::Faults::default());

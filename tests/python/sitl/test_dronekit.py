@@ -217,3 +217,21 @@ def test_channel_overrides(vehicle):
     wait(lambda: abs(vehicle.velocity[0]) < 0.2, "standing again")
     vehicle.mode = VehicleMode("LAND")
     wait(lambda: not vehicle.armed, "landed")
+
+
+def test_what_its_own_tests_expect(vehicle):
+    """A parameter of Copter 3.3, channels as numbers, waypoints of far away, and one answer to a calibration, when it is over."""
+    assert vehicle.parameters["THR_MIN"] == 130
+    vehicle.parameters["THR_MIN"] = 3.0
+    assert vehicle.parameters["THR_MIN"] == 3
+    wait(lambda: all(isinstance(vehicle.channels[number], int) for number in range(1, 9)), "channels")
+
+    answers = []
+    vehicle.add_message_listener("COMMAND_ACK", lambda _, name, message: answers.append((message.command, message.result)))
+    calibration = mavutil.mavlink.MAV_CMD_PREFLIGHT_CALIBRATION
+    for parameters in ([1, 0, 0, 0, 0], [0, 0, 1, 0, 0], [0, 0, 0, 0, 2]):
+        vehicle.send_mavlink(vehicle.message_factory.command_long_encode(0, 0, calibration, 0, *parameters, 0, 0))
+        wait(lambda: answers, "an answer")
+        time.sleep(3 / SPEED)
+        assert answers == [(calibration, mavutil.mavlink.MAV_RESULT_ACCEPTED)], parameters
+        answers.clear()

@@ -45,7 +45,7 @@ def test_two_flights_with_all_of_it_replay_bit_for_bit(program, start, connect, 
         "--vehicles", "2", "--formation", "line,8", "--sensors", "realistic", "--wind", "3,200", "--gusts", "1", "--seed", "11",
         "--mission", plan(tmp_path / "both.plan"), "--signing-key", key_file(tmp_path),
         "--fault", "9:barometer=garbage", "--fault", "12:gps=slow", "--log-dir", logs, "--tlog", traffic, "--record", record,
-        "--speed", "10")
+        "--speed", "10", "--set", "SYS_FAILURE_EN=1")
     clients = [connect(vehicle, number, heartbeat=False) for number in range(2)]
     for number, client in enumerate(clients):
         signed(client.connection)

@@ -6,6 +6,7 @@ import subprocess
 import pytest
 from mavsdk.plugins.failure import Failure
 from mavsdk.plugins.failure.failure import FailureError, FailureType, FailureUnit
+from mavsdk.plugins.param import Param
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavsdk_vehicle import eventually
@@ -31,7 +32,8 @@ def fly_down(client, texts, timeout: float = 30.0):
 
 def test_rotor_off_lands_without_tumbling(start, connect, program, tmp_path):
     record = tmp_path / "flight.record"
-    vehicle = start("--speed", "10", "--record", str(record), "--fault", "0:gps=off", "--fault", "0.5:gps=ok")
+    vehicle = start("--speed", "10", "--record", str(record), "--fault", "0:gps=off", "--fault", "0.5:gps=ok",
+                    "--set", "SYS_FAILURE_EN=1")
     client = connect(vehicle)
     client.take_off(altitude=498.0, height=10.0)
     client.drain()
@@ -57,7 +59,7 @@ def test_rotor_off_lands_without_tumbling(start, connect, program, tmp_path):
 
 
 def test_mavsdk_injects(fly):  # noqa: F811
-    system = fly("--speed", "10")
+    system = fly("--speed", "10", "--set", "SYS_FAILURE_EN=1")
     failure, telemetry = Failure(system), Telemetry(system)
     eventually("a battery", lambda: telemetry.battery().remaining_percent > 90)
     failure.inject(FailureUnit.SYSTEM_BATTERY, FailureType.OFF, 0)
@@ -68,10 +70,13 @@ def test_mavsdk_injects(fly):  # noqa: F811
         failure.inject(FailureUnit.SENSOR_AIRSPEED, FailureType.OFF, 0)
 
 
-def test_mavsdk_is_told_that_it_is_disabled(fly):  # noqa: F811
-    system = fly("--speed", "10", "--set", "SYS_FAILURE_EN=0")
+def test_mavsdk_is_told_that_it_is_disabled_until_it_is_not(fly):  # noqa: F811
+    """As with PX4."""
+    system = fly("--speed", "10")
     with pytest.raises(FailureError, match="DISABLED|DENIED"):
         Failure(system).inject(FailureUnit.SENSOR_GPS, FailureType.OFF, 0)
+    Param(system).set_param_int("SYS_FAILURE_EN", 1)
+    Failure(system).inject(FailureUnit.SENSOR_GPS, FailureType.OFF, 0)
 
 
 def test_faults_of_the_command_line(start, connect):

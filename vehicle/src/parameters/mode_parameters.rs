@@ -108,6 +108,7 @@ const RETURN_GOALS: &[(ReturnGoal, i32, &str)] = &[
     (ReturnGoal::RallyPoint, 1, "Nearest rally point, or else home"),
     (ReturnGoal::NearestOfAll, 3, "Nearest of all places"),
     (ReturnGoal::RallyPointOnly, 5, "Nearest rally point"),
+    (ReturnGoal::WithinReach, 6, "As 0: the time that the battery lasts is not known"),
 ];
 const PX4_HEADINGS: &[(HeadingPolicy, i32, &str)] = &[
     (HeadingPolicy::NextPlace, 0, "Towards the waypoint"),

@@ -138,7 +138,7 @@ fn thrust_as_thrust() -> u8 {
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
 /// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | PX4's, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
-/// | failure injection | allowed; PX4: not | PX4's parameter protects aircraft, and this is none |
+/// | failure injection | not allowed; ArduPilot: allowed | PX4's; ArduPilot has no such parameter |
 impl Conduct {
     /// Whether the thrust of attitudes is one in ArduPilot's guided mode, and no climb rate.
     pub fn thrust_is_asked_for(&self) -> bool {
@@ -164,7 +164,7 @@ impl Conduct {
             stick_timeout_s: if ardupilot { 1.0 } else { 0.5 },
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,
-            failure_injection: true,
+            failure_injection: ardupilot,
             surroundings: SurroundingsSettings::new(ardupilot),
             return_home: ReturnSettings::new(ardupilot),
             heading_policy: if ardupilot {

@@ -6,8 +6,9 @@
 use nalgebra::{Rotation2, Vector2, Vector3};
 use quadrotor::{Limits, PositionReference};
 
+use super::follow_place::{FollowErrors, FollowPlace};
 use super::follow_settings::{FollowHeading, FollowHeight};
-use super::motion::{Motion, at_rest, wrapped};
+use super::motion::{Motion, approach, at_rest, wrapped};
 use super::notice::{Refusal, Severity};
 use super::proposal::Proposal;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
@@ -23,6 +24,13 @@ const TOO_NEAR_M: f64 = 1.0;
 const TRAVELS_M_S: f64 = 1.0;
 /// PX4 goes to its height first: farther than this, m, from it, it does not travel.
 const HEIGHT_M: f64 = 3.0;
+/// Course of a target that has not gone anywhere yet, rad: PX4's.
+const NORTH_RAD: f64 = 0.0;
+/// Largest acceleration on the way around the target, m/s²: PX4's. A rate, 1/s, of what is left of it when it is nearly there.
+const AROUND_M_S2: f64 = 2.0;
+const AROUND_RATE: f64 = 1.0;
+/// Share of the horizontal acceleration that the way around may take.
+const AROUND_SHARE: f64 = 0.5;
 /// The vehicle can always come nearer to a target at least with this speed, m/s.
 const LEAST_APPROACH_M_S: f64 = 0.5;
 
@@ -34,6 +42,10 @@ pub struct Follow {
     way: Option<PositionReference>,
     /// Direction from the target to the vehicle, rad, while it follows (PX4).
     bearing_rad: Option<f64>,
+    /// How fast that direction turns, rad/s.
+    around_rad_s: f64,
+    /// Where it follows (PX4).
+    place: FollowPlace,
     /// Offset that was found when the mode began, m (ArduPilot without one of its own).
     found_offset_m: Option<Vector3<f64>>,
     /// Whether the pilot was told that the target is followed.
@@ -91,6 +103,7 @@ impl Follow {
             proposal.say(Severity::Info, "Following the target");
         }
         let ardupilot = situation.identity.is_ardupilot();
+        self.place.heed(&situation.conduct.follow);
         if !ardupilot && !self.is_at_height(&target.at(now_us), situation, proposal) {
             return;
         }
@@ -118,7 +131,7 @@ impl Follow {
         if self.way.take().is_some() {
             proposal.follow(situation, &PositionSetPoint::HOLD);
         }
-        self.bearing_rad = None;
+        (self.bearing_rad, self.around_rad_s) = (None, 0.0);
         if self.follows {
             self.follows = false;
             proposal.say(Severity::Warning, "Target lost: holding");
@@ -132,7 +145,7 @@ impl Follow {
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> bool {
-        let z_m = height_z_m(target, situation);
+        let z_m = self.height_z_m(target, situation);
         if self.way.is_some() || (situation.outputs.position_m.z - z_m).abs() < HEIGHT_M {
             return true;
         }
@@ -150,30 +163,77 @@ impl Follow {
         now: &PositionReference,
         situation: &Situation,
     ) -> [PositionReference; 2] {
-        let (settings, [target, _]) = (&situation.conduct.follow, motions);
+        let target = &motions[0];
         let off = (now.position_m - target.position_m).xy();
         let behind_rad = now.yaw_rad + core::f64::consts::PI;
         let here_rad = if off.norm() > TOO_NEAR_M { libm::atan2(off.y, off.x) } else { behind_rad };
         let bearing_rad = self.bearing_rad.unwrap_or(here_rad);
-        let fastest_rad_s = settings.around_m_s / settings.distance_m;
-        // It goes with a target that turns, and towards its angle besides.
-        let rate_rad_s = target.course_rad.map_or(0.0, |course_rad| {
-            let left_rad = wrapped(course_rad + settings.angle_rad - bearing_rad);
-            (target.turn_rate_rad_s + left_rad).clamp(-fastest_rad_s, fastest_rad_s)
-        });
+        let left_rad = wrapped(target.course_rad.unwrap_or(NORTH_RAD) + self.place.angle_rad - bearing_rad);
+        self.heed_sticks(target, bearing_rad, left_rad, situation);
+        let rate_rad_s = self.turn_around(target, left_rad, situation);
         let later_rad = wrapped(bearing_rad + rate_rad_s * TICK_S);
         self.bearing_rad = Some(later_rad);
-        let place = |target: &TargetMotion, bearing_rad: f64| {
-            let outward = Rotation2::new(bearing_rad) * Vector2::new(settings.distance_m, 0.0);
-            let mut place = turning_with(target, &outward.push(0.0), rate_rad_s);
-            place.position_m.z = height_z_m(target, situation);
-            if settings.height != FollowHeight::Target {
+        let FollowPlace { distance_m, climb_m_s, retreat_m_s, .. } = self.place;
+        // A time, s, before what the sticks have come to.
+        let place = |target: &TargetMotion, bearing_rad: f64, ago_s: f64| {
+            let outward = Rotation2::new(bearing_rad) * Vector2::x();
+            let off_m = outward * (distance_m - retreat_m_s * ago_s);
+            let mut place = turning_with(target, &off_m.push(0.0), rate_rad_s);
+            place.position_m.z = self.height_z_m(target, situation) + climb_m_s * ago_s;
+            if situation.conduct.follow.height != FollowHeight::Target {
                 (place.velocity_m_s.z, place.acceleration_m_s2.z) = (0.0, 0.0);
             }
+            place.velocity_m_s += (outward * retreat_m_s).push(-climb_m_s);
             place
         };
         let [before, after] = motions;
-        [place(before, bearing_rad), place(after, later_rad)]
+        [place(before, bearing_rad, TICK_S), place(after, later_rad, 0.0)]
+    }
+
+    /// How fast the place turns around the target, rad/s: it goes with a target that turns, and towards its angle besides, as fast as
+    /// it may and as the vehicle can follow.
+    fn turn_around(&mut self, target: &TargetMotion, left_rad: f64, situation: &Situation) -> f64 {
+        let (limits, distance_m) = (situation.limits(), self.place.distance_m);
+        // Beside the velocity of the target; where both add up, the speed is kept anyway.
+        let (most_m_s, target_m_s) = (limits.speed_horizontal_m_s, target.velocity_m_s.xy().norm());
+        let left_m_s = libm::sqrt((most_m_s * most_m_s - target_m_s * target_m_s).max(0.0));
+        let inward_m_s2 = AROUND_SHARE * limits.acceleration_horizontal_m_s2;
+        let fastest_m_s = situation
+            .conduct
+            .follow
+            .around_m_s
+            .min(left_m_s.max(LEAST_APPROACH_M_S))
+            .min(libm::sqrt(inward_m_s2 * distance_m));
+        let (fastest_rad_s, change_rad_s2) = (fastest_m_s / distance_m, AROUND_M_S2 / distance_m);
+        let wanted_rad_s = (target.turn_rate_rad_s + approach(left_rad, AROUND_RATE, change_rad_s2))
+            .clamp(-fastest_rad_s, fastest_rad_s);
+        let most = change_rad_s2 * TICK_S;
+        self.around_rad_s += (wanted_rad_s - self.around_rad_s).clamp(-most, most);
+        self.around_rad_s
+    }
+
+    /// PX4's pilot moves the place with the sticks.
+    fn heed_sticks(&mut self, target: &TargetMotion, bearing_rad: f64, left_rad: f64, situation: &Situation) {
+        let sticks = situation.pilot.sticks.filter(|_| !situation.pilot.lost).unwrap_or_default();
+        let here_m = situation.outputs.position_m;
+        let off = (here_m - target.position_m).xy();
+        let errors = FollowErrors {
+            height_m: self.height_z_m(target, situation) - here_m.z,
+            distance_m: off.norm() - self.place.distance_m,
+            bearing_rad: wrapped(libm::atan2(off.y, off.x) - bearing_rad),
+            left_rad,
+        };
+        self.place.adjust(&sticks, &errors, TICK_S);
+    }
+
+    /// PX4's height, z, m.
+    fn height_z_m(&self, target: &TargetMotion, situation: &Situation) -> f64 {
+        let from_z_m = match situation.conduct.follow.height {
+            FollowHeight::Home => situation.home.position_m.z,
+            FollowHeight::Ground => 0.0,
+            FollowHeight::Target => target.position_m.z,
+        };
+        from_z_m - self.place.height_m
     }
 
     /// ArduPilot's place: at an offset, from north or from the nose of the target.
@@ -228,17 +288,6 @@ fn is_in_reach(situation: &Situation, target: &TargetMotion) -> bool {
     let farthest_m = situation.conduct.follow.farthest_m;
     let distance_m = (target.position_m - situation.outputs.position_m).norm();
     !situation.identity.is_ardupilot() || farthest_m <= 0.0 || distance_m <= farthest_m
-}
-
-/// PX4's height, z, m.
-fn height_z_m(target: &TargetMotion, situation: &Situation) -> f64 {
-    let settings = &situation.conduct.follow;
-    let from_z_m = match settings.height {
-        FollowHeight::Home => situation.home.position_m.z,
-        FollowHeight::Ground => 0.0,
-        FollowHeight::Target => target.position_m.z,
-    };
-    from_z_m - settings.height_m
 }
 
 /// A place at an offset from the target that turns with a rate, rad/s: v + ω × r, a + ω × (ω × r).

@@ -57,6 +57,7 @@ mod failsafe_watch;
 mod fence_keeping;
 mod fence_watch;
 mod follow;
+mod follow_place;
 mod follow_settings;
 mod foreign_flight;
 mod heading_policy;

@@ -225,6 +225,8 @@ impl PilotWatch {
         let of_mode = match situation.mode.leader() {
             Leader::Sticks => 0,
             Leader::SetPoints => OFFBOARD,
+            // There the sticks move the place beside the target.
+            Leader::Vehicle if situation.mode == Mode::Follow => 0,
             Leader::Vehicle => AUTOMATIC,
         };
         let may = !situation.identity.is_ardupilot() && settings.take_over & of_mode != 0;

@@ -15,6 +15,9 @@ pub enum ReturnGoal {
     NearestOfAll,
     /// The nearest rally point, whatever else there is; home if there is none.
     RallyPointOnly,
+    /// Home while the battery lasts for it, else the nearest rally point: as [`Self::Nearest`], which is what PX4 does in a simulation,
+    /// where it has no time that the battery lasts.
+    WithinReach,
 }
 
 impl ReturnGoal {

@@ -33,14 +33,21 @@ impl Sticks {
         up * if up > 0.0 { conduct.stick_climb_m_s } else { conduct.stick_sink_m_s }
     }
 
+    /// Without their dead zones.
+    pub fn live(&self) -> Self {
+        let live = |stick| beyond(stick, DEAD_ZONE);
+        let (forward, right) = (live(self.forward), live(self.right));
+        Self { forward, right, up: live(self.up), turn: live(self.turn) }
+    }
+
     /// Velocities in the frame of the heading.
     pub fn set_point(&self, conduct: &Conduct, yaw_rad: f64, yaw_rate_rad_s: f64) -> PositionSetPoint {
-        let live = |stick| beyond(stick, DEAD_ZONE);
-        let stick = Vector2::new(live(self.forward), live(self.right));
+        let live = self.live();
+        let stick = Vector2::new(live.forward, live.right);
         // A stick in the corner is not faster than one at the edge.
         let stick = if stick.norm() > 1.0 { stick.normalize() } else { stick };
         let velocity = Rotation2::new(yaw_rad) * stick * conduct.stick_speed_m_s;
-        let turn = live(self.turn);
+        let turn = live.turn;
         PositionSetPoint {
             axes: [
                 AxisTarget::Velocity(velocity.x),

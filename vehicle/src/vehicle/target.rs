@@ -35,6 +35,9 @@ pub struct Target {
     /// Where it goes, once that is known, rad.
     course_rad: Option<f64>,
     heading_rad: Option<f64>,
+    /// The place that its velocity was last found from, as it was told, m, and when, µs.
+    told_m: Vector3<f64>,
+    told_us: u64,
 }
 
 /// A target at one time.
@@ -62,6 +65,11 @@ const TRAVELS_M_S: f64 = 0.5;
 const ACCELERATION_S: f64 = 1.5;
 /// Reports farther apart than this, s, tell nothing of what was between them.
 const FARTHEST_APART_S: f64 = 5.0;
+/// Reports nearer together than this, s, tell nothing new, and places nearer together than this no velocity: both as in PX4.
+const NEAREST_APART_S: f64 = 0.1;
+const VELOCITY_APART_S: f64 = 0.5;
+/// The same place within this time, s, is the same report: clients send their last one again.
+const REPEATED_S: f64 = 1.0;
 /// The largest acceleration, m/s², that is believed.
 const STRONGEST_M_S2: f64 = 4.0;
 /// Changes of velocity are smoothed over this time, s.
@@ -79,6 +87,8 @@ impl Target {
             acceleration_m_s2: report.acceleration_m_s2.unwrap_or_default(),
             course_rad: None,
             heading_rad: report.heading_rad,
+            told_m: report.position_m,
+            told_us: time_us,
         };
         target.find_course();
         target
@@ -86,25 +96,35 @@ impl Target {
 
     /// Takes the next report in.
     pub fn update(&mut self, report: &TargetReport, trust: &Trust, time_us: u64) {
-        let apart_s = time_us.saturating_sub(self.reported_us) as f64 / 1e6;
+        let seconds_since = |then_us: u64| time_us.saturating_sub(then_us) as f64 / 1e6;
+        let (apart_s, told_apart_s) = (seconds_since(self.reported_us), seconds_since(self.told_us));
+        if report.position_m == self.told_m && told_apart_s < REPEATED_S {
+            return;
+        }
         let expected = self.at(time_us);
         let surprise = report.position_m - expected.position_m;
         if apart_s > FARTHEST_APART_S || surprise.norm() > JUMP_M {
             *self = Self::new(report, time_us);
             return;
         }
-        if apart_s <= 0.0 {
+        if apart_s < NEAREST_APART_S {
             return;
         }
         // Programs that do not know it tell zeros, too: a target that travels is not at rest.
-        let travelled = (report.position_m - self.position_m) / apart_s;
+        let travelled = (report.position_m - self.told_m) / told_apart_s;
         let rests = |told: &Vector3<f64>| *told == Vector3::zeros() && travelled.norm() > TRAVELS_M_S;
         let told = report.velocity_m_s.filter(|told| !rests(told));
         let velocity_m_s = match told {
             Some(told) => expected.velocity_m_s + (told - expected.velocity_m_s) * trust.velocity,
             // From place to place.
-            None => self.velocity_m_s + (travelled - self.velocity_m_s) * trust.velocity,
+            None if told_apart_s >= VELOCITY_APART_S => {
+                self.velocity_m_s + (travelled - self.velocity_m_s) * trust.velocity
+            }
+            None => self.velocity_m_s,
         };
+        if told.is_some() || told_apart_s >= VELOCITY_APART_S {
+            (self.told_m, self.told_us) = (report.position_m, time_us);
+        }
         let felt = (velocity_m_s - self.velocity_m_s) / apart_s;
         let share = apart_s / (SMOOTHING_S + apart_s);
         let smoothed = self.acceleration_m_s2 + (felt - self.acceleration_m_s2) * share;
@@ -117,6 +137,7 @@ impl Target {
             acceleration_m_s2: report.acceleration_m_s2.unwrap_or(derived).cap_magnitude(STRONGEST_M_S2),
             course_rad: self.course_rad,
             heading_rad: report.heading_rad,
+            ..*self
         };
         self.find_course();
     }
@@ -193,6 +214,32 @@ mod tests {
             target.update(&on_circle(second as f64), &TRUST, second * 1_000_000);
         }
         assert!((target.at(29_000_000).turn_rate_rad_s - 0.2).abs() < 0.03);
+    }
+
+    /// MAVSDK sends what it was told at once, and once more with the beat of a clock of its own.
+    #[test]
+    fn reports_in_quick_succession_make_nothing_of_their_noise() {
+        let noise = [0.8, -1.1, 0.3, -0.6, 1.4, -0.2, 0.9, -1.3];
+        let report = |second: u64, more_m: f64| TargetReport {
+            position_m: Vector3::new(2.0 * second as f64 + noise[second as usize % 8] + more_m, 0.0, 0.0),
+            velocity_m_s: None,
+            acceleration_m_s2: None,
+            heading_rad: None,
+        };
+        let mut target = Target::new(&report(0, 0.0), 0);
+        for second in 1..20 {
+            let time_us = second * 1_000_000;
+            target.update(&report(second, 0.0), &TRUST, time_us);
+            let before = target;
+            target.update(&report(second, 0.0), &TRUST, time_us + 700_000);
+            assert_eq!(target, before, "the same place");
+            target.update(&report(second, 0.5), &TRUST, time_us + 20_000);
+            assert_eq!(target, before, "too soon");
+            target.update(&report(second, 0.5), &TRUST, time_us + 200_000);
+            let motion = target.at(time_us + 1_000_000);
+            assert!((motion.velocity_m_s.x - 2.0).abs() < 3.0, "{second} s: {motion:?}");
+            assert!((motion.position_m.x - 2.0 * (second + 1) as f64).abs() < 4.0, "{second} s: {motion:?}");
+        }
     }
 
     #[test]

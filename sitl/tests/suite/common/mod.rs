@@ -20,9 +20,11 @@ use vehicle::{Mode, VehicleSettings};
 
 pub const GROUND_STATION: (u8, u8) = (255, 190);
 
-/// Settings of a vehicle in Zurich.
+/// Settings of a vehicle in Zurich whose units may be broken.
 pub fn settings(identity: Identity) -> VehicleSettings {
-    VehicleSettings::new(identity)
+    let mut settings = VehicleSettings::new(identity);
+    settings.conduct.failure_injection = true;
+    settings
 }
 
 /// A vehicle and what it has said.
