@@ -57,6 +57,8 @@ pub enum Build {
     Vehicle(fn(&Vehicle) -> MavMessage),
     /// From the vehicle, its parameters and its capabilities.
     Component(fn(&Component<'_>) -> MavMessage),
+    /// From the vehicle, if there is something to tell.
+    Perhaps(fn(&Vehicle) -> Option<MavMessage>),
     /// None, one or several, as there is something to tell.
     Several(fn(&Component<'_>) -> Vec<MavMessage>),
     /// One or several, chosen by parameter 2 of MAV_CMD_REQUEST_MESSAGE. It is sent on request only.
@@ -135,11 +137,12 @@ impl Stream {
         (rate > 0.0).then(|| (1e6 / rate).round() as u64)
     }
 
-    /// The message, from the present state; `None` for those that may be several.
+    /// The message, from the present state; `None` if there is nothing to tell, and for those that may be several.
     pub fn message(&self, component: &Component<'_>) -> Option<MavMessage> {
         match self.build {
             Build::Vehicle(build) => Some(build(component.vehicle)),
             Build::Component(build) => Some(build(component)),
+            Build::Perhaps(build) => build(component.vehicle),
             Build::Several(_) | Build::Numbered(_) => None,
         }
     }

@@ -44,7 +44,6 @@ const ARDUPILOT: &[AbsentMode] = &[
     absent(11, "Drift", "use Loiter"),
     absent(14, "Flip", "send body rates by SET_ATTITUDE_TARGET in Guided"),
     absent(15, "AutoTune", NO_TUNING),
-    absent(18, "Throw", "arm on the ground and take off in Guided"),
     absent(19, "Avoid_ADSB", "use Guided"),
     absent(22, "FlowHold", "there is no optical flow; use Loiter"),
     absent(24, "ZigZag", "upload the lines as a mission and use Auto"),

@@ -37,6 +37,8 @@ pub enum Mode {
     Follow,
     /// Flies back along its own way and lands.
     SmartReturn,
+    /// Waits until it is thrown, and catches itself (ArduPilot: THROW).
+    Throw,
 }
 
 /// Who leads the vehicle in a mode.
@@ -80,7 +82,8 @@ impl Mode {
             | Self::MissionLanding
             | Self::Land
             | Self::Orbit
-            | Self::Follow => Leader::Vehicle,
+            | Self::Follow
+            | Self::Throw => Leader::Vehicle,
         }
     }
 

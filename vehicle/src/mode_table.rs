@@ -61,6 +61,7 @@ const MODES: &[Row] = &[
     row(Mode::Orbit, known(px4(3, 1), "Orbit"), known(7, "Circle")),
     row(Mode::Follow, known(px4(4, 8), "Follow Me"), known(23, "Follow")),
     row(Mode::SmartReturn, None, known(21, "Smart RTL")),
+    row(Mode::Throw, None, known(18, "Throw")),
 ];
 
 /// Other numbers that mean a mode: PX4's automatic mode without a sub-mode is the one that waits.

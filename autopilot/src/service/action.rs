@@ -16,10 +16,11 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 19] = [
+const ACTIONS: [(MavCmd, CarryOut); 20] = [
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
-    (MavCmd::MAV_CMD_NAV_LAND, |context, _| context.vehicle.set_mode(Mode::Land)),
+    (MavCmd::MAV_CMD_NAV_LAND, land),
+    (MavCmd::MAV_CMD_NAV_VTOL_LAND, land),
     (MavCmd::MAV_CMD_NAV_TAKEOFF, take_off),
     (MavCmd::MAV_CMD_CONDITION_YAW, turn),
     (MavCmd::MAV_CMD_DO_CHANGE_SPEED, change_speed),
@@ -73,7 +74,8 @@ impl Service for Actions {
         let action = ACTIONS.into_iter().find(|(number, _)| *number as u16 == command.number);
         let unknown = || Refusal::Unsupported(format!("Command {} is not supported", command.number));
         let (_, carry_out) = action.ok_or_else(unknown)?;
-        carry_out(context, command)?;
+        let identity = context.identity();
+        carry_out(context, command).map_err(|refusal| as_told_by(identity, refusal))?;
         Ok(Progress::Done)
     }
 }
@@ -82,6 +84,11 @@ impl Service for Actions {
 fn loiter(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
     let mode = if context.identity().is_ardupilot() { Mode::Position } else { Mode::Hold };
     context.vehicle.set_mode(mode)
+}
+
+/// Lands where it is: what a vehicle with wings would land as, too.
+fn land(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
+    context.vehicle.set_mode(Mode::Land)
 }
 
 /// ArduPilot takes no speed that is not above zero; PX4 returns to the parameter's by it, and −1 keeps what there is.
@@ -202,7 +209,15 @@ fn reset_battery(context: &mut Context, command: &Command) -> Result<(), Refusal
     context.vehicle.refill_battery(percent / 100.0)
 }
 
-/// ArduPilot answers whatever it cannot do now by a failure.
+/// ArduPilot answers what it cannot do now by a failure.
+pub fn as_told_by(identity: Identity, refusal: Refusal) -> Refusal {
+    match refusal {
+        Refusal::TemporarilyRejected(reason) if identity.is_ardupilot() => Refusal::Failed(reason),
+        refusal => refusal,
+    }
+}
+
+/// ArduPilot answers whatever it does not take off for by a failure.
 fn failed(refusal: Refusal) -> Refusal {
     Refusal::Failed(refusal.to_string())
 }

@@ -34,7 +34,7 @@ impl Service for CustomModes {
     /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         const SET_MODE_MESSAGE: u16 = id::SET_MODE as u16;
-        let result = context.vehicle.set_custom_mode(frame.payload().u32(0));
+        let result = change_to(&mut context.vehicle, frame.payload().u32(0));
         let outcome = result.map(|()| Progress::Done);
         acknowledge_outcome(&mut context.outbox, origin, SET_MODE_MESSAGE, Some(&outcome));
         explain(context, &outcome);
@@ -49,6 +49,17 @@ impl Service for CustomModes {
         }
         Ok(Progress::Done)
     }
+}
+
+/// ArduPilot answers a mode that it does not change to by a failure, whatever the reason is.
+fn change_to(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
+    let fails = vehicle.identity().is_ardupilot();
+    vehicle.set_custom_mode(custom_mode).map_err(|refusal| match refusal {
+        Refusal::TemporarilyRejected(reason) | Refusal::Unsupported(reason) if fails => {
+            Refusal::Failed(reason)
+        }
+        refusal => refusal,
+    })
 }
 
 fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
@@ -67,5 +78,5 @@ fn set_mode(vehicle: &mut Vehicle, command: &Command) -> Result<(), Refusal> {
     } else {
         return Err(Refusal::denied(format!("Unknown mode {main}, {sub}")));
     };
-    vehicle.set_custom_mode(custom_mode)
+    change_to(vehicle, custom_mode)
 }

@@ -2,7 +2,7 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, RC_CHANNELS_DATA, RC_CHANNELS_RAW_DATA};
-use vehicle::radio::{CHANNELS, Position, function};
+use vehicle::radio::{CHANNELS, Position};
 use vehicle::{Refusal, Sticks, Vehicle};
 
 use super::{CommandEntry, Outcome, Progress, Service};
@@ -59,9 +59,8 @@ impl Service for ManualControl {
             }
         };
         let number = command.parameter(1);
-        let known = command.whole(1).and_then(function);
         let unknown = || Refusal::Unsupported(format!("RC switch function {number} is not available"));
-        context.vehicle.do_function(known.ok_or_else(unknown)?, position)?;
+        context.vehicle.move_switch(command.whole(1).ok_or_else(unknown)?, position)?;
         Ok(Progress::Done)
     }
 }

@@ -7,6 +7,7 @@ mod airframes;
 mod ardupilot_safety;
 mod autostart;
 mod combinations;
+mod copter;
 mod dataflash;
 mod datagrams;
 mod determinism;

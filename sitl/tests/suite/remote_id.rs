@@ -1,11 +1,12 @@
 //! Open Drone ID, with ArduPilot's DID_* and PX4's COM_ARM_ODID.
 
 use crate::common::Bench;
-use crate::common::failsafe_bench::{TEMPORARILY_REJECTED, set};
+use crate::common::failsafe_bench::set;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 
+const FAILED: u8 = 4;
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
 fn latest<T>(bench: &Bench, of: impl Fn(&MavMessage) -> Option<T>) -> Option<T> {
@@ -57,7 +58,7 @@ fn arming_waits_for_it_only_if_the_option_says_so() {
     assert_eq!(status, MavOdidArmStatus::MAV_ODID_ARM_STATUS_PRE_ARM_FAIL_GENERIC);
     assert!(error.starts_with("remote ID: no aircraft type"), "{error}");
     set(&mut bench, "DID_OPTIONS", 1.0);
-    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), TEMPORARILY_REJECTED);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), FAILED);
     assert!(bench.texts().concat().contains("OPEN_DRONE_ID_BASIC_ID"), "{:?}", bench.texts());
     identify(&mut bench);
     bench.fly(1.1);

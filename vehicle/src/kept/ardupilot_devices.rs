@@ -282,7 +282,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MAV_GCS_SYSID_HI", 0, 0..=255, "", "Last system id of ground stations; every one counts"),
         ("MAV_OPTIONS", 0, 0..=1, "", "Options of MAVLink"),
         ("MAV_TELEM_DELAY", 0, 0..=30, "s", "Delay of telemetry"),
-        ("BATT_VOLT_PIN", 13, -1..=115, "", "Pin of the voltage"),
         ("BATT_CURR_PIN", 12, -1..=115, "", "Pin of the current"),
         ("BATT_ESC_INDEX", 0, 0..=32, "", "Motor controllers that measure the battery"),
         ("BRD_OPTIONS", 1, 0..=127, "", "Options of the board"),

@@ -38,6 +38,12 @@ impl std::fmt::Debug for KeptValues {
 }
 
 impl KeptValues {
+    /// The value of a parameter by its name: what has been set, or its default.
+    pub fn by_id(&self, id: &str) -> Option<f32> {
+        let (place, parameter) = kept_parameters().find(|(_, parameter)| parameter.id == id)?;
+        Some(self.get(place).unwrap_or(parameter.default))
+    }
+
     /// The value at a place, if it has been set.
     pub fn get(&self, place: usize) -> Option<f32> {
         self.0.get(place).copied().flatten()

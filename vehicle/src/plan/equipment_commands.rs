@@ -6,6 +6,7 @@ use core::f64::consts::{PI, TAU};
 use super::command::*;
 use super::step::{Do, Step};
 use crate::equipment::{CameraMode, Drive, Oblique, Operation, Pointing, Switch};
+use crate::radio::Position;
 
 /// Ranges of parameters, with their names.
 type Ranges = &'static [(u8, &'static str, f64, f64)];
@@ -95,7 +96,7 @@ pub(super) static EQUIPMENT_COMMANDS: &[MissionCommand] = &[
     absent(DO_WINCH, |_| without("winch")),
     absent(DO_SPRAYER, |_| without("sprayer")),
     absent(DO_ENGINE_CONTROL, |_| without("combustion engine")),
-    absent(DO_AUX_FUNCTION, |_| without("auxiliary functions")),
+    command(DO_AUX_FUNCTION, &[1, 2], &[(1, "function", 0.0, MOST), (2, "position", 0.0, 2.0)], move_switch),
     absent(DO_SEND_SCRIPT_MESSAGE, |_| without("scripts")),
     absent(DO_VTOL_TRANSITION, |_| without("wings")),
     absent(DO_SET_REVERSE, |_| without("reverse drive")),
@@ -124,6 +125,19 @@ fn set_relay(source: &Source<'_>) -> Step {
         _ => Switch::Off,
     };
     operate(Operation::SetRelay { relay: source.value(1) as u8, to })
+}
+
+/// ArduPilot's function of a switch, and the position that it comes to.
+fn move_switch(source: &Source<'_>) -> Step {
+    if !source.site.identity.is_ardupilot() {
+        return without("auxiliary functions");
+    }
+    let position = match source.value(2) {
+        position if position < 0.5 => Position::Low,
+        position if position < 1.5 => Position::Middle,
+        _ => Position::High,
+    };
+    Step::Do(Do::MoveSwitch { function: source.value(1) as u32, position })
 }
 
 fn repeat_servo(source: &Source<'_>) -> Step {
@@ -370,6 +384,8 @@ mod tests {
             step(Identity::ArduPilot, DO_SET_CAM_TRIGG_DIST, [5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let expected = Operation::TriggerByDistance { distance_m: 5.0, at_once: false, oblique: None };
         assert_eq!(by_distance, operate(expected));
+        let switch = step(Identity::ArduPilot, DO_AUX_FUNCTION, [70.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(switch, Step::Do(Do::MoveSwitch { function: 70, position: Position::High }));
         let mount = step(Identity::ArduPilot, DO_MOUNT_CONTROL, [-45.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(matches!(mount, Step::Do(Do::Operate(Operation::Point(_)))), "{mount:?}");
     }

@@ -2,6 +2,7 @@
 
 use super::{ChangeSpeed, Look, Place, TimeOfDay};
 use crate::equipment::Operation;
+use crate::radio::Position;
 
 /// One step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +183,13 @@ pub enum Do {
     Operate(Operation),
     /// Switches the fence on or off.
     EnableFence(bool),
+    /// Does what a switch of the pilot does that comes to a position, by ArduPilot's number.
+    MoveSwitch {
+        /// RCn_OPTION's number.
+        function: u32,
+        /// Where the switch is then.
+        position: Position,
+    },
     /// Passes something by that the vehicle does not have.
     Absent(&'static str),
     /// Nothing: other commands find their way by it.

@@ -7,39 +7,86 @@ pub enum Function {
     Mode(u32),
     /// Adds the place to the mission.
     SaveWaypoint,
+    /// Lets the mission begin anew.
+    ResetMission,
+    /// Removes the mission.
+    ClearMission,
     /// Switches the fence.
     Fence,
     /// Stops the rotors.
     EmergencyStop,
     /// Arms and disarms.
     Arming,
+    /// Arms, or stops the rotors; in the middle it disarms on the ground only.
+    ArmingOrStop,
+    /// Disarms.
+    Disarming,
+    /// Lets sticks refer to the heading of arming.
+    Simple,
+    /// The same in the middle, and at the high end to the direction away from home.
+    SuperSimple,
+    /// Switches the downward rangefinder.
+    Rangefinder,
+    /// Switches the distance that is kept from what is measured around.
+    Proximity,
+    /// Switches what is done about traffic.
+    Traffic,
+    /// Switches a relay, counted from 0.
+    Relay(u8),
+    /// Grabs and releases.
+    Gripper,
+    /// Takes an image.
+    Image,
+    /// Records a video.
+    Video,
 }
 
 /// Numbers that there are.
 const FUNCTIONS: &[(u32, Function)] = &[
     (2, Function::Mode(14)),
+    (3, Function::Simple),
     (4, Function::Mode(6)),
     (7, Function::SaveWaypoint),
+    (9, Function::Image),
+    (10, Function::Rangefinder),
     (11, Function::Fence),
+    (13, Function::SuperSimple),
     (16, Function::Mode(3)),
     (17, Function::Mode(15)),
     (18, Function::Mode(9)),
+    (19, Function::Gripper),
+    (24, Function::ResetMission),
+    (28, Function::Relay(0)),
     (31, Function::EmergencyStop),
     (33, Function::Mode(17)),
+    (34, Function::Relay(1)),
+    (35, Function::Relay(2)),
+    (36, Function::Relay(3)),
     (37, Function::Mode(18)),
+    (38, Function::Traffic),
+    (40, Function::Proximity),
     (41, Function::Arming),
     (42, Function::Mode(21)),
     (52, Function::Mode(1)),
     (55, Function::Mode(4)),
     (56, Function::Mode(5)),
     (57, Function::Mode(23)),
+    (58, Function::ClearMission),
+    (60, Function::Mode(24)),
+    (66, Function::Relay(4)),
+    (67, Function::Relay(5)),
     (68, Function::Mode(0)),
     (69, Function::Mode(16)),
     (70, Function::Mode(2)),
+    (71, Function::Mode(22)),
     (72, Function::Mode(7)),
     (73, Function::Mode(11)),
+    (81, Function::Disarming),
+    (99, Function::Mode(27)),
     (153, Function::Arming),
     (154, Function::Arming),
+    (165, Function::ArmingOrStop),
+    (166, Function::Video),
 ];
 
 /// The function of a number; `None`: there is none.

@@ -30,6 +30,8 @@ pub struct ClosedLoop {
 pub struct Conditions<'a> {
     /// What the vehicle knows of its motion as the tick begins.
     pub outputs: &'a Outputs,
+    /// Force, NED, N, and torque, FRD, N·m, from outside, beside that of the wind.
+    pub load: (Vector3<f64>, Vector3<f64>),
     /// True height above the ground, m.
     pub height_m: f64,
     /// Whether the rotors may turn.
@@ -134,7 +136,8 @@ impl ClosedLoop {
         // Inputs are large: they are completed in their place.
         let mut inputs = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
-        inputs.disturbance = Disturbance { wind_m_s: self.wind_m_s, ..Disturbance::default() };
+        let (force_n, torque_n_m) = conditions.load;
+        inputs.disturbance = Disturbance { force_n, torque_n_m, wind_m_s: self.wind_m_s };
         inputs.armed = conditions.armed;
         inputs.estimate = conditions.estimate;
         inputs.rotor_faults = conditions.rotor_faults;

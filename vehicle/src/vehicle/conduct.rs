@@ -14,6 +14,8 @@ use super::return_settings::ReturnSettings;
 use super::simulated::Simulated;
 use super::stick_settings::StickSettings;
 use super::surroundings_settings::SurroundingsSettings;
+use super::takeoff_check::TakeoffCheckSettings;
+use super::throw::ThrowSettings;
 use super::trail::TrailSettings;
 use crate::kept::KeptValues;
 use crate::radio::RadioSettings;
@@ -106,6 +108,12 @@ pub struct Conduct {
     /// The pilot's radio.
     #[serde(default)]
     pub radio: RadioSettings,
+    /// The throw mode.
+    #[serde(default)]
+    pub throw: ThrowSettings,
+    /// What is looked at before a takeoff.
+    #[serde(default)]
+    pub takeoff_check: TakeoffCheckSettings,
 }
 
 /// Records of before it could be chosen have this one.
@@ -185,6 +193,8 @@ impl Conduct {
             log: LogConduct::default(),
             sticks: StickSettings::new(ardupilot),
             radio: RadioSettings::new(ardupilot),
+            throw: ThrowSettings::default(),
+            takeoff_check: TakeoffCheckSettings::default(),
         }
     }
 }

@@ -109,9 +109,21 @@ impl Failsafe {
         }
     }
 
-    /// Feels the battery: whether its voltage or charge is below a limit.
-    pub fn feel_battery(&mut self, situation: &Situation) {
+    /// Feels the battery: whether its voltage or charge is below a limit, and whether it is there at all. Returns a text for a pilot
+    /// whose battery is gone.
+    pub fn feel_battery(&mut self, situation: &Situation) -> Option<String> {
         let limits = &situation.conduct.failsafe.battery_limits;
+        let missing = limits.is_missing();
+        let news = self.miss_battery(missing && situation.armed);
+        if missing {
+            return news.then(|| {
+                let used_mah = 1e3 * situation.conduct.battery_capacity_ah - situation.battery_left_mah;
+                format!(
+                    "Battery 1 is missing, last: {:.2}V used {:.0} mAh",
+                    situation.battery_voltage_v, used_mah
+                )
+            });
+        }
         let voltage_v =
             if limits.at_rest { situation.battery_resting_v } else { situation.battery_voltage_v };
         let late_us = (limits.low_s * 1e6) as u64;
@@ -122,6 +134,7 @@ impl Failsafe {
             let lasting = self.lasts(weakness, voltage_v < volts, situation.time_us, late_us);
             self.set_weak(weakness, lasting || situation.battery_left_mah < mah);
         }
+        None
     }
 
     /// Announces that the fence, which was announced as ahead, has been crossed.

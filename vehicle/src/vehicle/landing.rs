@@ -86,7 +86,7 @@ impl Landing {
             self.grounded_since_us = situation.time_us;
             return;
         }
-        if situation.mission_goes_on {
+        if situation.mission_goes_on || situation.mode == Mode::Throw {
             return;
         }
         match proposal.steering().kind() {

@@ -16,6 +16,7 @@ use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::pilot_watch::PilotWatch;
+use super::pushes::PushClock;
 use super::receiver::Receiver;
 use super::remote_id::RemoteId;
 use super::return_home::Return;
@@ -25,6 +26,8 @@ use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
+use super::takeoff_check::TakeoffCheck;
+use super::throw::Throw;
 use super::traffic_watch::TrafficWatch;
 use crate::equipment::Equipment;
 
@@ -53,6 +56,12 @@ pub struct Machines {
     pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
+    /// What the rotors have against one.
+    pub takeoff_check: TakeoffCheck,
+    /// Throws.
+    pub throw: Throw,
+    /// Pushes that a user gives the vehicle.
+    pub pushes: PushClock,
     /// The turn that a command asks for.
     pub turn: CommandedTurn,
     /// What is received of the pilot.

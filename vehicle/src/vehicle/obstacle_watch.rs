@@ -44,6 +44,10 @@ pub struct ObstacleWatch {
     stopped_us: Option<u64>,
     /// Whether it was told that nothing is measured.
     told_blind: bool,
+    /// Whether a switch of the pilot has switched the rangefinder off.
+    rangefinder_off: bool,
+    /// Whether one has switched off that a distance is kept.
+    proximity_off: bool,
 }
 
 impl ObstacleWatch {
@@ -65,6 +69,21 @@ impl ObstacleWatch {
     /// Whether there is a rangefinder.
     pub fn has_rangefinder(&self, situation: &Situation) -> bool {
         !self.obstacles.is_empty() || situation.conduct.surroundings.rangefinder_kind > 0
+    }
+
+    /// Whether it is switched on.
+    pub fn rangefinder_is_on(&self) -> bool {
+        !self.rangefinder_off
+    }
+
+    /// Switches the rangefinder on or off.
+    pub fn switch_rangefinder(&mut self, on: bool) {
+        self.rangefinder_off = !on;
+    }
+
+    /// Lets a distance be kept, or not.
+    pub fn switch_proximity(&mut self, on: bool) {
+        self.proximity_off = !on;
     }
 
     /// Takes what a companion computer measures. Sectors that it does not know keep what it knew a moment ago.
@@ -135,7 +154,8 @@ impl ObstacleWatch {
 
     /// Stops the vehicle before what is measured, in the modes that keep a distance.
     pub fn keep_distance(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        let Some(asked) = proposal.steering().asked().filter(|_| keeps_distance(situation)) else {
+        let keeps = !self.proximity_off && keeps_distance(situation);
+        let Some(asked) = proposal.steering().asked().filter(|_| keeps) else {
             self.stopped = false;
             return;
         };

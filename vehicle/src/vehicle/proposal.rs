@@ -17,6 +17,7 @@ use super::steering::Steering;
 use super::trajectory::PieceFlight;
 use crate::equipment::Operation;
 use crate::mode::Mode;
+use crate::radio::Position;
 use crate::world::FARTHEST_M;
 
 /// What can be asked for besides steering, home and the region of interest.
@@ -38,6 +39,8 @@ pub enum Request {
     JoinLanding,
     /// The fence is to be switched on or off.
     EnableFence(bool),
+    /// What a switch does, by ArduPilot's number, that comes to a position.
+    MoveSwitch(u32, Position),
     /// The rotors are to stop; the text says why.
     StopRotors(String),
     /// The flight is to end at once.
@@ -274,6 +277,11 @@ impl<'a> Proposal<'a> {
     /// Asks that the fence is switched on or off.
     pub fn enable_fence(&mut self, enabled: bool) {
         self.requests.push(Request::EnableFence(enabled));
+    }
+
+    /// Asks for what a switch of the pilot does, by ArduPilot's number, that comes to a position.
+    pub fn move_switch(&mut self, number: u32, position: Position) {
+        self.requests.push(Request::MoveSwitch(number, position));
     }
 
     /// Asks that the rotors stop and says why.

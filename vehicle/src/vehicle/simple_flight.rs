@@ -5,13 +5,40 @@ use nalgebra::{Rotation2, Vector2};
 use super::receiver::Pilot;
 use super::situation::Situation;
 use super::sticks::Sticks;
+use crate::radio::Position;
 
 /// Nearer to home than this, m, the direction away from it stays.
 const NEAR_M: f64 = 10.0;
 
+/// What sticks refer to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StickReference {
+    /// The nose.
+    Nose,
+    /// The heading of arming.
+    Arming,
+    /// The direction away from home.
+    Home,
+}
+
+impl StickReference {
+    /// That of a switch in a position: one for the heading of arming alone, or for both.
+    pub fn of(position: Position, both: bool) -> Self {
+        match position {
+            Position::Low => Self::Nose,
+            Position::Middle if both => Self::Arming,
+            Position::Middle => Self::Nose,
+            Position::High if both => Self::Home,
+            Position::High => Self::Arming,
+        }
+    }
+}
+
 /// The headings that sticks refer to, rad.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct SimpleFlight {
+    /// What a switch has chosen in place of the mode switch.
+    chosen: Option<StickReference>,
     /// That of arming.
     armed_rad: f64,
     /// Away from home.
@@ -21,7 +48,12 @@ pub struct SimpleFlight {
 impl SimpleFlight {
     /// It is armed with a heading, rad.
     pub fn arm(&mut self, yaw_rad: f64) {
-        *self = Self { armed_rad: yaw_rad, away_rad: yaw_rad };
+        *self = Self { armed_rad: yaw_rad, away_rad: yaw_rad, ..*self };
+    }
+
+    /// A switch chooses what sticks refer to.
+    pub fn choose(&mut self, reference: StickReference) {
+        self.chosen = Some(reference);
     }
 
     /// Looks where home is.
@@ -36,10 +68,15 @@ impl SimpleFlight {
     /// super simple.
     pub fn seen(&self, pilot: &Pilot, slot: Option<usize>, [simple, away]: [u32; 2], yaw_rad: f64) -> Pilot {
         let is_set = |bits: u32| slot.is_some_and(|slot| bits >> slot & 1 == 1);
-        let reference_rad = match (is_set(away), is_set(simple)) {
-            (true, _) => self.away_rad,
-            (_, true) => self.armed_rad,
-            _ => return *pilot,
+        let of_slot = match (is_set(away), is_set(simple)) {
+            (true, _) => StickReference::Home,
+            (_, true) => StickReference::Arming,
+            _ => StickReference::Nose,
+        };
+        let reference_rad = match self.chosen.unwrap_or(of_slot) {
+            StickReference::Home => self.away_rad,
+            StickReference::Arming => self.armed_rad,
+            StickReference::Nose => return *pilot,
         };
         let turned = |sticks: Sticks| {
             let turn = Rotation2::new(reference_rad - yaw_rad);

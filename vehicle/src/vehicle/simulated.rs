@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pushes::Pushes;
 use crate::estimation::SensorErrors;
 use crate::world::{WindSettings, WindShape};
 
@@ -25,6 +26,8 @@ pub struct Simulated {
     pub weak_share: f64,
     /// Errors of the instruments.
     pub errors: SensorErrors,
+    /// Pushes and twists.
+    pub pushes: Pushes,
 }
 
 impl Default for Simulated {
@@ -38,6 +41,7 @@ impl Default for Simulated {
             weak_rotors: 0.0,
             weak_share: 0.0,
             errors: SensorErrors::default(),
+            pushes: Pushes::default(),
         }
     }
 }

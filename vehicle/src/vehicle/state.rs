@@ -34,12 +34,14 @@ use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
 use super::mission::{Helm, Mission};
 use super::motor_test::MotorTests;
+use super::notice::Severity;
 use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::perception::Perception;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
+use super::pushes::PushClock;
 use super::receiver::Receiver;
 use super::remote_id::RemoteId;
 use super::return_home::Return;
@@ -52,6 +54,8 @@ use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
+use super::takeoff_check::TakeoffCheck;
+use super::throw::Throw;
 use super::tick::{TICK_S, TICK_US};
 use super::traffic_watch::TrafficWatch;
 use crate::FlightError;
@@ -117,6 +121,9 @@ impl Vehicle {
             landing: Landing::new(-perception.truth().position_m.z),
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
+            takeoff_check: TakeoffCheck::default(),
+            throw: Throw::default(),
+            pushes: PushClock::default(),
             turn: CommandedTurn::default(),
             receiver: Receiver::default(),
             pilot_watch: PilotWatch::default(),
@@ -201,7 +208,10 @@ impl Vehicle {
         let crossed = parts.fence.watch(&situation);
         parts.simple.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
-        parts.failsafe.feel_battery(&situation);
+        let missing = parts.failsafe.feel_battery(&situation);
+        if let Some(text) = missing {
+            self.decided.say(Severity::Critical, text);
+        }
         if let Some(breach) = crossed {
             self.consult(|parts, situation, proposal| {
                 parts.failsafe.tell_crossing(situation, proposal, breach);
@@ -223,6 +233,8 @@ impl Vehicle {
     fn fly(&mut self) {
         self.consult(|parts, situation, proposal| match situation.mode {
             _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
+            _ if parts.takeoff_check.blocks(situation, proposal) => {}
+            Mode::Throw => parts.throw.step(situation, proposal),
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
             Mode::Position => fly_by_velocity(situation, proposal),
@@ -266,7 +278,13 @@ impl Vehicle {
 
     /// Flies the closed loop as the steering asks.
     fn advance(&mut self) -> Result<(), FlightError> {
+        self.end_pushes();
+        let pushes = &self.setup.conduct().simulated.pushes;
+        let airframe = &self.closed_loop.simulation().configuration().airframe;
+        let (truth, time_us) = (self.perception.truth(), self.time_us());
+        let load = self.machines.pushes.load(pushes, airframe, truth, time_us);
         let conditions = Conditions {
+            load,
             outputs: self.perception.outputs(),
             height_m: -self.perception.truth().position_m.z,
             armed: self.decided.is_armed(),
@@ -281,6 +299,23 @@ impl Vehicle {
             }
             None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
         }
+    }
+
+    /// The duration of a push that has ended is zero from then on, as ArduPilot's simulation shows it.
+    fn end_pushes(&mut self) {
+        let pushes = &self.setup.conduct().simulated.pushes;
+        let ends = self.machines.pushes.ends(pushes, self.time_us());
+        if ends == [false; 2] {
+            return;
+        }
+        let mut conduct = *self.setup.conduct();
+        let now = &mut conduct.simulated.pushes;
+        for (push, ended) in [&mut now.shove, &mut now.twist].into_iter().zip(ends) {
+            if ended {
+                push.time_ms = 0;
+            }
+        }
+        self.setup.set_conduct(conduct);
     }
 
     /// Perceives the motion after the tick.

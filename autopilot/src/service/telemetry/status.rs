@@ -49,6 +49,11 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
     } else {
         present & !MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE
     };
+    let enabled = if vehicle.obstacles().rangefinder_is_on() {
+        enabled
+    } else {
+        enabled & !MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
+    };
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
     let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
     let position = validity.horizontal_position && validity.horizontal_velocity;

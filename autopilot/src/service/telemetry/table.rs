@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::*;
 
 use super::{actuators, attitude, estimate, navigation, position, sensors, status, targets, truth};
 use crate::service::Service;
-use crate::stream::{Group, Stream};
+use crate::stream::{Build, Group, Stream};
 
 /// Messages of the vehicle's state. They need no state of their own.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,12 @@ const STREAMS: &[Stream] = &[
         .of(Group::ExtendedStatus),
     Stream::new(VFR_HUD_DATA::ID, [4.0, 10.0], position::vfr_hud).of(Group::Extra2),
     Stream::new(ATTITUDE_TARGET_DATA::ID, [2.0, 10.0], targets::attitude_target),
-    Stream::new(POSITION_TARGET_LOCAL_NED_DATA::ID, [2.0, 10.0], targets::position_target_local_ned)
-        .of(Group::Position),
+    Stream::when(
+        POSITION_TARGET_LOCAL_NED_DATA::ID,
+        [2.0, 10.0],
+        Build::Perhaps(targets::position_target_local_ned),
+    )
+    .of(Group::Position),
     Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int),
     Stream::new(HIGHRES_IMU_DATA::ID, [0.0, 50.0], sensors::highres_imu),
     Stream::new(SIM_STATE_DATA::ID, [0.0, 0.0], truth::sim_state),

@@ -4,7 +4,7 @@ use mavlink::dialects::ardupilotmega::{
     ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, POSITION_TARGET_GLOBAL_INT_DATA,
     POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask,
 };
-use vehicle::{SteeringKind, TrackedAttitude, Vehicle, wrapped};
+use vehicle::{AxisTarget, Mode, PositionSetPoint, SteeringKind, TrackedAttitude, Vehicle, wrapped};
 
 use crate::codec::{boot_ms, floats, scaled_degrees};
 
@@ -31,8 +31,67 @@ fn type_mask(vehicle: &Vehicle) -> PositionTargetTypemask {
     }
 }
 
-/// POSITION_TARGET_LOCAL_NED: the reference that the cascade tracks.
-pub fn position_target_local_ned(vehicle: &Vehicle) -> MavMessage {
+/// POSITION_TARGET_LOCAL_NED: the reference that the cascade tracks; for ArduPilot what the guided mode is asked for, and nothing in any
+/// other mode.
+pub fn position_target_local_ned(vehicle: &Vehicle) -> Option<MavMessage> {
+    if !vehicle.identity().is_ardupilot() {
+        return Some(reference_local_ned(vehicle));
+    }
+    let guided = matches!(vehicle.mode(), Mode::Offboard | Mode::Takeoff);
+    vehicle.asked().filter(|_| guided).map(|asked| guided_target(vehicle, &asked))
+}
+
+/// What ArduPilot's guided mode is asked for: places alone, velocities and accelerations, or all three. Headings are never told.
+fn guided_target(vehicle: &Vehicle, asked: &PositionSetPoint) -> MavMessage {
+    const POSITION: u16 = 0b111;
+    const VELOCITY: u16 = 0b111 << 3;
+    const ACCELERATION: u16 = 0b111 << 6;
+    const HEADING: u16 = 0b11 << 10;
+    let now = vehicle.outputs().setpoint;
+    let of = |kind: fn(&AxisTarget) -> bool| asked.axes.iter().any(kind);
+    let ignored = if of(|axis| matches!(axis, AxisTarget::Track { .. })) {
+        0
+    } else if of(|axis| matches!(axis, AxisTarget::Position(_))) {
+        VELOCITY | ACCELERATION
+    } else if of(|axis| matches!(axis, AxisTarget::Velocity(_))) {
+        POSITION
+    } else {
+        POSITION | VELOCITY
+    };
+    let [mut place, mut velocity, mut acceleration] =
+        [now.position_m, now.velocity_m_s, now.acceleration_m_s2].map(|vector| floats(&vector));
+    for (axis, target) in asked.axes.iter().enumerate() {
+        match *target {
+            AxisTarget::Position(position_m) => place[axis] = position_m as f32,
+            AxisTarget::Velocity(velocity_m_s) => velocity[axis] = velocity_m_s as f32,
+            AxisTarget::Acceleration(acceleration_m_s2) => acceleration[axis] = acceleration_m_s2 as f32,
+            AxisTarget::Track { position_m, velocity_m_s, acceleration_m_s2 } => {
+                place[axis] = position_m as f32;
+                velocity[axis] = velocity_m_s as f32;
+                acceleration[axis] = acceleration_m_s2 as f32;
+            }
+        }
+    }
+    let ([x, y, z], [vx, vy, vz], [afx, afy, afz]) = (place, velocity, acceleration);
+    MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
+        time_boot_ms: boot_ms(vehicle.outputs().time_us),
+        x,
+        y,
+        z,
+        vx,
+        vy,
+        vz,
+        afx,
+        afy,
+        afz,
+        yaw: wrapped(now.yaw_rad) as f32,
+        yaw_rate: now.yaw_rate_rad_s as f32,
+        type_mask: PositionTargetTypemask::from_bits_retain(ignored | HEADING),
+        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+    })
+}
+
+fn reference_local_ned(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
     let [x, y, z] = floats(&reference.position_m);

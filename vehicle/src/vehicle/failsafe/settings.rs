@@ -139,6 +139,21 @@ pub struct BatteryLimits {
     pub to_arm_mah: f64,
     /// Whether the voltage is looked at without the drop that the current makes.
     pub at_rest: bool,
+    /// Where the voltage is measured; −1: nowhere, the battery is missing (ArduPilot: BATT_VOLT_PIN).
+    #[serde(default = "connected")]
+    pub pin: i16,
+}
+
+/// Records of before it could be missing have the pin of ArduPilot's simulation.
+fn connected() -> i16 {
+    13
+}
+
+impl BatteryLimits {
+    /// Whether no battery is measured.
+    pub fn is_missing(&self) -> bool {
+        self.pin < 0
+    }
 }
 
 /// No voltage, as packs have one to twelve cells; ArduPilot has 10.5 V, for three of them.
@@ -153,6 +168,7 @@ impl Default for BatteryLimits {
             to_arm_v: 0.0,
             to_arm_mah: 0.0,
             at_rest: false,
+            pin: connected(),
         }
     }
 }

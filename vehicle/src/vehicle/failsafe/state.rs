@@ -26,6 +26,8 @@ pub struct Failsafe {
     wind_m_s: f64,
     /// Whether the battery is low, and critical, by its voltage or charge, and since when the voltage is, µs.
     weak: [(bool, Option<u64>); 2],
+    /// Whether the battery is known to be missing.
+    battery_missed: bool,
 }
 
 /// How weak a battery is.
@@ -71,6 +73,11 @@ impl Failsafe {
     /// Takes in whether it is.
     pub fn set_weak(&mut self, weakness: Weakness, weak: bool) {
         self.weak[weakness as usize].0 = weak;
+    }
+
+    /// Takes in whether the battery is missing; returns whether that is news.
+    pub fn miss_battery(&mut self, missing: bool) -> bool {
+        !std::mem::replace(&mut self.battery_missed, missing) && missing
     }
 
     /// Takes in whether the voltage is low at a time; returns whether it has been for so long, µs.

@@ -120,6 +120,7 @@ fn carry_out(action: &Do, situation: &Situation, proposal: &mut Proposal) {
         Do::SetHome(place) => set_home(place.as_ref(), situation, proposal),
         Do::Operate(operation) => proposal.operate(*operation),
         Do::EnableFence(enabled) => proposal.enable_fence(*enabled),
+        Do::MoveSwitch { function, position } => proposal.move_switch(*function, *position),
         Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: passed by")),
         Do::Mark => {}
         Do::Look(look) => {

@@ -38,6 +38,8 @@ pub struct Mission {
     paused: bool,
     /// Whether it flies its landing in place of a way home.
     lands: bool,
+    /// Whether somebody has chosen the present step.
+    chosen: bool,
     /// The step that was told last.
     told: Option<usize>,
     /// Steps that were reached since the last look.
@@ -80,6 +82,11 @@ impl Mission {
     /// Number of the step that is flown, or will be.
     pub fn current(&self) -> usize {
         self.current
+    }
+
+    /// Whether somebody has chosen the step.
+    pub fn is_chosen(&self) -> bool {
+        self.chosen
     }
 
     /// Whether it flies its landing in place of a way home.
@@ -200,6 +207,7 @@ impl Mission {
         }
         self.give_up(None);
         self.lands = false;
+        self.chosen = index > 0;
         self.current = index.max(self.program.first());
         if situation.mode == Mode::Mission && !self.paused {
             self.take_over(situation, proposal);

@@ -44,6 +44,9 @@ impl Mission {
             Progress::Started => MissionState::Paused,
         };
         let total = program.len().saturating_sub(program.first());
-        MissionStatus { current: self.current(), total, state, in_mode }
+        // Before its first step is flown or chosen it is nowhere.
+        let waits = state == MissionState::NotStarted && !self.is_chosen();
+        let current = if waits { 0 } else { self.current() };
+        MissionStatus { current, total, state, in_mode }
     }
 }

@@ -3,7 +3,9 @@
 use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::super::situation::Situation;
 use super::Vehicle;
+use crate::kept::KeptValues;
 use crate::plan::{PlanKind, command};
+use crate::radio::{RadioFailure, RadioLossAction};
 
 /// Bits of ARMING_MIS_ITEMS with the commands that meet them, by name.
 const REQUIRED: [(u32, u16, &str); 4] = [
@@ -15,13 +17,15 @@ const REQUIRED: [(u32, u16, &str); 4] = [
 const RALLY: u32 = 32;
 
 impl Vehicle {
-    /// Batteries, fence and mission items.
+    /// Batteries, fence, mission items, the radio, and values that no vehicle has.
     pub(super) fn ardupilot_obstacles(&self) -> Vec<ArmingObstacle> {
         let situation = self.situation();
         let battery = battery(&situation).map(|text| ArmingObstacle::new(Subject::Battery, text));
         let fence = fence(&situation).map(|text| ArmingObstacle::new(Subject::Failsafe, text));
         let items = self.missing_items().map(|text| ArmingObstacle::new(Subject::Mission, text));
-        battery.into_iter().chain(fence).chain(items).collect()
+        let radio = radio(&situation).map(|text| ArmingObstacle::from(text.to_owned()));
+        let values = bad_values(&situation.conduct.kept).map(ArmingObstacle::from);
+        battery.into_iter().chain(fence).chain(items).chain(radio).chain(values).collect()
     }
 
     /// Items that ARMING_MIS_ITEMS asks for, and that there are not.
@@ -39,6 +43,9 @@ impl Vehicle {
 
 fn battery(situation: &Situation) -> Option<String> {
     let limits = &situation.conduct.failsafe.battery_limits;
+    if limits.is_missing() {
+        return Some("Battery 1 unhealthy".to_owned());
+    }
     if situation.battery_voltage_v < limits.to_arm_v {
         return Some("Battery 1 below minimum arming voltage".to_owned());
     }
@@ -64,4 +71,52 @@ fn fence(situation: &Situation) -> Option<String> {
     }
     let breach = situation.breach_at(&situation.outputs.position_m)?;
     Some(format!("Vehicle breaching {} fence", breach.ardupilot_name()))
+}
+
+/// A radio that has never been received because it fails, or one whose throttle says that its sender is gone.
+fn radio(situation: &Situation) -> Option<&'static str> {
+    let (settings, pilot) = (&situation.conduct.radio, &situation.pilot);
+    if situation.conduct.failsafe.pilot_lost == RadioLossAction::None {
+        return None;
+    }
+    if settings.failure == RadioFailure::NoPulses && !pilot.has_radio {
+        return Some("RC not found");
+    }
+    let throttle = settings.channel(settings.axes.throttle).zip(pilot.pulses);
+    let throttle_us = throttle.and_then(|((index, _), pulses)| pulses.get(index).copied());
+    let low = throttle_us.is_some_and(|pulse| f64::from(pulse) < settings.low_throttle_us);
+    low.then_some("Throttle below failsafe")
+}
+
+/// Gains that ArduPilot's position control needs, and what its motors need to turn.
+const GAINS: [&str; 10] = [
+    "PSC_POSXY_P",
+    "PSC_NE_POS_P",
+    "PSC_POSZ_P",
+    "PSC_D_POS_P",
+    "PSC_VELXY_P",
+    "PSC_NE_VEL_P",
+    "PSC_VELZ_P",
+    "PSC_D_VEL_P",
+    "PSC_ACCZ_P",
+    "PSC_D_ACC_P",
+];
+/// The most that MOT_SPIN_MIN may be.
+const MOST_SPIN: f32 = 0.3;
+
+/// Parameters that change nothing here, and with whose values ArduPilot does not arm.
+fn bad_values(kept: &KeptValues) -> impl Iterator<Item = String> {
+    let value = |id: &str| kept.by_id(id).unwrap_or_default();
+    let gains = GAINS.into_iter().filter(|id| kept.by_id(id).is_some_and(|gain| gain <= 0.0));
+    let gains = gains.map(|id| format!("{id} must be > 0")).collect::<Vec<_>>();
+    let (least, longest) = (value("MOT_PWM_MIN"), value("MOT_PWM_MAX"));
+    let (spins, idles) = (value("MOT_SPIN_MIN"), value("MOT_SPIN_ARM"));
+    let motors = if least >= longest {
+        Some("Motors: Check MOT_PWM_MIN and MOT_PWM_MAX".to_owned())
+    } else if spins > MOST_SPIN {
+        Some(format!("Motors: MOT_SPIN_MIN too high {spins:.2} > {MOST_SPIN:.1}"))
+    } else {
+        (idles > spins).then(|| "Motors: MOT_SPIN_ARM > MOT_SPIN_MIN".to_owned())
+    };
+    gains.into_iter().chain(motors)
 }

@@ -60,6 +60,11 @@ impl Vehicle {
                     }
                 }
                 Request::EnableFence(enabled) => self.enable_fence(enabled),
+                Request::MoveSwitch(number, position) => {
+                    if let Err(refusal) = self.move_switch(number, position) {
+                        self.decided.say(Severity::Warning, format!("Mission: {refusal}"));
+                    }
+                }
                 Request::StopRotors(why) => self.stop_rotors(&why),
                 Request::Terminate => self.terminate(),
             }
@@ -108,6 +113,7 @@ impl Vehicle {
             }
             Mode::Orbit => parts.orbit.begin(situation, proposal),
             Mode::Follow => parts.follow.begin(situation, proposal),
+            Mode::Throw => parts.throw.begin(),
             Mode::GuidedAttitude => {
                 parts.offboard.forget();
                 proposal.hold(situation);

@@ -3,12 +3,14 @@
 use super::super::notice::{Refusal, Severity};
 use super::super::pilot_watch::Wish;
 use super::super::receiver::{Pilot, Pulses};
+use super::super::simple_flight::StickReference;
 use super::super::sticks::Sticks;
 use super::super::tick::TICK_S;
 use super::Vehicle;
+use crate::equipment::{Operation, Switch};
 use crate::mode::{Leader, Mode};
 use crate::plan::{MissionItem, PlanKind, frame};
-use crate::radio::{CHANNELS, Function, Position, RadioLossAction};
+use crate::radio::{CHANNELS, Function, Position, RadioLossAction, function};
 
 /// Numbers of commands that a switch can add to a mission.
 const NAV_WAYPOINT: u16 = 16;
@@ -104,6 +106,15 @@ impl Vehicle {
         self.set_mode(mode)
     }
 
+    /// Does what a switch does, by ArduPilot's number, that has come to a position.
+    ///
+    /// # Errors
+    /// [`Refusal`] of a function that there is not, and of what cannot be done now.
+    pub fn move_switch(&mut self, number: u32, position: Position) -> Result<(), Refusal> {
+        let unknown = || Refusal::Unsupported(format!("RC switch function {number} is not available"));
+        self.do_function(function(number).ok_or_else(unknown)?, position)
+    }
+
     /// Does what a switch does that has come to a position.
     ///
     /// # Errors
@@ -118,11 +129,55 @@ impl Vehicle {
                 self.enable_fence(position == Position::High);
                 Ok(())
             }
-            (Function::EmergencyStop, Position::High) => self.disarm_by("Emergency stop: rotors stopped"),
-            (Function::EmergencyStop, _) => Ok(()),
-            (Function::Arming, Position::High) => self.arm(false),
-            (Function::Arming, Position::Middle) => Ok(()),
-            (Function::Arming, Position::Low) => self.disarm_by("Disarmed by switch"),
+            (Function::ResetMission, Position::High) => self.set_mission_item(0, true),
+            (Function::ClearMission, Position::High) => self.clear_mission(),
+            (Function::ResetMission | Function::ClearMission, _) => Ok(()),
+            (Function::EmergencyStop, Position::High) | (Function::ArmingOrStop, Position::Low) => {
+                self.disarm_by("Emergency stop: rotors stopped")
+            }
+            (Function::EmergencyStop, _) | (Function::Arming, Position::Middle) => Ok(()),
+            (Function::Arming | Function::ArmingOrStop, Position::High) => self.arm(false),
+            (Function::ArmingOrStop, Position::Middle) => self.disarm(false),
+            (Function::Arming, Position::Low) | (Function::Disarming, Position::High) => {
+                self.disarm_by("Disarmed by switch")
+            }
+            (Function::Disarming, _) => Ok(()),
+            (Function::Simple | Function::SuperSimple, position) => {
+                let reference = StickReference::of(position, function == Function::SuperSimple);
+                self.machines.simple.choose(reference);
+                Ok(())
+            }
+            (Function::Rangefinder | Function::Proximity | Function::Traffic, position) => {
+                self.switch_instrument(function, position == Position::High);
+                Ok(())
+            }
+            (Function::Image | Function::Video | Function::Gripper | Function::Relay(_), position) => {
+                operation(function, position).map_or(Ok(()), |operation| self.operate(&operation))
+            }
+        }
+    }
+
+    fn clear_mission(&mut self) -> Result<(), Refusal> {
+        if self.mode() == Mode::Mission && self.is_armed() {
+            return Err(Refusal::later("Mission not cleared: it is being flown"));
+        }
+        self.set_plan(PlanKind::Mission, Vec::new()).map_err(|fault| {
+            Refusal::Failed(format!("Mission not cleared: {}", fault.located(self.identity())))
+        })?;
+        self.decided.say(Severity::Info, "Mission cleared");
+        Ok(())
+    }
+
+    /// Switches what measures around, or what is done about it.
+    fn switch_instrument(&mut self, function: Function, on: bool) {
+        match function {
+            Function::Rangefinder => self.machines.obstacles.switch_rangefinder(on),
+            Function::Proximity => self.machines.obstacles.switch_proximity(on),
+            _ => {
+                let mut conduct = *self.conduct();
+                conduct.surroundings.traffic.enabled = on;
+                self.setup.set_conduct(conduct);
+            }
         }
     }
 
@@ -180,5 +235,19 @@ impl Vehicle {
         let high = if by_thrust { sticks.throttle() > 0.05 } else { sticks.climb_m_s(conduct) > 0.0 };
         let ardupilot = situation.identity.is_ardupilot();
         (high && !situation.pilot.lost && (by_thrust || ardupilot)).then(|| "throttle too high".to_owned())
+    }
+}
+
+/// What a switch asks of the equipment in a position.
+fn operation(function: Function, position: Position) -> Option<Operation> {
+    let on = position == Position::High;
+    match (function, position) {
+        (Function::Image, Position::High) => Some(Operation::Shoot),
+        (Function::Video, Position::High | Position::Low) => Some(Operation::Record(on)),
+        (Function::Gripper, Position::High | Position::Low) => Some(Operation::Grip { grabs: on }),
+        (Function::Relay(relay), Position::High | Position::Low) => {
+            Some(Operation::SetRelay { relay, to: if on { Switch::On } else { Switch::Off } })
+        }
+        _ => None,
     }
 }

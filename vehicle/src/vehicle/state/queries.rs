@@ -11,6 +11,7 @@ use super::super::home::Home;
 use super::super::landed::LandedState;
 use super::super::mission::MissionStatus;
 use super::super::orbit_request::OrbitStatus;
+use super::super::set_point::PositionSetPoint;
 use super::super::speeds::with_speeds;
 use super::super::steering::{SteeringKind, TrackedAttitude};
 use super::Vehicle;
@@ -187,6 +188,11 @@ impl Vehicle {
     /// How it is steered.
     pub fn steering_kind(&self) -> SteeringKind {
         self.decided.steering().kind()
+    }
+
+    /// What it is asked for by position, axis by axis; `None` on a planned way, and while it is not steered by position.
+    pub fn asked(&self) -> Option<PositionSetPoint> {
+        self.decided.steering().asked()
     }
 
     /// What the attitude controller tracks now.

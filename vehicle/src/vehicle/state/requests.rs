@@ -65,6 +65,8 @@ impl Vehicle {
             self.reconfigure(&kept)?;
         }
         self.setup.set_conduct(*conduct);
+        let time_us = self.time_us();
+        self.machines.pushes.change(&before.pushes, &conduct.simulated.pushes, time_us);
         if let Some(drag) = drag_n_s_m {
             self.decided.say(Severity::Info, wind_drag::provided(&wind_drag::NAMES, drag));
         }
@@ -182,6 +184,9 @@ impl Vehicle {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
             Mode::Follow => Follow::may_begin(&situation)?,
+            Mode::Throw if situation.armed => {
+                return Err(Refusal::Failed("Throw mode rejected: already armed".to_owned()));
+            }
             Mode::SmartReturn => self.machines.smart_return.may_begin()?,
             Mode::Land | Mode::Return if situation.armed && !flying => {
                 return Err(Refusal::later(format!(

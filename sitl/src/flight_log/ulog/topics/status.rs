@@ -61,6 +61,7 @@ fn nav_state(mode: Mode) -> u8 {
         Mode::Orbit => 21,
         // PX4 has no such modes; the nearest ones.
         Mode::SmartReturn => 5,
+        Mode::Throw => 4,
         Mode::GuidedAttitude => 14,
     }
 }

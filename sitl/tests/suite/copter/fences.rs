@@ -1,0 +1,195 @@
+//! The fence, and sticks that do not lead over it.
+
+use super::flier::*;
+use crate::common::settings;
+use mavlink::dialects::ardupilotmega::MavCmd;
+use vehicle::identity::Identity;
+use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
+
+/// Suite: HorizontalAvoidFence, with twice its deflection: a stick near its centre is slower here, and the margin is approached from
+/// inside.
+#[test]
+fn sticks_do_not_lead_over_the_circle() {
+    for behaviour in [1.0, 0.0] {
+        let mut flier = Flier::new();
+        flier.change_mode(LOITER);
+        flier.set_all(&[
+            ("FENCE_ENABLE", 1.0),
+            ("FENCE_TYPE", 2.0),
+            ("FENCE_RADIUS", 15.0),
+            ("FENCE_MARGIN", 3.0),
+            ("AVOID_ENABLE", 1.0),
+            ("AVOID_BEHAVE", behaviour),
+            ("RC10_OPTION", 40.0),
+        ]);
+        flier.rc(10, 2000);
+        flier.arm();
+        flier.rc(3, 1700);
+        flier.wait("10 m", 30.0, |flier| flier.height_m() > 10.0);
+        flier.rc(3, 1500);
+        flier.rc(2, 1300);
+        flier.wait("the margin", 60.0, |flier| flier.distance_m() > 11.5);
+        for _ in 0..70 {
+            flier.fly(1.0);
+            assert_eq!(flier.mode(), LOITER, "{:?}", flier.bench.texts());
+            assert!((11.0..13.0).contains(&flier.distance_m()), "{}", flier.distance_m());
+        }
+        flier.rc(2, 1500);
+        flier.return_home();
+    }
+}
+
+/// Suite: HorizontalFence.
+#[test]
+fn the_fence_is_armed_inside_of_and_returned_from() {
+    let mut start = settings(Identity::ArduPilot);
+    let corner = |latitude_deg: f64, longitude_deg: f64| MissionItem {
+        frame: frame::GLOBAL_RELATIVE,
+        command: command::NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+        parameters: [4.0, 0.0, 0.0, 0.0],
+        position: [latitude_deg, longitude_deg, 0.0],
+        autocontinue: true,
+    };
+    let nowhere = [corner(1.0, 1.0), corner(1.0, 1.01), corner(1.01, 1.01), corner(1.01, 1.0)];
+    start.plans.set(PlanKind::Fence, Plan::new(nowhere.to_vec()));
+    let mut flier = Flier::with(&start);
+    flier.set_all(&[("FENCE_ENABLE", 1.0), ("AVOID_ENABLE", 0.0)]);
+    flier.change_mode(LOITER);
+    flier.fly(1.0);
+    assert!(flier.obstacles().contains(&"PreArm: Vehicle breaching Polygon fence".to_owned()));
+    let mut flier = Flier::new();
+    flier.set_all(&[("FENCE_ENABLE", 1.0), ("AVOID_ENABLE", 0.0)]);
+    flier.change_mode(LOITER);
+    for (name, words) in [
+        ("FENCE_RADIUS", "Invalid Circle FENCE_RADIUS value"),
+        ("FENCE_ALT_MAX", "Invalid FENCE_ALT_MAX value"),
+    ] {
+        flier.set(name, -1.0);
+        assert_eq!(flier.obstacles(), [format!("PreArm: {words}")]);
+        flier.set(name, 100.0);
+    }
+    flier.set_all(&[("FENCE_TYPE", 2.0), ("FENCE_RADIUS", 40.0)]);
+    flier.take_off(10.0, LOITER);
+    flier.rc(2, 1100);
+    flier.wait_mode(RTL, 60.0);
+    flier.rc(2, 1475);
+    flier.wait_home();
+}
+
+/// Suite: MaxAltFence, MinAltFence.
+#[test]
+fn ceiling_and_floor_return() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, LOITER);
+    flier.set_all(&[
+        ("FENCE_ENABLE", 1.0),
+        ("AVOID_ENABLE", 0.0),
+        ("FENCE_TYPE", 1.0),
+        ("FENCE_ALT_MAX", 30.0),
+    ]);
+    flier.rc(3, 1800);
+    flier.wait_mode(RTL, 120.0);
+    flier.wait_home();
+    let mut flier = Flier::new();
+    flier.take_off(30.0, LOITER);
+    flier.set_all(&[
+        ("AVOID_ENABLE", 0.0),
+        ("FENCE_ENABLE", 1.0),
+        ("FENCE_TYPE", 8.0),
+        ("FENCE_ALT_MIN", 20.0),
+    ]);
+    flier.rc(3, 1200);
+    flier.wait_mode(RTL, 120.0);
+    flier.wait_home();
+}
+
+/// Suite: MaxAltFenceAvoid, MinAltFenceAvoid, AvoidanceAltFence.
+#[test]
+fn sticks_do_not_lead_over_ceiling_or_floor_and_back_away_gently() {
+    let mut flier = Flier::new();
+    flier.take_off(30.0, LOITER);
+    flier.set_all(&[
+        ("FENCE_ENABLE", 1.0),
+        ("FENCE_TYPE", 9.0),
+        ("FENCE_ALT_MIN", 20.0),
+        ("FENCE_ALT_MAX", 60.0),
+        ("FENCE_ACTION", 0.0),
+    ]);
+    let backs_at = 0.75;
+    for (pulse, name, bound, reached) in
+        [(1920, "FENCE_ALT_MAX", 50.0, 49.0), (1120, "FENCE_ALT_MIN", 30.0, 31.0)]
+    {
+        flier.rc(3, pulse);
+        flier.fly(40.0);
+        let before = flier.height_m();
+        assert!((20.0..60.0).contains(&before), "{before}");
+        flier.set(name, bound);
+        for _ in 0..600 {
+            flier.fly(0.1);
+            let climb = flier.climb_m_s();
+            assert!(climb.abs() < backs_at * 1.1, "{climb}");
+        }
+        let after = flier.height_m();
+        assert!((after - reached).abs() < 2.0, "{after}");
+    }
+    flier.rc(3, 1500);
+    flier.return_home();
+}
+
+/// Suite: FenceFloorEnabledLanding.
+#[test]
+fn one_may_land_below_the_floor() {
+    let mut flier = Flier::new();
+    flier.set_all(&[
+        ("AVOID_ENABLE", 0.0),
+        ("FENCE_ENABLE", 1.0),
+        ("FENCE_TYPE", 15.0),
+        ("FENCE_ALT_MIN", 20.0),
+        ("FENCE_ALT_MAX", 30.0),
+    ]);
+    flier.take_off(25.0, GUIDED);
+    flier.wait("25 m", 30.0, |flier| flier.height_m() > 24.5);
+    flier.change_mode(LOITER);
+    flier.rc(3, 1800);
+    flier.wait_mode(RTL, 120.0);
+    flier.rc(3, 1500);
+    flier.wait("below the floor", 60.0, |flier| flier.height_m() < 15.0);
+    flier.change_mode(LOITER);
+    flier.fly(15.0);
+    flier.rc(3, 1300);
+    flier.wait("the ground", 60.0, |flier| flier.height_m() < 0.5);
+    flier.rc(3, 1000);
+    flier.wait_disarmed(60.0);
+    assert_eq!(flier.mode(), LOITER);
+    assert!(flier.vehicle().fence().is_some() && flier.vehicle().fence_record().now.is_none());
+    let parameters = [0.0; 7];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, parameters), ACCEPTED);
+    assert!(flier.vehicle().fence().is_none());
+}
+
+/// Suite: FenceFloorAutoDisableLanding, FenceFloorAutoEnableOnArming.
+#[test]
+fn a_fence_that_switches_itself_on_is_off_after_the_landing() {
+    for start in [1.0, 3.0] {
+        let mut flier = Flier::new();
+        flier.set_all(&[
+            ("AVOID_ENABLE", 0.0),
+            ("FENCE_TYPE", 11.0),
+            ("FENCE_ALT_MIN", 10.0),
+            ("FENCE_ALT_MAX", 20.0),
+            ("FENCE_AUTOENABLE", start),
+        ]);
+        assert!(flier.vehicle().fence().is_none());
+        flier.take_off(15.0, GUIDED);
+        flier.wait("15 m", 30.0, |flier| flier.height_m() > 14.8);
+        flier.fly(1.0);
+        assert!(flier.vehicle().fence().is_some());
+        flier.change_mode(LOITER);
+        flier.rc(3, 1800);
+        flier.wait_mode(RTL, 120.0);
+        assert!(flier.vehicle().fence_record().now.is_some());
+        flier.wait_disarmed(120.0);
+        flier.fly(0.1);
+        assert!(flier.vehicle().fence().is_none(), "{start}");
+    }
+}

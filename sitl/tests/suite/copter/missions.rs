@@ -1,0 +1,80 @@
+//! Missions.
+
+use super::flier::*;
+use crate::common::settings;
+use mavlink::dialects::ardupilotmega::MavCmd;
+use vehicle::identity::Identity;
+use vehicle::plan::{PlanKind, command};
+
+const TAKEOFF: u16 = command::NAV_TAKEOFF;
+const WAYPOINT: u16 = command::NAV_WAYPOINT;
+const RETURN: u16 = command::NAV_RETURN_TO_LAUNCH;
+
+/// Suite: AuxFunctionsInMission.
+#[test]
+fn a_mission_moves_a_switch() {
+    let mut start = settings(Identity::ArduPilot);
+    let rows = [
+        (TAKEOFF, 0.0, 0.0, 10.0),
+        (WAYPOINT, 10.0, 0.0, 10.0),
+        (218, 0.0, 0.0, 0.0),
+        (WAYPOINT, 20.0, 0.0, 10.0),
+        (RETURN, 0.0, 0.0, 0.0),
+    ];
+    let plan = mission(&start, &rows);
+    let mut items = plan.items().to_vec();
+    // AltHold, high.
+    items[3].parameters = [70.0, 2.0, 0.0, 0.0];
+    start.plans.set(PlanKind::Mission, vehicle::plan::Plan::new(items));
+    let mut flier = Flier::with(&start);
+    flier.change_mode(LOITER);
+    flier.arm();
+    flier.change_mode(AUTO);
+    flier.rc(3, 1500);
+    flier.wait_mode(ALT_HOLD, 60.0);
+    flier.change_mode(AUTO);
+    flier.wait_home();
+}
+
+/// Suite: PAUSE_CONTINUE.
+#[test]
+fn a_mission_pauses_and_goes_on_however_often_it_is_asked() {
+    let rows = [
+        (TAKEOFF, 0.0, 0.0, 10.0),
+        (WAYPOINT, 60.0, 0.0, 10.0),
+        (WAYPOINT, 60.0, 60.0, 10.0),
+        (RETURN, 0.0, 0.0, 0.0),
+    ];
+    let mut flier = with_mission(&rows);
+    flier.change_mode(AUTO);
+    flier.arm();
+    for item in [2, 3] {
+        flier.wait("its item", 90.0, |flier| flier.vehicle().mission_status().current == item);
+        flier.fly(2.0);
+        for continues in [0.0, 0.0, 1.0, 1.0] {
+            let parameters = [continues, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            assert_eq!(
+                flier.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, parameters),
+                ACCEPTED,
+                "{item} {continues}"
+            );
+            flier.fly(if continues == 0.0 { 5.0 } else { 0.1 });
+            assert!(continues == 1.0 || flier.speed_m_s() < 1.0, "{}", flier.speed_m_s());
+        }
+    }
+    flier.wait_home();
+}
+
+/// Suite: MissionIndexValidity.
+#[test]
+fn items_and_tags_that_there_are_not_are_refused() {
+    let rows = [(TAKEOFF, 0.0, 0.0, 20.0), (WAYPOINT, 20.0, 0.0, 20.0), (RETURN, 0.0, 0.0, 0.0)];
+    let mut flier = with_mission(&rows);
+    let chosen = |flier: &mut Flier, item: f32| {
+        flier.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [item, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    };
+    assert_eq!([0.0, 1.0, 3.0].map(|item| chosen(&mut flier, item)), [ACCEPTED; 3]);
+    assert_eq!(chosen(&mut flier, 4.0), 2, "denied");
+    let no_such_tag = [65_535.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_JUMP_TAG, no_such_tag), FAILED);
+}

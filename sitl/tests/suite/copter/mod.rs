@@ -1,0 +1,8 @@
+//! What ArduCopter's own test suite flies, in our words: the same parameters, sticks, commands and bars.
+
+mod arming;
+mod fences;
+mod flier;
+mod missions;
+mod modes;
+mod switches;

@@ -1,0 +1,95 @@
+//! What switches of the radio do.
+
+use super::flier::*;
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavSysStatusSensor};
+use vehicle::plan::PlanKind;
+
+const CIRCLE: u32 = 7;
+const ACRO: u32 = 1;
+const BRAKE: u32 = 17;
+
+/// Suite: SetModesViaModeSwitch.
+#[test]
+fn the_mode_switch_has_six_modes() {
+    let mut flier = Flier::new();
+    flier.rc(5, 1000);
+    flier.fly(0.5);
+    let modes = [(4, 1165), (2, 1295), (6, 1425), (7, 1555), (1, 1685), (17, 1815)];
+    for (number, (mode, _)) in (1..).zip(modes) {
+        flier.set(&format!("FLTMODE{number}"), f64::from(mode));
+    }
+    for (mode, pulse) in modes.iter().rev().chain(&modes) {
+        flier.rc(5, *pulse);
+        flier.wait_mode(*mode, 2.0);
+    }
+    assert_eq!([CIRCLE, ACRO, BRAKE], [7, 1, 17]);
+}
+
+/// Suite: SetModesViaAuxSwitch.
+#[test]
+fn a_switch_that_is_let_go_gives_the_mode_back() {
+    let mut flier = Flier::new();
+    flier.rc(5, 1000);
+    flier.wait_mode(CIRCLE, 2.0);
+    flier.set_all(&[("RC9_OPTION", 18.0), ("RC10_OPTION", 55.0)]);
+    flier.fly(1.0);
+    flier.rc(9, 1900);
+    flier.wait_mode(LAND, 2.0);
+    flier.rc(10, 1900);
+    flier.wait_mode(GUIDED, 2.0);
+    flier.rc(10, 1000);
+    flier.wait_mode(CIRCLE, 2.0);
+}
+
+/// Suite: AuxSwitchOptions.
+#[test]
+fn a_switch_clears_the_mission_and_another_one_begins_it_anew() {
+    let rows = [(22, 0.0, 0.0, 10.0), (16, 20.0, 0.0, 10.0), (16, 40.0, 0.0, 10.0), (20, 0.0, 0.0, 0.0)];
+    let mut flier = with_mission(&rows);
+    flier.set("RC7_OPTION", 24.0);
+    flier.fly(0.5);
+    assert_eq!(
+        flier.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [4.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        ACCEPTED
+    );
+    flier.wait("item 4", 5.0, |flier| flier.vehicle().mission_status().current == 4);
+    flier.rc(7, 2000);
+    flier.wait("the first item", 5.0, |flier| flier.vehicle().mission_status().current == 0);
+    flier.rc(7, 1000);
+    flier.fly(0.5);
+    flier.set("RC7_OPTION", 58.0);
+    flier.fly(0.5);
+    assert_eq!(flier.vehicle().plans().get(PlanKind::Mission).items().len(), 5);
+    flier.rc(7, 2000);
+    flier.fly(1.0);
+    assert!(flier.vehicle().plans().get(PlanKind::Mission).items().is_empty());
+}
+
+/// Suite: RangeFinder.
+#[test]
+fn a_switch_switches_the_rangefinder() {
+    let mut flier = Flier::new();
+    flier.set_all(&[
+        ("RNGFND1_TYPE", 1.0),
+        ("RNGFND1_MIN_CM", 0.0),
+        ("RNGFND1_MAX_CM", 4000.0),
+        ("RNGFND1_SCALING", 12.12),
+        ("RNGFND1_PIN", 0.0),
+        ("RC9_OPTION", 10.0),
+    ]);
+    flier.fly(0.5);
+    for (pulse, on) in [(2000, true), (1000, false), (2000, true)] {
+        flier.rc(9, pulse);
+        flier.bench.heard.clear();
+        flier.fly(2.1);
+        assert_eq!(enabled(&flier, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION), Some(on));
+    }
+}
+
+/// Whether SYS_STATUS shows a sensor as enabled.
+fn enabled(flier: &Flier, sensor: MavSysStatusSensor) -> Option<bool> {
+    flier.latest(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_enabled.contains(sensor)),
+        _ => None,
+    })
+}
