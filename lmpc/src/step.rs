@@ -16,6 +16,19 @@ pub enum Status {
     Held,
 }
 
+impl Status {
+    /// How bad it is, as records and plots have it: 0 optimal, 1 relaxed, 2 out of iterations, 3 held.
+    #[must_use]
+    pub const fn severity(self) -> u8 {
+        match self {
+            Self::Optimal => 0,
+            Self::Relaxed => 1,
+            Self::IterationLimit => 2,
+            Self::Held => 3,
+        }
+    }
+}
+
 /// The outcome of one control step with P inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<const P: usize, T = f64> {

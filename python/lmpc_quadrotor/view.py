@@ -1,12 +1,13 @@
-"""A page that shows a flight: one HTML file without anything from elsewhere."""
+"""A page that shows a flight: the live page of lmpc-sitl and the flight in one HTML file, without anything from elsewhere."""
 
 import argparse
-import json
+import os
 import subprocess
 import sys
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,6 @@ from .files import sitl_path
 
 #: Columns that the page needs, by the names of the FMU's outputs.
 _NEEDED = ["time", "position.x", "position.y", "position.z"]
-#: Columns that it shows if they are there.
-_SHOWN = ["setpoint.position.x", "setpoint.position.y", "setpoint.position.z", "attitude.phi", "attitude.theta", "attitude.psi", "thrust"]
-#: More points than this are not seen.
-_POINTS = 2000
 
 
 def flight_page(table: Any, title: str = "Flight") -> str:
@@ -26,21 +23,31 @@ def flight_page(table: Any, title: str = "Flight") -> str:
 
     Raises `ValueError` when it has no `time` or `position.x`, `.y`, `.z`.
     """
+    _check(table)
+    names = list(table.dtype.names)
+    with TemporaryDirectory() as folder:
+        flown, page = Path(folder) / "flight.csv", Path(folder) / "flight.html"
+        columns = np.column_stack([np.asarray(table[name], dtype=float) for name in names])
+        np.savetxt(flown, columns, "%.9g", ",", header=",".join(names), comments="")
+        _write(flown, page)
+        text = page.read_text(encoding="utf-8")
+    return text.replace("flight.csv", title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;"))
+
+
+def _check(table: Any) -> None:
     names = list(table.dtype.names or [])
     missing = [name for name in _NEEDED if name not in names]
     if missing:
         raise ValueError(f"the flight has no column {', '.join(missing)}; it has {', '.join(names) or 'no names'}")
-    every = max(1, -(-len(table) // _POINTS))
-    rows = table[::every]
-    columns = {name: np.round(rows[name].astype(float), 5).tolist() for name in _NEEDED + [name for name in _SHOWN if name in names]}
-    template = (Path(__file__).parent / "view.html").read_text(encoding="utf-8")
-    data = json.dumps({"title": title, "columns": columns}).replace("<", "\\u003c")
-    return template.replace("/*DATA*/null", data)
 
 
-def _read(path: Path) -> Any:
-    table = np.genfromtxt(path, delimiter=",", names=True, deletechars="", encoding="utf-8", dtype=float)
-    return np.atleast_1d(table)
+def _write(flown: Path, page: Path) -> None:
+    """Raises `ValueError` with what the program says is wrong."""
+    settings = {name: value for name, value in os.environ.items() if not name.startswith("LMPC_SITL_")}
+    command = [sitl_path(), "--view-record", str(flown), "--view-page", str(page), "--log", "warn"]
+    ended = subprocess.run(command, capture_output=True, text=True, env=settings)
+    if ended.returncode != 0:
+        raise ValueError(ended.stderr.strip().removeprefix("error: "))
 
 
 def _serve(path: Path) -> int:
@@ -51,18 +58,20 @@ def _serve(path: Path) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Writes the page of a CSV file and opens it if that is asked for, or serves the live page with the file."""
+    """Writes the page of a flight and opens it if that is asked for, or serves the live page with the flight."""
     parser = argparse.ArgumentParser(prog="python -m lmpc_quadrotor view", description="Writes a page that shows a flight.")
-    parser.add_argument("file", type=Path, help="CSV file with the columns time and position.x, .y, .z, as FMPy's --output-file writes it")
+    parser.add_argument("file", type=Path, help="table (.csv) with the columns time and position.x, .y, .z, as FMPy's --output-file writes it, log (.ulg) or record (.lmpc)")
     parser.add_argument("--output", type=Path, help="page to write (default: FILE.html)")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
-    parser.add_argument("--serve", action="store_true", help="show it in the live page of lmpc-sitl instead, until Ctrl-C; takes ULogs (.ulg), too")
+    parser.add_argument("--serve", action="store_true", help="serve the page until Ctrl-C instead")
     chosen = parser.parse_args(arguments)
     if chosen.serve:
         return _serve(chosen.file)
     output = chosen.output or chosen.file.with_suffix(".html")
     try:
-        output.write_text(flight_page(_read(chosen.file), chosen.file.stem), encoding="utf-8")
+        if chosen.file.suffix.lower() == ".csv":
+            _check(np.atleast_1d(np.genfromtxt(chosen.file, delimiter=",", names=True, deletechars="", encoding="utf-8", dtype=float)))
+        _write(chosen.file, output)
     except (OSError, ValueError) as problem:
         print(f"error: {chosen.file}: {problem}", file=sys.stderr)
         return 1

@@ -10,7 +10,7 @@ use crate::configuration::{Arguments, Settings, check_replay, file, fmu_listing,
 use crate::failure::Failure;
 use crate::fleet::Loss;
 use crate::hil::{HilSettings, Simulator};
-use crate::live::show_recording;
+use crate::live::{show_recording, write_page};
 use crate::ready;
 use crate::record::{RecordEnd, Replayed, replay};
 use crate::session::Session;
@@ -40,6 +40,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         check_replay(&arguments)?;
         replay(path)?.iter().for_each(|replayed| say(&told(replayed)));
         return Ok(());
+    }
+    if let Some(page) = &arguments.view_page {
+        let path = arguments.view_record.as_deref().ok_or_else(|| Failure::Value {
+            name: "--view-page".to_owned(),
+            reason: "needs a flight to show; add --view-record FILE".to_owned(),
+        })?;
+        return write_page(&arguments, path, page);
     }
     if let Some(path) = &arguments.view_record {
         let shown = show_recording(&arguments, path)?;

@@ -13,7 +13,7 @@ pub struct Asset {
 
 const HTML: &str = "text/html; charset=utf-8";
 const CSS: &str = "text/css; charset=utf-8";
-const SCRIPT: &str = "text/javascript; charset=utf-8";
+pub const SCRIPT: &str = "text/javascript; charset=utf-8";
 const PLAIN: &str = "text/plain; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
@@ -27,7 +27,8 @@ macro_rules! file {
     };
 }
 
-static ASSETS: [Asset; 24] = [
+/// All of them.
+pub static ASSETS: &[Asset] = &[
     file!("page/index.html", HTML),
     file!("page/style.css", CSS),
     file!("page/icon.svg", SVG),
@@ -35,8 +36,15 @@ static ASSETS: [Asset; 24] = [
     file!("page/stream.js", SCRIPT),
     file!("page/frame.js", SCRIPT),
     file!("page/scene.js", SCRIPT),
-    file!("page/craft.js", SCRIPT),
+    file!("page/axes.js", SCRIPT),
+    file!("page/airframe.js", SCRIPT),
+    file!("page/crafts.js", SCRIPT),
+    file!("page/trail.js", SCRIPT),
     file!("page/grid.js", SCRIPT),
+    file!("page/graphics.js", SCRIPT),
+    file!("page/labels.js", SCRIPT),
+    file!("page/redraw.js", SCRIPT),
+    file!("page/rarely.js", SCRIPT),
     file!("page/surroundings.js", SCRIPT),
     file!("page/horizon.js", SCRIPT),
     file!("page/plots.js", SCRIPT),
@@ -44,6 +52,7 @@ static ASSETS: [Asset; 24] = [
     file!("page/panel.js", SCRIPT),
     file!("page/controls.js", SCRIPT),
     file!("page/replay.js", SCRIPT),
+    file!("page/film.js", SCRIPT),
     file!("page/ulog.js", SCRIPT),
     file!("page/csv.js", SCRIPT),
     file!("three/three.module.min.js", SCRIPT),

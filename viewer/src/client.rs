@@ -4,15 +4,17 @@ use std::sync::Arc;
 use std::sync::mpsc::TrySendError;
 use std::time::Duration;
 
-use axum::extract::ws::{Message, WebSocket};
+use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use serde::Deserialize;
 use tokio::sync::mpsc;
 
-use crate::hub::Hub;
+use crate::hub::{Hub, Rank, Seat};
 use crate::order::{Order, Reply, SentOrder};
 
 /// A browser that takes nothing for this long is gone.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Where all places for watchers are taken, who does not say at once that it may give orders is sent away.
+const INTRODUCTION: Duration = Duration::from_secs(3);
 /// Answers that wait for a browser.
 const MOST_ANSWERS: usize = 64;
 
@@ -31,9 +33,13 @@ struct Numbered {
 
 /// Serves a browser until it leaves. What it is too slow for is replaced by what is newer.
 pub async fn serve(mut socket: WebSocket, hub: Arc<Hub>) {
-    let Some(_seat) = hub.seat() else { return };
     let (answers, mut answered) = mpsc::channel(MOST_ANSWERS);
     let mut pilot = Pilot { hub: &hub, answers, is_trusted: false };
+    let seat = match hub.seat(Rank::Watcher) {
+        Some(seat) => Some(seat),
+        None => pilots_seat(&mut socket, &mut pilot).await,
+    };
+    let Some(mut seat) = seat else { return send_away(socket).await };
     let (mut frames, mut scene, mut news) =
         (hub.frames.subscribe(), hub.scene.subscribe(), hub.news.subscribe());
     scene.mark_changed();
@@ -44,7 +50,11 @@ pub async fn serve(mut socket: WebSocket, hub: Arc<Hub>) {
         let message = tokio::select! {
             biased;
             received = socket.recv() => match received {
-                Some(Ok(Message::Text(text))) => pilot.hear(text.as_str()).map(|answer| Message::Text(answer.into())),
+                Some(Ok(Message::Text(text))) => {
+                    let answer = pilot.hear(text.as_str());
+                    seat = pilot.better(seat);
+                    answer.map(|answer| Message::Text(answer.into()))
+                }
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
                 Some(Ok(_)) => None,
             },
@@ -59,6 +69,23 @@ pub async fn serve(mut socket: WebSocket, hub: Arc<Hub>) {
             Ok(Err(_)) | Err(_) => return,
         }
     }
+}
+
+/// A place among the pilots for who shows the token.
+async fn pilots_seat<'a>(socket: &mut WebSocket, pilot: &mut Pilot<'a>) -> Option<Seat<'a>> {
+    let Ok(Some(Ok(Message::Text(text)))) = tokio::time::timeout(INTRODUCTION, socket.recv()).await else {
+        return None;
+    };
+    let answer = pilot.hear(text.as_str())?;
+    let seat = pilot.is_trusted.then(|| pilot.hub.seat(Rank::Pilot)).flatten()?;
+    let sent = tokio::time::timeout(PATIENCE, socket.send(Message::Text(answer.into()))).await;
+    matches!(sent, Ok(Ok(()))).then_some(seat)
+}
+
+/// Tells a browser that there is no place.
+async fn send_away(mut socket: WebSocket) {
+    let reason = CloseFrame { code: close_code::AGAIN, reason: "too many browsers".into() };
+    let _gone = tokio::time::timeout(PATIENCE, socket.send(Message::Close(Some(reason)))).await;
 }
 
 /// Before anything is published there is nothing to send.
@@ -77,7 +104,13 @@ struct Pilot<'a> {
     is_trusted: bool,
 }
 
-impl Pilot<'_> {
+impl<'a> Pilot<'a> {
+    /// Leaves the place of a watcher to others, if it has one among the pilots.
+    fn better(&self, seat: Seat<'a>) -> Seat<'a> {
+        let moves = self.is_trusted && seat.rank() == Rank::Watcher;
+        moves.then(|| self.hub.seat(Rank::Pilot)).flatten().unwrap_or(seat)
+    }
+
     /// Takes in what a browser says. Returns what to answer at once.
     fn hear(&mut self, text: &str) -> Option<String> {
         if let Ok(Introduction { token }) = serde_json::from_str(text) {

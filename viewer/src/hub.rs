@@ -11,8 +11,19 @@ use crate::order::Order;
 use crate::recording::Recording;
 use crate::token::Token;
 
-/// Browsers at once.
-const MOST_BROWSERS: usize = 32;
+/// Browsers at once that only look on.
+const MOST_WATCHERS: usize = 32;
+/// Places that are kept for browsers with the token.
+const MOST_PILOTS: usize = 8;
+
+/// What a browser may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rank {
+    /// Look on.
+    Watcher,
+    /// Give orders.
+    Pilot,
+}
 
 /// The latest of everything that is published, and the way of orders.
 #[derive(Debug)]
@@ -26,7 +37,8 @@ pub struct Hub {
     pub orders: SyncSender<Order>,
     /// What the page opens instead of a flight.
     pub recording: Option<Recording>,
-    browsers: AtomicUsize,
+    watchers: AtomicUsize,
+    pilots: AtomicUsize,
 }
 
 impl Hub {
@@ -40,29 +52,44 @@ impl Hub {
             news: watch::Sender::new(Utf8Bytes::default()),
             orders,
             recording,
-            browsers: AtomicUsize::new(0),
+            watchers: AtomicUsize::new(0),
+            pilots: AtomicUsize::new(0),
         }
     }
 
-    /// Lets a browser in, while there are not too many.
-    pub fn seat(&self) -> Option<Seat<'_>> {
-        let taken = |count| (count < MOST_BROWSERS).then_some(count + 1);
-        let free = self.browsers.fetch_update(Ordering::Relaxed, Ordering::Relaxed, taken);
-        free.is_ok().then_some(Seat(self))
+    /// Lets a browser in, while there are not too many of its rank.
+    pub fn seat(&self, rank: Rank) -> Option<Seat<'_>> {
+        let (seated, most) = match rank {
+            Rank::Watcher => (&self.watchers, MOST_WATCHERS),
+            Rank::Pilot => (&self.pilots, MOST_PILOTS),
+        };
+        let taken = |count| (count < most).then_some(count + 1);
+        let free = seated.fetch_update(Ordering::Relaxed, Ordering::Relaxed, taken);
+        free.is_ok().then_some(Seat { rank, seated })
     }
 
-    /// How many browsers look on.
+    /// How many browsers there are.
     pub fn browsers(&self) -> usize {
-        self.browsers.load(Ordering::Relaxed)
+        self.watchers.load(Ordering::Relaxed) + self.pilots.load(Ordering::Relaxed)
     }
 }
 
 /// The place of one browser, free again when it is dropped.
 #[derive(Debug)]
-pub struct Seat<'a>(&'a Hub);
+pub struct Seat<'a> {
+    rank: Rank,
+    seated: &'a AtomicUsize,
+}
+
+impl Seat<'_> {
+    /// Whom it is for.
+    pub fn rank(&self) -> Rank {
+        self.rank
+    }
+}
 
 impl Drop for Seat<'_> {
     fn drop(&mut self) {
-        self.0.browsers.fetch_sub(1, Ordering::Relaxed);
+        self.seated.fetch_sub(1, Ordering::Relaxed);
     }
 }

@@ -16,6 +16,7 @@
 mod assets;
 mod bounded_listener;
 mod client;
+mod film;
 mod frame;
 mod guard;
 mod hub;
@@ -24,12 +25,15 @@ mod order;
 mod recording;
 mod scene;
 mod server;
+mod standalone;
 mod token;
 
+pub use film::{Film, NewsFrom};
 pub use frame::{Frame, Solver, VehicleState};
 pub use news::{News, Text, VehicleNews};
 pub use order::{Action, Order, Reply};
 pub use recording::Recording;
 pub use scene::{FenceScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
 pub use server::{Viewer, ViewerError};
+pub use standalone::standalone;
 pub use token::Token;

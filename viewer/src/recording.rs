@@ -4,7 +4,7 @@ use std::path::Path;
 
 use axum::body::Bytes;
 
-/// A file with its name: the page reads ULog and CSV.
+/// A file with its name: the page reads ULog, CSV and [`Film`](crate::Film).
 #[derive(Clone, Debug)]
 pub struct Recording {
     name: String,
@@ -12,6 +12,11 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// A file that is nowhere but here.
+    pub fn new(name: String, content: Vec<u8>) -> Self {
+        Self { name, content: Bytes::from(content) }
+    }
+
     /// A file.
     ///
     /// # Errors

@@ -135,9 +135,16 @@ impl Viewer {
         self.hub.browsers() > 0
     }
 
-    /// Replaces the frame that browsers get next. Never waits.
+    /// Replaces the frame that browsers get next, if it has changed. Never waits.
     pub fn show(&self, frame: &Frame) {
-        self.hub.frames.send_replace(Bytes::from(frame.encode()));
+        let bytes = frame.encode();
+        self.hub.frames.send_if_modified(|present| {
+            let differs = *present != bytes;
+            if differs {
+                *present = Bytes::from(bytes);
+            }
+            differs
+        });
     }
 
     /// Replaces the scene, if it has changed.

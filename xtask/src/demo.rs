@@ -15,7 +15,7 @@ use xtask::workspace::Workspace;
 /// Exit code with which the scripts say that a flight missed its goal; Python's own errors have another.
 const GOAL_MISSED: i32 = 3;
 
-/// Builds the FMU and the MAVLink vehicle, flies them in FMPy and from pymavlink, and writes tables and plots to target/demo.
+/// Builds the FMU and the MAVLink vehicle, flies them in FMPy and from pymavlink, and writes tables, plots and pages to target/demo.
 ///
 /// What is seen first is built first: the FMU, beside the downloads of the Python packages. The vehicle compiles while the FMU flies.
 pub fn fly(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {

@@ -4,6 +4,7 @@ mod assets;
 mod bench;
 mod bills;
 mod book;
+mod browser;
 mod counts;
 mod crates;
 mod demo;
@@ -107,8 +108,9 @@ enum Task {
     ///
     /// A test fails if the file differs from what the FMU's table of variables generates.
     ModelDescription,
-    /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables and plots to target/demo.
+    /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables, plots and pages to target/demo.
     ///
+    /// target/demo/report.html shows them; each flight can be watched in 3D.
     /// Builds both and the Python environment first: about two and a half minutes the first time, seconds later.
     /// Fails if a flight misses its goal.
     Demo,
@@ -160,6 +162,9 @@ enum Task {
         /// Runs only the tests of the Python package, with the FMUs that are built, if there are any.
         #[arg(long)]
         package: bool,
+        /// Leaves out the tests of the live page. Else, where there is no Chromium, installs one by apt-get if this is root.
+        #[arg(long, conflicts_with = "package")]
+        without_browser: bool,
     },
 }
 
@@ -245,8 +250,10 @@ fn run(task: &Task) -> Result<(), Failure> {
             microcontroller::run(&workspace, &progress, *install, *peers)
         }
         Task::Crates => crates::check(&workspace, &progress),
-        Task::Test { package: true } => test::run_package(&workspace, &progress),
-        Task::Test { package: false } => test::run_all(&workspace, &progress),
+        Task::Test { package: true, .. } => test::run_package(&workspace, &progress),
+        Task::Test { package: false, without_browser } => {
+            test::run_all(&workspace, &progress, !without_browser)
+        }
     }
 }
 

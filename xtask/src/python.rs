@@ -30,7 +30,7 @@ struct Layer {
     made_from: &'static str,
 }
 
-const LAYERS: [Layer; 2] = [
+const LAYERS: [Layer; 3] = [
     Layer {
         what: "Installing Python packages (first time; downloads about 45 MB)",
         lists: &[Pinned { file: "demo.txt", complete: true }],
@@ -45,6 +45,11 @@ const LAYERS: [Layer; 2] = [
             Pinned { file: "sweep.txt", complete: true },
         ],
         made_from: "made-from-tests.txt",
+    },
+    Layer {
+        what: "Installing what drives a browser (first time; downloads about 50 MB)",
+        lists: &[Pinned { file: "browser.txt", complete: true }],
+        made_from: "made-from-browser.txt",
     },
 ];
 
@@ -111,6 +116,8 @@ pub enum Packages {
     Demo,
     /// Also the tests' oracles and clients.
     Tests,
+    /// Also what drives a browser.
+    BrowserTests,
     /// The book.
     Book,
     /// The optimal flights of the paper's report.
@@ -135,6 +142,7 @@ impl Packages {
         match self {
             Self::Demo => ("venv", &LAYERS, 1),
             Self::Tests => ("venv", &LAYERS, 2),
+            Self::BrowserTests => ("venv", &LAYERS, 3),
             Self::Book => ("venv-book", &BOOK_LAYERS, 1),
             Self::Optimum => ("venv-optimum", &OPTIMUM_LAYERS, 1),
             Self::Bench => ("venv-bench", &BENCH_LAYERS, 1),

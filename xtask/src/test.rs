@@ -8,6 +8,7 @@ use std::thread;
 
 use roxmltree::Document;
 
+use crate::browser::Browser;
 use crate::fmu;
 use crate::program::{self, Beside, VEHICLE};
 use crate::progress::Progress;
@@ -42,16 +43,20 @@ impl AddAssign for Count {
     }
 }
 
-/// Runs all tests, the Python ones also when Rust ones failed, and prints one line at the end.
-pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
+/// Runs all tests, the Python ones also when Rust ones failed, and prints one line at the end. Those of the live page need a browser.
+pub fn run_all(workspace: &Workspace, progress: &Progress, in_browser: bool) -> Result<(), Failure> {
     // First: what is missing on the machine is said before the long build.
     let interpreter = python::interpreter()?;
     let (python, rust) = thread::scope(|scope| {
-        let python = scope.spawn(|| python::environment(workspace, progress, &interpreter, Packages::Tests));
+        let python = scope.spawn(|| {
+            let browser = Browser::provide(workspace, progress, in_browser);
+            let python = python::environment(workspace, progress, &interpreter, browser.packages())?;
+            Ok::<_, Failure>((python, browser))
+        });
         let rust = progress.timed("Running the Rust tests", || rust_tests(workspace));
         (threads::join(python), rust)
     });
-    let (python, (mut count, rust_passed)) = (python?, rust?);
+    let ((python, browser), (mut count, rust_passed)) = (python?, rust?);
 
     let fmu = fmu::make(workspace, progress, &[], Beside::Tests)?;
     let sitl = progress
@@ -59,7 +64,8 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     let mut python_passed = true;
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let processes = (PYTHON_TESTS_PER_CORE * cores).to_string();
-    let at_once = ["-m", "not alone", "--numprocesses", &processes, "--dist", "worksteal"];
+    let marks = if in_browser { "not alone" } else { "not alone and not browser" };
+    let at_once = ["-m", marks, "--numprocesses", &processes, "--dist", "worksteal"];
     // Those that measure the wall clock have the machine to themselves.
     let alone = ["-m", "alone"];
     let runs: [(&str, &[&str]); 2] =
@@ -86,6 +92,9 @@ pub fn run_all(workspace: &Workspace, progress: &Progress) -> Result<(), Failure
     }
     let Count { passed, failed: count_failed, skipped } = count;
     progress.print_summary();
+    if let Some(note) = browser.note() {
+        println!("note: {note}");
+    }
     println!("note: Windows and Linux on ARM are left to `cargo xtask platforms`");
     println!("total: {passed} passed, {count_failed} failed, {skipped} skipped");
     if failed.is_empty() { Ok(()) } else { Err(Failure::Tests { failed: failed.join(" and ") }) }

@@ -2,7 +2,7 @@
 
 use fmi::Model;
 use fmi::variables::{Choice, Variable};
-use quadrotor::{Activity, ControllerActivity, ControllerStatus as Status, Outputs, PositionReference};
+use quadrotor::{Activity, ControllerActivity, Outputs, PositionReference};
 
 use super::rows::{count, outcome, output};
 use crate::quantities::{ACCELERATION, ANGLE, POSITION, VELOCITY};
@@ -43,13 +43,9 @@ const STATUS: Choice = Choice {
     ],
 };
 
+/// Items of an enumeration are counted from one.
 fn number(activity: &ControllerActivity) -> i32 {
-    match activity.status {
-        Status::Optimal => 1,
-        Status::Relaxed => 2,
-        Status::IterationLimit => 3,
-        Status::Held => 4,
-    }
+    i32::from(activity.status.severity()) + 1
 }
 
 const fn status<M: Model>(

@@ -1,6 +1,6 @@
 //! Figures of flights.
 
-use quadrotor::{ControllerStatus, Outputs};
+use quadrotor::Outputs;
 
 use crate::figures::{COLOURS, Figure, Line, Panel, Path, REFERENCE, Scale, line_chart, path_figure};
 use crate::flights::{FlightResult, Mission, Moment, loops, tilt_rad};
@@ -134,7 +134,8 @@ pub fn activity(mission: Mission, flown: &[&FlightResult]) -> Figure {
     for (index, name) in LOOPS.into_iter().enumerate() {
         let active = lines(flown, |m: &Moment| f64::from(loops(&m.outputs.activity)[index].active));
         let iterations = lines(flown, |m: &Moment| f64::from(loops(&m.outputs.activity)[index].iterations));
-        let status = lines(flown, |m: &Moment| f64::from(status(loops(&m.outputs.activity)[index].status)));
+        let status =
+            lines(flown, |m: &Moment| f64::from(loops(&m.outputs.activity)[index].status.severity()));
         panels.push(Panel::new(name, "time, s", "active limits", active).with_span(2.0));
         panels.push(Panel::new(name, "time, s", "iterations", iterations).with_span(2.0));
         panels.push(Panel::new(name, "time, s", "status", status).with_range(-0.3, 3.3));
@@ -152,15 +153,6 @@ pub fn activity(mission: Mission, flown: &[&FlightResult]) -> Figure {
             .to_owned(),
         svg: line_chart(&name, "Constraint activity over time", 3, [370.0, 210.0], &panels),
         name,
-    }
-}
-
-fn status(status: ControllerStatus) -> u8 {
-    match status {
-        ControllerStatus::Optimal => 0,
-        ControllerStatus::Relaxed => 1,
-        ControllerStatus::IterationLimit => 2,
-        ControllerStatus::Held => 3,
     }
 }
 

@@ -43,13 +43,7 @@ impl ControllerActivity {
 
     /// Of two laws that make one controller: the worse outcome, and all iterations and limits.
     pub(crate) fn with(&self, other: &Self) -> Self {
-        let severity = |status: ControllerStatus| match status {
-            ControllerStatus::Optimal => 0,
-            ControllerStatus::Relaxed => 1,
-            ControllerStatus::IterationLimit => 2,
-            ControllerStatus::Held => 3,
-        };
-        let worse = severity(other.status) > severity(self.status);
+        let worse = other.status.severity() > self.status.severity();
         Self {
             status: if worse { other.status } else { self.status },
             iterations: self.iterations.saturating_add(other.iterations),

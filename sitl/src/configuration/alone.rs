@@ -11,12 +11,13 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
     check(arguments, &["replay"], "--replay, which flies the settings of the record")
 }
 
-/// Refuses what would be ignored: nothing is simulated.
+/// Refuses what would be ignored: a recorded flight is shown.
 ///
 /// # Errors
 /// [`Failure::Value`] that names the first such setting.
 pub fn check_view_record(arguments: &Arguments) -> Result<(), Failure> {
-    check(arguments, &["view", "view-record", "ready-file"], "--view-record, which simulates nothing")
+    let fitting = ["view", "view-record", "view-page", "ready-file"];
+    check(arguments, &fitting, "--view-record, which shows a recorded flight")
 }
 
 /// Refuses all settings but some with a flag.
@@ -69,6 +70,7 @@ fn given(arguments: &Arguments) -> Vec<(&'static str, bool)> {
         replay,
         view,
         view_record,
+        view_page,
         fmu,
         map,
         fmu_check,
@@ -124,6 +126,7 @@ fn given(arguments: &Arguments) -> Vec<(&'static str, bool)> {
         ("replay", replay.is_some()),
         ("view", view.is_some()),
         ("view-record", view_record.is_some()),
+        ("view-page", view_page.is_some()),
         ("fmu", fmu.is_some()),
         ("map", map.is_some()),
         ("fmu-check", fmu_check.is_some()),

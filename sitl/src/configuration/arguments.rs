@@ -363,12 +363,19 @@ pub struct Arguments {
     )]
     pub view: Option<ViewAddress>,
 
-    /// Show a recorded flight in a browser (.ulg or .csv)
+    /// Show a recorded flight in a browser (.ulg, .csv or .lmpc)
     ///
-    /// FILE is a ULog, such as those of --log-dir, or a table, such as FMPy's results of LmpcQuadrotor.fmu. Nothing is
-    /// simulated; only --view, --ready-file and --log go with this flag. Ctrl-C ends the program.
+    /// FILE is a ULog, such as those of --log-dir, a table, such as FMPy's results of LmpcQuadrotor.fmu, or a record of
+    /// --record, which is replayed first. Only --view, --view-page, --ready-file and --log go with this flag. Ctrl-C ends the
+    /// program.
     #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_record: Option<PathBuf>,
+
+    /// Write the page of --view-record to a file, and end
+    ///
+    /// FILE is one HTML file with the page and the flight in it: browsers open it without a server.
+    #[arg(long, env = "LMPC_SITL_VIEW_PAGE", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
+    pub view_page: Option<PathBuf>,
 
     /// FMU that flies (FMI 2.0 co-simulation)
     ///
@@ -457,6 +464,7 @@ impl Arguments {
             ftp_write: self.ftp_write.or(file.ftp_write),
             view: self.view.or(file.view),
             view_record: self.view_record.or(file.view_record),
+            view_page: self.view_page.or(file.view_page),
             fmu: self.fmu.or(file.fmu),
             map: self.map.or(file.map),
             fmu_check: self.fmu_check.or(file.fmu_check),

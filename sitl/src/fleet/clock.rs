@@ -11,7 +11,7 @@ use crate::pace::Pace;
 
 /// The links are looked at this often at least.
 const BURST: Duration = Duration::from_millis(2);
-/// Ticks flown between two looks at the clock, which costs about as much as one.
+/// Ticks of all vehicles together that are flown between two looks at the clock, which costs about as much as one.
 const MOST_TICKS: u64 = 8;
 /// Messages of several ticks share a datagram where simulation time is fast; none waits much longer than this for others.
 const LONGEST_WAIT: Duration = Duration::from_millis(1);
@@ -100,7 +100,7 @@ impl Clock {
         let start = Instant::now();
         let mut flushed = Duration::ZERO;
         loop {
-            let ticks = self.ticks_to(goal_us);
+            let ticks = self.ticks_to(goal_us).min(ticks_at_once(fleet.members().len()));
             if ticks == 0 {
                 return false;
             }
@@ -117,10 +117,26 @@ impl Clock {
         }
     }
 
-    /// Ticks to a time, µs, or to the end, as many as are flown at once.
+    /// Ticks to a time, µs, or to the end.
     fn ticks_to(&self, goal_us: u64) -> u64 {
         let left_us = self.end_us.map_or(u64::MAX, |end_us| end_us.saturating_sub(self.time_us));
         let ticks = goal_us.saturating_sub(self.time_us) / TICK_US;
-        ticks.min(left_us.div_ceil(TICK_US)).min(MOST_TICKS)
+        ticks.min(left_us.div_ceil(TICK_US))
+    }
+}
+
+/// Ticks that each vehicle flies between two looks at the clock: with many of them one takes milliseconds already, and the links wait.
+fn ticks_at_once(vehicles: usize) -> u64 {
+    MOST_TICKS.div_ceil(vehicles.max(1) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_TICKS, ticks_at_once};
+
+    #[test]
+    fn the_links_wait_for_as_many_ticks_however_many_vehicles_there_are() {
+        assert_eq!([0, 1, 2, 3, 8, 9, 200].map(ticks_at_once), [8, 8, 4, 3, 1, 1, 1]);
+        assert!((1..=8).all(|vehicles| vehicles as u64 * ticks_at_once(vehicles) < 2 * MOST_TICKS));
     }
 }

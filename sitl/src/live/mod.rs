@@ -8,6 +8,7 @@
 //! Only the wall clock decides when something is shown, and nothing of it reaches a flight but requests, which are recorded as
 //! messages of a ground station.
 
+mod film;
 mod news;
 mod open;
 mod page;
@@ -18,4 +19,4 @@ mod scene;
 
 pub use open::open_viewer;
 pub use page::LivePage;
-pub use recorded::show_recording;
+pub use recorded::{show_recording, write_page};

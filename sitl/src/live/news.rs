@@ -2,13 +2,14 @@
 
 use std::collections::VecDeque;
 
+use autopilot::Autopilot;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity, STATUSTEXT_DATA};
 use vehicle::Vehicle;
 use vehicle::fault::{Fault, Rotors, Sensor};
 use viewer::{News, Text, VehicleNews};
 
-use crate::fleet::{Fleet, Member, Overheard};
+use crate::fleet::{Fleet, Overheard};
 
 /// Lines that the page shows.
 const MOST_LINES: usize = 50;
@@ -18,15 +19,28 @@ const CHUNK: usize = 50;
 const ACCEPTED: [u8; 2] = [0, 5];
 
 /// Puts together what the page says in words.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct NewsDesk {
+    /// Lines that it keeps.
+    most: usize,
     lines: VecDeque<Text>,
     next: u64,
     /// The beginning of a line that goes on, by who says it.
     begun: Vec<(u8, u16, String)>,
 }
 
+impl Default for NewsDesk {
+    fn default() -> Self {
+        Self::with_lines(MOST_LINES)
+    }
+}
+
 impl NewsDesk {
+    /// Keeps so many lines.
+    pub fn with_lines(most: usize) -> Self {
+        Self { most, lines: VecDeque::new(), next: 0, begun: Vec::new() }
+    }
+
     /// Takes in what vehicles have said.
     pub fn hear(&mut self, heard: Vec<Overheard>) {
         for Overheard { system, time_us, message } in heard {
@@ -40,7 +54,7 @@ impl NewsDesk {
                 severity: level(text.severity),
                 text: line,
             });
-            if self.lines.len() > MOST_LINES {
+            if self.lines.len() > self.most {
                 self.lines.pop_front();
             }
         }
@@ -65,9 +79,14 @@ impl NewsDesk {
     /// Everything as it is now.
     pub fn news(&self, fleet: &Fleet) -> News {
         News {
-            vehicles: fleet.members().iter().map(of_member).collect(),
-            texts: self.lines.iter().cloned().collect(),
+            vehicles: fleet.members().iter().map(|member| news_of(member.autopilot())).collect(),
+            texts: self.texts(),
         }
+    }
+
+    /// The lines that it has kept, the oldest first.
+    pub fn texts(&self) -> Vec<Text> {
+        self.lines.iter().cloned().collect()
     }
 
     /// A whole line, if this was its last piece.
@@ -93,10 +112,11 @@ fn level(severity: MavSeverity) -> u8 {
     severity as u8
 }
 
-fn of_member(member: &Member) -> VehicleNews {
-    let vehicle = member.autopilot().vehicle();
+/// What is said of one vehicle.
+pub fn news_of(autopilot: &Autopilot) -> VehicleNews {
+    let vehicle = autopilot.vehicle();
     VehicleNews {
-        id: member.autopilot().system_id(),
+        id: autopilot.system_id(),
         mode: vehicle.identity().mode_name(vehicle.shown_mode()).to_owned(),
         faults: faults(vehicle),
     }

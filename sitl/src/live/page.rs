@@ -8,8 +8,8 @@ use viewer::{Action, Frame, Order, Viewer};
 use super::news::NewsDesk;
 use super::request::Request;
 use super::sample::sample;
-use super::scene::scene;
-use crate::fleet::{Clock, Fleet};
+use super::scene::SceneWatch;
+use crate::fleet::{Clock, Fleet, Member};
 
 /// Frames per second of the wall clock, whatever the speed of simulation time.
 const FRAME: Duration = Duration::from_millis(33);
@@ -29,6 +29,7 @@ const LONGEST_STEP_S: f64 = 10.0;
 pub struct LivePage {
     viewer: Viewer,
     news: NewsDesk,
+    scene: SceneWatch,
     frames: u32,
     shown: Instant,
     /// When the pace was measured, at which simulation time, µs, and what it was.
@@ -39,8 +40,8 @@ impl LivePage {
     /// Of a fleet, which is heard from now on.
     pub fn new(viewer: Viewer, fleet: &mut Fleet, now: Instant) -> Self {
         fleet.listen();
-        let news = NewsDesk::default();
-        Self { viewer, news, frames: 0, shown: now, measured: (now, fleet.time_us(), 0.0) }
+        let (news, scene) = (NewsDesk::default(), SceneWatch::default());
+        Self { viewer, news, scene, frames: 0, shown: now, measured: (now, fleet.time_us(), 0.0) }
     }
 
     /// The address of the page for someone who may give orders.
@@ -70,7 +71,10 @@ impl LivePage {
             return;
         }
         if self.frames.is_multiple_of(RARELY) {
-            self.viewer.show_scene(&scene(fleet));
+            let autopilots = fleet.members().iter().map(Member::autopilot);
+            if let Some(scene) = self.scene.changed(autopilots) {
+                self.viewer.show_scene(&scene);
+            }
         }
         if self.frames.is_multiple_of(NEWS) {
             self.viewer.tell(&self.news.news(fleet));
@@ -81,7 +85,8 @@ impl LivePage {
             Speed::Paused => 0.0,
             Speed::Factor(factor) => factor,
         });
-        let vehicles = fleet.members().iter().map(sample).collect();
+        let vehicles = fleet.members().iter();
+        let vehicles = vehicles.map(|member| sample(member.autopilot(), member.loss().is_some())).collect();
         self.viewer.show(&Frame { speed, pace, time_s: fleet.time_us() as f64 / 1e6, vehicles });
     }
 

@@ -1,11 +1,12 @@
-//! `--view-record FILE`: the page without a simulation.
+//! `--view-record FILE`: the page without a live flight.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use viewer::{Recording, Viewer};
+use viewer::{Recording, Viewer, standalone};
 
+use super::film::film;
 use super::open_viewer;
 use crate::configuration::{Arguments, check_view_record};
 use crate::failure::Failure;
@@ -22,22 +23,38 @@ pub struct ShownRecording(Viewer);
 /// Serves the file that the arguments name.
 ///
 /// # Errors
-/// [`Failure`]: another flag does not go with it, the file cannot be read or is of no kind that the page reads, or the address
-/// cannot be used.
+/// [`Failure`]: another flag does not go with it, the file cannot be shown, or the address cannot be used.
 pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecording, Failure> {
     check_view_record(arguments)?;
+    let address = arguments.view.clone().unwrap_or_default();
+    Ok(ShownRecording(open_viewer(&address, Some(recording(path)?))?))
+}
+
+/// Writes a page with the file that the arguments name.
+///
+/// # Errors
+/// [`Failure`]: another flag does not go with it, the file cannot be shown, or the page cannot be written.
+pub fn write_page(arguments: &Arguments, path: &Path, page: &Path) -> Result<(), Failure> {
+    check_view_record(arguments)?;
+    let content = standalone(&recording(path)?);
+    std::fs::write(page, content).map_err(|source| Failure::write(page, source))
+}
+
+/// A file that the page can open.
+fn recording(path: &Path) -> Result<Recording, Failure> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let wrong = |reason: &str| Failure::Content { path: path.to_owned(), reason: reason.to_owned() };
+    if extension == "lmpc" {
+        return film(path);
+    }
     if !["ulg", "csv"].iter().any(|known| extension == *known) {
-        return Err(wrong("the page reads .ulg and .csv; to fly a record (.lmpc) again, use --replay"));
+        return Err(wrong("the page shows flight logs (.ulg), tables (.csv) and records (.lmpc)"));
     }
     let bytes = std::fs::metadata(path).map_err(|source| Failure::read(path, source))?.len();
     if bytes > MOST_BYTES {
         return Err(wrong("larger than 1 GB; open a shorter recording"));
     }
-    let recording = Recording::read(path).map_err(|source| Failure::read(path, source))?;
-    let address = arguments.view.clone().unwrap_or_default();
-    Ok(ShownRecording(open_viewer(&address, Some(recording))?))
+    Recording::read(path).map_err(|source| Failure::read(path, source))
 }
 
 impl ShownRecording {

@@ -1,25 +1,25 @@
 //! A vehicle as a frame has it.
 
-use quadrotor::{Activity, ControllerActivity, ControllerStatus as Status};
+use autopilot::Autopilot;
+use quadrotor::{Activity, ControllerActivity};
 use vehicle::{LandedState, SteeringKind};
 use viewer::{Solver, VehicleState};
 
-use crate::fleet::Member;
 use crate::flight_log::LogSource;
 
-/// How a vehicle is now, in truth: what it believes is in its logs.
-pub fn sample(member: &Member) -> VehicleState {
-    let vehicle = member.autopilot().vehicle();
+/// How a vehicle is now, in truth: what it believes is in its logs. Lost is one whose simulation has ended.
+pub fn sample(autopilot: &Autopilot, lost: bool) -> VehicleState {
+    let vehicle = autopilot.vehicle();
     let truth = vehicle.truth();
-    let source = LogSource::of(member.autopilot());
+    let source = LogSource::of(autopilot);
     let setpoint = &truth.setpoint;
     // Controllers rest while it is disarmed: what they show is of the last flight.
     let activity = if vehicle.is_armed() { truth.activity } else { Activity::default() };
     VehicleState {
-        id: member.autopilot().system_id(),
+        id: autopilot.system_id(),
         armed: vehicle.is_armed(),
         landed: vehicle.landed_state() == LandedState::OnGround,
-        lost: member.loss().is_some(),
+        lost,
         failsafe: vehicle.failsafe().engaged().is_some(),
         crashed: vehicle.has_crashed(),
         tracks: vehicle.steering_kind() == SteeringKind::Position,
@@ -43,12 +43,7 @@ pub fn sample(member: &Member) -> VehicleState {
 
 fn solver(activity: &ControllerActivity) -> Solver {
     Solver {
-        status: match activity.status {
-            Status::Optimal => 0,
-            Status::Relaxed => 1,
-            Status::IterationLimit => 2,
-            Status::Held => 3,
-        },
+        status: activity.status.severity(),
         active: u8::try_from(activity.active).unwrap_or(u8::MAX),
         iterations: u16::try_from(activity.iterations).unwrap_or(u16::MAX),
     }

@@ -2,34 +2,93 @@
 
 use std::f64::consts::TAU;
 
+use autopilot::Autopilot;
+use nalgebra::Vector3;
 use vehicle::Vehicle;
-use vehicle::fence::{Fence, Shape, Zone};
+use vehicle::fence::{Fence, Inclusions, Shape, Zone};
 use vehicle::plan::{PlanKind, compile};
 use vehicle::surroundings::{Obstacle, Shape as ObstacleShape};
 use viewer::{FenceScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
 
-use crate::fleet::{Fleet, Member};
-
 /// Corners of a circle.
 const CORNERS: usize = 48;
 
-/// What stands still around a fleet.
-pub fn scene(fleet: &Fleet) -> Scene {
-    let first = fleet.members().first();
-    let obstacles = first.map(|member| member.autopilot().settings().surroundings.obstacles.as_slice());
+/// Notices when another scene is to be drawn: to draw it takes longer than to see that it is the same.
+#[derive(Debug, Default)]
+pub struct SceneWatch(Option<Vec<Outline>>);
+
+/// What the scene of a vehicle is made of, in short.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Outline {
+    system_id: u8,
+    rotors_m: [[f64; 3]; 4],
+    home_m: Vector3<f64>,
+    /// Starts of the vehicle, and plans that were replaced since.
+    plans: (u32, u32),
+    fence: Option<FenceOutline>,
+}
+
+/// The same of a fence; its areas are in a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct FenceOutline {
+    has_zones: bool,
+    inclusions: Inclusions,
+    home_m: Vector3<f64>,
+    radius_m: f64,
+    height_m: f64,
+}
+
+impl SceneWatch {
+    /// What stands still around vehicles, unless it is what it was at the last call.
+    pub fn changed<'a>(&mut self, autopilots: impl Iterator<Item = &'a Autopilot> + Clone) -> Option<Scene> {
+        let outlines = autopilots.clone().map(Outline::of).collect();
+        let differs = self.0.as_ref() != Some(&outlines);
+        self.0 = Some(outlines);
+        differs.then(|| scene(autopilots))
+    }
+}
+
+impl Outline {
+    fn of(autopilot: &Autopilot) -> Self {
+        let vehicle = autopilot.vehicle();
+        let fence = vehicle.fence().filter(Fence::bounds).map(|fence| FenceOutline {
+            has_zones: fence.zones.is_some(),
+            inclusions: fence.inclusions,
+            home_m: fence.home_m,
+            radius_m: fence.radius_m,
+            height_m: fence.height_m,
+        });
+        Self {
+            system_id: autopilot.system_id(),
+            rotors_m: rotors_m(vehicle),
+            home_m: vehicle.home().position_m,
+            plans: (autopilot.boots(), vehicle.plans_revision()),
+            fence,
+        }
+    }
+}
+
+/// What stands still around vehicles.
+pub fn scene<'a>(autopilots: impl Iterator<Item = &'a Autopilot> + Clone) -> Scene {
+    let first = autopilots.clone().next();
+    let obstacles = first.map(|autopilot| autopilot.settings().surroundings.obstacles.as_slice());
     Scene {
-        vehicles: fleet.members().iter().map(of_member).collect(),
+        vehicles: autopilots.map(of_one).collect(),
         obstacles: obstacles.unwrap_or_default().iter().map(obstacle).collect(),
     }
 }
 
-fn of_member(member: &Member) -> VehicleScene {
-    let vehicle = member.autopilot().vehicle();
-    let rotors = vehicle.simulation().configuration().airframe.layout.rotors;
-    let arm_m = vehicle.simulation().configuration().airframe.arm_length_m;
+fn rotors_m(vehicle: &Vehicle) -> [[f64; 3]; 4] {
+    let airframe = &vehicle.simulation().configuration().airframe;
+    let arm_m = airframe.arm_length_m;
+    airframe.layout.rotors.map(|rotor| [arm_m * rotor.x, arm_m * rotor.y, 0.0])
+}
+
+fn of_one(autopilot: &Autopilot) -> VehicleScene {
+    let vehicle = autopilot.vehicle();
     VehicleScene {
-        id: member.autopilot().system_id(),
-        rotors_m: rotors.map(|rotor| [arm_m * rotor.x, arm_m * rotor.y, 0.0]),
+        id: autopilot.system_id(),
+        rotors_m: rotors_m(vehicle),
         home_m: vehicle.home().position_m.into(),
         mission: mission(vehicle),
         fence: vehicle.fence().filter(Fence::bounds).map(|fence| fence_scene(&fence)),
@@ -94,4 +153,39 @@ fn obstacle(obstacle: &Obstacle) -> ObstacleScene {
         }
     };
     ObstacleScene { name: obstacle.name.clone(), corners_m, heights_m: [obstacle.bottom_m, obstacle.top_m] }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use clap::Parser;
+    use mavlink::dialects::ardupilotmega::{MavMessage, MavParamType, PARAM_SET_DATA};
+
+    use super::SceneWatch;
+    use crate::configuration::{Arguments, Settings};
+    use crate::fleet::{Fleet, Member};
+
+    #[test]
+    fn a_scene_is_drawn_when_it_has_changed_and_only_then() {
+        let line = "lmpc-sitl --link udpin:0 --set GF_MAX_HOR_DIST=40 --set GF_ACTION=1";
+        let arguments = Arguments::try_parse_from(line.split(' ')).expect("arguments");
+        let settings = Settings::resolve(&arguments).expect("settings");
+        let mut fleet = Fleet::open(&settings, 0).expect("a free port");
+        let mut watch = SceneWatch::default();
+        let mut look = |fleet: &Fleet| watch.changed(fleet.members().iter().map(Member::autopilot));
+        let radius_m = |scene: viewer::Scene| scene.vehicles[0].fence.as_ref().map(|fence| fence.radius_m);
+        assert_eq!(look(&fleet).and_then(radius_m), Some(40.0));
+        assert!(look(&fleet).is_none());
+        let wider = MavMessage::PARAM_SET(PARAM_SET_DATA {
+            param_value: 60.0,
+            target_system: 1,
+            target_component: 1,
+            param_id: "GF_MAX_HOR_DIST".into(),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+        });
+        fleet.ask(0, wider, Instant::now());
+        assert_eq!(look(&fleet).and_then(radius_m), Some(60.0));
+        assert!(look(&fleet).is_none());
+    }
 }

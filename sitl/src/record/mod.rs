@@ -32,5 +32,5 @@ pub use entry::{Entry, Event};
 pub use header::{Header, Participant};
 pub use reader::Reader;
 pub use recorder::Recorder;
-pub use replay::{RecordEnd, Replayed, replay};
+pub use replay::{Audience, RecordEnd, Replayed, replay, replay_before};
 pub use traffic_log::TrafficLog;

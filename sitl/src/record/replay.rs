@@ -42,12 +42,37 @@ pub struct Replayed {
     pub verified_us: u64,
 }
 
+/// Looks on while a record is flown again.
+pub trait Audience {
+    /// A vehicle, numbered as in the record, has flown a tick. What it has said is to be taken away.
+    fn see(&mut self, vehicle: usize, autopilot: &mut Autopilot);
+    /// All vehicles have come to the end of the record.
+    fn end(&mut self, _vehicles: &[&Autopilot]) {}
+}
+
+/// Nobody looks on.
+struct Nobody;
+
+impl Audience for Nobody {
+    fn see(&mut self, _vehicle: usize, autopilot: &mut Autopilot) {
+        drop(autopilot.take_outgoing());
+    }
+}
+
 /// Flies every vehicle of a record again, as fast as possible, and compares the flights as far as they are recorded. The whole
 /// record is checked first.
 ///
 /// # Errors
 /// [`Failure::Differs`] at the first digest that differs, [`Failure::FliesOn`] where only the recorded simulation failed; [`Failure`] when the file cannot be read, is not a record or is damaged.
 pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
+    replay_before(path, &mut Nobody)
+}
+
+/// The same while somebody looks on.
+///
+/// # Errors
+/// Those of [`replay`].
+pub fn replay_before(path: &Path, audience: &mut dyn Audience) -> Result<Vec<Replayed>, Failure> {
     let survey = Survey::of(path)?;
     let mut reader = Reader::open(path)?;
     let header = reader.header().clone();
@@ -83,10 +108,11 @@ pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
     for entry in reader.by_ref().take(survey.entries) {
         let entry = entry?;
         if let Some(flown) = flown.get_mut(entry.vehicle) {
-            flown.fly_to(entry.time_us, &mut progress)?;
+            flown.fly_to(&entry, &mut progress, audience)?;
             flown.take(entry)?;
         }
     }
+    audience.end(&flown.iter().map(|flown| &flown.autopilot).collect::<Vec<_>>());
     Ok(flown.into_iter().map(Flown::finish).collect())
 }
 
@@ -182,7 +208,13 @@ struct Flown {
 }
 
 impl Flown {
-    fn fly_to(&mut self, time_us: u64, progress: &mut Progress) -> Result<(), Failure> {
+    fn fly_to(
+        &mut self,
+        entry: &Entry,
+        progress: &mut Progress,
+        audience: &mut dyn Audience,
+    ) -> Result<(), Failure> {
+        let time_us = entry.time_us;
         while self.autopilot.time_us() + TICK_US <= time_us {
             let begin_us = self.autopilot.time_us();
             for _ in 0..TICKS {
@@ -192,7 +224,7 @@ impl Flown {
                 set_simulation_time(self.autopilot.time_us());
                 self.autopilot.tick()?;
                 self.digest.update(self.autopilot.vehicle());
-                drop(self.autopilot.take_outgoing());
+                audience.see(entry.vehicle, &mut self.autopilot);
             }
             let flown_us = self.autopilot.time_us() - begin_us;
             if let Some(line) = progress.add(flown_us, Instant::now()) {

@@ -139,6 +139,25 @@ fn fly_there(conventions: &str) {
     let replayed = replay(std::path::Path::new(record)).expect("the same flight");
     assert_eq!(replayed[0].end, RecordEnd::Complete);
     assert_eq!(replayed[0].flight, flown.flights[0], "bit for bit");
+    let page = folder.path().join("flight.html");
+    let line = ["lmpc-sitl", "--view-record", record, "--view-page", page.to_str().expect("text")];
+    sitl::run(Arguments::try_parse_from(line).expect("arguments")).expect("a page");
+    // `LMPCFILM` in base64: the flight itself, not what was sent to it.
+    let text = std::fs::read_to_string(page).expect("a page");
+    assert!(text.contains("data-name=\"flight.lmpc\">TE1QQ0ZJTE"), "{}", text.len());
+}
+
+#[test]
+fn a_page_is_written_of_a_flight_that_is_named_and_can_be_shown() {
+    let refused = |line: &[&str]| {
+        let words = ["lmpc-sitl"].iter().chain(line);
+        let failure = sitl::run(Arguments::try_parse_from(words).expect("arguments")).expect_err("refused");
+        failure.to_string()
+    };
+    assert!(refused(&["--view-page", "a.html"]).contains("add --view-record FILE"));
+    assert!(refused(&["--view-record", "a.txt", "--view-page", "a.html"]).contains("records (.lmpc)"));
+    assert!(refused(&["--view-record", "no.csv", "--view-page", "a.html"]).contains("cannot read no.csv"));
+    assert!(refused(&["--view-record", "no.lmpc", "--speed", "2"]).contains("--speed: cannot be used"));
 }
 
 #[test]

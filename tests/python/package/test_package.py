@@ -1,7 +1,9 @@
 """What the wheel holds, and its programs."""
 
+import base64
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -100,8 +102,11 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     shown = run("view", str(tmp_path / "flight.csv"))
     assert shown.returncode == 0, shown
     page = (tmp_path / "flight.html").read_text()
-    assert "position.x" in page and "http" not in page.lower().replace("</html", "")
-    assert flight_page(Simulation().fly(0.1)).startswith("<!doctype html>")
+    name, enclosed = re.search(r'data-name="([^"]*)">([^<]*)</script>', page).groups()
+    assert name == "flight.csv" and base64.b64decode(enclosed) == (tmp_path / "flight.csv").read_bytes()
+    assert "http://" not in page and "https://" not in page
+    of_array = flight_page(Simulation().fly(0.1), "A & B")
+    assert of_array.startswith("<!doctype html>") and "<title>A &amp; B</title>" in of_array
     command = [sys.executable, "-m", "lmpc_quadrotor", "view", str(tmp_path / "flight.csv"), "--serve"]
     served = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "LMPC_SITL_VIEW": "127.0.0.1:0"})
     try:

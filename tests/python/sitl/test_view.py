@@ -1,11 +1,15 @@
 """The live page in a headless Chromium. The oracle is telemetry over MAVLink, and a projection of our own."""
 
 import math
+import socket
+import subprocess
 
 import numpy as np
 import pytest
 from browser import Page, browser, needs_browser
 from client import near
+
+pytestmark = pytest.mark.browser
 
 SIZES = [(400, 800), (1280, 800), (3840, 2160)]
 
@@ -29,6 +33,12 @@ def look(chromium):
     yield make
     for page in pages:
         page.close()
+
+
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
 
 
 def host(url: str) -> str:
@@ -141,14 +151,50 @@ def test_every_control_has_a_name_and_is_reached_by_keys(start, look):
     shown.wait(f"Math.abs({angle} - {before}) > 0.05")
 
 
-def test_ten_vehicles_are_where_they_stand(start, look):
+def test_ten_vehicles_are_where_they_stand_and_are_drawn_at_once_and_only_when_they_move(start, look):
     vehicle = start("--view", "127.0.0.1:0", "--vehicles", "10", "--formation", "line,5", "--ports", "shared")
     shown = look(vehicle.ready["view"])
     shown.wait("page.isPilot && page.frame?.vehicles.length === 10")
     shown.page.get_by_role("button", name="Show all").click()
     shown.wait("document.querySelectorAll('#labels .vehicle').length === 10")
+    assert shown.page.get_by_text("Squares of 10 m").is_visible()
     for state in shown.value("page.frame.vehicles"):
         assert shown.dark_pixels(shown.project(state["position"])) > 12, state["id"]
+    # Bodies, discs, shadows, lines and set-points of all, a grid in three parts, and for each a trail and its home.
+    assert shown.value("view.renderer.info.render.calls") <= 10 + 2 * 10
+    shown.page.get_by_role("button", name="Pause").click()
+    shown.wait("page.frame.speed === 0 && page.frame.pace === 0")
+    # What was asked for before has been drawn after two pictures of the browser.
+    drawn = shown.page.evaluate("""async () => {
+        const { renderer } = window.lmpcView.view;
+        const picture = () => new Promise(requestAnimationFrame);
+        await picture(); await picture();
+        const before = renderer.info.render.frame;
+        for (let count = 0; count < 30; count += 1) await picture();
+        return renderer.info.render.frame - before;
+    }""")
+    assert drawn == 0
+
+
+def test_pixels_become_coarser_where_drawing_is_slow_and_fine_again(start, look):
+    vehicle = start("--view", "127.0.0.1:0")
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.frame")
+    ratios = shown.page.evaluate("""async () => {
+        const { Fineness } = await import("/page/graphics.js");
+        const fineness = new Fineness(false), ratios = [];
+        let now = 0;
+        const draw = (waited, seconds) => {
+            for (const end = now + 1000 * seconds; now < end; now += waited) fineness.take(waited, now);
+            ratios.push(fineness.ratio(800, 500));
+        };
+        draw(17, 10); draw(60, 3); draw(60, 30); draw(17, 10); draw(17, 30); draw(17, 60);
+        return [...ratios, new Fineness(true).ratio(2400, 1400)];
+    }""")
+    fine, first, coarsest, still, finer, finest, large = ratios
+    assert fine == 1 and first == 0.75 and coarsest == 0.5 and still == coarsest and coarsest < finer <= 1 and finest == 1
+    # A program draws no more pixels than it can.
+    assert 0.4 < large < 0.6
 
 
 def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
@@ -192,6 +238,43 @@ def test_a_table_is_replayed(start, look, tmp_path):
     assert shown.value("page.histories.get(1).time.length") == 61
 
 
+def test_a_record_is_flown_again_and_shown(start, connect, look, tmp_path):
+    record = tmp_path / "flight.lmpc"
+    vehicle = start("--record", str(record), "--speed", "10")
+    client = connect(vehicle)
+    client.take_off(height=2.5)
+    highest = -client.wait("LOCAL_POSITION_NED").z
+    client.land()
+    assert vehicle.stop() == 0
+    shown = look(start("--view-record", str(record), "--view", "127.0.0.1:0", links=()).ready["view"])
+    shown.wait("page.recording && page.frame")
+    assert shown.page.locator("#recording-name").inner_text() == "flight.lmpc"
+    heights = shown.value("page.recording.states.get(1).map((state) => -state.position[2])")
+    assert max(heights) == pytest.approx(highest, abs=0.1) and heights[0] == pytest.approx(0, abs=0.01) and heights[-1] == pytest.approx(0, abs=0.05)
+    times = np.array(shown.value("page.recording.times"))
+    assert np.diff(times) == pytest.approx(0.033)
+    shown.page.get_by_role("slider", name="Time in the recording").fill(str(times[-1]))
+    shown.page.get_by_text("Disarmed after landing").wait_for()
+    assert "Land" in {news["mode"] for news in shown.value("page.recording.news")}
+
+
+def test_a_page_with_the_flight_in_it_opens_from_the_disk(program, look, tmp_path):
+    table = tmp_path / "result <1>.csv"
+    rows = [f"{time:.1f},{time:.1f},0,-2" for time in np.arange(0, 10.05, 0.1)]
+    table.write_text("time,position.x,position.y,position.z\n" + "\n".join(rows) + "\n")
+    page = tmp_path / "result.html"
+    subprocess.run([program, "--view-record", table, "--view-page", page], check=True, timeout=60)
+    shown = look(page.as_uri())
+    shown.wait("page.recording && page.frame")
+    assert shown.page.title() == "result <1>.csv"
+    shown.page.keyboard.press(" ")
+    shown.wait("page.recording.paused")
+    shown.page.get_by_role("slider", name="Time in the recording").fill("6")
+    shown.wait("page.frame.time === 6")
+    assert shown.dark_pixels(shown.project((6, 0, -2))) > 25
+    assert {url.split(":")[0] for url in shown.requests} <= {"file", "data"} and len([url for url in shown.requests if url.startswith("file")]) == 1
+
+
 def test_a_log_is_opened_by_the_page_itself(start, connect, look, tmp_path):
     logs = tmp_path / "logs"
     vehicle = start("--log-dir", str(logs), "--speed", "10", "--view", "127.0.0.1:0")
@@ -212,3 +295,17 @@ def test_a_log_is_opened_by_the_page_itself(start, connect, look, tmp_path):
     shown.wait("!page.recording && page.frame")
     shown.page.set_input_files("#file", {"name": "broken.ulg", "mimeType": "application/octet-stream", "buffer": b"nothing"})
     shown.page.get_by_text("broken.ulg: The file is not a ULog.").first.wait_for()
+
+
+def test_the_page_finds_a_program_that_was_started_again(start, look):
+    port = free_port()
+    first = start("--view", f"127.0.0.1:{port}")
+    shown = look(first.ready["view"], expected=["ERR_CONNECTION_REFUSED"])
+    shown.wait("page.isPilot && page.frame")
+    assert first.stop() == 0
+    shown.page.get_by_text("connection lost, trying again").wait_for()
+    assert shown.page.get_by_role("button", name="Take off").is_disabled()
+    start("--view", f"127.0.0.1:{port}")
+    # The token is another: it shows the new flight, and says why it cannot steer it.
+    shown.page.get_by_text("Its token is of another run").wait_for()
+    shown.wait("page.connection.state === 'live' && page.frame.time < 30")

@@ -66,7 +66,6 @@ export class Controls {
     this.allowed = allowed;
     for (const part of document.querySelectorAll("#commands :is(button, input, select)")) part.disabled = !allowed;
     document.getElementById("commands").hidden = !live;
-    document.getElementById("view-only").hidden = allowed || !live;
     for (const part of document.querySelectorAll("#time-controls :is(button, select)")) part.disabled = live && !allowed;
   }
 
@@ -81,18 +80,24 @@ export class Controls {
     this.speed.value = value;
   }
 
+  /** Does something to the time of a recording. */
+  steer(act) {
+    act(this.on.recording());
+    this.on.moved();
+  }
+
   togglePause() {
-    if (this.on.recording()) return this.on.recording().togglePause();
+    if (this.on.recording()) return this.steer((recording) => recording.togglePause());
     return this.order("speed", { factor: this.paused ? Number(this.speed.value) : 0 });
   }
 
   step() {
-    if (this.on.recording()) return this.on.recording().step(STEP_S);
+    if (this.on.recording()) return this.steer((recording) => recording.step(STEP_S));
     return this.order("step", { time_s: STEP_S });
   }
 
   setSpeed(factor) {
-    if (this.on.recording()) return this.on.recording().setSpeed(factor);
+    if (this.on.recording()) return this.steer((recording) => recording.setSpeed(factor));
     return this.order("speed", { factor });
   }
 

@@ -56,7 +56,8 @@ function stateOf(value) {
     thrust: value("thrust"),
     armed: !(value("armed") === 0),
     landed: Math.abs(value("position.z")) < 0.01,
-    status: laws.map((law) => whole(`controller.${law}.status_number`)),
+    // The FMU's enumeration is counted from one.
+    status: laws.map((law) => Math.max(0, whole(`controller.${law}.status_number`) - 1)),
     active: laws.map((law) => whole(`controller.${law}.active_constraints`)),
     iterations: laws.map((law) => whole(`controller.${law}.iterations`)),
   });

@@ -8,15 +8,16 @@ const REALS = [
   ["strongest", 1], ["rotors", 4], ["battery", 1], ["voltage", 1], ["tilt", 2], ["wind", 3],
 ];
 
-/** The vehicles of a message of the stream. Throws if the page is older or newer than the program. */
-export function decode(buffer) {
-  const data = new DataView(buffer);
+/** The vehicles of a message of the stream, and where it ends. Throws if the page is older or newer than the program. */
+export function decode(buffer, start = 0) {
+  const data = new DataView(buffer, start);
   if (data.getUint8(0) !== VERSION) throw new Error("This page is from another version than the program: reload the page.");
   const count = data.getUint8(1);
   const stride = data.getUint8(2);
   const vehicles = [];
   for (let index = 0; index < count; index += 1) vehicles.push(vehicle(data, HEADER + index * stride));
-  return { speed: data.getFloat32(4, true), time: data.getFloat64(8, true), pace: data.getFloat32(16, true), vehicles };
+  const end = start + HEADER + count * stride;
+  return { speed: data.getFloat32(4, true), time: data.getFloat64(8, true), pace: data.getFloat32(16, true), vehicles, end };
 }
 
 function vehicle(data, start) {

@@ -1,15 +1,20 @@
 // The artificial horizon with heading.
 
 import { angles } from "./frame.js";
+import { Rarely } from "./rarely.js";
 
 const PIXELS_PER_RAD = 190;
 const DEGREE = Math.PI / 180;
+/** Turns that nobody sees, rad. */
+const UNSEEN = 0.002;
+/** A screen reader is not told more often, ms. */
+const TOLD_MS = 1000;
 
 export class Horizon {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
-    this.labelled = 0;
+    this.label = new Rarely(TOLD_MS, () => this.tell());
     this.recolour();
   }
 
@@ -18,12 +23,15 @@ export class Horizon {
     const style = getComputedStyle(document.documentElement);
     const colour = (name) => style.getPropertyValue(name).trim();
     this.colours = { sky: colour("--horizon-sky"), ground: colour("--horizon-ground"), front: colour("--front") };
+    this.shown = null;
   }
 
   /** Draws an attitude. */
-  draw(quaternion, now) {
+  draw(quaternion) {
     const { context, canvas } = this;
     const [roll, pitch, yaw] = angles(quaternion);
+    if (this.shown?.every((angle, axis) => Math.abs(angle - [roll, pitch, yaw][axis]) < UNSEEN)) return;
+    this.shown = [roll, pitch, yaw];
     const size = canvas.width;
     context.save();
     context.clearRect(0, 0, size, size);
@@ -36,13 +44,13 @@ export class Horizon {
     this.wings();
     this.heading(size, yaw);
     context.restore();
-    // A screen reader is not told thirty times a second.
-    if (now - this.labelled > 1000) {
-      this.labelled = now;
-      const degrees = (angle) => Math.round(angle / DEGREE) + 0;
-      const label = `Attitude: roll ${degrees(roll)}°, pitch ${degrees(pitch)}°, heading ${(degrees(yaw) + 360) % 360}°`;
-      canvas.setAttribute("aria-label", label);
-    }
+    this.label.ask();
+  }
+
+  /** Says the attitude in words. */
+  tell() {
+    const [roll, pitch, yaw] = this.shown.map((angle) => Math.round(angle / DEGREE) + 0);
+    this.canvas.setAttribute("aria-label", `Attitude: roll ${roll}°, pitch ${pitch}°, heading ${(yaw + 360) % 360}°`);
   }
 
   background(size, offset) {

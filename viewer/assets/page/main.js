@@ -1,51 +1,70 @@
 // The page: what comes from the program or from a recording is drawn, what the pilot asks for goes back.
 
 import { Controls } from "./controls.js";
+import { graphics } from "./graphics.js";
 import { History } from "./history.js";
 import { Horizon } from "./horizon.js";
 import { Panel } from "./panel.js";
 import { Plots } from "./plots.js";
+import { Rarely } from "./rarely.js";
+import { Redraw } from "./redraw.js";
 import { Recording, readRecording } from "./replay.js";
 import { View } from "./scene.js";
-import { Stream } from "./stream.js";
+import { Stream, token } from "./stream.js";
 
 const KEPT = 1800;
 const KEPT_S = 60;
+/** Numbers are not read more often, ms. */
+const READ_MS = 200;
 const find = (id) => document.getElementById(id);
 
 const page = {
   frame: null, news: { vehicles: [], texts: [] }, scene: { vehicles: [], obstacles: [] }, chosen: null, histories: new Map(),
-  recording: null, stream: null, connection: null, isPilot: false, dirty: false,
+  recording: null, stream: null, connection: null, isPilot: null,
 };
 
+const redraw = new Redraw(draw);
 const controls = new Controls((action, parameters) => page.stream.ask(page.chosen, action, parameters), {
   recording: () => page.recording,
-  follow: () => follow(!view.follows),
+  moved: () => redraw.ask(),
+  follow: () => follow(!view?.follows),
   choose: (number) => choose(page.frame?.vehicles[number - 1]?.id ?? page.chosen),
 });
-const view = new View(find("view"), find("labels"), (place) => { if (!page.recording) controls.flyTo(place); }, () => controls.height());
+const { works, isSoftware } = graphics();
+find("no-graphics").hidden = works;
+/** Null where the browser cannot draw in three dimensions; everything else works without. */
+const view = works ? new View(find("view"), find("labels"), isSoftware, {
+  place: (place) => { if (!page.recording) controls.flyTo(place); },
+  height: () => controls.height(),
+  change: () => redraw.ask(),
+}) : null;
 const horizon = new Horizon(find("horizon"));
 const plots = new Plots(find("charts"));
 const panel = new Panel(find("state"), find("vehicles"), find("texts"), choose);
+const numbers = new Rarely(READ_MS, () => {
+  const state = chosenState();
+  if (state) panel.draw(state, newsOf(state.id, page.frame.time));
+});
 
 function choose(id) {
   page.chosen = id;
-  page.dirty = true;
   if (page.frame) panel.offer(page.frame.vehicles.map((vehicle) => vehicle.id), id);
+  redraw.ask();
 }
 
 function follow(on) {
-  view.follows = on;
+  if (view) view.follows = on;
   find("follow").setAttribute("aria-pressed", String(on));
+  redraw.ask();
 }
 
 /** Takes in how things are. */
 function take(frame) {
   page.frame = frame;
-  page.dirty = true;
   if (!frame.vehicles.some(({ id }) => id === page.chosen)) choose(frame.vehicles[0]?.id ?? null);
   panel.offer(frame.vehicles.map(({ id }) => id), page.chosen);
   for (const state of frame.vehicles) historyOf(state.id).push(frame.time, state);
+  redraw.ask();
 }
 
 function historyOf(id) {
@@ -53,38 +72,59 @@ function historyOf(id) {
   return page.histories.get(id);
 }
 
+/** Goes on with a recording. */
 function play(now) {
   const { recording } = page;
-  recording.advance(now);
+  if (!recording.advance(now) && page.frame) return;
   if (recording.sought) {
     recording.sought = false;
+    panel.forget();
     for (const id of recording.states.keys()) {
       historyOf(id).clear();
       for (const [time, state] of recording.past(id, KEPT_S)) historyOf(id).push(time, state);
     }
   }
   take(recording.frame());
+  panel.say(recording.textsNow());
   const seek = find("seek");
   if (document.activeElement !== seek || !recording.paused) seek.value = recording.time;
   seek.setAttribute("aria-valuetext", `${recording.time.toFixed(1)} s of ${recording.end.toFixed(1)} s`);
 }
 
-function draw(now) {
-  requestAnimationFrame(draw);
+/** Draws how things are. Returns whether they change by themselves. */
+function draw(now, waited) {
   if (page.recording) play(now);
+  const goesOn = Boolean(page.recording && !page.recording.paused);
   const { frame, chosen } = page;
-  if (!frame || frame.vehicles.length === 0) return;
-  find("time").textContent = `${frame.time.toFixed(1)} s`;
-  find("pace").textContent = pace(frame);
+  if (!frame || frame.vehicles.length === 0) return goesOn;
+  write("time", `${frame.time.toFixed(1)} s`);
+  write("pace", pace(frame));
   controls.showSpeed(frame.speed);
-  view.draw(frame.vehicles, (id) => historyOf(id).places, chosen);
-  if (!page.dirty) return;
-  page.dirty = false;
-  const state = frame.vehicles.find(({ id }) => id === chosen);
-  if (!state) return;
-  horizon.draw(state.quaternion, now);
-  panel.draw(state, page.recording ? null : page.news.vehicles.find(({ id }) => id === chosen), now);
-  plots.draw(historyOf(chosen), now);
+  view?.draw(frame.vehicles, (id) => historyOf(id).places, chosen);
+  view?.pace(waited, now);
+  if (view) write("scale", `Squares of ${view.grid.step} m`);
+  const state = chosenState();
+  if (!state) return goesOn;
+  horizon.draw(state.quaternion);
+  numbers.ask();
+  plots.draw(historyOf(chosen));
+  return goesOn;
+}
+
+function chosenState() {
+  return page.frame?.vehicles.find(({ id }) => id === page.chosen);
+}
+
+/** Writes a text, if it is another: the browser lays out again what is written. */
+function write(id, text) {
+  const part = find(id);
+  if (part.textContent !== text) part.textContent = text;
+}
+
+/** What is said of a vehicle at a time, s. */
+function newsOf(id, time) {
+  const vehicles = page.recording ? page.recording.newsAt(time) : page.news.vehicles;
+  return vehicles.find((vehicle) => vehicle.id === id);
 }
 
 function pace({ speed, pace: measured }) {
@@ -98,32 +138,39 @@ function connect() {
     frame: (frame) => { if (!page.recording) take(frame); },
     scene: (scene) => {
       page.scene = scene;
-      if (!page.recording) view.describe(scene);
+      if (!page.recording) view?.describe(scene);
     },
     news: (news) => {
       page.news = news;
       if (!page.recording) panel.say(news.texts);
+      redraw.ask();
     },
     controls: (isPilot) => {
       page.isPilot = isPilot;
       allow();
     },
-    state: (state) => {
-      page.connection = state;
+    state: (state, reason) => {
+      page.connection = { state, reason };
       if (!page.recording) tellConnection();
     },
   });
 }
 
 function tellConnection() {
-  const texts = { connecting: "connecting", live: "live", lost: "connection lost, trying again" };
-  find("connection").dataset.state = page.connection;
-  find("connection").textContent = texts[page.connection];
+  const { state, reason } = page.connection;
+  const texts = { connecting: "connecting", live: "live", lost: reason ?? "connection lost, trying again" };
+  find("connection").dataset.state = state;
+  write("connection", texts[state]);
 }
 
 function allow() {
-  controls.allow(page.isPilot && !page.recording, !page.recording);
-  find("hint").textContent = page.isPilot && !page.recording ? "Click a place to fly there" : "";
+  write("why-view-only", token()
+    ? "Its token is of another run: open the address that lmpc-sitl printed last to give commands."
+    : "Open the address that lmpc-sitl printed, with its token, to give commands.");
+  controls.allow(page.isPilot === true && !page.recording, !page.recording);
+  // Null: the program has not said it yet.
+  find("view-only").hidden = page.isPilot !== false || Boolean(page.recording);
+  write("hint", page.isPilot && !page.recording && works ? "Click a place to fly there" : "");
 }
 
 /** Shows a recording, or the flight again. */
@@ -131,25 +178,28 @@ function show(recording) {
   page.recording = recording;
   page.histories.clear();
   page.frame = null;
-  view.describe(recording ? { vehicles: [], obstacles: [] } : page.scene);
+  view?.describe(recording ? recording.scene : page.scene);
   find("player").hidden = !recording;
-  find("messages").hidden = Boolean(recording);
+  find("messages").hidden = recording?.texts.length === 0;
+  panel.forget();
   find("close").hidden = !recording || !page.stream;
+  if (!recording) panel.say(page.news.texts);
   if (recording) {
-    find("recording-name").textContent = recording.name;
+    write("recording-name", recording.name);
     Object.assign(find("seek"), { min: recording.start, max: recording.end, value: recording.start });
-    find("connection").textContent = "recording";
+    write("connection", "recording");
     find("connection").dataset.state = "recording";
   }
   allow();
+  redraw.ask();
 }
 
 function open(name, buffer) {
   try {
     show(new Recording(name, readRecording(name, buffer)));
   } catch (error) {
-    find("answer").textContent = `${name}: ${error.message}`;
-    find("connection").textContent = `${name}: ${error.message}`;
+    write("answer", `${name}: ${error.message}`);
+    write("connection", `${name}: ${error.message}`);
     find("connection").dataset.state = "lost";
   }
 }
@@ -163,26 +213,42 @@ find("close").addEventListener("click", () => {
   show(null);
   tellConnection();
 });
-find("seek").addEventListener("input", ({ target }) => page.recording?.seek(Number(target.value)));
-find("follow").addEventListener("click", () => follow(!view.follows));
-find("from-above").addEventListener("click", () => view.fromAbove());
+find("seek").addEventListener("input", ({ target }) => {
+  page.recording?.seek(Number(target.value));
+  redraw.ask();
+});
+find("follow").addEventListener("click", () => follow(!view?.follows));
+find("from-above").addEventListener("click", () => view?.fromAbove());
 find("everything").addEventListener("click", () => {
   follow(false);
-  view.showAll(page.frame?.vehicles ?? []);
+  view?.showAll(page.frame?.vehicles ?? []);
 });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  view.recolour();
+  view?.recolour();
   horizon.recolour();
   plots.build();
+  redraw.ask();
 });
 
-const { recording } = await (await fetch("/session.json")).json();
-if (recording) {
-  open(recording, await (await fetch("/recording")).arrayBuffer());
-} else {
+/** The recording that is within the page, if it is a file of its own. */
+function enclosed() {
+  const element = find("recording");
+  if (!element) return null;
+  const bytes = Uint8Array.from(atob(element.textContent), (letter) => letter.charCodeAt(0));
+  return [element.dataset.name, bytes.buffer];
+}
+
+/** What the page is for: a recording within it or at its server, else the flight. */
+async function begin() {
+  const own = enclosed();
+  if (own) return open(...own);
+  const { recording } = await (await fetch("/session.json")).json();
+  if (recording) return open(recording, await (await fetch("/recording")).arrayBuffer());
   allow();
   connect();
 }
+
+await begin();
 // Programs look here: what is shown, and where on the screen.
 window.lmpcView = { page, view };
-requestAnimationFrame(draw);
+redraw.ask();

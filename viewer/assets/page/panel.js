@@ -2,7 +2,6 @@
 
 const SOLVER = ["optimal", "relaxed", "iteration limit", "held"];
 const LAW = ["altitude", "position", "attitude"];
-const PERIOD_MS = 200;
 
 function metres(values) {
   const [north, east, down] = values.map((value) => (Math.round(value * 100) / 100 + 0).toFixed(2));
@@ -38,14 +37,11 @@ function rows(state, news) {
 export class Panel {
   constructor(list, choice, texts, onChoose) {
     Object.assign(this, { list, choice, texts, onChoose });
-    this.drawn = 0;
     this.lastText = 0;
   }
 
-  /** Shows a state, not more often than it can be read. */
-  draw(state, news, now) {
-    if (now - this.drawn < PERIOD_MS) return;
-    this.drawn = now;
+  /** Shows a state. */
+  draw(state, news) {
     const all = rows(state, news);
     if (this.list.children.length !== 2 * all.length) {
       this.list.replaceChildren(...all.flatMap(([name]) => {

@@ -1,8 +1,12 @@
 // Plots of the chosen vehicle over time.
 
 import uPlot from "../uplot/uPlot.esm.js";
+import { Rarely } from "./rarely.js";
 
-const PERIOD_MS = 100;
+/** Between two plots: each is drawn about seven times a second, and no drawing of them all delays what moves. */
+const PERIOD_MS = 30;
+/** A plot that cannot be seen is drawn at most this often: what is printed or scrolled to shall have something in it. */
+const UNSEEN_MS = 2000;
 const HEIGHT_REM = 12;
 
 /** Title, unit of the axis, and the series: column of the history, label, colour, dashed or not. */
@@ -36,7 +40,12 @@ function rem() {
 export class Plots {
   constructor(parent) {
     this.parent = parent;
-    this.drawn = 0;
+    this.history = null;
+    this.next = new Rarely(PERIOD_MS, () => this.drawNext());
+    this.seen = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) this.plots.find(({ figure }) => figure === target).isSeen = isIntersecting;
+      this.next.ask();
+    });
     this.build();
     new ResizeObserver(() => this.resize()).observe(parent);
   }
@@ -45,13 +54,12 @@ export class Plots {
   build() {
     const style = getComputedStyle(document.documentElement);
     const colour = (name) => style.getPropertyValue(name).trim();
+    this.seen.disconnect();
     this.parent.replaceChildren();
     this.plots = PLOTS.map(([title, unit, series]) => {
       const figure = document.createElement("figure");
       const caption = document.createElement("figcaption");
       caption.textContent = unit ? `${title}, ${unit}` : title;
-      figure.setAttribute("aria-label", `Plot over time, s: ${caption.textContent}`);
-      figure.setAttribute("role", "img");
       figure.append(caption);
       this.parent.append(figure);
       const axis = {
@@ -74,8 +82,12 @@ export class Plots {
       };
       const columns = series.map(([column]) => column);
       const plot = new uPlot(options, [[], ...columns.map(() => [])], figure);
-      return { plot, figure, columns };
+      const canvas = figure.querySelector("canvas");
+      canvas.setAttribute("role", "img");
+      canvas.setAttribute("aria-label", `Plot over time, s: ${caption.textContent}`);
+      return { plot, figure, columns, isSeen: false, isOld: true, drawn: -Infinity };
     });
+    for (const { figure } of this.plots) this.seen.observe(figure);
   }
 
   /** Fits the plots to their place. */
@@ -86,12 +98,24 @@ export class Plots {
     }
   }
 
-  /** Draws a history, not more often than the eye needs. */
-  draw(history, now) {
-    if (now - this.drawn < PERIOD_MS) return;
-    this.drawn = now;
-    for (const { plot, columns } of this.plots) {
-      plot.setData([history.time, ...columns.map((column) => history.columns[column])]);
-    }
+  /** Draws a history, soon, if there is more in it than was drawn. */
+  draw(history) {
+    const latest = history.time.at(-1);
+    if (history !== this.history || latest !== this.latest) for (const each of this.plots) each.isOld = true;
+    Object.assign(this, { history, latest });
+    this.next.ask();
+  }
+
+  /** Draws one that can be seen and is old; the others have their turn. */
+  drawNext() {
+    const now = performance.now();
+    const old = this.plots.filter(({ isSeen, isOld, drawn }) => isOld && (isSeen || now - drawn > UNSEEN_MS));
+    if (!this.history || old.length === 0) return;
+    const [each] = old;
+    Object.assign(each, { isOld: false, drawn: now });
+    // The next search begins behind it.
+    this.plots.push(...this.plots.splice(0, this.plots.indexOf(each) + 1));
+    each.plot.setData([this.history.time, ...each.columns.map((column) => this.history.columns[column])]);
+    if (old.length > 1) this.next.ask();
   }
 }

@@ -1,12 +1,15 @@
 // Plays a recorded flight.
 
 import { readCsv } from "./csv.js";
+import { isFilm, readFilm } from "./film.js";
 import { readUlog } from "./ulog.js";
 
-/** Reads a file by its name: .ulg or .csv. Throws with what is wrong. */
+/** Reads a file by its name: .ulg or .csv. A record is read if the program has flown it again. Throws with what is wrong. */
 export function readRecording(name, buffer) {
+  if (isFilm(buffer)) return readFilm(buffer);
   if (/\.ulg$/i.test(name)) return readUlog(buffer);
   if (/\.csv$/i.test(name)) return readCsv(new TextDecoder().decode(buffer));
+  if (/\.lmpc$/i.test(name)) throw new Error(`A record is flown again before it can be shown: lmpc-sitl --view-record ${name}`);
   throw new Error("Only .ulg and .csv files can be opened.");
 }
 
@@ -21,10 +24,13 @@ function indexAt(times, time) {
   return low;
 }
 
+const EMPTY = { vehicles: [], obstacles: [] };
+
 export class Recording {
-  constructor(name, { times, states }) {
+  /** `scene` is what stands still; `news` is what is said of vehicles, each from a time on; `texts` are lines for the pilot. */
+  constructor(name, { times, states, scene = EMPTY, news = [], texts = [] }) {
     if (times.length === 0) throw new Error("The file has no rows. Open a file with a flight in it.");
-    Object.assign(this, { name, times, states });
+    Object.assign(this, { name, times, states, scene, news, texts });
     this.time = times[0];
     this.factor = 1;
     this.paused = false;
@@ -59,13 +65,18 @@ export class Recording {
     this.sought = true;
   }
 
-  /** Goes on by the wall clock, ms. */
+  /** Goes on by the wall clock, ms. Whether there is something else to see since the last call. */
   advance(now) {
     const elapsed = this.moved === null ? 0 : Math.min(now - this.moved, 250) / 1000;
     this.moved = now;
-    if (this.paused) return;
-    this.time = Math.min(this.time + elapsed * this.factor, this.end);
-    if (this.time >= this.end) this.paused = true;
+    if (!this.paused) {
+      this.time = Math.min(this.time + elapsed * this.factor, this.end);
+      if (this.time >= this.end) this.paused = true;
+    }
+    const state = JSON.stringify([this.time, this.paused, this.factor]);
+    const differs = state !== this.seen || this.sought;
+    this.seen = state;
+    return differs;
   }
 
   /** The vehicles now, in the form of the stream. */
@@ -73,6 +84,18 @@ export class Recording {
     const index = indexAt(this.times, this.time);
     const vehicles = [...this.states].map(([id, states]) => ({ ...states[index], id }));
     return { time: this.times[index], speed: this.paused ? 0 : this.factor, pace: NaN, vehicles };
+  }
+
+  /** What is said of vehicles at a time, s. */
+  newsAt(time) {
+    const latest = new Map();
+    for (const each of this.news) if (each.time_s <= time) latest.set(each.id, each);
+    return [...latest.values()];
+  }
+
+  /** The lines for the pilot up to now. */
+  textsNow() {
+    return this.texts.filter(({ time_s: time }) => time <= this.time);
   }
 
   /** Everything up to now, for a history that begins anew: times, and states of each vehicle. */

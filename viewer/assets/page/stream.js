@@ -4,14 +4,16 @@ import { decode } from "./frame.js";
 
 const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5000;
+/** Code with which the program closes: try again later. */
+const TOO_MANY = 1013;
 
 /** The token of the address, which goes nowhere but here. */
-function token() {
+export function token() {
   return new URLSearchParams(location.hash.slice(1)).get("token");
 }
 
 export class Stream {
-  /** `on` has functions: frame, scene, news, controls, state. */
+  /** `on` has functions: frame, scene, news, state, and controls, which gets whether orders are taken; null while nobody knows. */
   constructor(on) {
     this.on = on;
     this.next = 1;
@@ -28,13 +30,13 @@ export class Stream {
     socket.onopen = () => {
       this.pause = FIRST_PAUSE_MS;
       this.on.state("live");
-      if (token()) socket.send(JSON.stringify({ token: token() }));
-      else this.on.controls(false);
+      // Without a token, too: where many watch, the program waits for this word.
+      socket.send(JSON.stringify({ token: token() ?? "" }));
     };
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.read(JSON.parse(data)) : this.on.frame(decode(data)));
-    socket.onclose = () => {
-      this.on.state("lost");
-      this.on.controls(false);
+    socket.onclose = ({ code }) => {
+      this.on.state("lost", code === TOO_MANY ? "too many browsers watch this flight, trying again" : undefined);
+      this.on.controls(null);
       for (const answer of this.waiting.values()) answer("the connection was lost; try again");
       this.waiting.clear();
       setTimeout(() => this.open(), this.pause);

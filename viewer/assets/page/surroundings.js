@@ -4,7 +4,7 @@ import {
   BufferGeometry, DoubleSide, EdgesGeometry, ExtrudeGeometry, Group, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
   MeshBasicMaterial, MeshLambertMaterial, RingGeometry, Shape, SphereGeometry, Vector3,
 } from "../three/three.module.min.js";
-import { place } from "./craft.js";
+import { place } from "./axes.js";
 
 const WALL = 30;
 const CORNERS = 72;

@@ -23,6 +23,8 @@ pub enum Need {
     Qemu,
     /// The C library that these want.
     ArmLibraries,
+    /// The browser that the tests of the live page drive.
+    Chromium,
 }
 
 impl Need {
@@ -34,6 +36,7 @@ impl Need {
             Self::Wine => machine::wine().is_some(),
             Self::Qemu => machine::find(QEMU).is_some(),
             Self::ArmLibraries => machine::has_arm_libraries(),
+            Self::Chromium => machine::has_chromium(),
         }
     }
 
@@ -45,11 +48,12 @@ impl Need {
             Self::Wine => &["wine64"],
             Self::Qemu => &["qemu-user"],
             Self::ArmLibraries => &["libc6-arm64-cross"],
+            Self::Chromium => &["chromium"],
         }
     }
 
     /// What it is, and what to type.
-    fn remedy(self) -> String {
+    pub fn remedy(self) -> String {
         let apt = format!("apt-get install {}", self.packages().join(" "));
         match self {
             Self::StandardLibrary(target) => format!(
@@ -59,6 +63,7 @@ impl Need {
             Self::Wine => format!("wine, which runs programs of Windows: {apt}"),
             Self::Qemu => format!("{QEMU}, which runs programs of 64-bit ARM: {apt}"),
             Self::ArmLibraries => format!("the C library of 64-bit ARM in {}: {apt}", ARM_LIBRARIES),
+            Self::Chromium => format!("a Chromium on PATH: {apt}"),
         }
     }
 

@@ -55,7 +55,7 @@ topics! {
     "fmu" "an FMU in place of ours" ["fmu", "map", "fmu-check"];
     "hil" "the plant for an external autopilot" ["hil", "hil-mount"];
     "configuration" "configuration file and environment variables" ["config"];
-    "view" "a page in a browser" ["view", "view-record"];
+    "view" "a page in a browser" ["view", "view-record", "view-page"];
     "terminal" "output, completions, manual page" ["log", "no-panel", "ready-file", "generate", "help", "version"];
     "exit-codes" "how the program ends" [];
 }
