@@ -11,6 +11,7 @@ use crate::control::flat_attitude::FlatAttitude;
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
+use crate::control::required_thrust::RequiredThrust;
 use crate::control::rotor_command::RotorCommand;
 use crate::control::thrust_lag::ThrustLag;
 use crate::design::controller_limits::{
@@ -127,14 +128,17 @@ impl Cascade {
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
-        let motion = |reference: &PositionReference, interval_s: f64| ReferenceMotion {
-            position: reference.position_m.xy(),
-            velocity: reference.velocity_m_s.xy(),
-            acceleration: reference.acceleration_m_s2.xy(),
-            thrust: against_drag(configuration, reference).xy(),
-            jerk: reference.jerk_m_s3.xy(),
-            snap: reference.snap_m_s4.xy(),
-            interval_s,
+        let motion = |reference: &PositionReference, interval_s: f64| {
+            let required = RequiredThrust::of(configuration, reference);
+            ReferenceMotion {
+                position: reference.position_m.xy(),
+                velocity: reference.velocity_m_s.xy(),
+                acceleration: reference.acceleration_m_s2.xy(),
+                thrust: required.acceleration_m_s2.xy(),
+                jerk: required.jerk_m_s3.xy(),
+                snap: required.snap_m_s4.xy(),
+                interval_s,
+            }
         };
         let now = motion(reference, interval_s(&mut self.sampled.position_us, time_us, period_us));
         let later = |sample: usize| motion(&ahead(time_us + sample as u64 * period_us), 0.0);
@@ -167,13 +171,14 @@ impl Cascade {
     ) {
         let period_us = configuration.controllers.altitude.sample_time_us;
         let axis = |vector: &Vector3<f64>| [vector.z].into();
+        let required = RequiredThrust::of(configuration, reference);
         let motion = ReferenceMotion {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
-            thrust: axis(&against_drag(configuration, reference)),
-            jerk: axis(&reference.jerk_m_s3),
-            snap: axis(&reference.snap_m_s4),
+            thrust: axis(&required.acceleration_m_s2),
+            jerk: axis(&required.jerk_m_s3),
+            snap: axis(&required.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
@@ -191,7 +196,7 @@ impl Cascade {
         seen: &Observation,
         (reference, answered): (&PositionReference, &PositionReference),
     ) -> RotorCommand {
-        self.reference_m_s2 = against_drag(configuration, reference);
+        self.reference_m_s2 = RequiredThrust::of(configuration, reference).acceleration_m_s2;
         let upright = upright(&seen.body);
         let attitude = self.required_attitude(configuration, upright, reference);
         let later = self.required_attitude(configuration, upright, answered);
@@ -205,7 +210,7 @@ impl Cascade {
             acceleration_rad_s2: attitude.angular_acceleration_rad_s2,
             jerk_rad_s3: change / lag_s,
         };
-        let vertical = against_drag(configuration, answered).z + self.feedback_m_s2.z;
+        let vertical = RequiredThrust::of(configuration, answered).acceleration_m_s2.z + self.feedback_m_s2.z;
         let thrust_n = thrust(configuration, vertical, upright);
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
@@ -225,15 +230,16 @@ impl Cascade {
             let none = Vector3::zeros();
             return FlatAttitude::new(&none, &none, &none, &Heading::of(reference));
         }
-        let wanted = against_drag(configuration, reference) + self.feedback_m_s2;
+        let required = RequiredThrust::of(configuration, reference);
+        let wanted = required.acceleration_m_s2 + self.feedback_m_s2;
         let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
         let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);
         // Commands that are cut off do not move with the reference.
         let kept = if horizontal == wanted.xy() { 1.0 } else { 0.0 };
         FlatAttitude::new(
             &within,
-            &(reference.jerk_m_s3 * kept),
-            &(reference.snap_m_s4 * kept),
+            &(required.jerk_m_s3 * kept),
+            &(required.snap_m_s4 * kept),
             &Heading::of(reference),
         )
     }
@@ -289,11 +295,6 @@ impl Cascade {
         self.attitude.apply(&design.attitude, &asked, &made.torque_n_m);
         RotorCommand { speed_rad_s, wrench: made }
     }
-}
-
-/// Acceleration, NED, m/s², that thrust and gravity must make for a reference to be followed against the drag.
-fn against_drag(configuration: &Configuration, reference: &PositionReference) -> Vector3<f64> {
-    reference.acceleration_m_s2 + configuration.drag_1_s().component_mul(&reference.velocity_m_s)
 }
 
 /// Cosine of the tilt: the down component of the body's down axis.

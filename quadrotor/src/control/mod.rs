@@ -22,6 +22,7 @@ pub(crate) mod mixer;
 pub(crate) mod observation;
 pub(crate) mod observed_motion;
 pub(crate) mod position_controller;
+pub(crate) mod required_thrust;
 pub(crate) mod rotor_command;
 pub(crate) mod rotor_loss;
 pub(crate) mod rotor_monitor;

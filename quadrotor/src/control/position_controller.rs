@@ -10,7 +10,7 @@ use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::POSITION_MANY;
 use crate::design::position_limits::{
-    AXIS_STATES, POSITION_STATES, closing_share, horizon_m, in_sight, position_bounds,
+    AXIS_STATES, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
 };
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
@@ -54,13 +54,18 @@ impl PositionController {
         (present_m_s2, most_m_s2): (f64, f64),
     ) -> (Vector2<f64>, ControllerActivity) {
         let limits = &configuration.limits;
+        let zero = Vector2::zeros();
+        let regulator = design.position.law.regulator();
+        // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
+        // take the rotors' part alone for a tilt that is accelerated for ever. A regulator goes by how it changes.
+        let turning = if regulator.is_some() { zero } else { seen.disturbance_m_s4 };
         let measured = by_axis([
             seen.position_m,
             seen.velocity_m_s,
             seen.acceleration_m_s2,
             seen.jerk_m_s3,
-            seen.snap_m_s4,
-            seen.asked_snap_m_s4,
+            seen.snap_m_s4 + turning,
+            seen.asked_snap_m_s4 + turning,
         ]);
         let error = seen.position_m - reference.position;
         // An error is closed against its direction.
@@ -68,7 +73,7 @@ impl PositionController {
         let speed_m_s = limits.speed_horizontal_m_s;
         let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
         let error = in_sight(&error, horizon_m(closing_m_s, most_m_s2));
-        let error = match design.position.law.regulator() {
+        let error = match regulator {
             Some(regulator) if configuration.controllers.governor => {
                 governed(configuration, regulator, &error)
             }
@@ -90,29 +95,30 @@ impl PositionController {
             (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
         };
         let deviation = with_position(&(measured - state_of(reference)), &error);
-        let zero = Vector2::zeros();
-        let driven =
-            deviation + by_axis([zero, zero, zero, zero, seen.disturbance_m_s4, seen.disturbance_m_s4]);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let model = design.position.motion.as_ref();
         let motion = MotionSample {
-            // The rotors hold the body against torques that disturb it: what turns it is both together.
-            deviation: if model.is_some() { driven } else { deviation },
+            deviation,
             change: measured - self.controller.measured() - motion_of(reference, &self.reference),
             feedback: self.controller.feedback(),
             jump: by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
         let increment = self.observed.step(model, &motion, sample_time_s);
+        let under_way = TurnUnderWay {
+            snap_m_s4: (seen.snap_m_s4 + turning).norm().max((seen.asked_snap_m_s4 + turning).norm()),
+            jump_m_s3: jerk_jump.norm(),
+        };
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),
             // What disturbs the vehicle accelerates it, too.
-            deviation: turn.state(&(driven + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
+            deviation: turn
+                .state(&(deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s, jerk_jump.norm()),
+            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s, under_way),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };

@@ -29,8 +29,7 @@ const LEAST_CATCHING_UP_M_S: f64 = 0.05;
 const CATCHING_UP_WITH_FASTER: f64 = 0.1;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
-/// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s: at once, and whatever is
-/// commanded. A plan that would have to prevent it could only fail.
+/// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
 const ANSWER_1_S: f64 = 50.0;
 /// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
 /// speed, m/s. The tilt is the one to keep.
@@ -64,15 +63,26 @@ pub(crate) fn position_limits() -> [SignalLimit; 5] {
     ]
 }
 
+/// How the tilt is accelerated whatever is commanded now. A plan that would have to prevent it could only fail, give way at all of its
+/// limits, and have no eyes for the way.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct TurnUnderWay {
+    /// Snap that the body has, or that its rotors are asked for, m/s⁴. It lasts for the time that the attitude loop takes.
+    pub(crate) snap_m_s4: f64,
+    /// By how much the jerk of the reference has jumped since the last sample, m/s³: it will be answered.
+    pub(crate) jump_m_s3: f64,
+}
+
 /// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, when the reference asks for speeds up to
 /// `asked_m_s`: see [`most_speed_m_s`].
 pub(crate) fn position_bounds(
     limits: &Limits,
     (present_m_s2, lasting_m_s2): (f64, f64),
     asked_m_s: f64,
-    jump_m_s3: f64,
+    under_way: TurnUnderWay,
 ) -> [f64; POSITION_BOUNDS] {
-    let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2 + ANSWER_1_S * jump_m_s3;
+    let turning = (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2).max(under_way.snap_m_s4)
+        + ANSWER_1_S * under_way.jump_m_s3;
     let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked_m_s);
     core::array::from_fn(|bound| match bound {
@@ -129,7 +139,8 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        COARSE_SIDES, POSITION_BOUNDS, SIDES, horizon_m, in_sight, position_bounds, position_limits,
+        COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, position_bounds,
+        position_limits,
     };
     use crate::{GRAVITY_M_S2, Limits};
 
@@ -138,7 +149,7 @@ mod tests {
         let sides: usize = position_limits().iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
-        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0, 0.0);
+        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0, TurnUnderWay::default());
         assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
         assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
         assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
@@ -146,11 +157,23 @@ mod tests {
         assert_eq!(bounds[POSITION_BOUNDS - 1], 8.0);
     }
 
+    /// What is under way is not forbidden; what is slower than the limit changes nothing.
+    #[test]
+    fn a_turn_under_way_may_go_on() {
+        let limits = Limits::default();
+        let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+        for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
+            let under_way = TurnUnderWay { snap_m_s4: share * turning, jump_m_s3: 0.0 };
+            assert_eq!(position_bounds(&limits, (5.0, 4.0), 3.0, under_way)[2 * SIDES], expected * turning);
+        }
+    }
+
     /// A reference that is faster than the limit may be caught up with.
     #[test]
     fn a_fast_reference_moves_the_speed_limit() {
         let speed = |asked_m_s: f64| {
-            position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s, 0.0)[POSITION_BOUNDS - 1]
+            position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s, TurnUnderWay::default())
+                [POSITION_BOUNDS - 1]
         };
         // At the limit by one per cent of it.
         assert!((speed(8.0) - 8.08).abs() < 1e-12);

@@ -14,9 +14,9 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub acceleration: SVector<f64, AXES>,
     /// Acceleration that the thrust must make: with drag.
     pub thrust: SVector<f64, AXES>,
-    /// Jerk.
+    /// Its derivative.
     pub jerk: SVector<f64, AXES>,
-    /// Snap.
+    /// The derivative of that.
     pub snap: SVector<f64, AXES>,
     /// Time since the previous sample, s; 0 before the first one.
     pub interval_s: f64,

@@ -1,9 +1,9 @@
 //! The closed loop on plants with physics that its controllers do not know.
 
 use nalgebra::Vector3;
-use quadrotor::{Airframe, BatteryPack, Configuration, Inputs, Simulation};
+use quadrotor::{Airframe, AirframePreset, BatteryPack, Configuration, ControllerKind, Inputs, Simulation};
 
-use crate::common::{fly, goal};
+use crate::common::{distance, fly, goal};
 
 /// What makes an option of an airframe without.
 type Change = fn(&mut Airframe);
@@ -74,6 +74,35 @@ fn each_option_can_be_flown() {
         assert!(excursion < 0.2 && hover < 0.02, "{name}: {excursion} {hover}");
         assert!(overshoot < 0.1 && settled_s < 12.0, "{name}: {overshoot} {settled_s}");
         assert_ne!(mark(change), mark(nothing), "{name}");
+    }
+}
+
+/// An offset centre of mass takes a torque for ever, of which an angular acceleration alone would break every limit of the tilt. The
+/// rotors that balance it stand for no motion: a step is as soon settled as by the regulator, whatever the size.
+#[test]
+fn a_balanced_weight_is_no_motion() {
+    let flight = |preset: AirframePreset, share: f64, kind: ControllerKind| {
+        let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+        configuration.controllers.kind = kind;
+        configuration.reference.shaping = false;
+        let airframe = &mut configuration.airframe;
+        airframe.centre_of_gravity_m = [1.0, -0.7, 0.0].map(|part| part * share * airframe.arm_length_m);
+        let goal_m = [2.0, 0.0, 0.0];
+        let mut settled_s = 0.0;
+        let end = fly(&configuration, &goal(goal_m, 0.0), 10.0, |outputs| {
+            if distance(outputs, goal_m) > 0.02 {
+                settled_s = outputs.time_us as f64 / 1e6;
+            }
+        });
+        (settled_s, distance(&end.outputs(), goal_m))
+    };
+    for (preset, share) in [(AirframePreset::Crazyflie, 0.02), (AirframePreset::Heavy, 0.08)] {
+        let (regulated_s, _) = flight(preset, share, ControllerKind::Dlqr);
+        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc] {
+            let (settled_s, end_m) = flight(preset, share, kind);
+            assert!(end_m < 1e-3, "{preset:?}, {kind:?}: {end_m} m");
+            assert!(settled_s < 1.1 * regulated_s + 0.2, "{preset:?}, {kind:?}: {settled_s} {regulated_s}");
+        }
     }
 }
 

@@ -157,3 +157,20 @@ fn each_flies_disturbed_with_a_wrong_mass() {
         flown(preset, &configuration, &signal, 20.0);
     }
 }
+
+/// Short shaped goals are all jumps of the jerk, which the attitude answers with more angular acceleration than may be commanded. What
+/// is under way is no reason to give up the way.
+#[test]
+#[cfg(feature = "shaper")]
+fn short_shaped_goals_are_not_overshot() {
+    for preset in [AirframePreset::Crazyflie, AirframePreset::Hummingbird, AirframePreset::Iris] {
+        for way_m in [0.5, 1.0, 2.0] {
+            let goal_m = [way_m, 0.0, 0.0];
+            let mut beyond: f64 = 0.0;
+            fly(&of(preset), &goal(goal_m, 0.0), 6.0, |outputs| {
+                beyond = beyond.max(overshoot(outputs, goal_m))
+            });
+            assert!(beyond < 0.025, "{preset:?}, {way_m} m: {beyond} beyond");
+        }
+    }
+}

@@ -7,8 +7,8 @@ use crate::common::{STEP_US, goal};
 use crate::common::{fly, unshaped};
 use nalgebra::Vector3;
 use quadrotor::{
-    Airframe, Configuration, FlatAttitude, Inputs, Limits, Mixer, Plant, PlantInputs, PlantState,
-    PositionReference, Simulation, Wrench,
+    Airframe, AirframePreset, Configuration, ControllerKind, FlatAttitude, Inputs, Limits, Mixer, Plant,
+    PlantInputs, PlantState, PositionReference, Simulation, Wrench,
 };
 
 /// x = A sin(ω t + c) on each horizontal axis.
@@ -228,5 +228,60 @@ fn a_geometric_controller_tracks_by_the_flat_attitude() {
     ] {
         let rms = tracked_geometrically(trajectory);
         assert!(rms < bar_m, "{rms} m");
+    }
+}
+
+/// A circle of an airframe at its rate, from rest on: root mean square of the distance in the second half of 20 s, m.
+fn circled(configuration: &Configuration, (radius_m, rate_rad_s): (f64, f64), kind: ControllerKind) -> f64 {
+    let circle = Trajectory {
+        amplitude_m: [radius_m; 2],
+        rate_rad_s: [rate_rad_s; 2],
+        ..Trajectory::circle(rate_rad_s)
+    };
+    let mut configuration = *configuration;
+    configuration.controllers.kind = kind;
+    configuration.reference.shaping = false;
+    configuration.initial.position_m = circle.reference(0, true).position_m.into();
+    let inputs = |time_us: u64| Inputs { reference: circle.reference(time_us, true), ..Inputs::default() };
+    let (mut square, mut count) = (0.0, 0.0);
+    fly(&configuration, &inputs, 20.0, |outputs| {
+        if outputs.time_us > 10_000_000 {
+            let wanted = circle.reference(outputs.time_us, true).position_m;
+            square += (outputs.position_m - wanted).norm_squared();
+            count += 1.0;
+        }
+    });
+    f64::sqrt(square / count)
+}
+
+/// The thrust turns with the drag, too: circles of vehicles with much of it for their mass are followed as those without.
+#[test]
+fn drag_does_not_cost_the_way() {
+    for (preset, circle) in [(AirframePreset::Crazyflie, (9.8, 0.27)), (AirframePreset::Iris, (3.2, 0.7))] {
+        let configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+        let rms = circled(&configuration, circle, ControllerKind::Lmpc);
+        assert!(rms < 1.5e-3, "{preset:?}: {rms} m");
+    }
+}
+
+/// A circle that would take a lean beyond the limit, and beyond the thrust, by two to three times: the vehicle stays within some metres,
+/// and as near as under the regulator.
+#[test]
+fn a_way_beyond_the_limits_is_not_left_for_ever() {
+    for (preset, tilt_rad, circle) in
+        [(AirframePreset::Iris, 0.97, (3.06, 2.9)), (AirframePreset::Hummingbird, 1.18, (12.0, 2.17))]
+    {
+        let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+        let limits = &mut configuration.limits;
+        limits.tilt_rad = tilt_rad;
+        limits.tilt_rate_rad_s = 20.0;
+        limits.thrust_min = 0.1;
+        limits.thrust_max = 10.0;
+        limits.speed_horizontal_m_s = 19.0;
+        limits.speed_up_m_s = 19.0;
+        limits.speed_down_m_s = 19.0;
+        let [regulated, rms] =
+            [ControllerKind::Dlqr, ControllerKind::Lmpc].map(|kind| circled(&configuration, circle, kind));
+        assert!(rms < 20.0 && rms < 1.2 * regulated, "{preset:?}: {rms} m, regulator {regulated} m");
     }
 }
