@@ -241,8 +241,9 @@ impl ControlState {
         }
         let clocks = self.clocks(&design.configuration.controllers);
         let due = Due::at(&clocks, time_us);
-        // A takeover is measured more than once, and may be refused in its midst: only it copies the state.
-        let before = (inputs.armed && self.takes_over(inputs)).then(|| *self);
+        // A takeover is measured more than once, and may be refused in its midst: only it copies the state, which `then_some` would do
+        // at each sample.
+        let before = if inputs.armed && self.takes_over(inputs) { Some(*self) } else { None };
         let advanced = self.advance(design, inputs, instruments, (due, time_us));
         match (advanced, before) {
             (Ok(()), _) => self.next_us = clocks.next_instant_us(time_us),
