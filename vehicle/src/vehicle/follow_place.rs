@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(there, place());
         held(&mut there, Sticks { up: 1.0, ..Sticks::default() }, 1.0);
         there.heed(&FollowSettings { angle_rad: 0.0, ..FollowSettings::default() });
-        assert_eq!(there.height_m, 9.5, "the parameters are as they were");
+        assert!((there.height_m - 9.5).abs() < 1e-9, "the parameters are as they were: {there:?}");
         there.heed(&FollowSettings { angle_rad: 1.0, ..FollowSettings::default() });
         assert_eq!((there.height_m, there.angle_rad), (8.0, 1.0));
     }
