@@ -65,7 +65,8 @@ impl Hub {
         };
         let taken = |count| (count < most).then_some(count + 1);
         let free = seated.fetch_update(Ordering::Relaxed, Ordering::Relaxed, taken);
-        free.is_ok().then_some(Seat { rank, seated })
+        // Only then: a seat that is made frees a place when it is dropped.
+        free.is_ok().then(|| Seat { rank, seated })
     }
 
     /// How many browsers there are.
