@@ -133,9 +133,10 @@ mod tests {
         configuration.sensors.attitude_noise_rad = 0.3;
         model.retune(&configuration).expect("flies");
         assert!(model.warnings().iter().any(|warning| warning.starts_with("measurement noise")));
-        configuration.sensors.velocity_noise_m_s = 3.0;
+        configuration.sensors.attitude_noise_rad = 0.0;
+        configuration.sensors.body_rate_noise_rad_s = 10.0;
         let refused = model.retune(&configuration).expect_err("lost").to_string();
-        assert!(refused.starts_with("sensor.velocity_noise = 3 m/s is too much noise"), "{refused}");
+        assert!(refused.starts_with("sensor.body_rate_noise = 10 rad/s is too much noise"), "{refused}");
         // S singular in floating point was a condition number of +inf.
         configuration = Configuration::default();
         configuration.controllers.position.lambda = 0.6;

@@ -99,7 +99,7 @@ impl Default for ReferenceSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sensors {
     /// Off: position, velocity, attitude and body rates are measured. On: position and attitude only, and a
-    /// stationary Kalman predictor (26) estimates the rest.
+    /// stationary Kalman predictor (26) estimates the rest. Off, it filters position and velocity when one of them is noisy.
     pub output_feedback: bool,
     /// Standard deviation of the position, per axis, m.
     pub position_noise_m: f64,

@@ -371,7 +371,7 @@ impl ControlState {
             return;
         }
         let by_position = configuration.sensors.output_feedback;
-        let seen = if by_position { self.estimator.body_at(time_us) } else { *measured };
+        let seen = self.estimator.seen(&configuration.sensors, measured, time_us);
         let sample = FlightSample {
             motion: if by_position {
                 MeasuredMotion::Position(measured.position_m)

@@ -1,4 +1,4 @@
-//! The stationary Kalman predictor (26) of the vehicle's motion, from position and attitude.
+//! The stationary Kalman predictor (26) of the vehicle's motion, from position and attitude, or from a noisy velocity, too.
 
 use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
@@ -43,6 +43,18 @@ impl Estimator {
             disturbance_rad_s2: Vector3::zeros(),
             rotor_speed_rad_s,
             time_us,
+        }
+    }
+
+    /// What the controllers go by at `time_us`: the measurement, in which the prediction stands for what is not measured or noisy.
+    pub(crate) fn seen(&self, sensors: &Sensors, measured: &RigidBody, time_us: u64) -> RigidBody {
+        if sensors.output_feedback {
+            self.body_at(time_us)
+        } else if sensors.filters_motion() {
+            let RigidBody { position_m, velocity_m_s, .. } = self.body_at(time_us);
+            RigidBody { position_m, velocity_m_s, ..*measured }
+        } else {
+            *measured
         }
     }
 
@@ -131,9 +143,9 @@ impl Estimator {
         for i in 0..3 {
             let estimate = [self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]];
             let next = design.translation.predict(
-                &estimate.into(),
-                &Vector1::new(acceleration[i] - drag[i]),
-                &Vector1::new(measured.position_m[i]),
+                &estimate,
+                acceleration[i] - drag[i],
+                [measured.position_m[i], measured.velocity_m_s[i]],
             );
             (self.body.position_m[i], self.body.velocity_m_s[i], self.disturbance_m_s2[i]) =
                 (next[0], next[1], next[2]);

@@ -34,7 +34,7 @@ impl Observation {
         measured: &RigidBody,
         time_us: u64,
     ) -> Self {
-        let body = if configuration.sensors.output_feedback { estimator.body_at(time_us) } else { *measured };
+        let body = estimator.seen(&configuration.sensors, measured, time_us);
         let rotor_speed_rad_s = estimator.rotor_speed_rad_s();
         let made = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s);
         Self {

@@ -155,6 +155,8 @@ impl Redesigned {
             attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
                 || one.sensors.position_noise_m != other.sensors.position_noise_m
+                || one.sensors.velocity_noise_m_s != other.sensors.velocity_noise_m_s
+                || one.sensors.output_feedback != other.sensors.output_feedback
                 || one.sensors.attitude_noise_rad != other.sensors.attitude_noise_rad,
         }
     }

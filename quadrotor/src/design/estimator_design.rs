@@ -1,26 +1,77 @@
 //! The gains of the stationary Kalman predictor (26).
 
 use lmpc::{DesignError, KalmanDesign, KalmanPredictor, NoiseCovariance, StateSpace};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
 
-use crate::Configuration;
+use crate::{Configuration, Sensors};
 
 /// Smallest standard deviations that the design counts with, m and rad: without noise the predictor would
 /// follow each rounding.
 const SMALLEST_NOISE: (f64, f64) = (1e-3, 1e-3);
+/// The same of the velocity, m/s.
+const SMALLEST_VELOCITY_NOISE_M_S: f64 = 1e-3;
+/// The longest memory of positions beside a measured velocity, s. The more exact the velocity, the longer its integral would stand for
+/// the position, with the error of the first reading in it.
+const LONGEST_MEMORY_S: f64 = 1.0;
 /// Standard deviation of the acceleration that the model misses from sample to sample, m/s² and rad/s².
 const MODEL_NOISE: (f64, f64) = (0.3, 3.0);
+/// The same beside a measured velocity, m/s²: a model that is trusted more lags behind while the vehicle is not what it is taken for.
+const MODEL_NOISE_BESIDE_VELOCITY: f64 = 1.0;
 /// How fast disturbances wander, m/s² and rad/s² per √s.
 const WANDERING: (f64, f64) = (0.3, 3.0);
 
 /// One axis: position or angle, its rate, and the acceleration that the model does not explain.
 pub(crate) type Axis = KalmanPredictor<3, 1, 1>;
 
+/// One axis of translation, by what is measured of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum TranslationAxis {
+    /// The position alone is read.
+    ByPosition(Axis),
+    /// Position and velocity are.
+    ByMotion(KalmanPredictor<3, 1, 2>),
+}
+
+impl TranslationAxis {
+    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<Self, DesignError> {
+        let position_m = sensors.position_noise_m.max(SMALLEST_NOISE.0);
+        if sensors.filters_motion() {
+            let velocity_m_s = sensors.velocity_noise_m_s.max(SMALLEST_VELOCITY_NOISE_M_S);
+            let deviations = [position_m, velocity_m_s];
+            let drift = position_m / LONGEST_MEMORY_S;
+            axis(sample_time_s, deviations, MODEL_NOISE_BESIDE_VELOCITY, WANDERING.0, drift)
+                .map(Self::ByMotion)
+        } else {
+            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0).map(Self::ByPosition)
+        }
+    }
+
+    /// Whether it filters a measured velocity.
+    pub(crate) fn filters(&self) -> bool {
+        matches!(self, Self::ByMotion(_))
+    }
+
+    /// Position, m, velocity, m/s, and unexplained acceleration, m/s², at the next sample, from those at this one, the acceleration
+    /// by the model until then, m/s², and the measured position and velocity.
+    pub(crate) fn predict(
+        &self,
+        estimate: &[f64; 3],
+        modelled_m_s2: f64,
+        [position_m, velocity_m_s]: [f64; 2],
+    ) -> SVector<f64, 3> {
+        let (estimate, input) = (SVector::from(*estimate), Vector1::new(modelled_m_s2));
+        match self {
+            Self::ByPosition(axis) => axis.predict(&estimate, &input, &Vector1::new(position_m)),
+            Self::ByMotion(axis) => axis.predict(&estimate, &input, &Vector2::new(position_m, velocity_m_s)),
+        }
+    }
+}
+
 /// The predictors of one axis of translation and of one of rotation, at the attitude controller's sample
 /// time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EstimatorDesign {
-    pub(crate) translation: Axis,
+    pub(crate) translation: TranslationAxis,
     pub(crate) rotation: Axis,
     pub(crate) sample_time_s: f64,
 }
@@ -34,33 +85,38 @@ impl EstimatorDesign {
         let sensors = &configuration.sensors;
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         Ok(Self {
-            translation: axis(
-                sample_time_s,
-                sensors.position_noise_m.max(SMALLEST_NOISE.0),
-                MODEL_NOISE.0,
-                WANDERING.0,
-            )?,
+            translation: TranslationAxis::new(sensors, sample_time_s)?,
             rotation: axis(
                 sample_time_s,
-                sensors.attitude_noise_rad.max(SMALLEST_NOISE.1),
+                [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
                 MODEL_NOISE.1,
                 WANDERING.1,
+                0.0,
             )?,
             sample_time_s,
         })
     }
 }
 
-/// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring p.
-fn axis(t: f64, noise: f64, model_noise: f64, wandering: f64) -> Result<Axis, DesignError> {
+/// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring the first Q of them under noise
+/// of these standard deviations. By `drift` T in a sample p moves beside v.
+fn axis<const Q: usize>(
+    t: f64,
+    noise: [f64; Q],
+    model_noise: f64,
+    wandering: f64,
+    drift: f64,
+) -> Result<KalmanPredictor<3, 1, Q>, DesignError> {
     let half = t * t / 2.0;
     let a = DMatrix::from_row_slice(3, 3, &[1.0, t, half, 0.0, 1.0, t, 0.0, 0.0, 1.0]);
     let b = DMatrix::from_column_slice(3, 1, &[half, t, 0.0]);
-    // w = [T²/2; T; 0] a + [0; 0; √T] b
+    // w = [T²/2; T; 0] a + [0; 0; √T] b + [T; 0; 0] c
     let missed = &b * model_noise;
-    let plant = StateSpace::new(a, b, DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 0.0]))?;
+    let plant = StateSpace::new(a, b, DMatrix::identity(Q, 3))?;
     let mut w = &missed * missed.transpose();
     w[(2, 2)] = wandering * wandering * t;
-    let covariance = NoiseCovariance::uncorrelated(w, DMatrix::from_element(1, 1, noise * noise));
+    w[(0, 0)] += drift * t * drift * t;
+    let v = DMatrix::from_diagonal(&DVector::from_iterator(Q, noise.map(|deviation| deviation * deviation)));
+    let covariance = NoiseCovariance::uncorrelated(w, v);
     KalmanPredictor::new(&plant, &KalmanDesign::new(&plant, &covariance)?)
 }

@@ -62,8 +62,10 @@ fn another_kind_and_other_models_redesign_all_controllers() {
 fn noise_redesigns_the_estimator() {
     let estimator = redesigned(ControllerKind::Lmpc, |changed| changed.sensors.position_noise_m = 0.1);
     assert_eq!(estimator, Redesigned { estimator: true, ..NONE });
-    // It does not measure velocities.
-    assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.sensors.velocity_noise_m_s = 0.1), NONE);
+    // Noisy velocities are filtered.
+    let estimator = redesigned(ControllerKind::Lmpc, |changed| changed.sensors.velocity_noise_m_s = 0.1);
+    assert_eq!(estimator, Redesigned { estimator: true, ..NONE });
+    assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.sensors.body_rate_noise_rad_s = 0.1), NONE);
 }
 
 /// The controllers predict the rotors; the attitude controller keeps their limits.

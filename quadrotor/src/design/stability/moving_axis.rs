@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::control::observed_motion::{MotionModel, MotionSample, ObservedMotion};
-use crate::design::estimator_design::Axis;
+use crate::design::estimator_design::TranslationAxis;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::design::stability::loop_events::LoopEvent;
 use crate::{CascadeDesign, Configuration};
@@ -14,8 +14,9 @@ pub(crate) struct MovingAxis<const K: usize> {
     /// From positions to accelerations.
     law: LinearLaw<K>,
     motion: Option<MotionModel<K, 1>>,
-    output_feedback: bool,
-    estimator: Axis,
+    /// Whether the law goes by the estimate of position and velocity.
+    estimated: bool,
+    estimator: TranslationAxis,
 }
 
 /// State of a [`MovingAxis`]: small deviations from hover.
@@ -69,7 +70,7 @@ impl<const K: usize> MovingAxis<K> {
         Self {
             law,
             motion,
-            output_feedback: configuration.sensors.output_feedback,
+            estimated: configuration.sensors.output_feedback || design.estimator.translation.filters(),
             estimator: design.estimator.translation,
         }
     }
@@ -85,7 +86,7 @@ impl<const K: usize> MovingAxis<K> {
         unasked: f64,
     ) {
         let [position, velocity, disturbance] = state.estimate;
-        let seen = if self.output_feedback {
+        let seen = if self.estimated {
             [position - velocity * event.early_s, velocity]
         } else {
             [state.position + noise[0], state.velocity + noise[1]]
@@ -128,10 +129,9 @@ impl<const K: usize> MovingAxis<K> {
     }
 
     /// The estimator's step to the next sample of the attitude controller: by the acceleration that it models, m/s², and the
-    /// error of the measured position, m.
-    pub(crate) fn predict(&self, state: &mut Moving, modelled: f64, noise: f64) {
-        let measured = state.position + noise;
-        state.estimate =
-            self.estimator.predict(&state.estimate.into(), &[modelled].into(), &[measured].into()).into();
+    /// errors of the measured position and velocity, m, m/s.
+    pub(crate) fn predict(&self, state: &mut Moving, modelled: f64, noise: [f64; 2]) {
+        let measured = [state.position + noise[0], state.velocity + noise[1]];
+        state.estimate = self.estimator.predict(&state.estimate, modelled, measured).into();
     }
 }

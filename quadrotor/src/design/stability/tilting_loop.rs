@@ -61,7 +61,7 @@ impl TiltingLoop {
         let rate = 0.0;
         let modelled = turning.estimate[0] * GRAVITY_M_S2 / self.believed;
         self.turning.sample(turning, [now, rate], [noise.angle, noise.rate]);
-        self.moving.predict(moving, modelled, noise.position);
+        self.moving.predict(moving, modelled, [noise.position, noise.velocity]);
     }
 }
 

@@ -70,7 +70,8 @@ impl SmallSignal<VERTICAL> for VerticalLoop {
             let wanted = moving.feedback;
             command = self.believed * wanted;
             let mean = (acceleration + command + (acceleration - command) * self.kept) / 2.0;
-            self.moving.predict(&mut moving, mean / self.believed, noise.position);
+            let noise = [noise.position, noise.velocity];
+            self.moving.predict(&mut moving, mean / self.believed, noise);
         }
         let before = [moving.position, moving.velocity, acceleration, command];
         [moving.position, moving.velocity, acceleration, _] = self.motions.after(event, before);
