@@ -71,7 +71,7 @@ def parameters(variable: str) -> list[dict]:
 
 
 def actions(page: str, variable: str) -> str:
-    """What can be chosen by the parameters that the page names; the default is bold."""
+    """The values of the parameters that the page names; defaults are bold."""
     named = set(re.findall(r"`([A-Z][A-Z0-9_]+)`", page))
     lines = ["| parameter | what it chooses | values |", "| --- | --- | --- |"]
     for parameter in parameters(variable):
@@ -80,7 +80,7 @@ def actions(page: str, variable: str) -> str:
             shown = [f"**{text}**" if each["value"] == parameter["value"] else text for text, each in zip(values, parameter["values"])]
             lines.append(row(f"`{parameter['name']}`", parameter["description"], ", ".join(shown)))
     if len(lines) == 2:
-        raise PluginError(f"none of the parameters in {variable} is named in the page of failsafes")
+        raise PluginError(f"the page of failsafes names none of the parameters in {variable}")
     return "\n".join(lines)
 
 

@@ -184,7 +184,7 @@ class Flight:
         self.fail(f"command {number} was not answered")
 
     def set_parameter(self, name: str, value: float):
-        """Sets a parameter, and waits until the vehicle tells its value."""
+        """Sets a parameter and waits until the vehicle reports its value."""
         for _ in range(5):
             self.mav.param_set_send(*self.target, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32)
             end = time.monotonic() + 1

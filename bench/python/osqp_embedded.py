@@ -12,7 +12,7 @@ from solvers import TOLERANCE
 
 
 class OsqpEmbedded:
-    """Vectors change, matrices and the penalty do not: it is the one that OSQP adapts to the first sample."""
+    """Only vectors change from sample to sample. The penalty stays as OSQP has adapted it to the first sample."""
 
     name = "OSQP, generated code"
     #: Libraries by what they were generated from: compiling one takes seconds.

@@ -98,8 +98,8 @@ pub trait Model: Sized + 'static {
     /// The outputs at the current time. An output that is not finite ends the run.
     fn outputs(&self) -> Self::Outputs;
 
-    /// Whether all outputs are finite, if the model can tell it faster than by a look at one variable after the other, which is what
-    /// follows upon `false`.
+    /// Whether all outputs are finite, if the model can tell faster than by checking the variables one by one, which happens after
+    /// `false`.
     fn are_finite(_outputs: &Self::Outputs) -> bool {
         false
     }

@@ -6,10 +6,10 @@ use nalgebra::{RealField, SMatrix};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Numbers that a control step calculates with: `f64`, in which all is designed and which every type here has unless another is
-/// named, or `f32`, for processors that have nothing else in hardware.
+/// Numbers that a control step calculates with: `f64`, in which everything is designed and which is the default of every type here, or
+/// `f32`, for processors that have nothing else in hardware.
 ///
-/// A controller is designed in `f64` and converted by its `to_precision`. The tolerances follow the precision; each is relative to the
+/// Design a controller in `f64`, then convert it by its `to_precision`. The tolerances follow the precision; each is relative to the
 /// numbers that it judges.
 pub trait Precision:
     RealField + Copy + Default + Sum + Serialize + DeserializeOwned + sealed::Sealed
@@ -18,14 +18,14 @@ pub trait Precision:
     const INFINITY: Self;
     /// How far beyond its bound a limit of predicted signals counts as met.
     const LIMIT: Self;
-    /// The same of a constraint of a quadratic program by itself, whose numbers are taken as exact.
+    /// The same for a constraint of a quadratic program alone, whose numbers count as exact.
     const CONSTRAINT: Self;
-    /// Below this share of a unit normal that is left after removing the active normals, it depends on them.
+    /// A unit normal depends on the active normals if removing them leaves less than this share of it.
     const DEPENDENT: Self;
-    /// By how much the steps of a search may have missed the point that they lead to, without a look whether it keeps all constraints:
-    /// less than what the least tolerant programs take for rounding.
+    /// How far the steps of a search may miss the point that they lead to before the search checks that it keeps all constraints: less
+    /// than the rounding that the least tolerant programs allow.
     const STEPS: Self;
-    /// Difference that the actuators' own arithmetic may make between an input asked for and applied.
+    /// Difference between a requested and an applied input that the actuators' own arithmetic may cause.
     const ACTUATORS: Self;
 
     /// The number nearest to a double.
@@ -34,7 +34,7 @@ pub trait Precision:
     /// The double of the same value.
     fn to_f64(self) -> f64;
 
-    /// Whether it is no number.
+    /// Whether it is not a number.
     fn is_nan(self) -> bool;
 }
 

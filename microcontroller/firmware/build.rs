@@ -13,7 +13,7 @@ fn main() {
     fs::copy("memory.x", out.join("memory.x")).expect("the output folder can be written");
     println!("cargo::rustc-link-search={}", out.display());
     let Some(recording) = env::var_os(RECORDING) else {
-        println!("cargo::error={RECORDING} names no file; build with `cargo xtask microcontroller`");
+        println!("cargo::error={RECORDING} must name a recording; build with `cargo xtask microcontroller`");
         return;
     };
     println!("cargo::rerun-if-changed={}", recording.display());

@@ -37,7 +37,7 @@ def header(**arrays: np.ndarray) -> str:
 
 
 def osqp_code(task: dict, folder: pathlib.Path) -> tuple[list, int]:
-    """The shipped program; returns what the compiler is to be told, and the bytes that its samples take."""
+    """Generates code for the shipped program; returns arguments for the compiler and the size of the samples in bytes."""
     import osqp
     from scipy import sparse
 
@@ -56,7 +56,7 @@ def osqp_code(task: dict, folder: pathlib.Path) -> tuple[list, int]:
 
 
 def tinympc_code(task: dict, folder: pathlib.Path) -> tuple[list, int]:
-    """A full horizon; returns the same."""
+    """The same for a full horizon."""
     import tinympc
 
     n, p = task["states"], task["inputs"]
@@ -71,7 +71,7 @@ def tinympc_code(task: dict, folder: pathlib.Path) -> tuple[list, int]:
     wide = lambda bound, columns: np.tile(np.asarray(bound, dtype=float)[:, None], (1, columns))
     free = np.full(p, FREE)
     solver.set_bound_constraints(wide(lower, MOVES), wide(upper, MOVES), wide(-free, MOVES - 1), wide(free, MOVES - 1))
-    # Its module for Python is not wanted.
+    # The Python module is not needed.
     with unittest.mock.patch("subprocess.check_call"):
         solver.codegen(str(folder))
     change(folder / "tinympc" / "types.hpp", "typedef double tinytype", "typedef float tinytype")

@@ -1,4 +1,4 @@
-"""How fast vehicles fly on this machine, beside other simulators where those are installed."""
+"""How fast vehicles fly on this machine, compared with other simulators if these are installed."""
 
 import argparse
 import os
@@ -58,7 +58,7 @@ def _measure_ours(count: int) -> None:
 
 
 def _measure_peers(count: int) -> None:
-    print("others; what they simulate differs")
+    print("other simulators; what they simulate differs")
     for peer in PEERS:
         try:
             rate: float | str = peer.rate(count)
@@ -73,7 +73,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Measures and prints a table."""
     parser = argparse.ArgumentParser(prog="python -m lmpc_quadrotor benchmark", description=__doc__)
     parser.add_argument("--vehicles", type=int, default=1000, help="vehicles at once (default: 1000)")
-    parser.add_argument("--no-peers", action="store_true", help="measures this package only")
+    parser.add_argument("--no-peers", action="store_true", help="measure this package only")
     chosen = parser.parse_args(arguments)
     if chosen.vehicles < 1:
         parser.error(f"--vehicles {chosen.vehicles}: allowed is 1 or more")

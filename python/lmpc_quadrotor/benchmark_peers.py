@@ -1,4 +1,4 @@
-"""Other simulators of many drones, as far as they are installed, for `python -m lmpc_quadrotor benchmark`."""
+"""Other simulators of many drones, if they are installed, for `python -m lmpc_quadrotor benchmark`."""
 
 import importlib
 import os
@@ -80,7 +80,7 @@ def _pybullet(count: int) -> float:
 
 
 def _crazyflow(count: int) -> float:
-    """One drone in each of `count` worlds, under the state controller, on the processor."""
+    """One drone in each of `count` worlds, under the state controller, on the CPU."""
     # It asks for this before anything has loaded scipy.
     os.environ.setdefault("SCIPY_ARRAY_API", "1")
     os.environ.setdefault("JAX_PLATFORMS", "cpu")

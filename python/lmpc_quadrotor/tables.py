@@ -17,7 +17,7 @@ Numbers: TypeAlias = npt.NDArray[np.float64]
 
 
 def by_name(argument: str, given: Values | None) -> dict[str, Any]:
-    """What is given by name; nothing where it is left out."""
+    """Values by name as a dict; empty if left out."""
     if given is None:
         return {}
     if not isinstance(given, Mapping):
@@ -26,7 +26,7 @@ def by_name(argument: str, given: Values | None) -> dict[str, Any]:
 
 
 def list_of_names(argument: str, given: Iterable[str]) -> list[str]:
-    """Some names; a single one is no list of its letters."""
+    """Names as a list; refuses a single string, which Python would split into letters."""
     if isinstance(given, str):
         raise ArgumentError(f"{argument} = {given!r}; expected a list of names: [{given!r}]")
     return list(given)

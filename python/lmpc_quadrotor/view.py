@@ -1,4 +1,4 @@
-"""A page that shows a flight: the live page of lmpc-sitl and the flight in one HTML file, without anything from elsewhere."""
+"""A page that shows a flight: the live page of lmpc-sitl and the flight in one self-contained HTML file."""
 
 import argparse
 import os
@@ -42,7 +42,7 @@ def _check(table: Any) -> None:
 
 
 def _write(flown: Path, page: Path) -> None:
-    """Raises `ValueError` with what the program says is wrong."""
+    """Writes the page. Raises `ValueError` with the error message of the program."""
     settings = {name: value for name, value in os.environ.items() if not name.startswith("LMPC_SITL_")}
     command = [sitl_path(), "--view-record", str(flown), "--view-page", str(page), "--log", "warn"]
     ended = subprocess.run(command, capture_output=True, text=True, env=settings)
@@ -58,12 +58,12 @@ def _serve(path: Path) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Writes the page of a flight and opens it if that is asked for, or serves the live page with the flight."""
+    """Writes the page of a flight and opens it on request, or serves the live page with the flight."""
     parser = argparse.ArgumentParser(prog="python -m lmpc_quadrotor view", description="Writes a page that shows a flight.")
-    parser.add_argument("file", type=Path, help="table (.csv) with the columns time and position.x, .y, .z, as FMPy's --output-file writes it, log (.ulg) or record (.lmpc)")
+    parser.add_argument("file", type=Path, help="table (.csv, with the columns time and position.x, .y and .z, as FMPy's --output-file writes it), log (.ulg) or record (.lmpc)")
     parser.add_argument("--output", type=Path, help="page to write (default: FILE.html)")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
-    parser.add_argument("--serve", action="store_true", help="serve the page until Ctrl-C instead")
+    parser.add_argument("--serve", action="store_true", help="serve the page until Ctrl-C instead of writing it")
     chosen = parser.parse_args(arguments)
     if chosen.serve:
         return _serve(chosen.file)

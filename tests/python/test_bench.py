@@ -86,7 +86,7 @@ def test_the_kept_results_make_a_report(results, tmp_path):
     text = (tmp_path / "report.md").read_text()
     for loop in ("position", "altitude", "roll and pitch", "yaw"):
         assert f"### {loop}:" in text
-    for heading in ("Engine", "FMU", "MAVLink vehicle", "Growth", "What is missing", "What was tried and failed"):
+    for heading in ("Engine", "FMU", "MAVLink vehicle", "Growth", "What is missing", "What was tried"):
         assert f"## {heading}\n" in text, heading
     assert "nan" not in text and "None" not in text
     assert "DAQP" in report.ratios(results)

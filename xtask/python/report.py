@@ -1,4 +1,4 @@
-"""The demo's report: pictures of all flights, each with a page that shows it in three dimensions. Browsers open it from the disk."""
+"""The demo's report: pictures of all flights, each with a page that shows the flight in 3D. Browsers open it from disk."""
 
 import os
 import subprocess
@@ -22,7 +22,7 @@ class Shown:
 
 
 def write(program: Path, flights: list[Shown], folder: Path) -> list[Path]:
-    """Writes a page for each flight and one that leads to them; returns all of them, the one that leads to them first."""
+    """Writes a page for each flight and an overview that links to them; returns all of them, the overview first."""
     pages = [_page(program, flight.flown) for flight in flights]
     report = folder / "report.html"
     sections = "\n".join(_section(flight, page) for flight, page in zip(flights, pages))

@@ -41,7 +41,7 @@ impl Browser {
             // Where packages cannot be installed the failure is the remedy.
             Ok(()) | Err(Failure::Needs { .. }) => Self::Missing { reason: format!("they need {remedy}") },
             Err(failure) => {
-                Self::Missing { reason: format!("they need {remedy}, which has failed: {failure}") }
+                Self::Missing { reason: format!("they need {remedy}; installing it failed: {failure}") }
             }
         }
     }
@@ -59,7 +59,7 @@ impl Browser {
         match self {
             Self::Found => None,
             Self::Missing { reason } => Some(format!("the tests of the live page were skipped: {reason}")),
-            Self::LeftOut => Some("the tests of the live page were left out, as asked".to_owned()),
+            Self::LeftOut => Some("the tests of the live page were skipped, as asked".to_owned()),
         }
     }
 }

@@ -110,7 +110,7 @@ enum Task {
     ModelDescription,
     /// Flies the FMU in FMPy and the MAVLink vehicle from pymavlink, and writes tables, plots and pages to target/demo.
     ///
-    /// target/demo/report.html shows them; each flight can be watched in 3D.
+    /// target/demo/report.html shows them, and lets you watch each flight in 3D.
     /// Builds both and the Python environment first: about two and a half minutes the first time, seconds later.
     /// Fails if a flight misses its goal.
     Demo,
@@ -138,12 +138,13 @@ enum Task {
     Crates,
     /// Flies the controllers of the cascade in single precision on an emulated Cortex-M4F: instructions, load, memory, accuracy.
     ///
-    /// Needs qemu-system-arm. Fails if commands differ from double precision, or all controllers take more than a tenth of 168 MHz.
+    /// Needs qemu-system-arm. Fails if commands differ from double precision, or if all controllers together take more than a tenth of
+    /// 168 MHz.
     Microcontroller {
-        /// Installs what is missing for it: the standard library by rustup, qemu-system-arm by apt-get if this is root.
+        /// Installs what is missing: the standard library with rustup and, as root, qemu-system-arm with apt-get.
         #[arg(long)]
         install: bool,
-        /// Runs OSQP and TinyMPC along the same flights, too: their generated code, by arm-none-eabi-gcc with newlib and libstdc++.
+        /// Also runs generated code of OSQP and TinyMPC along the same flights; needs arm-none-eabi-gcc with newlib and libstdc++.
         #[arg(long)]
         peers: bool,
     },
@@ -162,7 +163,7 @@ enum Task {
         /// Runs only the tests of the Python package, with the FMUs that are built, if there are any.
         #[arg(long)]
         package: bool,
-        /// Leaves out the tests of the live page. Else, where there is no Chromium, installs one by apt-get if this is root.
+        /// Skips the tests of the live page. Without this flag, installs Chromium with apt-get if it is missing and this is root.
         #[arg(long, conflicts_with = "package")]
         without_browser: bool,
     },

@@ -140,7 +140,7 @@ impl Figures {
             let number = |field: &str| -> Result<f64, Failure> {
                 field.parse().map_err(|_| Failure::Answer {
                     what: "the firmware",
-                    detail: format!("{field:?} in {line:?} is no number"),
+                    detail: format!("{field:?} in {line:?} is not a number"),
                 })
             };
             match fields[..] {
@@ -211,7 +211,7 @@ impl Figures {
             let differs = flown.apart().is_nan() || flown.apart() >= APART;
             if differs || flown.limited == 0 {
                 wrong.push(format!(
-                    "{}: {:.1e} off double precision (allowed {APART:e}), {} samples at limits",
+                    "{}: {:.1e} off double precision (at most {APART:e} allowed), {} samples at limits",
                     flown.name,
                     flown.apart(),
                     flown.limited

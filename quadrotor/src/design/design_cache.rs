@@ -75,8 +75,8 @@ fn bits(configuration: &Configuration) -> impl Iterator<Item = u64> + '_ {
 }
 
 impl Configuration {
-    /// A number that is the same for configurations that are the same, bit for bit, and hardly ever for others: a key to look for
-    /// those that are alike among many. It says nothing beyond this version.
+    /// A number that is equal for configurations that are equal bit for bit, and hardly ever for others: a key for finding equal ones
+    /// among many. Other versions of this crate may return other numbers.
     pub fn fingerprint(&self) -> u64 {
         // FNV-1a by words; the turn brings the upper bits, in which numbers differ most, to all others.
         bits(self).fold(0xcbf2_9ce4_8422_2325, |hash: u64, bits| {

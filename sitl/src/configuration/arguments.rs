@@ -365,15 +365,15 @@ pub struct Arguments {
 
     /// Show a recorded flight in a browser (.ulg, .csv or .lmpc)
     ///
-    /// FILE is a ULog, such as those of --log-dir, a table, such as FMPy's results of LmpcQuadrotor.fmu, or a record of
-    /// --record, which is replayed first. Only --view, --view-page, --ready-file and --log go with this flag. Ctrl-C ends the
+    /// FILE is a ULog (such as --log-dir writes), a table (such as FMPy's results of LmpcQuadrotor.fmu) or a record (of --record),
+    /// which the program replays first. Only --view, --view-page, --ready-file and --log go with this flag. Ctrl-C ends the
     /// program.
     #[arg(long, env = "LMPC_SITL_VIEW_RECORD", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_record: Option<PathBuf>,
 
-    /// Write the page of --view-record to a file, and end
+    /// Write the page of --view-record to a file and exit
     ///
-    /// FILE is one HTML file with the page and the flight in it: browsers open it without a server.
+    /// FILE is a single HTML file that contains the page and the flight: browsers open it without a server.
     #[arg(long, env = "LMPC_SITL_VIEW_PAGE", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_page: Option<PathBuf>,
 

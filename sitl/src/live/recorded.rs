@@ -23,17 +23,17 @@ pub struct ShownRecording(Viewer);
 /// Serves the file that the arguments name.
 ///
 /// # Errors
-/// [`Failure`]: another flag does not go with it, the file cannot be shown, or the address cannot be used.
+/// [`Failure`]: a flag does not go with it, the file cannot be shown, or the address cannot be used.
 pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecording, Failure> {
     check_view_record(arguments)?;
     let address = arguments.view.clone().unwrap_or_default();
     Ok(ShownRecording(open_viewer(&address, Some(recording(path)?))?))
 }
 
-/// Writes a page with the file that the arguments name.
+/// Writes a page with a recorded flight.
 ///
 /// # Errors
-/// [`Failure`]: another flag does not go with it, the file cannot be shown, or the page cannot be written.
+/// [`Failure`]: a flag does not go with it, the file cannot be shown, or the page cannot be written.
 pub fn write_page(arguments: &Arguments, path: &Path, page: &Path) -> Result<(), Failure> {
     check_view_record(arguments)?;
     let content = standalone(&recording(path)?);
@@ -48,7 +48,7 @@ fn recording(path: &Path) -> Result<Recording, Failure> {
         return film(path);
     }
     if !["ulg", "csv"].iter().any(|known| extension == *known) {
-        return Err(wrong("the page shows flight logs (.ulg), tables (.csv) and records (.lmpc)"));
+        return Err(wrong("unknown file type; use a flight log (.ulg), a table (.csv) or a record (.lmpc)"));
     }
     let bytes = std::fs::metadata(path).map_err(|source| Failure::read(path, source))?.len();
     if bytes > MOST_BYTES {

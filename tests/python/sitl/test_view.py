@@ -307,5 +307,5 @@ def test_the_page_finds_a_program_that_was_started_again(start, look):
     assert shown.page.get_by_role("button", name="Take off").is_disabled()
     start("--view", f"127.0.0.1:{port}")
     # The token is another: it shows the new flight, and says why it cannot steer it.
-    shown.page.get_by_text("Its token is of another run").wait_for()
+    shown.page.get_by_text("The token is from another run").wait_for()
     shown.wait("page.connection.state === 'live' && page.frame.time < 30")

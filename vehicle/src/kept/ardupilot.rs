@@ -64,7 +64,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("PSC_JERK_NE", 5.0, 1.0..=50.0, "m/s^3", "Horizontal jerk of position control; here WP_JERK"),
         ("PSC_JERK_Z", 5.0, 0.1..=50.0, "m/s^3", "Vertical jerk of position control"),
         ("PSC_JERK_D", 5.0, 0.1..=50.0, "m/s^3", "Vertical jerk of position control"),
-        ("THR_MIN", 130.0, 0.0..=300.0, "", "Least throttle in flight, of Copter 3.3: DroneKit's tests set it"),
+        ("THR_MIN", 130.0, 0.0..=300.0, "", "Least throttle in flight (Copter 3.3); DroneKit's tests set it"),
         ("MOT_SPIN_MAX", 0.95, 0.9..=1.0, "", "Largest motor output"),
         ("MOT_THST_EXPO", 0.65, -1.0..=1.0, "", "Curve of thrust over motor output"),
         ("MOT_BAT_VOLT_MAX", 0.0, 0.0..=100.0, "V", "Voltage at which thrust is not compensated"),
@@ -77,7 +77,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MOT_PWM_TYPE", 0, 0..=9, "", "Kind of motor signals"),
         ("MOT_HOVER_LEARN", 2, 0..=2, "", "Learning of the thrust in hover; here CTRL_LEARNING"),
     ]),
-    kept!(ArduPilot, "they are only checked before arming: the predictive controllers have weights (ATT_Q_…, POS_Q_…, ALT_Q_…), and the motors are the airframe's", real [
+    kept!(ArduPilot, "only the arming checks read it: the predictive controllers have weights (ATT_Q_…, POS_Q_…, ALT_Q_…) in place of gains, and the airframe defines the motors", real [
         ("PSC_POSXY_P", 1.0, -1.0..=5.0, "", "Horizontal position gain"),
         ("PSC_NE_POS_P", 1.0, -1.0..=5.0, "", "Horizontal position gain"),
         ("PSC_POSZ_P", 1.0, -1.0..=5.0, "", "Vertical position gain"),
@@ -91,7 +91,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MOT_SPIN_ARM", 0.1, 0.0..=1.0, "", "Motor output when armed"),
         ("MOT_SPIN_MIN", 0.15, 0.0..=1.0, "", "Least motor output in flight"),
     ], whole [
-        ("MOT_PWM_MIN", 1000, 0..=2000, "us", "Least pulse of a motor"),
+        ("MOT_PWM_MIN", 1000, 0..=2000, "us", "Shortest pulse of a motor"),
         ("MOT_PWM_MAX", 2000, 0..=2000, "us", "Longest pulse of a motor"),
     ]),
     kept!(ArduPilot, "loitering stops within the limits of all motion (WP_ACC, WP_JERK, ATC_ANGLE_MAX)", real [

@@ -142,7 +142,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("CBRK_IO_SAFETY", 22027, 0..=22027, "", "Circuit breaker of the safety switch"),
         ("CBRK_USB_CHK", 0, 0..=197848, "", "Circuit breaker of the USB check"),
         ("CBRK_BUZZER", 0, 0..=782097, "", "Circuit breaker of the buzzer"),
-        ("RTL_APPR_FORCE", 0, 0..=1, "", "Return only to places that have an approach of a VTOL"),
+        ("RTL_APPR_FORCE", 0, 0..=1, "", "Return only to places with a VTOL approach"),
         ("CBRK_VTOLARMING", 0, 0..=159753, "", "Circuit breaker of arming a VTOL in forward flight"),
         ("CBRK_AIRSPD_CHK", 0, 0..=162128, "", "Circuit breaker of the airspeed check"),
         ("COM_ARM_WO_GPS", 1, 0..=2, "", "Arm without GPS; here an estimate of the position is needed"),
@@ -191,10 +191,10 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MAV_2_CONFIG", 0, 0..=1000, "", "Serial port of the third link; here --link"),
         ("MAV_2_MODE", 0, 0..=13, "", "Messages of the third link"),
     ]),
-    kept!(Px4, "a rotor that stops is always noticed and flown without, and roll and pitch always go before thrust", real [], whole [
+    kept!(Px4, "the vehicle always notices a stopped rotor and flies without it, and always puts roll and pitch before thrust", real [], whole [
         ("FD_ACT_EN", 1, 0..=1, "", "Detect failed motors"),
-        ("CA_FAILURE_MODE", 0, 0..=1, "", "How a failed motor is flown without"),
-        ("MC_AIRMODE", 0, 0..=2, "", "Keep control at the lowest thrust: 0 off, 1 roll and pitch, 2 yaw, too"),
+        ("CA_FAILURE_MODE", 0, 0..=1, "", "How to fly without a failed motor"),
+        ("MC_AIRMODE", 0, 0..=2, "", "Keep control at the lowest thrust: 0 off, 1 for roll and pitch, 2 also for yaw"),
     ]),
     kept!(Px4, "missions turn as their items say and wait for no heading", real [
         ("MIS_YAW_ERR", 12.0, 0.0..=90.0, "deg", "Largest error of the heading at a waypoint"),

@@ -71,7 +71,7 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     real!("BATT_LOW_MAH", None, 0.0..=1e6, failsafe.battery_limits.low_mah, "mAh", "Remaining charge below which the battery is low; 0: any"),
     real!("BATT_CRT_MAH", None, 0.0..=1e6, failsafe.battery_limits.critical_mah, "mAh", "Remaining charge below which the battery is critical; 0: any"),
     real!("BATT_LOW_TIMER", None, 0.0..=120.0, failsafe.battery_limits.low_s, "s", "Time of a low voltage after which it counts"),
-    whole!("BATT_VOLT_PIN", -1..=115, failsafe.battery_limits.pin, i16, "Pin of the voltage: -1 takes the battery away, any other number measures it"),
+    whole!("BATT_VOLT_PIN", -1..=115, failsafe.battery_limits.pin, i16, "Voltage pin: -1 removes the battery, any other number measures the voltage"),
     switch!("BATT_FS_VOLTSRC", failsafe.battery_limits.at_rest, "Voltage that is looked at", ["As measured", "At rest: without the drop that the current makes"]),
     choice!("BATT_FS_LOW_ACT", BATTERY_ACTIONS, failsafe.battery.low, "Action when the battery is low"),
     ConductParameter {

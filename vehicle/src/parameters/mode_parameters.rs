@@ -91,12 +91,12 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     real!("FOLL_OFS_Z", None, -100.0..=100.0, follow.offset_z_m, "m", "Offset from the target down"),
     choice!("FOLL_YAW_BEHAVE", FOLLOW_HEADINGS, follow.heading, "Heading while a target is followed"),
     switch!("FOLL_ALT_TYPE", follow.relative_height, "Which altitude of GLOBAL_POSITION_INT the target has", ["Above sea level", "Above home"]),
-    whole!("THROW_NEXTMODE", 0.0..=27.0, throw.next_mode, u8, "Mode after a throw; 18 stays"),
+    whole!("THROW_NEXTMODE", 0.0..=27.0, throw.next_mode, u8, "Mode after a throw; 18 stays in Throw"),
     switch!("THROW_TYPE", throw.is_dropped, "Kind of throw", ["Upwards", "Drop"]),
-    real!("THROW_ALT_MIN", None, 0.0..=10_000.0, throw.least_height_m, "m", "Least height above home of a throw; 0 is any"),
-    real!("THROW_ALT_MAX", None, 0.0..=10_000.0, throw.most_height_m, "m", "Largest height above home of a throw; 0 is any"),
-    whole!("TKOFF_RPM_MIN", 0.0..=10_000.0, takeoff_check.least, u16, "Least speed of the idling rotors (1/min) to take off with; 0 is any"),
-    whole!("TKOFF_RPM_MAX", 0.0..=10_000.0, takeoff_check.most, u16, "Largest speed of the idling rotors (1/min) to take off with; 0 is any"),
+    real!("THROW_ALT_MIN", None, 0.0..=10_000.0, throw.least_height_m, "m", "Least height above home for a throw; 0 is any"),
+    real!("THROW_ALT_MAX", None, 0.0..=10_000.0, throw.most_height_m, "m", "Largest height above home for a throw; 0 is any"),
+    whole!("TKOFF_RPM_MIN", 0.0..=10_000.0, takeoff_check.least, u16, "Least speed of the idling rotors for takeoff (1/min); 0 is any"),
+    whole!("TKOFF_RPM_MAX", 0.0..=10_000.0, takeoff_check.most, u16, "Largest speed of the idling rotors for takeoff (1/min); 0 is any"),
     real!("SRTL_ACCURACY", None, 0.0..=10.0, trail.accuracy_m, "m", "Least distance between places of the path of Smart RTL; 0 disables it"),
     whole!("SRTL_POINTS", 0.0..=500.0, trail.most_places, u16, "Largest number of places of the path of Smart RTL; 0 disables it"),
 ];
@@ -114,7 +114,7 @@ const RETURN_GOALS: &[(ReturnGoal, i32, &str)] = &[
     (ReturnGoal::RallyPoint, 1, "Nearest rally point, or else home"),
     (ReturnGoal::NearestOfAll, 3, "Nearest of all places"),
     (ReturnGoal::RallyPointOnly, 5, "Nearest rally point"),
-    (ReturnGoal::WithinReach, 6, "As 0: the time that the battery lasts is not known"),
+    (ReturnGoal::WithinReach, 6, "As 0: the remaining battery time is not known"),
 ];
 const PX4_HEADINGS: &[(HeadingPolicy, i32, &str)] = &[
     (HeadingPolicy::NextPlace, 0, "Towards the waypoint"),

@@ -165,8 +165,8 @@ function tellConnection() {
 
 function allow() {
   write("why-view-only", token()
-    ? "Its token is of another run: open the address that lmpc-sitl printed last to give commands."
-    : "Open the address that lmpc-sitl printed, with its token, to give commands.");
+    ? "The token is from another run: to give commands, open the address that lmpc-sitl printed last."
+    : "To give commands, open the address with the token that lmpc-sitl printed.");
   controls.allow(page.isPilot === true && !page.recording, !page.recording);
   // Null: the program has not said it yet.
   find("view-only").hidden = page.isPilot !== false || Boolean(page.recording);

@@ -9,7 +9,7 @@ export function readRecording(name, buffer) {
   if (isFilm(buffer)) return readFilm(buffer);
   if (/\.ulg$/i.test(name)) return readUlog(buffer);
   if (/\.csv$/i.test(name)) return readCsv(new TextDecoder().decode(buffer));
-  if (/\.lmpc$/i.test(name)) throw new Error(`A record is flown again before it can be shown: lmpc-sitl --view-record ${name}`);
+  if (/\.lmpc$/i.test(name)) throw new Error(`A browser cannot replay a record (.lmpc); run lmpc-sitl --view-record ${name}`);
   throw new Error("Only .ulg and .csv files can be opened.");
 }
 

@@ -35,7 +35,7 @@ export class Stream {
     };
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.read(JSON.parse(data)) : this.on.frame(decode(data)));
     socket.onclose = ({ code }) => {
-      this.on.state("lost", code === TOO_MANY ? "too many browsers watch this flight, trying again" : undefined);
+      this.on.state("lost", code === TOO_MANY ? "too many browsers are watching this flight; trying again" : undefined);
       this.on.controls(null);
       for (const answer of this.waiting.values()) answer("the connection was lost; try again");
       this.waiting.clear();

@@ -159,7 +159,7 @@ impl Vehicle {
 
     fn clear_mission(&mut self) -> Result<(), Refusal> {
         if self.mode() == Mode::Mission && self.is_armed() {
-            return Err(Refusal::later("Mission not cleared: it is being flown"));
+            return Err(Refusal::later("Mission not cleared: leave Auto or disarm first"));
         }
         self.set_plan(PlanKind::Mission, Vec::new()).map_err(|fault| {
             Refusal::Failed(format!("Mission not cleared: {}", fault.located(self.identity())))

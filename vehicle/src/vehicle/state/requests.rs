@@ -185,7 +185,7 @@ impl Vehicle {
             }
             Mode::Follow => Follow::may_begin(&situation)?,
             Mode::Throw if situation.armed => {
-                return Err(Refusal::Failed("Throw mode rejected: already armed".to_owned()));
+                return Err(Refusal::Failed("Throw mode rejected: disarm first".to_owned()));
             }
             Mode::SmartReturn => self.machines.smart_return.may_begin()?,
             Mode::Land | Mode::Return if situation.armed && !flying => {
