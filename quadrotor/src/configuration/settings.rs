@@ -197,7 +197,7 @@ pub struct ControllerSettings<const P: usize> {
 /// | --- | --- | --- |
 /// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
 /// | α | 1, the Riccati solution as terminal weight | α = 1.2 discounts the future, which costs once limits are active |
-/// | N, a | 7 and 0.55 altitude, 8 and 0.57 position, 8 and 0.63 attitude | a search over closed-loop costs on steps that saturate: within 1 % of the best, and within 1 % still when N is off by one or a by 0.05 |
+/// | N, a | 7 and 0.55 altitude, 8 and 0.59 position, 8 and 0.63 attitude | a search over closed-loop costs on steps that saturate: within 1 % of the best, and within 1 % still when N is off by one or a by 0.05 |
 /// | N_p | 60 altitude, 150 position, 120 attitude | for the state-space MPC, and the paper's models |
 /// | weights | 1, 0.5 of the acceleration; of the horizontal speed 1.25, of its rate 1 | relative to the bandwidth: deviations of one size count alike; diagonal goals far below overshoot by 2 % instead of 5 % |
 /// | position bandwidth | from the attitude loop | 0.62/(its delay + ΔT/2) |
@@ -217,7 +217,7 @@ impl Default for Controllers {
             rate_weight: SVector::from([0.5]),
             increment_weight: SVector::from([1.0]),
         };
-        let position = ControllerSettings { terms: 8, scale: 0.57, prediction_horizon: 150, ..altitude };
+        let position = ControllerSettings { terms: 8, scale: 0.59, prediction_horizon: 150, ..altitude };
         let attitude = ControllerSettings {
             sample_time_us: 10_000,
             terms: 8,

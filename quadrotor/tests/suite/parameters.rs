@@ -130,7 +130,7 @@ fn values_that_contradict_one_another_are_refused() {
         assert_eq!(refused.to_string(), expected, "{name} = {value}");
     }
     let mut configuration = Configuration::default();
-    // Laguerre functions that decay as 0.57^k are no plan that settles as 0.5^k.
+    // Laguerre functions that decay as 0.59^k are no plan that settles as 0.5^k.
     set(&mut configuration, "controller.position.lambda", 0.5);
     let error = Simulation::new(&configuration, &Inputs::default()).unwrap_err();
     assert!(matches!(error, ConfigurationError::Design { part: "position controller", .. }), "{error}");

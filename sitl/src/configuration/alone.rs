@@ -1,4 +1,4 @@
-//! Flags that go with hardly any other: `--replay FILE` and `--view-record FILE`.
+//! Flags that go with hardly any other: `--replay FILE`, `--view-record FILE` and `--view-page FILE`.
 
 use super::Arguments;
 use crate::failure::Failure;
@@ -16,8 +16,16 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Value`] that names the first such setting.
 pub fn check_view_record(arguments: &Arguments) -> Result<(), Failure> {
-    let fitting = ["view", "view-record", "view-page", "ready-file"];
+    let fitting = ["view", "view-record", "ready-file"];
     check(arguments, &fitting, "--view-record, which shows a recorded flight")
+}
+
+/// Refuses what would be ignored: a page is written, and nothing is served.
+///
+/// # Errors
+/// [`Failure::Value`] that names the first such setting.
+pub fn check_view_page(arguments: &Arguments) -> Result<(), Failure> {
+    check(arguments, &["view-record", "view-page"], "--view-page, which writes a recorded flight into a file")
 }
 
 /// Refuses all settings but some with a flag.

@@ -34,7 +34,7 @@ mod world_file;
 
 pub use addressed::Addressed;
 pub use airframe::AirframeChoice;
-pub use alone::{check_replay, check_view_record};
+pub use alone::{check_replay, check_view_page, check_view_record};
 pub use arguments::Arguments;
 pub use conventions::Conventions;
 pub use fmu::fmu_listing;

@@ -8,7 +8,7 @@ use viewer::{Recording, Viewer, standalone};
 
 use super::film::film;
 use super::open_viewer;
-use crate::configuration::{Arguments, check_view_record};
+use crate::configuration::{Arguments, check_view_page, check_view_record};
 use crate::failure::Failure;
 
 /// How often it is looked whether the program shall end.
@@ -35,7 +35,7 @@ pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecordi
 /// # Errors
 /// [`Failure`]: a flag does not go with it, the file cannot be shown, or the page cannot be written.
 pub fn write_page(arguments: &Arguments, path: &Path, page: &Path) -> Result<(), Failure> {
-    check_view_record(arguments)?;
+    check_view_page(arguments)?;
     let content = standalone(&recording(path)?);
     std::fs::write(page, content).map_err(|source| Failure::write(page, source))
 }

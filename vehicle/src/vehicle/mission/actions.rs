@@ -121,7 +121,7 @@ fn carry_out(action: &Do, situation: &Situation, proposal: &mut Proposal) {
         Do::Operate(operation) => proposal.operate(*operation),
         Do::EnableFence(enabled) => proposal.enable_fence(*enabled),
         Do::MoveSwitch { function, position } => proposal.move_switch(*function, *position),
-        Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: passed by")),
+        Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: skipped")),
         Do::Mark => {}
         Do::Look(look) => {
             let home_z_m = proposal.home().position_m.z;
