@@ -55,7 +55,9 @@ pub(super) fn are_finite(outputs: &Outputs) -> bool {
         setpoint,
         tracking_error_m,
         yaw_error_rad,
-        ..
+        // Whole numbers.
+        time_us: _,
+        activity: _,
     } = outputs;
     let PositionReference { yaw_rad, yaw_rate_rad_s, yaw_acceleration_rad_s2, .. } = setpoint;
     let vectors = [

@@ -6,6 +6,9 @@ use crate::control::cascade::most_horizontal;
 use crate::design::controller_limits::holding_horizontal_m_s2;
 use crate::{Configuration, PositionReference};
 
+/// A horizontal acceleration of less, m/s², has no direction: what it turns with would have no bounds.
+const NOTHING_M_S2: f64 = 1e-6;
+
 /// Acceleration that thrust and gravity must make for a reference to be followed against the drag, and how it changes, NED. A
 /// reference that leans farther than the limits allow requires the largest lean in its direction, and moves as that does: feedback
 /// would otherwise have to cancel a motion of the attitude that nobody can follow.
@@ -44,7 +47,7 @@ impl RequiredThrust {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
         let r = libm::hypot(a.x, a.y);
         // A direction that nothing is left of does not turn.
-        if r <= most_m_s2.max(f64::MIN_POSITIVE) || !r.is_finite() {
+        if r <= most_m_s2.max(NOTHING_M_S2) || !r.is_finite() {
             return *self;
         }
         let n = a / r;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use autopilot::Autopilot;
 use autopilot::envelope::Destination;
-use viewer::{Film, Frame, NewsFrom, Recording, Scene, VehicleNews, VehicleState};
+use viewer::{Film, Frame, NewsFrom, Recording, Scene, Text, VehicleNews, VehicleState};
 
 use super::news::{NewsDesk, news_of};
 use super::sample::sample;
@@ -82,8 +82,17 @@ impl Camera {
                     .collect(),
             })
             .collect();
-        Film { scene: self.scene, news: self.news, texts: self.desk.texts(), frames }
+        Film { scene: self.scene, news: self.news, texts: in_order(self.desk.texts()), frames }
     }
+}
+
+/// Lines by their times, numbered anew: vehicles are flown one ahead of the other.
+fn in_order(mut texts: Vec<Text>) -> Vec<Text> {
+    texts.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+    for (number, text) in (1..).zip(&mut texts) {
+        text.number = number;
+    }
+    texts
 }
 
 impl Audience for Camera {

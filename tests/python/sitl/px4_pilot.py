@@ -69,8 +69,9 @@ class Pilot:
         return self.telemetry.attitude_quaternion().timestamp_us / 1e6
 
     def sleep(self, seconds):
-        end = self.now() + seconds
+        end, latest = self.now() + seconds, time.monotonic() + LONGEST
         while self.now() <= end:
+            assert time.monotonic() < latest, f"{seconds} s of the vehicle's time have not passed within {LONGEST} s"
             time.sleep(0.001)
 
     def holds(self, condition, seconds):

@@ -17,7 +17,7 @@ pub enum Function {
     EmergencyStop,
     /// Arms and disarms.
     Arming,
-    /// Arms, or stops the rotors; in the middle it disarms on the ground only.
+    /// Arms at the high end, and stops the rotors at the low one.
     ArmingOrStop,
     /// Disarms.
     Disarming,

@@ -46,7 +46,10 @@ export class Fineness {
   /** Takes in how long a drawing was waited for, ms. Whether the ratio has changed. */
   take(waited, now) {
     // A page in the background draws nothing.
-    if (waited > WINDOW_MS) this.begin(now);
+    if (waited > WINDOW_MS) {
+      this.begin(now);
+      return false;
+    }
     this.waited += waited;
     this.count += 1;
     if (now - this.since < WINDOW_MS) return false;

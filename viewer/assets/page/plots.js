@@ -43,7 +43,11 @@ export class Plots {
     this.history = null;
     this.next = new Rarely(PERIOD_MS, () => this.drawNext());
     this.seen = new IntersectionObserver((entries) => {
-      for (const { target, isIntersecting } of entries) this.plots.find(({ figure }) => figure === target).isSeen = isIntersecting;
+      for (const { target, isIntersecting } of entries) {
+        // Of plots that have been built anew since, old ones may still be told.
+        const plot = this.plots.find(({ figure }) => figure === target);
+        if (plot) plot.isSeen = isIntersecting;
+      }
       this.next.ask();
     });
     this.build();

@@ -10,12 +10,12 @@ export class Trail extends Line {
   constructor(material) {
     const position = new BufferAttribute(new Float32Array(3 * MOST), 3);
     super(new BufferGeometry().setAttribute("position", position), material);
-    this.geometry.setDrawRange(0, 0);
     this.frustumCulled = false;
     this.clear();
   }
 
   clear() {
+    this.geometry.setDrawRange(0, 0);
     this.count = 0;
     this.first = null;
   }

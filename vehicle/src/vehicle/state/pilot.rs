@@ -135,9 +135,9 @@ impl Vehicle {
             (Function::EmergencyStop, Position::High) | (Function::ArmingOrStop, Position::Low) => {
                 self.disarm_by("Emergency stop: rotors stopped")
             }
-            (Function::EmergencyStop, _) | (Function::Arming, Position::Middle) => Ok(()),
+            (Function::EmergencyStop, _) => Ok(()),
             (Function::Arming | Function::ArmingOrStop, Position::High) => self.arm(false),
-            (Function::ArmingOrStop, Position::Middle) => self.disarm(false),
+            (Function::Arming | Function::ArmingOrStop, Position::Middle) => Ok(()),
             (Function::Arming, Position::Low) | (Function::Disarming, Position::High) => {
                 self.disarm_by("Disarmed by switch")
             }
