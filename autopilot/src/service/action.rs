@@ -210,7 +210,7 @@ fn reset_battery(context: &mut Context, command: &Command) -> Result<(), Refusal
 }
 
 /// ArduPilot answers what it cannot do now by a failure.
-fn as_told_by(identity: Identity, refusal: Refusal) -> Refusal {
+pub(super) fn as_told_by(identity: Identity, refusal: Refusal) -> Refusal {
     match refusal {
         Refusal::TemporarilyRejected(reason) if identity.is_ardupilot() => Refusal::Failed(reason),
         refusal => refusal,

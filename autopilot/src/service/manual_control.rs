@@ -5,6 +5,7 @@ use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, RC_CHANNELS_DATA, RC_
 use vehicle::radio::{CHANNELS, Position};
 use vehicle::{Refusal, Sticks, Vehicle};
 
+use super::action::as_told_by;
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, boot_ms, id};
 use crate::context::Context;
@@ -60,7 +61,10 @@ impl Service for ManualControl {
         };
         let number = command.parameter(1);
         let unknown = || Refusal::Unsupported(format!("RC switch function {number} is not available"));
-        context.vehicle.move_switch(command.whole(1).ok_or_else(unknown)?, position)?;
+        let function = command.whole(1).ok_or_else(unknown)?;
+        let identity = context.identity();
+        let moved = context.vehicle.move_switch(function, position);
+        moved.map_err(|refusal| as_told_by(identity, refusal))?;
         Ok(Progress::Done)
     }
 }

@@ -157,7 +157,8 @@ fn a_page_is_written_of_a_flight_that_is_named_and_can_be_shown() {
     assert!(refused(&["--view-page", "a.html"]).contains("add --view-record FILE"));
     assert!(refused(&["--view-record", "a.txt", "--view-page", "a.html"]).contains("a record (.lmpc)"));
     assert!(refused(&["--view-record", "no.csv", "--view-page", "a.html"]).contains("cannot read no.csv"));
-    let with_ready_file = refused(&["--view-record", "no.csv", "--view-page", "a.html", "--ready-file", "ready"]);
+    let with_ready_file =
+        refused(&["--view-record", "no.csv", "--view-page", "a.html", "--ready-file", "ready"]);
     assert!(with_ready_file.contains("cannot be used with --view-page"), "{with_ready_file}");
     assert!(refused(&["--view-record", "no.lmpc", "--speed", "2"]).contains("--speed: cannot be used"));
 }

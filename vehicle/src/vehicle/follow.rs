@@ -17,6 +17,9 @@ use super::steering::{Steering, SteeringKind};
 use super::target::{Target, TargetMotion, TargetReport, Trust};
 use super::tick::{TICK_S, TICK_US};
 
+/// Reports nearer together than this, s, tell nothing new: with PX4's conventions, and of one tick.
+const NEAREST_APART_S: f64 = 0.1;
+const ANEW_S: f64 = 0.01;
 /// Without a report for so long, s, the target is lost.
 const LOST_S: f64 = 3.0;
 /// Nearer than this, m, there is no direction to the target, and slower than this, m/s, none of the flight.
@@ -58,10 +61,10 @@ impl Follow {
         let settings = &situation.conduct.follow;
         // ArduPilot takes what it is told.
         let trust = if situation.identity.is_ardupilot() {
-            Trust { position: 1.0, velocity: 1.0 }
+            Trust { position: 1.0, velocity: 1.0, nearest_apart_s: ANEW_S }
         } else {
             let position = 1.0 - settings.smoothing;
-            Trust { position, velocity: position * settings.velocity_gain }
+            Trust { position, velocity: position * settings.velocity_gain, nearest_apart_s: NEAREST_APART_S }
         };
         match &mut self.target {
             Some(target) => target.update(report, &trust, situation.time_us),

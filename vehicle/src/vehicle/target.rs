@@ -22,6 +22,8 @@ pub struct Trust {
     pub position: f64,
     /// Of the velocity.
     pub velocity: f64,
+    /// Reports nearer together than this, s, tell nothing new.
+    pub nearest_apart_s: f64,
 }
 
 /// A target as it moves on.
@@ -38,6 +40,8 @@ pub struct Target {
     /// The place that its velocity was last found from, as it was told, m, and when, µs.
     told_m: Vector3<f64>,
     told_us: u64,
+    /// The velocity that it told then, m/s, if it did.
+    told_m_s: Option<Vector3<f64>>,
 }
 
 /// A target at one time.
@@ -65,10 +69,9 @@ const TRAVELS_M_S: f64 = 0.5;
 const ACCELERATION_S: f64 = 1.5;
 /// Reports farther apart than this, s, tell nothing of what was between them.
 const FARTHEST_APART_S: f64 = 5.0;
-/// Reports nearer together than this, s, tell nothing new, and places nearer together than this no velocity: both as in PX4.
-const NEAREST_APART_S: f64 = 0.1;
+/// Places nearer together than this, s, tell no velocity, as in PX4.
 const VELOCITY_APART_S: f64 = 0.5;
-/// The same place within this time, s, is the same report: clients send their last one again.
+/// The same place and velocity within this time, s, are the same report: clients send their last one again.
 const REPEATED_S: f64 = 1.0;
 /// The largest acceleration, m/s², that is believed.
 const STRONGEST_M_S2: f64 = 4.0;
@@ -89,6 +92,7 @@ impl Target {
             heading_rad: report.heading_rad,
             told_m: report.position_m,
             told_us: time_us,
+            told_m_s: report.velocity_m_s,
         };
         target.find_course();
         target
@@ -98,7 +102,8 @@ impl Target {
     pub fn update(&mut self, report: &TargetReport, trust: &Trust, time_us: u64) {
         let seconds_since = |then_us: u64| time_us.saturating_sub(then_us) as f64 / 1e6;
         let (apart_s, told_apart_s) = (seconds_since(self.reported_us), seconds_since(self.told_us));
-        if report.position_m == self.told_m && told_apart_s < REPEATED_S {
+        let repeated = report.position_m == self.told_m && report.velocity_m_s == self.told_m_s;
+        if repeated && told_apart_s < REPEATED_S {
             return;
         }
         let expected = self.at(time_us);
@@ -107,7 +112,7 @@ impl Target {
             *self = Self::new(report, time_us);
             return;
         }
-        if apart_s < NEAREST_APART_S {
+        if apart_s < trust.nearest_apart_s {
             return;
         }
         // Programs that do not know it tell zeros, too: a target that travels is not at rest.
@@ -124,6 +129,7 @@ impl Target {
         };
         if told.is_some() || told_apart_s >= VELOCITY_APART_S {
             (self.told_m, self.told_us) = (report.position_m, time_us);
+            self.told_m_s = report.velocity_m_s;
         }
         let felt = (velocity_m_s - self.velocity_m_s) / apart_s;
         let share = apart_s / (SMOOTHING_S + apart_s);
@@ -188,7 +194,7 @@ mod tests {
 
     use super::{Target, TargetReport, Trust};
 
-    const TRUST: Trust = Trust { position: 0.9, velocity: 0.9 };
+    const TRUST: Trust = Trust { position: 0.9, velocity: 0.9, nearest_apart_s: 0.1 };
 
     /// A target on a circle, 5 m/s at 0.2 rad/s.
     fn on_circle(time_s: f64) -> TargetReport {

@@ -411,6 +411,7 @@ impl Mission {
         proposal.look_at(None);
         proposal.change_speeds(SpeedChange::ForgetMission);
         self.progress = Progress::NotStarted;
+        self.chosen = false;
         self.current = self.program.first();
         self.take_over(situation, proposal);
     }
