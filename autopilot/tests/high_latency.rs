@@ -30,7 +30,8 @@ impl Bench {
     }
 
     fn in_wind(identity: Identity, wind: WindSettings) -> Self {
-        let settings = VehicleSettings { wind, ..VehicleSettings::new(identity) };
+        let mut settings = VehicleSettings { wind, ..VehicleSettings::new(identity) };
+        settings.conduct.failure_injection = true;
         let links = [LinkProfile::Ground, LinkProfile::Onboard];
         let autopilot = Autopilot::new(&settings, 1, Speed::Factor(1.0), &links, 0).expect("valid settings");
         Self { autopilot, heard: Vec::new(), sequence: 0 }

@@ -29,7 +29,9 @@ const HOVER_S: f64 = 120.0;
 const SEEDS: u64 = 20;
 
 fn settings() -> VehicleSettings {
-    VehicleSettings::new(Identity::Px4)
+    let mut settings = VehicleSettings::new(Identity::Px4);
+    settings.conduct.failure_injection = true;
+    settings
 }
 
 /// Flies until a condition holds.

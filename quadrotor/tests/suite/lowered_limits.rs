@@ -15,7 +15,7 @@ const LOOK_US: u64 = 50_000;
 
 /// How far flights of the table may leave their way beyond what the unchanged ones do: what controllers make of a reference that
 /// does not leave it, m and rad.
-const MARGIN_M: f64 = 0.1;
+const MARGIN_M: f64 = 0.12;
 const MARGIN_RAD: f64 = 0.02;
 
 /// Climb, descent, cruise and a turn in all axes: goal, m, and heading, rad.

@@ -13,6 +13,7 @@ use vehicle::{LandedState, Mode, VehicleSettings};
 
 /// MAV_RESULT.
 const TEMPORARILY_REJECTED: u8 = 1;
+const FAILED: u8 = 4;
 const DENIED: u8 = 2;
 const UNSUPPORTED: u8 = 3;
 
@@ -64,10 +65,11 @@ fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
         assert!(texts.iter().any(|text| text == "Failure injected: rotor2=off"), "{texts:?}");
         assert!(texts.iter().any(|text| text == "Rotor 2 lost: descending without yaw control"), "{texts:?}");
         assert_eq!(bench.mode(), Mode::Land);
-        // Nothing else can be flown now.
-        assert_eq!(bench.set_mode(Mode::Hold), TEMPORARILY_REJECTED);
-        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, [0.0; 7]), TEMPORARILY_REJECTED);
-        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, [f32::NAN; 7]), TEMPORARILY_REJECTED);
+        // Nothing else can be flown now. ArduPilot calls what it refuses for the moment a failure.
+        let refused = if identity.is_ardupilot() { FAILED } else { TEMPORARILY_REJECTED };
+        assert_eq!(bench.set_mode(Mode::Hold), refused);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, [0.0; 7]), refused);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_REPOSITION, [f32::NAN; 7]), refused);
         assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 7]), 0);
 
         let (tilt, sink) = fly_down(&mut bench);

@@ -11,6 +11,7 @@ use vehicle::{LandedState, Mode};
 
 const NOTHING: [f32; 7] = [0.0; 7];
 const UNSUPPORTED: u8 = 3;
+const FAILED: u8 = 4;
 const TEMPORARILY_REJECTED: u8 = 1;
 const DENIED: u8 = 2;
 const UNSUPPORTED_MAV_FRAME: u8 = 9;
@@ -138,21 +139,23 @@ fn a_refused_arming_says_why() {
 #[test]
 fn a_mode_that_there_is_not_names_those_that_there_are() {
     // PX4's rattitude mode, which is gone, and ArduPilot's AUTOTUNE.
-    for (identity, main, told) in [
+    for (identity, main, result, told) in [
         (
             Identity::Px4,
             9.0,
+            UNSUPPORTED,
             "Mode 0x90000 is not available; available: Manual, Stabilized, Acro, Altitude, Position, Hold, Takeoff, Mission, Return, Land, Offboard, Orbit, Follow Me",
         ),
         (
             Identity::ArduPilot,
             99.0,
+            FAILED,
             "Mode 99 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, Auto RTL, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL",
         ),
     ] {
         let mut bench = Bench::new(identity);
         let mode = [1.0, main, 0.0, 0.0, 0.0, 0.0, 0.0];
-        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_MODE, mode), UNSUPPORTED);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_MODE, mode), result);
         assert_eq!(bench.texts().last().map(String::as_str), Some(told));
     }
 }
@@ -332,7 +335,6 @@ fn results(bench: &Bench) -> Vec<(u8, u8)> {
 #[test]
 fn a_calibration_tells_its_progress_and_can_be_cancelled() {
     const ACCEPTED: u8 = 0;
-    const FAILED: u8 = 4;
     const IN_PROGRESS: u8 = 5;
     const CANCELLED: u8 = 6;
     let gyro = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];

@@ -159,7 +159,7 @@ fn a_region_of_interest_is_looked_at_wherever_its_altitude_is_from() {
 #[test]
 fn both_magic_numbers_arm_by_force() {
     const ARM: MavCmd = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM;
-    for (number, result) in [(0.0, 1), (2990.0, 1), (2989.0, 0), (21196.0, 0)] {
+    for (number, result) in [(0.0, 4), (2990.0, 4), (2989.0, 0), (21196.0, 0)] {
         let mut bench = Bench::new(Identity::ArduPilot);
         assert_eq!(bench.set_mode(Mode::Return), 0);
         assert_eq!(bench.command(ARM, [1.0, number, 0.0, 0.0, 0.0, 0.0, 0.0]), result, "{number}");
