@@ -163,6 +163,7 @@ pub use design::stability::stability_warning::StabilityWarning;
 #[cfg(feature = "fleet")]
 pub use fleet::{Fleet, FleetError};
 pub use guidance::attitude_target::AttitudeTarget;
+pub use guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
 pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]

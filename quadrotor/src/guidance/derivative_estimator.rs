@@ -37,9 +37,10 @@ const TELLING: usize = 3;
 /// Variances that a coefficient loses from its square.
 const VARIANCES: f64 = 4.0;
 
-/// Recent samples of a signal.
+/// Estimates the derivatives of a signal that is set every so often and held in between, from its changes within the last 0.4 s or
+/// six of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct DerivativeEstimator<const AXES: usize> {
+pub struct DerivativeEstimator<const AXES: usize> {
     /// Time, µs, and value; the newest last, and only the first `count` are used: none of a constant.
     samples: [(u64, SVector<f64, AXES>); CAPACITY],
     count: usize,
@@ -50,7 +51,7 @@ pub(crate) struct DerivativeEstimator<const AXES: usize> {
 
 /// Derivatives of a signal at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Derivatives<const AXES: usize> {
+pub struct Derivatives<const AXES: usize> {
     /// Per s.
     pub first: SVector<f64, AXES>,
     /// Per s².
@@ -61,6 +62,12 @@ impl<const AXES: usize> Derivatives<AXES> {
     /// Of a constant.
     pub fn zero() -> Self {
         Self { first: SVector::zeros(), second: SVector::zeros() }
+    }
+}
+
+impl<const AXES: usize> Default for DerivativeEstimator<AXES> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

@@ -108,6 +108,7 @@ mod steering;
 mod stick_flight;
 mod stick_settings;
 mod sticks;
+mod streamed_motion;
 mod surroundings_settings;
 mod takeoff;
 mod takeoff_check;

@@ -7,6 +7,7 @@ use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
 use super::situation::Situation;
 use super::steering::{Steering, SteeringKind};
+use super::streamed_motion::StreamedMotion;
 use crate::mode::Mode;
 
 /// What has come of set-points.
@@ -22,6 +23,8 @@ pub struct Offboard {
     paused: Option<Steering>,
     /// Attitudes whose thrust asks for a climb rate.
     attitude: AttitudeFlight,
+    /// Trajectories whose acceleration is to be found.
+    stream: StreamedMotion,
 }
 
 impl Offboard {
@@ -36,6 +39,7 @@ impl Offboard {
     /// Holds the place until [`resume`](Self::resume), whatever set-points come.
     pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
         if self.paused.is_none() {
+            self.straighten(situation, proposal);
             self.paused = Some(*proposal.steering());
             proposal.follow(situation, &PositionSetPoint::HOLD);
             proposal.say(Severity::Info, "Paused: holding");
@@ -66,6 +70,7 @@ impl Offboard {
     pub fn begin(&mut self) {
         (self.applied, self.paused) = (false, None);
         self.attitude.forget();
+        self.stream = StreamedMotion::default();
     }
 
     /// Whether the set-point that is steered to asks for a heading.
@@ -92,6 +97,9 @@ impl Offboard {
             }
             return;
         }
+        if self.stream.is_overdue(situation.time_us) {
+            self.straighten(situation, proposal);
+        }
         if self.applied {
             return;
         }
@@ -106,10 +114,26 @@ impl Offboard {
                 return;
             }
             SetPoint::Position(position) => {
-                proposal.follow(situation, &position.within(situation.limits()));
+                let limits = situation.limits();
+                let steered = self.stream.take(&position.within(limits), limits, situation.time_us);
+                if let Some(set_point) = steered {
+                    proposal.follow(situation, &set_point);
+                }
             }
         }
         self.applied = true;
+    }
+
+    /// Goes on without the acceleration that was found for a streamed point, if that is still steered to.
+    fn straighten(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some((bent, straight)) = self.stream.straighten(situation.time_us) else { return };
+        if let Steering::Motion(motion) = proposal.steering() {
+            let asked = motion.set_point();
+            if asked.axes == bent.axes {
+                let yaw = if asked.yaw == bent.yaw { straight.yaw } else { asked.yaw };
+                proposal.follow(situation, &PositionSetPoint { axes: straight.axes, yaw });
+            }
+        }
     }
 
     /// ArduPilot: flies an attitude whose thrust asks for a climb rate, and in the mode that takes attitudes only what comes instead
