@@ -69,10 +69,14 @@ impl Autopilot {
         Self { context, services, before_us: 0, boots: 1 }
     }
 
-    /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing.
+    /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing; a command for a component that is
+    /// not there is refused.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
         self.services.hear(&mut self.context, origin);
-        let Some(asked) = target_of(frame).speaker(self.system_id()) else { return };
+        let Some(asked) = target_of(frame).speaker(self.system_id()) else {
+            self.services.decline(&mut self.context, origin, frame);
+            return;
+        };
         self.services.receive(&mut self.context, origin, frame, asked);
         self.services.announce(&mut self.context);
     }

@@ -27,7 +27,7 @@ mod parameter_metadata;
 mod parameters;
 #[allow(deprecated)] // Clients still use what the dialect calls deprecated.
 pub mod service;
-mod speaker;
+pub mod speaker;
 mod status_text;
 mod stream;
 mod turns;

@@ -59,6 +59,11 @@ impl Outbox {
         self.messages.push(Outgoing { to, message: message.into(), component });
     }
 
+    /// Puts a message behind all others in the name of a component that is not there.
+    pub fn send_in_place_of(&mut self, component: u8, to: Destination, message: impl Into<Message>) {
+        self.messages.push(Outgoing { to, message: message.into(), component });
+    }
+
     /// Sends a line for the pilot to everyone, unless it was said a moment ago. `time_us` is the simulation time, µs.
     pub fn say(&mut self, time_us: u64, severity: Severity, text: &str) {
         for message in self.texts.say(time_us, severity, text) {

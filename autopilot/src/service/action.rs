@@ -16,7 +16,7 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 20] = [
+const ACTIONS: [(MavCmd, CarryOut); 19] = [
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
     (MavCmd::MAV_CMD_NAV_LAND, land),
@@ -34,7 +34,6 @@ const ACTIONS: [(MavCmd, CarryOut); 20] = [
     (MavCmd::MAV_CMD_DO_FENCE_ENABLE, enable_fence),
     (MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, pause),
     (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm),
-    (MavCmd::MAV_CMD_RUN_PREARM_CHECKS, check),
     (MavCmd::MAV_CMD_INJECT_FAILURE, inject_failure),
     (MavCmd::MAV_CMD_BATTERY_RESET, reset_battery),
 ];
@@ -180,20 +179,6 @@ fn enable_fence(context: &mut Context, command: &Command) -> Result<(), Refusal>
         }
     }
     parameter::tell(context, "FENCE_ENABLE");
-    Ok(())
-}
-
-/// Tells what speaks against arming.
-fn check(context: &mut Context, _command: &Command) -> Result<(), Refusal> {
-    let obstacles = context.vehicle.arming_obstacles();
-    if obstacles.is_empty() {
-        context.say(Severity::Info, "Ready to arm");
-    }
-    for obstacle in obstacles {
-        // Clients of ArduPilot look for its word.
-        let when = if context.identity().is_ardupilot() { "PreArm" } else { "Preflight" };
-        context.say(Severity::Warning, &format!("{when}: {obstacle}"));
-    }
     Ok(())
 }
 

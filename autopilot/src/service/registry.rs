@@ -113,7 +113,13 @@ impl Registry {
 
     /// A frame was received, whoever it is for.
     pub fn hear(&mut self, context: &mut Context, origin: &Origin) {
+        self.protocol.hear(context.system_id(), origin);
         self.each(|service| service.hear(context, origin));
+    }
+
+    /// Takes a frame for a component that is none of ours: a command is refused if nobody else can answer it.
+    pub fn decline(&self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        self.protocol.refuse_for_absent(context, origin, frame);
     }
 
     /// Hands a message or a command for a component to the service that takes it there.

@@ -4,10 +4,14 @@ import math
 
 import pytest
 from mavsdk.plugins.action import Action
+from mavsdk.plugins.events import Events
+from mavsdk.plugins.events.events import EventsError
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
 from mavsdk.plugins.param import Param
-from mavsdk.plugins.telemetry import Telemetry
+from mavsdk.plugins.telemetry import FlightMode, Telemetry
+from mavsdk.plugins.winch import Winch
+from mavsdk.plugins.winch.winch import WinchError, WinchResult
 
 from mavsdk_vehicle import eventually
 
@@ -79,3 +83,48 @@ def test_parameters(fly):
     param.set_param_int("COM_OBL_RC_ACT", 4)
     value = param.get_param_int("COM_OBL_RC_ACT")
     assert (value[1] if isinstance(value, tuple) else value) == 4
+
+
+def test_what_is_not_there_is_refused(fly):
+    system = fly()
+    with pytest.raises(WinchError) as refused:
+        Winch(system).relax(0)
+    # Not TIMEOUT, which silence would be.
+    assert refused.value.result == WinchResult.UNSUPPORTED
+
+
+def test_health_and_arming_checks_are_told_to_who_asks(fly):
+    system = fly("--speed", "2")
+    events, telemetry = Events(system), Telemetry(system)
+    eventually("health", telemetry.health_all_ok)
+
+    def report():
+        try:
+            return events.get_health_and_arming_checks_report()
+        except EventsError:
+            return None
+
+    eventually("a report", lambda: report() is not None)
+    told = report()
+    told = told[1] if isinstance(told, tuple) else told
+    assert told.current_mode_intention.can_arm_or_run, told
+    assert {"gps", "battery"} <= {component.name for component in told.health_components}
+
+
+def test_hold_stops_on_the_way(fly):
+    system = fly("--speed", "2")
+    telemetry, action = Telemetry(system), Action(system)
+    eventually("health", telemetry.health_all_ok)
+    action.arm()
+    action.takeoff()
+    eventually("2.5 m", lambda: abs(telemetry.position().relative_altitude_m - 2.5) < 0.2)
+    home = telemetry.home()
+    action.goto_location(home.latitude_deg + 1e-3, home.longitude_deg, home.absolute_altitude_m + 5, 0.0)
+    eventually("on its way", lambda: telemetry.velocity_ned().north_m_s > 5)
+    action.hold()
+    eventually("at rest", lambda: abs(telemetry.velocity_ned().north_m_s) < 0.1)
+    # The place that it was to go to is 111 m away.
+    assert telemetry.position().latitude_deg - home.latitude_deg < 4e-4
+    assert telemetry.flight_mode() == FlightMode.HOLD
+    action.land()
+    eventually("disarmed", lambda: not telemetry.armed(), 60)

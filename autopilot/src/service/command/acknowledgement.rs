@@ -22,6 +22,12 @@ pub fn acknowledge_outcome(outbox: &mut Outbox, origin: &Origin, command: u16, o
     send(outbox, origin, command, result_of(outcome), progress);
 }
 
+/// Refuses a command in place of a component that is not there: clients take an answer from nobody else.
+pub fn refuse_in_place_of(outbox: &mut Outbox, component: u8, origin: &Origin, command: u16) {
+    let ack = answer(origin, command, MavResult::MAV_RESULT_UNSUPPORTED, 0);
+    outbox.send_in_place_of(component, Destination::Peer(origin.peer), Message::CommandAck(ack));
+}
+
 /// MAV_RESULT of what has become of a command; `None` if nobody takes it.
 pub fn result_of(outcome: Option<&Outcome>) -> MavResult {
     match outcome {
@@ -36,12 +42,16 @@ pub fn result_of(outcome: Option<&Outcome>) -> MavResult {
 }
 
 fn send(outbox: &mut Outbox, origin: &Origin, command: u16, result: MavResult, progress: u8) {
-    let ack = CommandAck {
+    let ack = answer(origin, command, result, progress);
+    outbox.send(Destination::Peer(origin.peer), Message::CommandAck(ack));
+}
+
+fn answer(origin: &Origin, command: u16, result: MavResult, progress: u8) -> CommandAck {
+    CommandAck {
         command,
         result: result as u8,
         progress,
         target_system: origin.system,
         target_component: origin.component,
-    };
-    outbox.send(Destination::Peer(origin.peer), Message::CommandAck(ack));
+    }
 }

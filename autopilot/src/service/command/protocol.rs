@@ -1,11 +1,13 @@
 //! How a command becomes an answer: its service carries it out, unless it is a retry of what was carried out already.
 
+use std::collections::BTreeSet;
+
 use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use vehicle::Severity;
 
-use super::acknowledgement::{acknowledge, acknowledge_outcome, result_of};
+use super::acknowledgement::{acknowledge, acknowledge_outcome, refuse_in_place_of, result_of};
 use super::retry::Retries;
-use crate::codec::{Command, Frame};
+use crate::codec::{Command, Frame, target_of};
 use crate::context::Context;
 use crate::envelope::Origin;
 use crate::service::{Outcome, Repetition, Service};
@@ -14,12 +16,30 @@ use crate::service::{Outcome, Repetition, Service};
 #[derive(Clone, Debug, Default)]
 pub struct CommandProtocol {
     retries: Retries,
+    /// Other components of this system that have been heard: they answer for themselves.
+    others: BTreeSet<u8>,
 }
 
 impl CommandProtocol {
     /// What AUTOPILOT_VERSION tells of it.
     pub fn capabilities(&self) -> MavProtocolCapability {
         MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    }
+
+    /// Takes in who is there.
+    pub fn hear(&mut self, system: u8, origin: &Origin) {
+        if origin.system == system {
+            self.others.insert(origin.component);
+        }
+    }
+
+    /// Refuses a command to a component of this system that is not there, so that nobody waits for it.
+    pub fn refuse_for_absent(&self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        let target = target_of(frame);
+        let absent = target.system == context.system_id() && !self.others.contains(&target.component);
+        if let Some(command) = Command::read(frame).filter(|_| absent) {
+            refuse_in_place_of(&mut context.outbox, target.component, origin, command.number);
+        }
     }
 
     /// Has a command carried out by the service that takes it, and answers it. Every command is answered, before

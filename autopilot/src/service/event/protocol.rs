@@ -2,18 +2,20 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
-    CURRENT_EVENT_SEQUENCE_DATA, EVENT_DATA, MavEventCurrentSequenceFlags, MavEventErrorReason, MavMessage,
-    RESPONSE_EVENT_ERROR_DATA,
+    CURRENT_EVENT_SEQUENCE_DATA, EVENT_DATA, MavCmd, MavEventCurrentSequenceFlags, MavEventErrorReason,
+    MavMessage, RESPONSE_EVENT_ERROR_DATA,
 };
-use vehicle::{Action, Cause, Vehicle};
+use vehicle::{Action, Cause, Severity, Vehicle};
 
 use super::buffer::EventBuffer;
 use super::report::{Draft, packed, report};
-use crate::codec::{Frame, boot_ms, id};
+use crate::codec::{Command, Frame, boot_ms, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::event_catalog::{Event, LogLevel, action_number, cause_number};
-use crate::service::Service;
+use crate::service::{CommandEntry, Outcome, Progress, Service};
+
+const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_RUN_PREARM_CHECKS as u16)];
 
 /// The number of the latest event is told so often, µs, so that who has missed one asks for it.
 const SEQUENCE_PERIOD_US: u64 = 3_000_000;
@@ -35,11 +37,15 @@ pub struct Events {
 
 impl Service for Events {
     fn summary(&self) -> &'static str {
-        "Events with their words in the metadata: health and arming checks, failsafes (PX4)"
+        "Health and arming checks, and events with their words in the metadata (PX4)"
     }
 
     fn messages(&self) -> &'static [u32] {
         &[id::REQUEST_EVENT]
+    }
+
+    fn commands(&self) -> &'static [CommandEntry] {
+        COMMANDS
     }
 
     fn answers(&self) -> &'static [u32] {
@@ -52,6 +58,14 @@ impl Service for Events {
         }
         let payload = frame.payload();
         self.send_again(context, origin, payload.u16(0), payload.u16(2));
+    }
+
+    /// Tells what speaks against arming, and the whole report anew: who has just come, such as MAVSDK, asks for it.
+    fn command(&mut self, context: &mut Context, _origin: &Origin, _command: &Command) -> Outcome {
+        say_obstacles(context);
+        self.reported.clear();
+        self.report_due_us = 0;
+        Ok(Progress::Done)
     }
 
     fn stream(&mut self, context: &mut Context) {
@@ -166,6 +180,19 @@ impl Events {
             target_component: origin.component,
             reason: MavEventErrorReason::MAV_EVENT_ERROR_REASON_UNAVAILABLE,
         })
+    }
+}
+
+/// Tells the pilot what speaks against arming.
+fn say_obstacles(context: &mut Context) {
+    let obstacles = context.vehicle.arming_obstacles();
+    if obstacles.is_empty() {
+        context.say(Severity::Info, "Ready to arm");
+    }
+    for obstacle in obstacles {
+        // Clients of ArduPilot look for its word.
+        let when = if context.identity().is_ardupilot() { "PreArm" } else { "Preflight" };
+        context.say(Severity::Warning, &format!("{when}: {obstacle}"));
     }
 }
 

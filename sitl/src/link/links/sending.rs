@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use autopilot::codec::{Encoded, Frame, Version, id, target_of};
 use autopilot::envelope::{Destination, Outgoing, PeerId};
+use autopilot::speaker::Speaker;
 
 use super::{Links, Received};
 
@@ -35,7 +36,10 @@ impl Links {
     /// Sends a message of one of our systems and returns it as one of its frames, for a log. It is written once for all peers.
     pub fn send(&mut self, outgoing: &Outgoing, system: u8) -> Option<&Frame> {
         let sender = (system, outgoing.component);
-        self.senders.insert(sender);
+        // What is said in place of a component that is not there is not its own: it may come.
+        if Speaker::of(outgoing.component).is_some() {
+            self.senders.insert(sender);
+        }
         let essential = matches!(outgoing.to, Destination::Peer(_)) || outgoing.message.id() == id::HEARTBEAT;
         let mut encoded: Option<Encoded> = None;
         let mut sent = false;
