@@ -67,7 +67,7 @@ pub fn run_all(workspace: &Workspace, progress: &Progress, in_browser: bool) -> 
     let marks = if in_browser { "not alone" } else { "not alone and not browser" };
     let at_once = ["-m", marks, "--numprocesses", &processes, "--dist", "worksteal"];
     // Those that measure the wall clock have the machine to themselves.
-    let alone = ["-m", "alone"];
+    let alone = ["-m", if in_browser { "alone" } else { "alone and not browser" }];
     let runs: [(&str, &[&str]); 2] =
         [("Running the Python tests", &at_once), ("Running the Python tests that measure time", &alone)];
     for (what, options) in runs {

@@ -205,7 +205,7 @@ mod tests {
             point(velocity * (number as f64 * 0.05), velocity)
         };
         let corners = |number: u64| {
-            let velocity = if number / 10 % 2 == 0 { Vector3::x() } else { Vector3::y() };
+            let velocity = if (number / 10).is_multiple_of(2) { Vector3::x() } else { Vector3::y() };
             point(velocity * (number as f64), velocity)
         };
         let kinds: [(&dyn Fn(u64) -> PositionSetPoint, u64); 5] = [
