@@ -69,6 +69,7 @@ impl Camera {
     /// What was seen. A vehicle whose record ends before the others' stays as it was.
     fn film(self) -> Film {
         let longest = self.rolls.iter().map(Vec::len).max().unwrap_or(0);
+        let last_s = longest.saturating_sub(1) as f64 * self.period_us as f64 / 1e6;
         let frames = (0..longest)
             .map(|index| Frame {
                 speed: 1.0,
@@ -82,15 +83,16 @@ impl Camera {
                     .collect(),
             })
             .collect();
-        Film { scene: self.scene, news: self.news, texts: in_order(self.desk.texts()), frames }
+        Film { scene: self.scene, news: self.news, texts: in_order(self.desk.texts(), last_s), frames }
     }
 }
 
-/// Lines by their times, numbered anew: vehicles are flown one ahead of the other.
-fn in_order(mut texts: Vec<Text>) -> Vec<Text> {
+/// Lines by their times, numbered anew: vehicles are flown one ahead of the other. What was said after the last frame is seen with it.
+fn in_order(mut texts: Vec<Text>, last_s: f64) -> Vec<Text> {
     texts.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     for (number, text) in (1..).zip(&mut texts) {
         text.number = number;
+        text.time_s = text.time_s.min(last_s);
     }
     texts
 }
