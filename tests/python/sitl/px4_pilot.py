@@ -140,6 +140,11 @@ class Pilot:
         self.action.takeoff()
         self.airborne()
 
+    def begin_to_follow(self):
+        """MAVSDK takes a target only after a heartbeat has told the mode."""
+        self.follow.start()
+        self.require(self.follow.is_active, 60, "following")
+
     def begin_offboard(self, again):
         """MAVSDK forgets a set-point when a heartbeat comes between it and the start."""
         assert any(succeeds(self.offboard.start, OffboardError) or again() for _ in range(10)), "offboard"

@@ -210,7 +210,7 @@ def follow(velocity):
     def fly(pilot):
         target = follow_from(pilot)
         pilot.sleep(1)
-        pilot.follow.start()
+        pilot.begin_to_follow()
         pilot.sleep(1)
         for second in range(75):
             there, here = tuple(target.at), pilot.position()
@@ -239,7 +239,7 @@ def follow_nothing(pilot):
     follow_from(pilot)
     pilot.follow.set_config(Config())
     pilot.sleep(1)
-    pilot.follow.start()
+    pilot.begin_to_follow()
     pilot.sleep(1)
     began = pilot.position()
     for _ in range(15):
@@ -258,7 +258,7 @@ def follow_by_sticks(pilot):
     pilot.follow.set_config(Config(10.0, 10.0, 0.1, Config.FollowAltitudeMode.CONSTANT, 8.0, 0.0))
     north, east, down = target.at
     where = TargetLocation(*target.place.globe(north, east), down + target.home.absolute_altitude_m, 0.0, 0.0, 0.0)
-    pilot.follow.start()
+    pilot.begin_to_follow()
 
     def stand(**sticks):
         pilot.sticks(3 if sticks else 5, each=lambda: pilot.follow.set_target_location(where), **sticks)
