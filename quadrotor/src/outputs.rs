@@ -1,6 +1,6 @@
 //! What can be observed of the closed loop.
 
-use nalgebra::Vector3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::{Activity, BatteryOutput, PositionReference};
 
@@ -41,4 +41,12 @@ pub struct Outputs {
     pub yaw_error_rad: f64,
     /// How the controllers came to their last inputs.
     pub activity: Activity,
+}
+
+impl Outputs {
+    /// The attitude that the quaternion tells, FRD into NED, without its rounding.
+    pub fn orientation(&self) -> UnitQuaternion<f64> {
+        let [w, x, y, z] = self.quaternion;
+        UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
+    }
 }

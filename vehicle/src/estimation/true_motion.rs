@@ -1,6 +1,6 @@
 //! What happens to the instruments.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{GRAVITY_M_S2, Outputs};
 
 /// The vehicle's true motion at one instant.
@@ -23,8 +23,7 @@ pub struct TrueMotion {
 impl TrueMotion {
     /// The motion that a simulation shows.
     pub fn of(outputs: &Outputs) -> Self {
-        let [w, x, y, z] = outputs.quaternion;
-        let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        let attitude = outputs.orientation();
         let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
         Self {
             time_us: outputs.time_us,

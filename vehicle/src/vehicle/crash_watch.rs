@@ -4,7 +4,7 @@
 //! rotors stop. PX4's failure detector: a roll or pitch that no flight has stops the rotors shortly after arming, and ends the flight
 //! later if the circuit breaker lets it. ArduCopter's thrust loss check: it sinks although it gives all it has.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::crash_settings::CIRCUIT_BROKEN;
 use super::notice::Severity;
@@ -166,8 +166,7 @@ fn lean_rad(situation: &Situation) -> f64 {
 fn attitude_error_rad(situation: &Situation) -> f64 {
     let strongest_n = situation.configuration.airframe.thrust_range_n().1;
     let wanted = situation.steering.tracked_attitude(situation.outputs, strongest_n).attitude;
-    let [w, x, y, z] = situation.outputs.quaternion;
-    let actual = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
+    let actual = situation.outputs.orientation();
     let down = Vector3::z();
     libm::acos((wanted * down).dot(&(actual * down)).clamp(-1.0, 1.0))
 }

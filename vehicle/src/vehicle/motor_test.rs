@@ -1,6 +1,6 @@
 //! Turning single rotors on the ground, to see that each is where it should be.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use quadrotor::{Outputs, RotorFault};
 
 use super::notice::{Refusal, Severity};
@@ -99,8 +99,7 @@ impl MotorTests {
         faults: [Option<RotorFault>; ROTORS],
     ) -> Option<(Steering, [Option<RotorFault>; ROTORS])> {
         let Running { test, begun_us } = self.running?;
-        let [w, x, y, z] = now.quaternion;
-        let attitude = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
+        let attitude = now.orientation();
         let lasted_s = (now.time_us - begun_us) as f64 / 1e6;
         let turns = lasted_s / (test.each_s * (1.0 + PAUSE)).max(f64::MIN_POSITIVE);
         let rests = turns.fract() * (1.0 + PAUSE) >= 1.0;

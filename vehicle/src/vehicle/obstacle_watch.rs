@@ -1,6 +1,6 @@
 //! What stands around the vehicle: measuring it, stopping before it, and noticing that it was touched.
 
-use nalgebra::{UnitQuaternion, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 
 use super::fence_watch::stopping_place_m;
 use super::notice::Severity;
@@ -124,9 +124,7 @@ impl ObstacleWatch {
 
     fn look_down(&self, situation: &Situation) -> Option<f64> {
         let truth = situation.truth;
-        let [w, x, y, z] = truth.quaternion;
-        let attitude = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
-        let down = attitude * Vector3::z();
+        let down = truth.orientation() * Vector3::z();
         let ground_m = (down.z > 0.1).then(|| -truth.position_m.z / down.z);
         let others = self.obstacles.iter().filter_map(|obstacle| obstacle.along_m(&truth.position_m, &down));
         let nearest_m = others.chain(ground_m).fold(f64::INFINITY, f64::min);

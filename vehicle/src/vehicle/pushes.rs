@@ -1,6 +1,6 @@
 //! Pushes and twists that a user gives the simulated vehicle: ArduPilot's SIM_SHOVE and SIM_TWIST.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use quadrotor::{Airframe, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -64,10 +64,10 @@ impl PushClock {
         };
         let along = lasting(&pushes.shove, self.shove_end_us);
         let about = lasting(&pushes.twist, self.twist_end_us);
-        let [w, x, y, z] = truth.quaternion;
-        let attitude = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
-        let inertia = Vector3::from(airframe.inertia_kg_m2);
-        (attitude * along * airframe.mass_kg, about.component_mul(&inertia))
+        // Mostly nobody pushes.
+        let force_n =
+            if along == Vector3::zeros() { along } else { truth.orientation() * along * airframe.mass_kg };
+        (force_n, about.component_mul(&Vector3::from(airframe.inertia_kg_m2)))
     }
 }
 

@@ -125,7 +125,7 @@ impl Steering {
     pub fn follow_attitude(&mut self, set_point: &AttitudeSetPoint, outputs: &Outputs) {
         let before = match self {
             Self::Attitude { reference, .. } => *reference,
-            _ => attitude_of(outputs),
+            _ => outputs.orientation(),
         };
         let reference = set_point.attitude.unwrap_or(before);
         *self = Self::Attitude { set_point: *set_point, reference };
@@ -204,7 +204,7 @@ impl Steering {
             }
             Self::Attitude { set_point, reference } => {
                 if set_point.attitude.is_none() {
-                    *reference = turned_on(reference, set_point, &attitude_of(outputs), dt_s);
+                    *reference = turned_on(reference, set_point, &outputs.orientation(), dt_s);
                 }
                 inputs.reference = at_rest(outputs.position_m, outputs.attitude_rad.z);
                 inputs.attitude_target = Some(AttitudeTarget {
@@ -235,11 +235,6 @@ fn can_fly_without(simulation: &Simulation, rotor: usize) -> bool {
         tracing::error!(%error, "no flight without a rotor");
     }
     checked.is_ok()
-}
-
-fn attitude_of(outputs: &Outputs) -> UnitQuaternion<f64> {
-    let [w, x, y, z] = outputs.quaternion;
-    UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z))
 }
 
 /// The reference of a body-rate command: turned on at that rate, near the vehicle.
