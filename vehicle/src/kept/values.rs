@@ -1,6 +1,7 @@
 //! The values of kept parameters.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::LazyLock;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -40,8 +41,10 @@ impl std::fmt::Debug for KeptValues {
 impl KeptValues {
     /// The value of a parameter by its name: what has been set, or its default.
     pub fn by_id(&self, id: &str) -> Option<f32> {
-        let (place, parameter) = kept_parameters().find(|(_, parameter)| parameter.id == id)?;
-        Some(self.get(place).unwrap_or(parameter.default))
+        static BY_ID: LazyLock<HashMap<&str, (usize, &KeptParameter)>> =
+            LazyLock::new(|| kept_parameters().map(|place| (place.1.id, place)).collect());
+        let (place, parameter) = BY_ID.get(id)?;
+        Some(self.get(*place).unwrap_or(parameter.default))
     }
 
     /// The value at a place, if it has been set.
