@@ -6,7 +6,7 @@ use vehicle::identity::Identity;
 use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile};
 use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
 
-use super::command::{global_frame, told_frame, told_place};
+use super::command::{as_told_by, global_frame, told_frame, told_place};
 use super::{CommandEntry, Outcome, Progress, Service, parameter};
 use crate::codec::{Command, CommandKind, command_name};
 use crate::context::Context;
@@ -192,14 +192,6 @@ fn reset_battery(context: &mut Context, command: &Command) -> Result<(), Refusal
         return Err(Refusal::denied(format!("Battery reset denied: {percent} %; allowed 0 to 100")));
     }
     context.vehicle.refill_battery(percent / 100.0)
-}
-
-/// ArduPilot answers what it cannot do now by a failure.
-pub(super) fn as_told_by(identity: Identity, refusal: Refusal) -> Refusal {
-    match refusal {
-        Refusal::TemporarilyRejected(reason) if identity.is_ardupilot() => Refusal::Failed(reason),
-        refusal => refusal,
-    }
 }
 
 /// ArduPilot answers whatever it does not take off for by a failure.

@@ -3,7 +3,7 @@
 use mavlink::dialects::ardupilotmega::MavCmd;
 use vehicle::{Mode, Refusal, Vehicle};
 
-use super::command::{acknowledge_outcome, explain};
+use super::command::{acknowledge_outcome, as_told_by, explain};
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
@@ -53,12 +53,10 @@ impl Service for CustomModes {
 
 /// ArduPilot answers a mode that it does not change to by a failure, whatever the reason is.
 fn change_to(vehicle: &mut Vehicle, custom_mode: u32) -> Result<(), Refusal> {
-    let fails = vehicle.identity().is_ardupilot();
+    let identity = vehicle.identity();
     vehicle.set_custom_mode(custom_mode).map_err(|refusal| match refusal {
-        Refusal::TemporarilyRejected(reason) | Refusal::Unsupported(reason) if fails => {
-            Refusal::Failed(reason)
-        }
-        refusal => refusal,
+        Refusal::Unsupported(reason) if identity.is_ardupilot() => Refusal::Failed(reason),
+        refusal => as_told_by(identity, refusal),
     })
 }
 

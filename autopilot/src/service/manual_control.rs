@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, RC_CHANNELS_DATA, RC_
 use vehicle::radio::{CHANNELS, Position};
 use vehicle::{Refusal, Sticks, Vehicle};
 
-use super::action::as_told_by;
+use super::command::as_told_by;
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, Frame, boot_ms, id};
 use crate::context::Context;

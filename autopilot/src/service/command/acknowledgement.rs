@@ -2,6 +2,7 @@
 
 use mavlink::dialects::ardupilotmega::MavResult;
 use vehicle::Refusal;
+use vehicle::identity::Identity;
 
 use crate::codec::{CommandAck, Message};
 use crate::envelope::{Destination, Origin};
@@ -26,6 +27,14 @@ pub fn acknowledge_outcome(outbox: &mut Outbox, origin: &Origin, command: u16, o
 pub fn refuse_in_place_of(outbox: &mut Outbox, component: u8, origin: &Origin, command: u16) {
     let ack = answer(origin, command, MavResult::MAV_RESULT_UNSUPPORTED, 0);
     outbox.send_in_place_of(component, Destination::Peer(origin.peer), Message::CommandAck(ack));
+}
+
+/// ArduPilot answers what it cannot do now by a failure.
+pub fn as_told_by(identity: Identity, refusal: Refusal) -> Refusal {
+    match refusal {
+        Refusal::TemporarilyRejected(reason) if identity.is_ardupilot() => Refusal::Failed(reason),
+        refusal => refusal,
+    }
 }
 
 /// MAV_RESULT of what has become of a command; `None` if nobody takes it.

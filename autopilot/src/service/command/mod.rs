@@ -5,6 +5,6 @@ mod protocol;
 mod retry;
 mod told_place;
 
-pub use acknowledgement::{acknowledge, acknowledge_outcome};
+pub use acknowledgement::{acknowledge, acknowledge_outcome, as_told_by};
 pub use protocol::{CommandProtocol, explain};
 pub use told_place::{global_frame, told_frame, told_place};

@@ -72,31 +72,25 @@ fn guided_target(vehicle: &Vehicle, asked: &PositionSetPoint) -> MavMessage {
             }
         }
     }
-    let ([x, y, z], [vx, vy, vz], [afx, afy, afz]) = (place, velocity, acceleration);
-    MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
-        time_boot_ms: boot_ms(vehicle.outputs().time_us),
-        x,
-        y,
-        z,
-        vx,
-        vy,
-        vz,
-        afx,
-        afy,
-        afz,
-        yaw: wrapped(now.yaw_rad) as f32,
-        yaw_rate: now.yaw_rate_rad_s as f32,
-        type_mask: PositionTargetTypemask::from_bits_retain(ignored | HEADING),
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-    })
+    let type_mask = PositionTargetTypemask::from_bits_retain(ignored | HEADING);
+    local_ned(vehicle, [place, velocity, acceleration], type_mask)
 }
 
+/// The reference that the cascade tracks.
 fn reference_local_ned(vehicle: &Vehicle) -> MavMessage {
+    let reference = &vehicle.outputs().setpoint;
+    let motion = [reference.position_m, reference.velocity_m_s, reference.acceleration_m_s2];
+    local_ned(vehicle, motion.map(|vector| floats(&vector)), type_mask(vehicle))
+}
+
+/// A place, m, with its velocity, m/s, and acceleration, m/s², and the heading that the cascade tracks.
+fn local_ned(
+    vehicle: &Vehicle,
+    [[x, y, z], [vx, vy, vz], [afx, afy, afz]]: [[f32; 3]; 3],
+    type_mask: PositionTargetTypemask,
+) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
-    let [x, y, z] = floats(&reference.position_m);
-    let [vx, vy, vz] = floats(&reference.velocity_m_s);
-    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
     MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         x,
@@ -110,7 +104,7 @@ fn reference_local_ned(vehicle: &Vehicle) -> MavMessage {
         afz,
         yaw: wrapped(reference.yaw_rad) as f32,
         yaw_rate: reference.yaw_rate_rad_s as f32,
-        type_mask: type_mask(vehicle),
+        type_mask,
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
     })
 }
