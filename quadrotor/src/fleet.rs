@@ -1,6 +1,5 @@
 //! Many flights at once.
 
-use alloc::collections::BTreeMap;
 use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -11,6 +10,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use thiserror::Error;
 
 use crate::design::design_cache::is_same;
+use crate::kinds::Kinds;
 use crate::{
     Configuration, ConfigurationError, InputSignal, Inputs, Outputs, PreparedDesign, Simulation,
     SimulationError,
@@ -177,16 +177,16 @@ impl Fleet {
     ) -> Result<Self, FleetError> {
         let threads = pool(threads)?;
         let refused = |vehicle: usize| move |error| FleetError::Configuration { vehicle, error };
-        let (first, kinds) = by_kind(configurations);
+        let kinds = Kinds::of(configurations, Configuration::fingerprint, is_same);
         let members = threads.install(|| {
             let design =
                 |vehicle: &usize| PreparedDesign::new(&configurations[*vehicle]).map_err(refused(*vehicle));
-            let designs = first.par_iter().map(design).collect::<Result<Vec<_>, _>>()?;
+            let designs = kinds.first.par_iter().map(design).collect::<Result<Vec<_>, _>>()?;
             let member = |(vehicle, kind): (usize, &usize)| {
                 let simulation = Simulation::prepared(&designs[*kind], &inputs(vehicle));
                 Ok(Member { vehicle: simulation.map_err(refused(vehicle))?, failure: None })
             };
-            kinds.par_iter().enumerate().map(member).collect::<Result<Vec<_>, _>>()
+            kinds.of_each.par_iter().enumerate().map(member).collect::<Result<Vec<_>, _>>()
         })?;
         Ok(Self { members, threads })
     }
@@ -201,24 +201,6 @@ impl Fleet {
     pub fn outputs(&self) -> Vec<Outputs> {
         self.map(|_, simulation| simulation.outputs())
     }
-}
-
-/// The first vehicle of each kind, and the kind of each vehicle.
-fn by_kind(configurations: &[Configuration]) -> (Vec<usize>, Vec<usize>) {
-    let mut first: Vec<usize> = Vec::new();
-    let mut known: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
-    let kind = |(vehicle, configuration): (usize, &Configuration)| {
-        let alike = known.entry(configuration.fingerprint()).or_default();
-        let same = |kind: &&usize| is_same(&configurations[first[**kind]], configuration);
-        if let Some(kind) = alike.iter().find(same) {
-            return *kind;
-        }
-        alike.push(first.len());
-        first.push(vehicle);
-        first.len() - 1
-    };
-    let kinds = configurations.iter().enumerate().map(kind).collect();
-    (first, kinds)
 }
 
 fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, FleetError> {

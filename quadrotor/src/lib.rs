@@ -117,6 +117,8 @@ mod design;
 mod fleet;
 mod guidance;
 mod inputs;
+#[cfg(feature = "fleet")]
+mod kinds;
 mod outputs;
 mod plant;
 mod plant_simulation;
@@ -174,6 +176,8 @@ pub use guidance::reference_plan::ReferencePlan;
 #[cfg(feature = "shaper")]
 pub use guidance::state_to_state::AxisLimits;
 pub use inputs::{InputSignal, Inputs};
+#[cfg(feature = "fleet")]
+pub use kinds::Kinds;
 /// How a controller found its last input.
 pub use lmpc::Status as ControllerStatus;
 pub use outputs::Outputs;

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
-use quadrotor::{Configuration, FleetError, SimulationError};
+use quadrotor::{Configuration, FleetError, Kinds, SimulationError};
 
 use super::actuation::Actuation;
 use super::commands::Commands;
@@ -119,18 +119,8 @@ fn members(
     actuation: Actuation,
     threads: Option<NonZeroUsize>,
 ) -> PyResult<Vec<Member>> {
-    let mut designed: Vec<(Configuration, Commands)> = Vec::new();
-    let mut alike: HashMap<u64, Vec<usize>> = HashMap::new();
-    let mut kinds = Vec::with_capacity(settings.len());
-    for setting in settings {
-        let alike = alike.entry(setting.0.fingerprint()).or_default();
-        let known = alike.iter().copied().find(|kind| designed[*kind] == setting);
-        kinds.push(known.unwrap_or_else(|| {
-            alike.push(designed.len());
-            designed.push(setting);
-            designed.len() - 1
-        }));
-    }
+    let kinds = Kinds::of(&settings, |setting| setting.0.fingerprint(), PartialEq::eq);
+    let designed = kinds.first.iter().map(|index| settings[*index]).collect();
     let designed = quadrotor::Fleet::of(designed, threads).map_err(no_threads)?;
     let vehicles = designed
         .map(|_, (configuration, commands)| Vehicle::new(configuration, commands, actuation))
@@ -141,7 +131,7 @@ fn members(
         let vehicle: Vehicle = vehicles[kind].clone();
         Member { start: vehicle.save(), vehicle }
     };
-    Ok(kinds.into_iter().map(member).collect())
+    Ok(kinds.of_each.into_iter().map(member).collect())
 }
 
 fn no_threads(error: FleetError) -> PyErr {
