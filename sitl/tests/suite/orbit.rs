@@ -2,11 +2,9 @@
 
 use core::f64::consts::PI;
 
-use crate::common::{Bench, settings};
+use crate::common::{Bench, set_parameter, settings};
 use autopilot::codec::Message;
-use mavlink::dialects::ardupilotmega::{
-    COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage, MavParamType, PARAM_SET_DATA,
-};
+use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
 use nalgebra::Vector3;
 use vehicle::identity::Identity;
 use vehicle::{HeadingPolicy, Mode, OrbitSettings, VehicleSettings, wrapped};
@@ -188,7 +186,7 @@ fn ardupilot_circles_around_a_place_ahead_of_it() {
     assert!(seen.off_radius_m < 0.2 && seen.off_heading_rad < 0.06, "{seen:?}");
     assert!((seen.swept_rad / (-15_f64.to_radians() * 20.0) - 1.0).abs() < 0.03, "{seen:?}");
     // A parameter that changes is flown at once, around the same centre.
-    bench.send(mavlink_parameter("CIRCLE_RADIUS", 800.0));
+    bench.send(set_parameter("CIRCLE_RADIUS", 800.0));
     bench.fly(15.0);
     let seen = look(&mut bench, centre_m, 8.0, 0.0, 10.0);
     assert!(seen.off_radius_m < 0.2, "{seen:?}");
@@ -212,16 +210,6 @@ fn ardupilot_turns_on_the_spot_without_a_radius() {
     }
     assert!((turned - 200_f64.to_radians()).abs() < 0.1, "{turned}");
     assert!((Vector3::from(bench.position()) - Vector3::from(before)).norm() < 0.2);
-}
-
-fn mavlink_parameter(name: &str, value: f32) -> MavMessage {
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    })
 }
 
 /// What is not there is refused by its name, with what to use instead.
