@@ -1,10 +1,10 @@
 //! The page of the book that compares this vehicle with PX4 and ArduPilot, against what the vehicle answers.
 
 use autopilot::Autopilot;
-use autopilot::codec::{Frame, Message, Version};
+use autopilot::codec::{Frame, Message, Version, command_long};
 use autopilot::compatibility::{Carried, commands, modes, page};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
-use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use num_traits::FromPrimitive;
 use vehicle::VehicleSettings;
 use vehicle::identity::Identity;
@@ -21,15 +21,8 @@ fn vehicle(identity: Identity) -> Autopilot {
 /// The result of the answer to a command.
 fn ask(autopilot: &mut Autopilot, sequence: u8, number: u16, [param1, param2, param3]: [f32; 3]) -> u8 {
     let command = MavCmd::from_u16(number).expect("a command of the dialect");
-    let message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        command,
-        target_system: 1,
-        target_component: 1,
-        param1,
-        param2,
-        param3,
-        ..COMMAND_LONG_DATA::default()
-    });
+    let parameters = [param1, param2, param3, 0.0, 0.0, 0.0, 0.0];
+    let message = MavMessage::COMMAND_LONG(command_long((1, 1), command, parameters));
     let frame = Frame::encode(&message.into(), Version::Two, sequence, (255, 190)).expect("a frame");
     let origin = Origin { peer: PeerId { link: 0, number: 1 }, system: 255, component: 190 };
     drop(autopilot.take_outgoing());

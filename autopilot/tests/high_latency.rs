@@ -1,11 +1,10 @@
 //! The high latency protocol: the fields of its message, and when it is sent.
 
 use autopilot::Autopilot;
-use autopilot::codec::{CommandAck, Frame, Message, Version};
+use autopilot::codec::{CommandAck, Frame, Message, Version, command_long};
 use autopilot::envelope::{Destination, LinkProfile, Origin, PeerId};
 use mavlink::dialects::ardupilotmega::{
-    COMMAND_LONG_DATA, HIGH_LATENCY2_DATA, HlFailureFlag, MavAutopilot, MavCmd, MavMessage, MavResult,
-    MavType,
+    HIGH_LATENCY2_DATA, HlFailureFlag, MavAutopilot, MavCmd, MavMessage, MavResult, MavType,
 };
 use mavlink::{Message as _, MessageData};
 use vehicle::identity::Identity;
@@ -39,20 +38,7 @@ impl Bench {
 
     /// Sends a command and returns the result of its answer.
     fn command(&mut self, command: MavCmd, parameters: [f32; 7]) -> u8 {
-        let [param1, param2, param3, param4, param5, param6, param7] = parameters;
-        let message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-            param1,
-            param2,
-            param3,
-            param4,
-            param5,
-            param6,
-            param7,
-            command,
-            target_system: 1,
-            target_component: 1,
-            confirmation: 0,
-        });
+        let message = MavMessage::COMMAND_LONG(command_long((1, 1), command, parameters));
         self.sequence = self.sequence.wrapping_add(1);
         let frame = Frame::encode(&message.into(), Version::Two, self.sequence, (255, 190)).expect("a frame");
         let origin = Origin { peer: PeerId { link: LINK, number: 1 }, system: 255, component: 190 };

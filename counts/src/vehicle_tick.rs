@@ -3,9 +3,9 @@
 use std::hint::black_box;
 
 use autopilot::Autopilot;
-use autopilot::codec::{Frame, Message, Version};
+use autopilot::codec::{Frame, Message, Version, command_long};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
-use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::{Mode, VehicleSettings};
@@ -49,22 +49,7 @@ fn tick(vehicle: &mut Autopilot) {
 }
 
 fn command(vehicle: &mut Autopilot, command: MavCmd, parameters: [f32; 7]) {
-    let [param1, param2, param3, param4, param5, param6, param7] = parameters;
-    let (target_system, target_component) = VEHICLE;
-    let message: Message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        param5,
-        param6,
-        param7,
-        command,
-        target_system,
-        target_component,
-        confirmation: 0,
-    })
-    .into();
+    let message: Message = MavMessage::COMMAND_LONG(command_long(VEHICLE, command, parameters)).into();
     let frame = Frame::encode(&message, Version::Two, 0, GROUND_STATION).expect("a message of MAVLink 2");
     let peer = PeerId { link: 0, number: 1 };
     vehicle.receive(&Origin { peer, system: GROUND_STATION.0, component: GROUND_STATION.1 }, &frame);

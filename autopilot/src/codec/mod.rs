@@ -7,6 +7,7 @@ pub mod ascii;
 mod attitude_target;
 pub mod checksum;
 mod command;
+mod command_long;
 mod command_name;
 mod decoder;
 mod encode;
@@ -23,6 +24,7 @@ mod target;
 
 pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
+pub use command_long::command_long;
 pub use command_name::command_name;
 pub use decoder::{Decoded, FrameDecoder};
 pub use encode::Encoded;

@@ -3,10 +3,10 @@
 use std::net::UdpSocket;
 use std::time::Instant;
 
-use autopilot::codec::{Frame, Version};
+use autopilot::codec::{Frame, Version, command_long};
 use autopilot::envelope::{Origin, PeerId};
 use clap::Parser;
-use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use vehicle::Mode;
 
 use super::Fleet;
@@ -16,14 +16,8 @@ use crate::configuration::{Arguments, Settings};
 const LOOK: u64 = 10;
 
 fn command(fleet: &mut Fleet, command: MavCmd, param1: f32, param7: f32) {
-    let message = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        param1,
-        param7,
-        command,
-        target_system: 1,
-        target_component: 1,
-        ..COMMAND_LONG_DATA::default()
-    });
+    let parameters = [param1, 0.0, 0.0, 0.0, 0.0, 0.0, param7];
+    let message = MavMessage::COMMAND_LONG(command_long((1, 1), command, parameters));
     let frame = Frame::encode(&message.into(), Version::Two, 0, (255, 190)).expect("MAVLink 2");
     let origin = Origin { peer: PeerId { link: 0, number: 1 }, system: 255, component: 190 };
     fleet.member_mut(0).expect("a vehicle").autopilot.receive(&origin, &frame);

@@ -1,8 +1,9 @@
 //! What a pilot asks for, as the messages that a ground station would send.
 
+use autopilot::codec::command_long;
 use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::ardupilotmega::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, MavFrame, MavMessage, MavParamType, PARAM_SET_DATA,
+    COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage, MavParamType, PARAM_SET_DATA,
 };
 use nalgebra::Vector3;
 use vehicle::Mode;
@@ -29,7 +30,7 @@ impl Request {
     /// What of it makes no sense, and what would.
     pub fn of(action: &Action, autopilot: &Autopilot) -> Result<Self, String> {
         let system = autopilot.system_id();
-        let long = |command, parameters| command_long(system, command, parameters);
+        let long = |command, parameters| to_autopilot(system, command, parameters);
         let simple = |command| vec![long(command, [0.0; 7])];
         let messages = match action {
             Action::Arm {} => vec![arm(system, true)],
@@ -85,7 +86,7 @@ fn take_off(height_m: f64, autopilot: &Autopilot) -> Vec<MavMessage> {
     let system = autopilot.system_id();
     let takeoff = |altitude_m: f64| {
         let parameters = [0.0, 0.0, 0.0, OPEN, OPEN, OPEN, altitude_m as f32];
-        command_long(system, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters)
+        to_autopilot(system, MavCmd::MAV_CMD_NAV_TAKEOFF, parameters)
     };
     if autopilot.identity().is_ardupilot() {
         return vec![guided(autopilot), arm(system, true), takeoff(height_m)];
@@ -100,7 +101,7 @@ fn take_off(height_m: f64, autopilot: &Autopilot) -> Vec<MavMessage> {
 
 fn start_mission(autopilot: &Autopilot) -> Vec<MavMessage> {
     let system = autopilot.system_id();
-    let start = command_long(system, MavCmd::MAV_CMD_MISSION_START, [0.0; 7]);
+    let start = to_autopilot(system, MavCmd::MAV_CMD_MISSION_START, [0.0; 7]);
     if autopilot.vehicle().is_armed() { vec![start] } else { vec![arm(system, true), start] }
 }
 
@@ -131,29 +132,16 @@ fn fly_to(position_m: &[f64; 3], autopilot: &Autopilot) -> Result<MavMessage, St
 /// ArduPilot takes off in its guided mode.
 fn guided(autopilot: &Autopilot) -> MavMessage {
     let mode = autopilot.identity().custom_mode(Mode::Offboard) as f32;
-    command_long(autopilot.system_id(), MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode, 0.0, 0.0, 0.0, 0.0, 0.0])
+    to_autopilot(autopilot.system_id(), MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
 fn arm(system: u8, on: bool) -> MavMessage {
     let parameters = [f32::from(u8::from(on)), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    command_long(system, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, parameters)
+    to_autopilot(system, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, parameters)
 }
 
-fn command_long(system: u8, command: MavCmd, parameters: [f32; 7]) -> MavMessage {
-    let [param1, param2, param3, param4, param5, param6, param7] = parameters;
-    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        param5,
-        param6,
-        param7,
-        command,
-        target_system: system,
-        target_component: COMPONENT,
-        confirmation: 0,
-    })
+fn to_autopilot(system: u8, command: MavCmd, parameters: [f32; 7]) -> MavMessage {
+    MavMessage::COMMAND_LONG(command_long((system, COMPONENT), command, parameters))
 }
 
 /// Only real parameters: both autopilots write their values alike.

@@ -2,9 +2,10 @@
 
 use std::collections::VecDeque;
 
-use autopilot::Autopilot;
+use autopilot::codec::command_long;
+use autopilot::{Autopilot, COMPONENT};
 use mavlink::dialects::ardupilotmega::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
+    COMMAND_INT_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMessage,
 };
 use nalgebra::Vector3;
 use vehicle::{LandedState, Mode};
@@ -112,23 +113,10 @@ fn pause(seconds: f64) -> Step {
 }
 
 fn command(target_system: u8, number: MavCmd, parameters: &[f32]) -> Step {
-    let parameter = |index: usize| parameters.get(index).copied().unwrap_or(0.0);
-    Step::Command {
-        number: number as u16,
-        message: Box::new(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-            param1: parameter(0),
-            param2: parameter(1),
-            param3: parameter(2),
-            param4: parameter(3),
-            param5: parameter(4),
-            param6: parameter(5),
-            param7: parameter(6),
-            command: number,
-            target_system,
-            target_component: 1,
-            confirmation: 0,
-        })),
-    }
+    let mut all = [0.0; 7];
+    all[..parameters.len()].copy_from_slice(parameters);
+    let message = MavMessage::COMMAND_LONG(command_long((target_system, COMPONENT), number, all));
+    Step::Command { number: number as u16, message: Box::new(message) }
 }
 
 fn scaled(autopilot: &Autopilot, place: [f64; 3]) -> (i32, i32, f32) {

@@ -215,22 +215,7 @@ pub fn set_parameter(name: &str, value: f32) -> MavMessage {
     })
 }
 
-pub fn command_long(
-    command: MavCmd,
-    [param1, param2, param3, param4, param5, param6, param7]: [f32; 7],
-    confirmation: u8,
-) -> MavMessage {
-    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        param1,
-        param2,
-        param3,
-        param4,
-        param5,
-        param6,
-        param7,
-        command,
-        target_system: 1,
-        target_component: 1,
-        confirmation,
-    })
+pub fn command_long(command: MavCmd, parameters: [f32; 7], confirmation: u8) -> MavMessage {
+    let data = autopilot::codec::command_long((1, 1), command, parameters);
+    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { confirmation, ..data })
 }
