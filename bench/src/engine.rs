@@ -1,7 +1,10 @@
-//! The closed loop and the plant alone, as fast as they go.
+//! The closed loop, alone and in a fleet, and the plant alone, as fast as they go.
+
+use std::num::NonZeroUsize;
 
 use quadrotor::{
-    Configuration, Inputs, PlantInputs, PlantSimulation, PlantState, ReferenceSettings, Simulation,
+    Configuration, Fleet, Inputs, PlantInputs, PlantSimulation, PlantState, PositionReference,
+    ReferenceSettings, Simulation,
 };
 use serde::Serialize;
 
@@ -12,6 +15,8 @@ use crate::stopwatch::Stopwatch;
 /// Step of integration of both, s, and the order of its method.
 const STEP_S: f64 = 1e-3;
 const ORDER: u32 = 4;
+/// Vehicles of the fleet.
+const VEHICLES: u32 = 64;
 
 /// Figures of the engine; times are medians over repetitions.
 #[derive(Serialize)]
@@ -23,6 +28,8 @@ pub struct Figures {
     closed_loop_ns: f64,
     /// The same without the shaper: the controllers meet their limits.
     raw_goal_ns: f64,
+    /// The same of one of many vehicles that fly on one core.
+    fleet_ns: f64,
     plant_ns: f64,
     outputs_ns: f64,
     design_ns: f64,
@@ -52,6 +59,7 @@ pub fn measure(quick: bool) -> Result<Figures, Failure> {
         simulated_s: f64::from(seconds),
         closed_loop_ns: repeated(repetitions, || closed_loop(&configuration, seconds))?,
         raw_goal_ns: repeated(repetitions, || closed_loop(&raw, seconds))?,
+        fleet_ns: repeated(if quick { 1 } else { 3 }, || fleet(&configuration, seconds))?,
         plant_ns: repeated(repetitions, || plant(&configuration, seconds))?,
         outputs_ns: repeated(repetitions, || Ok(watch.time_each(1_000, outputs)))?,
         design_ns: repeated(repetitions, || {
@@ -75,6 +83,19 @@ fn closed_loop(configuration: &Configuration, seconds: u32) -> Result<f64, Failu
         Stopwatch::free().time(|| flown = simulation.advance_to(u64::from(seconds) * 1_000_000, &inputs));
     flown?;
     Ok(taken_ns / f64::from(seconds))
+}
+
+/// To goals a decimetre apart.
+fn fleet(configuration: &Configuration, seconds: u32) -> Result<f64, Failure> {
+    let vehicles = vec![*configuration; VEHICLES as usize];
+    let inputs = |vehicle: usize| Inputs {
+        reference: PositionReference::goal([5.0, 5.0 + 0.1 * vehicle as f64, -10.0], 0.0),
+        ..Inputs::default()
+    };
+    let mut fleet = Fleet::with_threads(&vehicles, inputs, NonZeroUsize::new(1))?;
+    let taken_ns = Stopwatch::free().time(|| fleet.advance_to(u64::from(seconds) * 1_000_000, inputs));
+    fleet.failures().flatten().next().map_or(Ok(()), |failure| Err(*failure))?;
+    Ok(taken_ns / f64::from(seconds * VEHICLES))
 }
 
 fn plant(configuration: &Configuration, seconds: u32) -> Result<f64, Failure> {

@@ -147,6 +147,9 @@ impl<M: Model> Instance<M> {
             model.advance_to(end.time_us, &|time_us| signal.at(time_us))
         };
         let outcome = outcome.map_err(|error| error.to_string()).and_then(|()| {
+            if model.is_sound() {
+                return Ok(());
+            }
             check_outputs::<M>(self.outputs.insert(model.outputs())).map_err(|error| error.to_string())
         });
         match outcome {

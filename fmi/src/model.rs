@@ -104,6 +104,12 @@ pub trait Model: Sized + 'static {
         false
     }
 
+    /// Whether the model knows that its outputs at the current time are finite without calculating them. Then a step leaves them until they
+    /// are read, and whatever is read is checked.
+    fn is_sound(&self) -> bool {
+        false
+    }
+
     /// Applies new values of tunable parameters during the run; the others are unchanged.
     ///
     /// # Errors

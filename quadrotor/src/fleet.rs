@@ -11,12 +11,15 @@ use thiserror::Error;
 
 use crate::design::design_cache::is_same;
 use crate::kinds::Kinds;
+use crate::lane_flight::{LaneFlight, advance_side_by_side};
+use crate::plant::lanes::LANES;
 use crate::{
     Configuration, ConfigurationError, InputSignal, Inputs, Outputs, PreparedDesign, Simulation,
     SimulationError,
 };
 
-/// Many vehicles that fly side by side on all cores. Each flight is the one that it would be alone, bit for bit, however many
+/// Many vehicles that fly side by side on all cores. The plants of vehicles with the same airframe step together, several in one
+/// instruction. Each flight is the one that it would be alone, bit for bit, however many
 /// there are and on however many threads: a vehicle that cannot go on stops where it is, and the others fly on.
 ///
 /// ```
@@ -194,7 +197,21 @@ impl Fleet {
     /// Flies all vehicles on to `time_us` under inputs by index, as [`Simulation::advance_to`] does. [`Fleet::failures`] tells which could
     /// not.
     pub fn advance_to<S: InputSignal>(&mut self, time_us: u64, inputs: impl Fn(usize) -> S + Sync) {
-        self.advance_each(|vehicle, simulation| simulation.advance_to(time_us, &inputs(vehicle)));
+        let flying = self.members.iter_mut().enumerate().filter(|(_, member)| member.failure.is_none());
+        let mut flying: Vec<_> =
+            flying.map(|(index, member)| (member.vehicle.plant().likeness(), index, member)).collect();
+        flying.sort_unstable_by_key(|(plant, index, _)| (*plant, *index));
+        let fly = |side_by_side: &mut [(u64, usize, &mut Member<Simulation>)]| {
+            let flights = side_by_side.iter_mut().map(|(_, index, member)| {
+                LaneFlight::new(&mut member.vehicle, &mut member.failure, inputs(*index))
+            });
+            advance_side_by_side(&mut flights.collect::<Vec<_>>(), time_us);
+        };
+        self.threads.install(|| {
+            flying
+                .par_chunk_by_mut(|(one, ..), (other, ..)| one == other)
+                .for_each(|of_one_plant| of_one_plant.par_chunks_mut(LANES).for_each(fly));
+        });
     }
 
     /// What can be observed of each vehicle now.

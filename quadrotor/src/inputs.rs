@@ -81,12 +81,16 @@ impl<F: Fn(u64) -> Inputs> InputSignal for F {
 impl Inputs {
     /// What the control loop is asked for.
     pub fn control(&self) -> ControlInputs {
-        let target = match (self.lost_rotor, self.attitude_target) {
-            (Some(lost), _) => Target::WithoutRotor { lost, reference: self.reference },
-            (None, Some(target)) => Target::Attitude(target),
-            (None, None) => Target::Reference(self.reference),
+        let mut inputs = ControlInputs {
+            target: match (self.lost_rotor, self.attitude_target) {
+                (Some(lost), _) => Target::WithoutRotor { lost, reference: self.reference },
+                (None, Some(target)) => Target::Attitude(target),
+                (None, None) => Target::Reference(self.reference),
+            },
+            plan: None,
+            armed: self.armed,
+            shaping: self.shaping,
         };
-        let mut inputs = ControlInputs { target, plan: None, armed: self.armed, shaping: self.shaping };
         // A plan is large, and mostly there is none to be copied.
         if self.plan.is_some() {
             inputs.plan = self.plan;
@@ -94,11 +98,13 @@ impl Inputs {
         inputs
     }
 
-    /// Refuses what is not finite, the reference also while something else is flown. The control loop checks what it is
-    /// asked for itself.
+    /// Refuses what is not finite, the reference also while an attitude is flown. The control loop checks what it is asked for
+    /// itself.
     pub(crate) fn check(&self, time_us: u64) -> Result<(), SimulationError> {
-        let wrong = if let Some(name) = self.reference.not_finite() {
-            Some(name)
+        let flies_attitude = self.attitude_target.is_some() && self.lost_rotor.is_none();
+        let unasked = if flies_attitude { self.reference.not_finite() } else { None };
+        let wrong = if unasked.is_some() {
+            unasked
         } else if let Some(name) = self.disturbance.not_finite() {
             Some(name)
         } else if !self.estimate.as_ref().is_none_or(RigidBody::is_possible) {

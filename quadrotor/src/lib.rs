@@ -119,6 +119,8 @@ mod guidance;
 mod inputs;
 #[cfg(feature = "fleet")]
 mod kinds;
+#[cfg(feature = "fleet")]
+mod lane_flight;
 mod outputs;
 mod plant;
 mod plant_simulation;
@@ -184,7 +186,7 @@ pub use outputs::Outputs;
 pub use plant::airframe::{Airframe, GRAVITY_M_S2};
 pub use plant::battery_pack::{BatteryOutput, BatteryPack, cell_voltage_v};
 pub use plant::differentiation::dual::Dual;
-pub use plant::differentiation::real::Real;
+pub use plant::differentiation::real::{Real, Valued};
 pub use plant::disturbance::Disturbance;
 pub use plant::dynamics::Plant;
 pub use plant::events::plant_mode::PlantMode;

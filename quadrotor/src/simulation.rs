@@ -116,6 +116,12 @@ impl Simulation {
         self.world.time_us
     }
 
+    /// Whether the present is an event of the engine's schedule, as each whole millisecond is: there the plant's state has been found to be
+    /// within the [range](PlantState::has_diverged) of numbers.
+    pub fn is_at_event(&self) -> bool {
+        self.world.time_us == self.world.event_us
+    }
+
     /// Changes parameters during the flight, those of the airframe included: a payload is dropped by a change of its mass.
     /// The plant changes now, the control loop at its next sample, at most a millisecond later, as
     /// [`ControlLoop::hand_over`] tells. Only the controllers that depend on the change are designed anew.
@@ -154,32 +160,65 @@ impl Simulation {
     /// # Errors
     /// [`SimulationError`]; the flight then stands at the last event before it.
     pub fn advance_to(&mut self, time_us: u64, inputs: &impl InputSignal) -> Result<(), SimulationError> {
-        if time_us < self.world.time_us {
-            return Err(SimulationError::Backwards { time_us: self.world.time_us, requested_us: time_us });
-        }
-        // The events strictly before the goal; one at the goal belongs to the next call, whose inputs
-        // apply from there on.
-        while self.world.event_us < time_us {
-            if self.control.next_sample_us() <= self.world.event_us {
-                inputs.with(self.world.event_us, |inputs| self.sample(inputs))?;
-            }
-            // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
-            // wherever it is interrupted.
-            let next_us = next_point_us(self.world.event_us).min(self.control.next_sample_us());
-            if next_us > time_us {
-                break;
-            }
-            let plant = self.plant_at(next_us);
-            if plant.has_diverged() {
-                let overload = self.world.overload(&self.configuration().airframe);
-                return Err(SimulationError::Diverged { time_us: next_us, overload });
-            }
-            self.world.plant = plant;
-            self.world.event_us = next_us;
-            self.world.time_us = next_us;
+        self.check_order(time_us)?;
+        while let Some(next_us) = self.next_event_us(time_us, inputs)? {
+            self.arrive(next_us, self.plant_at(next_us))?;
         }
         self.world.time_us = time_us;
         Ok(())
+    }
+
+    /// Refuses a time that has passed.
+    pub(crate) fn check_order(&self, time_us: u64) -> Result<(), SimulationError> {
+        if time_us < self.world.time_us {
+            return Err(SimulationError::Backwards { time_us: self.world.time_us, requested_us: time_us });
+        }
+        Ok(())
+    }
+
+    /// Samples at the last event, if that is due on the way to `time_us`, and returns the next event, to which the plant flies without
+    /// change of what acts on it. Without one before `time_us` or there, that is where the flight goes on to.
+    pub(crate) fn next_event_us(
+        &mut self,
+        time_us: u64,
+        inputs: &impl InputSignal,
+    ) -> Result<Option<u64>, SimulationError> {
+        // The events strictly before the goal; one at the goal belongs to the next call, whose inputs
+        // apply from there on.
+        if self.world.event_us >= time_us {
+            return Ok(None);
+        }
+        if self.control.next_sample_us() <= self.world.event_us {
+            inputs.with(self.world.event_us, |inputs| self.sample(inputs))?;
+        }
+        // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
+        // wherever it is interrupted.
+        let next_us = next_point_us(self.world.event_us).min(self.control.next_sample_us());
+        Ok((next_us <= time_us).then_some(next_us))
+    }
+
+    /// The next event, with the plant as it is there.
+    pub(crate) fn arrive(&mut self, next_us: u64, plant: PlantState) -> Result<(), SimulationError> {
+        if plant.has_diverged() {
+            let overload = self.world.overload(&self.configuration().airframe);
+            return Err(SimulationError::Diverged { time_us: next_us, overload });
+        }
+        self.world.plant = plant;
+        self.world.event_us = next_us;
+        self.world.time_us = next_us;
+        Ok(())
+    }
+
+    /// Goes on to `time_us`, at or before the next event.
+    #[cfg(feature = "fleet")]
+    pub(crate) fn rest_at(&mut self, time_us: u64) {
+        self.world.time_us = time_us;
+    }
+
+    /// Time of the last event, µs.
+    #[cfg(feature = "fleet")]
+    pub(crate) fn event_us(&self) -> u64 {
+        self.world.event_us
     }
 
     /// The equations of the vehicle.
@@ -257,12 +296,12 @@ impl Simulation {
     }
 
     /// What acts on the plant since the last event.
-    fn plant_inputs(&self) -> PlantInputs {
+    pub(crate) fn plant_inputs(&self) -> PlantInputs {
         self.world.plant_inputs(self.rotor_command_rad_s(), self.control.state().is_armed())
     }
 
     /// The plant at `time_us`, not before the last event nor after the next.
-    fn plant_at(&self, time_us: u64) -> PlantState {
+    pub(crate) fn plant_at(&self, time_us: u64) -> PlantState {
         let World { event_us, plant, .. } = &self.world;
         if time_us == *event_us {
             return *plant;

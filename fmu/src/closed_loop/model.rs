@@ -96,6 +96,11 @@ impl Model for ClosedLoop {
         outputs::are_finite(outputs)
     }
 
+    /// An event is not reached with a plant that has diverged.
+    fn is_sound(&self) -> bool {
+        self.0.is_at_event()
+    }
+
     fn retune(&mut self, configuration: &Configuration) -> Result<(), FlightError> {
         Ok(self.0.reconfigure(&configuration.resolved()?)?)
     }

@@ -1,12 +1,12 @@
 //! What can be read of the plant.
 
 use nalgebra::Vector3;
-use quadrotor::{BatteryOutput, Dual, Plant, PlantInputs, PlantMode, PlantOutputs, PlantState, Real};
+use quadrotor::{BatteryOutput, Dual, Plant, PlantInputs, PlantMode, PlantOutputs, PlantState, Valued};
 
 use crate::tables::motion::Moving;
 
 /// All outputs, and the time derivatives of the states; with [`Dual`] numbers, the derivatives of all that.
-pub struct Observed<T: Real = f64> {
+pub struct Observed<T: Valued = f64> {
     pub(super) outputs: PlantOutputs<T>,
     /// Drawn share of the battery's charge.
     pub(super) discharge: T,
@@ -14,7 +14,7 @@ pub struct Observed<T: Real = f64> {
     pub(super) derivative: PlantState<T>,
 }
 
-impl<T: Real> Observed<T> {
+impl<T: Valued> Observed<T> {
     /// In a mode.
     pub(super) fn in_mode(
         plant: &Plant,

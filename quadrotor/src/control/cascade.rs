@@ -196,10 +196,14 @@ impl Cascade {
         seen: &Observation,
         (reference, answered): (&PositionReference, &PositionReference),
     ) -> RotorCommand {
-        self.reference_m_s2 = RequiredThrust::of(configuration, reference).acceleration_m_s2;
+        let [required, later] =
+            [reference, answered].map(|reference| RequiredThrust::of(configuration, reference));
+        self.reference_m_s2 = required.acceleration_m_s2;
+        let vertical = later.acceleration_m_s2.z + self.feedback_m_s2.z;
         let upright = upright(&seen.body);
-        let attitude = self.required_attitude(configuration, upright, reference);
-        let later = self.required_attitude(configuration, upright, answered);
+        let tilt_rad = configuration.limits.tilt_rad;
+        let attitude = self.required_attitude(&required, &Heading::of(reference), upright, tilt_rad);
+        let later = self.required_attitude(&later, &Heading::of(answered), upright, tilt_rad);
         self.tilt_reference_rad = [attitude.roll_rad, attitude.pitch_rad];
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
@@ -210,38 +214,32 @@ impl Cascade {
             acceleration_rad_s2: attitude.angular_acceleration_rad_s2,
             jerk_rad_s3: change / lag_s,
         };
-        let vertical = RequiredThrust::of(configuration, answered).acceleration_m_s2.z + self.feedback_m_s2.z;
         let thrust_n = thrust(configuration, vertical, upright);
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
         self.command_rotors(configuration, design, seen, &required, thrust_n)
     }
 
-    /// The attitude and its motion that a reference requires together with what feedback adds to it. While the thrust pushes
+    /// The attitude and its motion that a reference requires together with what feedback adds to it, leaning by at most `tilt_rad`. While the thrust pushes
     /// sideways or down it is level: where the thrust should push cannot be followed, and a way upright that bends with it takes
     /// longer.
     fn required_attitude(
         &self,
-        configuration: &Configuration,
+        required: &RequiredThrust,
+        heading: &Heading,
         upright: f64,
-        reference: &PositionReference,
+        tilt_rad: f64,
     ) -> FlatAttitude {
         if upright < UPRIGHT {
             let none = Vector3::zeros();
-            return FlatAttitude::new(&none, &none, &none, &Heading::of(reference));
+            return FlatAttitude::new(&none, &none, &none, heading);
         }
-        let required = RequiredThrust::of(configuration, reference);
         let wanted = required.acceleration_m_s2 + self.feedback_m_s2;
-        let horizontal = within_tilt(wanted.xy(), wanted.z, configuration.limits.tilt_rad);
+        let horizontal = within_tilt(wanted.xy(), wanted.z, tilt_rad);
         let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);
         // Commands that are cut off do not move with the reference.
         let kept = if horizontal == wanted.xy() { 1.0 } else { 0.0 };
-        FlatAttitude::new(
-            &within,
-            &(required.jerk_m_s3 * kept),
-            &(required.snap_m_s4 * kept),
-            &Heading::of(reference),
-        )
+        FlatAttitude::new(&within, &(required.jerk_m_s3 * kept), &(required.snap_m_s4 * kept), heading)
     }
 
     /// A sample of the attitude controller alone, for an attitude and a thrust from outside.

@@ -79,7 +79,7 @@ impl Mixer {
         let mean = mean - self.given(mean, self.most_given(mean, least_thrust_n), &tilt, yaw);
 
         let (least, most) = self.yaw_bounds(&tilt, mean);
-        let (share, _) = largest_share(&tilt_bounds(&least, &most, yaw), 0.0);
+        let (share, _) = tilt_share(&least, &most, yaw, 0.0);
         // What is left for yaw: all four rotors within their range. Rounding may cross the two bounds.
         let least =
             least.iter().map(|bound| share * bound.size - bound.room).fold(f64::NEG_INFINITY, f64::max);
@@ -118,7 +118,7 @@ impl Mixer {
         let mean = (thrust_n / 4.0).clamp(weakest, strongest);
         let most = self.most_given(mean, least_thrust_n);
         let whole = self.yaw_bounds(&tilt, mean);
-        let (share, to_tilt) = largest_share(&tilt_bounds(&whole.0, &whole.1, 0.0), most);
+        let (share, to_tilt) = tilt_share(&whole.0, &whole.1, 0.0, most);
         let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
         let range = |left: f64| {
             // Mostly nothing gives way.
@@ -150,7 +150,7 @@ impl Mixer {
         }
         let (weakest, strongest) = self.range_n;
         let (least_yaw, most_yaw) = self.yaw_bounds(tilt, mean);
-        let (share, to_tilt) = largest_share(&tilt_bounds(&least_yaw, &most_yaw, yaw), most);
+        let (share, to_tilt) = tilt_share(&least_yaw, &most_yaw, yaw, most);
         // f_min ≤ mean − g + s·tilt + t·yaw ≤ f_max for every rotor, t the share of the yaw
         let mean = mean - to_tilt;
         let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
@@ -204,6 +204,16 @@ impl Mixer {
         let turning = 4.0 * self.torque_coefficient_n_m_s2 / self.thrust_coefficient_n_s2 * room_n;
         [tilting(0), tilting(1), turning / largest(self.turning)]
     }
+}
+
+/// The largest share of the tilt that fits together with some share of the yaw, N, and what the mean thrust gives of `most` for it, N.
+fn tilt_share(least: &[YawBound; 4], largest: &[YawBound; 4], yaw: f64, most: f64) -> (f64, f64) {
+    // Where each rotor has room for its part of the tilt, all bounds have room for all of it: they are sums of these with positive
+    // factors, whose order rounding keeps.
+    if least.iter().chain(largest).all(|bound| bound.size <= bound.room) {
+        return (1.0, 0.0);
+    }
+    largest_share(&tilt_bounds(least, largest, yaw), most)
 }
 
 /// Bounds on the share of the tilt that fits together with some share of the yaw, N: no bound on the yaw from below may cross

@@ -78,11 +78,16 @@ impl Configuration {
     /// A number that is equal for configurations that are equal bit for bit, and hardly ever for others: a key for finding equal ones
     /// among many. Other versions of this crate may return other numbers.
     pub fn fingerprint(&self) -> u64 {
-        // FNV-1a by words; the turn brings the upper bits, in which numbers differ most, to all others.
-        bits(self).fold(0xcbf2_9ce4_8422_2325, |hash: u64, bits| {
-            (hash.rotate_left(23) ^ bits).wrapping_mul(0x0100_0000_01b3)
-        })
+        hashed(bits(self))
     }
+}
+
+/// A number that is equal for equal bits, and hardly ever for others: FNV-1a by words.
+pub(crate) fn hashed(bits: impl Iterator<Item = u64>) -> u64 {
+    // The turn brings the upper bits, in which numbers differ most, to all others.
+    bits.fold(0xcbf2_9ce4_8422_2325, |hash: u64, bits| {
+        (hash.rotate_left(23) ^ bits).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Airframe;
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::events::switch::Switch;
 
@@ -69,7 +69,7 @@ impl BatteryPack {
     ///
     /// U I = P and U = U_oc − R I make U = (U_oc + √(U_oc² − 4 R P))/2. A pack gives no more than U_oc²/4R; beyond that the
     /// voltage stays at half, and the current at what goes with it.
-    pub fn output<T: Real>(&self, power_w: T, discharge: T) -> BatteryOutput<T> {
+    pub fn output<T: Valued>(&self, power_w: T, discharge: T) -> BatteryOutput<T> {
         self.output_in(power_w, discharge, &mut ByValue)
     }
 
@@ -78,37 +78,33 @@ impl BatteryPack {
         &self,
         power_w: T,
         discharge: T,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> BatteryOutput<T> {
         if !self.sag {
             let voltage_v = T::constant(self.voltage_v);
             return BatteryOutput { voltage_v, current_a: power_w / self.voltage_v, remaining: T::one() };
         }
         let remaining = self.remaining(discharge, branches);
-        let above_knee = branches.exceeds(Switch::AboveKnee, remaining.value(), KNEE, 1.0);
+        let above_knee = branches.exceeds(Switch::AboveKnee, remaining, T::constant(KNEE), 1.0);
         let open_v = cell_voltage(remaining, above_knee) * self.voltage_v / cell_voltage_v(1.0);
         let (open_squared, taken) = (open_v * open_v, power_w * (4.0 * self.resistance_ohm));
-        let overloaded = branches.exceeds(
-            Switch::Overloaded,
-            taken.value(),
-            open_squared.value(),
-            self.voltage_v * self.voltage_v,
-        );
+        let usual_squared = self.voltage_v * self.voltage_v;
+        let overloaded = branches.exceeds(Switch::Overloaded, taken, open_squared, usual_squared);
         // Not beyond the bound in either mode: there is no root there.
         let root = if overloaded { T::zero() } else { (open_squared - taken).at_least(0.0).sqrt() };
         let voltage_v = (open_v + root) / 2.0;
         let strongest_w = open_squared / (4.0 * self.resistance_ohm);
-        let drawn_w = if power_w.value() < strongest_w.value() { power_w } else { strongest_w };
+        let drawn_w = strongest_w.where_greater(power_w, power_w, strongest_w);
         BatteryOutput { voltage_v, current_a: drawn_w / voltage_v, remaining }
     }
 
     /// Remaining share of the charge, between nothing and all.
-    fn remaining<T: Real>(&self, discharge: T, branches: &mut impl Branches) -> T {
-        if branches.exceeds(Switch::Empty, discharge.value(), 1.0, 1.0) {
+    fn remaining<T: Real>(&self, discharge: T, branches: &mut impl Branches<T>) -> T {
+        if branches.exceeds(Switch::Empty, discharge, T::one(), 1.0) {
             return T::zero();
         }
         // Nothing charges the pack: it does not come here from below.
-        if discharge.value() < 0.0 { T::one() } else { -discharge + 1.0 }
+        T::zero().where_greater(discharge, T::one(), -discharge + 1.0)
     }
 }
 

@@ -42,6 +42,10 @@ impl<T: Scalar + Copy> Disturbance<T> {
 impl Disturbance {
     /// The name of its first component that is not finite.
     pub(crate) fn not_finite(&self) -> Option<&'static str> {
+        // Zero times what is not finite is not a number, and neither is a sum with it. Mostly this is all there is to do.
+        if (self.force_n * 0.0 + self.torque_n_m * 0.0 + self.wind_m_s * 0.0).sum() == 0.0 {
+            return None;
+        }
         let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
         let checks = [
             ("disturbance.force", finite(&self.force_n)),

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::plant::airframe::vanish;
 use crate::plant::differentiation::real::{Real, constant};
 use crate::{Airframe, External, RigidBody};
 
@@ -19,7 +20,7 @@ impl Airframe {
             airspeed += body.orientation().in_world(&body.body_rate_rad_s.cross(&centre));
         }
         let mut force_n = -constant::<T>(self.drag_n_s_m).component_mul(&airspeed);
-        if self.body_drag_n_s_m != [0.0; 3] {
+        if !vanish(&self.body_drag_n_s_m) {
             let orientation = body.orientation();
             let along_body = orientation.in_body(&airspeed);
             force_n -= orientation.in_world(&constant::<T>(self.body_drag_n_s_m).component_mul(&along_body));

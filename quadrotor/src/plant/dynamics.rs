@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::forces::Forces;
 use crate::plant::ground::{HoldingMargins, cannot_be_held, contact, reach_m};
@@ -52,6 +52,12 @@ impl Plant {
         self.ground_plane
     }
 
+    /// No foot is farther from the centre of mass, m.
+    #[cfg(feature = "fleet")]
+    pub(crate) fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
     /// f(x, u): the time derivative of the state. It has no memory, so that any integrator can use it. Where a foot comes to the
     /// ground with a vertical speed it jumps; its slope jumps where a foot begins to slip fast, where a rotor with different
     /// lags meets its command, where the ground effect or the thrust of a rotor reaches a bound, and at the knee and the end of
@@ -59,7 +65,7 @@ impl Plant {
     ///
     /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
     /// [`Plant::step`] adds the rule that holds it still.
-    pub fn derivative<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantState<T> {
+    pub fn derivative<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantState<T> {
         self.forces(state, inputs, &mut ByValue).derivative(&self.airframe, state)
     }
 
@@ -69,7 +75,7 @@ impl Plant {
         &self,
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> Forces<T> {
         let mut forces = self.loads(state, inputs, branches);
         if self.ground_plane {
@@ -86,7 +92,7 @@ impl Plant {
         &self,
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> Forces<T> {
         let (airframe, disturbance) = (&self.airframe, &inputs.disturbance);
         let mut external = airframe.drag(&state.body, &disturbance.wind_m_s);
@@ -100,7 +106,7 @@ impl Plant {
             self.drive(state, command_rad_s, &inputs.rotor_faults, branches);
         let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_plane: self.ground_plane };
         let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around, branches);
-        if lateral_n != Vector3::zeros() {
+        if airframe.rotor_aerodynamics.drags() {
             external.force_n += state.body.orientation().in_world(&lateral_n);
         }
         if airframe.rotor_spin.inertia_kg_m2 > 0.0 {
@@ -121,7 +127,7 @@ impl Plant {
         state: &PlantState<T>,
         command_rad_s: &[T; 4],
         faults: &[Option<RotorFault>; 4],
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> ([T; 4], T) {
         let (mut command_rad_s, mut discharge_per_s) = (*command_rad_s, T::zero());
         let pack = &self.airframe.battery;
@@ -135,7 +141,7 @@ impl Plant {
         let goals_rad_s = goals_rad_s(faults, &command_rad_s, &state.rotor_speed_rad_s);
         let accelerations = core::array::from_fn(|rotor| {
             let (goal, present) = (goals_rad_s[rotor], state.rotor_speed_rad_s[rotor]);
-            (goal - present) / self.airframe.lag_s(goal.value(), present.value())
+            (goal - present) / self.airframe.lag_s(goal, present)
         });
         (accelerations, discharge_per_s)
     }
@@ -145,7 +151,7 @@ impl Plant {
     /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
     /// 0.1 m/s, and is pulled along the ground by less than μ N (μ = 0.7) keeps its place and heading exactly, while it may
     /// still sink or tilt on its feet. Pulled by more, it slips.
-    pub fn step<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>, h_s: f64) -> PlantState<T> {
+    pub fn step<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>, h_s: f64) -> PlantState<T> {
         if !self.is_held(state, inputs) {
             return runge_kutta(state, h_s, |state| self.derivative(state, inputs));
         }
@@ -155,7 +161,7 @@ impl Plant {
     }
 
     /// Whether static friction holds the vehicle where it is.
-    pub(crate) fn is_held<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
+    pub(crate) fn is_held<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
         if !self.ground_plane || cannot_be_held(&state.body, self.reach_m) {
             return false;
         }
@@ -189,10 +195,10 @@ pub(crate) fn held<T: Real>(mut derivative: PlantState<T>) -> PlantState<T> {
     derivative
 }
 
-fn runge_kutta<T: Real>(
+pub(crate) fn runge_kutta<T: Real>(
     state: &PlantState<T>,
     h_s: f64,
-    f: impl Fn(&PlantState<T>) -> PlantState<T>,
+    mut f: impl FnMut(&PlantState<T>) -> PlantState<T>,
 ) -> PlantState<T> {
     let k1 = f(state);
     let k2 = f(&state.plus(&k1, h_s / 2.0));

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::plant::differentiation::real::{Real, constant};
+use crate::plant::differentiation::real::{Real, Valued, constant};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::events::switch::Switch;
 use crate::plant::orientation::Orientation;
@@ -32,25 +32,26 @@ pub(crate) fn contact<T: Real>(
     airframe: &Airframe,
     body: &RigidBody<T>,
     reach_m: f64,
-    branches: &mut impl Branches,
+    branches: &mut impl Branches<T>,
 ) -> External<T> {
     let mut total = External::default();
-    if may_skip(branches) && is_above(body, reach_m) {
+    // No foot can touch the ground in any attitude.
+    if branches.may_skip(body.position_m.z, -reach_m) {
         return total;
     }
     let orientation = body.orientation();
     for (index, foot) in feet(airframe).into_iter().enumerate() {
         let foot = constant(foot);
         let depth = depth_m(body, &orientation, &foot);
-        if may_skip(branches) && depth.value() <= 0.0 {
+        if branches.may_skip(depth, 0.0) {
             continue;
         }
         let footing = Footing::new(airframe, body, &orientation, &foot, depth);
         let Some(normal) = footing.normal_n(airframe, index, branches) else { continue };
         let (x, y) = (footing.velocity_m_s.x, footing.velocity_m_s.y);
         let slip = x.hypot(y);
-        let slides =
-            branches.exceeds(Switch::Slides(index), slip.value(), FRICTION_SLIP_M_S, FRICTION_SLIP_M_S);
+        let full = T::constant(FRICTION_SLIP_M_S);
+        let slides = branches.exceeds(Switch::Slides(index), slip, full, FRICTION_SLIP_M_S);
         let limit = normal * FRICTION_COEFFICIENT;
         let friction = if slides { limit / slip } else { limit / FRICTION_SLIP_M_S };
         let force = Vector3::new(-friction * x, -friction * y, -normal);
@@ -58,11 +59,6 @@ pub(crate) fn contact<T: Real>(
         total.torque_n_m += foot.cross(&orientation.in_body(&force));
     }
     total
-}
-
-/// Whether what is off by its value need not be looked at.
-fn may_skip<B: Branches>(_: &B) -> bool {
-    B::BY_VALUE
 }
 
 /// How far static friction is from letting the vehicle go, or from holding it.
@@ -114,12 +110,12 @@ impl HoldingMargins {
 }
 
 /// Whether the vehicle is so high, or so fast along the ground, that static friction cannot hold it under any pull.
-pub(crate) fn cannot_be_held<T: Real>(body: &RigidBody<T>, reach_m: f64) -> bool {
+pub(crate) fn cannot_be_held<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> bool {
     is_above(body, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
 }
 
 /// How fast the outermost foot may slip along the ground, m/s.
-fn slip_m_s<T: Real>(body: &RigidBody<T>, reach_m: f64) -> f64 {
+fn slip_m_s<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> f64 {
     let velocity_m_s = body.velocity_m_s.map(T::value);
     velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m
 }
@@ -134,7 +130,7 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) ->
 }
 
 /// Whether no foot can touch the ground in any attitude.
-fn is_above<T: Real>(body: &RigidBody<T>, reach_m: f64) -> bool {
+fn is_above<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> bool {
     body.position_m.z.value() < -reach_m
 }
 
@@ -188,18 +184,19 @@ impl<T: Real> Footing<T> {
     }
 
     /// What the foot presses with, N: positive on the ground, which only pushes.
-    fn pressing_n(&self) -> f64 {
-        self.spring_n.value().min(self.load_n.value())
+    fn pressing_n(&self) -> T {
+        self.load_n.where_greater(self.spring_n, self.spring_n, self.load_n)
     }
 
     /// What the foot presses with, N, if it does.
-    fn normal_n(&self, airframe: &Airframe, index: usize, branches: &mut impl Branches) -> Option<T> {
-        let strongest = strongest_n(airframe);
-        if !branches.exceeds(Switch::Bears(index), self.pressing_n(), 0.0, airframe.weight_n() / 4.0) {
+    fn normal_n(&self, airframe: &Airframe, index: usize, branches: &mut impl Branches<T>) -> Option<T> {
+        let strongest_n = strongest_n(airframe);
+        if !branches.exceeds(Switch::Bears(index), self.pressing_n(), T::zero(), airframe.weight_n() / 4.0) {
             return None;
         }
-        let hardest = branches.exceeds(Switch::Hardest(index), self.load_n.value(), strongest, strongest);
-        Some(if hardest { T::constant(strongest) } else { self.load_n })
+        let strongest = T::constant(strongest_n);
+        let hardest = branches.exceeds(Switch::Hardest(index), self.load_n, strongest, strongest_n);
+        Some(if hardest { strongest } else { self.load_n })
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::Airframe;
+use crate::plant::airframe::vanish;
 use crate::plant::differentiation::real::{Real, constant};
 
 /// How far rounding may carry the largest principal moment beyond the sum of the other two, as a share of that sum: of a
@@ -35,7 +36,7 @@ impl Airframe {
     /// Whether the body axes are the principal axes.
     #[inline]
     pub(crate) fn has_principal_axes(&self) -> bool {
-        self.products_of_inertia_kg_m2 == [0.0; 3]
+        vanish(&self.products_of_inertia_kg_m2)
     }
 
     /// Angular acceleration of the body, FRD, rad/s², at a body rate, rad/s, under a torque, N·m: Euler's equation

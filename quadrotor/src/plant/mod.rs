@@ -10,6 +10,10 @@ pub(crate) mod events;
 pub(crate) mod forces;
 pub(crate) mod ground;
 pub(crate) mod inertia;
+#[cfg(feature = "fleet")]
+pub(crate) mod lanes;
+#[cfg(feature = "fleet")]
+pub(crate) mod likeness;
 pub(crate) mod orientation;
 pub(crate) mod overload;
 pub(crate) mod plant_inputs;
@@ -23,3 +27,5 @@ pub(crate) mod rotor_forces;
 pub(crate) mod rotor_layout;
 pub(crate) mod rotor_map;
 pub(crate) mod rotor_spin;
+#[cfg(feature = "fleet")]
+pub(crate) mod side_by_side;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, Vector3, Vector4};
 
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::{Real, Valued};
 
 /// A unit quaternion, FRD into NED: nalgebra's for any [`Real`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,9 @@ impl<T: Real> Orientation<T> {
     pub(crate) fn in_body(&self, vector: &Vector3<T>) -> Vector3<T> {
         rotated(&-self.vector, self.scalar, vector)
     }
+}
 
+impl<T: Valued> Orientation<T> {
     /// φ, θ, ψ (ZYX), rad. Their derivatives have no bound where θ approaches ±90°.
     pub(crate) fn euler_angles(&self) -> Vector3<T> {
         let [i, j, k]: [T; 3] = self.vector.into();

@@ -3,7 +3,7 @@
 use nalgebra::Scalar;
 use serde::{Deserialize, Serialize};
 
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::plant_state::zipped;
 use crate::plant::rotor_fault::goals_rad_s;
 use crate::{Disturbance, RotorFault, Wrench};
@@ -57,7 +57,7 @@ impl<T: Real> PlantInputs<T> {
     }
 }
 
-impl<T: Real> PlantInputs<T> {
+impl<T: Valued> PlantInputs<T> {
     /// The inputs without their derivatives.
     pub(crate) fn values(&self) -> PlantInputs {
         self.zip_map(self, T::zero(), |number, _| number.value())

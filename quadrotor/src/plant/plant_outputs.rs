@@ -2,7 +2,7 @@
 
 use nalgebra::{Scalar, Vector3};
 
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::Valued;
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::plant_state::zipped;
 use crate::{BatteryOutput, Plant, PlantInputs, PlantState, Wrench};
@@ -58,17 +58,17 @@ impl<T: Scalar + Copy> PlantOutputs<T> {
 
 impl Plant {
     /// What can be observed now. On the ground the vehicle does not accelerate along it while static friction holds it.
-    pub fn outputs<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantOutputs<T> {
+    pub fn outputs<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantOutputs<T> {
         self.observed(state, inputs, self.is_held(state, inputs), &mut ByValue)
     }
 
     /// What can be observed, with the branches and the static friction chosen.
-    pub(crate) fn observed<T: Real>(
+    pub(crate) fn observed<T: Valued>(
         &self,
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
         held: bool,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> PlantOutputs<T> {
         let (body, airframe) = (&state.body, self.airframe());
         let forces = self.forces(state, inputs, branches);
@@ -95,18 +95,18 @@ impl Plant {
 
     /// Thrust and torques about the centre of mass that drive the body now: those of the rotors, or the ones in their place.
     /// The torques of spinning rotors ([`RotorSpin`](crate::RotorSpin)) are not among them.
-    pub fn wrench<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> Wrench<T> {
+    pub fn wrench<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> Wrench<T> {
         self.loads(state, inputs, &mut ByValue).wrench
     }
 
     /// What the battery gives now.
-    pub fn battery<T: Real>(&self, state: &PlantState<T>) -> BatteryOutput<T> {
+    pub fn battery<T: Valued>(&self, state: &PlantState<T>) -> BatteryOutput<T> {
         let airframe = self.airframe();
         airframe.battery.output(airframe.electric_power_w(&state.rotor_speed_rad_s), state.discharge)
     }
 
     /// Acceleration in NED, m/s²; none along the ground while static friction holds the vehicle.
-    pub fn acceleration_m_s2<T: Real>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> Vector3<T> {
+    pub fn acceleration_m_s2<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> Vector3<T> {
         let forces = self.forces(state, inputs, &mut ByValue);
         let acceleration = forces.acceleration_m_s2(self.airframe(), state);
         if self.is_held(state, inputs) {

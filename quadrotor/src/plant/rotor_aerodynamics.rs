@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::plant::airframe::vanish;
 use crate::plant::differentiation::real::Real;
 use crate::plant::events::branches::Branches;
 use crate::plant::events::switch::Switch;
@@ -74,7 +75,13 @@ impl RotorAerodynamics {
             radius_m: _,
             ground_effect,
         } = *self;
-        [drag, inflow, lift] == [0.0; 3] && !ground_effect
+        vanish(&[drag, inflow, lift]) && !ground_effect
+    }
+
+    /// Whether rotors drag in their plane.
+    #[inline]
+    pub(crate) fn drags(&self) -> bool {
+        self.drag_coefficient_n_s2_m != 0.0
     }
 
     /// Thrust, N, of the rotor at `index`, which makes `static_n` at rest, turns with `speed_rad_s`, climbs with `climb_m_s`
@@ -83,15 +90,15 @@ impl RotorAerodynamics {
         &self,
         index: usize,
         [static_n, speed_rad_s, climb_m_s, lateral_m2_s2]: [T; 4],
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> T {
         let lost_n = speed_rad_s * self.inflow_coefficient_n_s2_m * climb_m_s;
         let gained_n = lateral_m2_s2 * self.translational_lift_coefficient_n_s2_m2;
         let (thrust_n, most_n) = (static_n - lost_n + gained_n, static_n * MOST_THRUST);
-        if branches.exceeds(Switch::MostThrust(index), thrust_n.value(), most_n.value(), THRUST_N) {
+        if branches.exceeds(Switch::MostThrust(index), thrust_n, most_n, THRUST_N) {
             return most_n;
         }
-        if branches.exceeds(Switch::NoThrust(index), 0.0, thrust_n.value(), THRUST_N) {
+        if branches.exceeds(Switch::NoThrust(index), T::zero(), thrust_n, THRUST_N) {
             T::zero()
         } else {
             thrust_n
@@ -109,23 +116,21 @@ impl RotorAerodynamics {
         &self,
         index: usize,
         [thrust_n, height_m, upright, lateral_m2_s2]: [T; 4],
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> T {
-        if !self.ground_effect || !branches.exceeds(Switch::Upright, upright.value(), 0.0, 1.0) {
+        if !self.ground_effect || !branches.exceeds(Switch::Upright, upright, T::zero(), 1.0) {
             return T::one();
         }
         let closest_m = CLOSEST_RADII * self.radius_m;
-        let aslant_m = height_m / upright.at_least(f64::MIN_POSITIVE);
-        let close = branches.exceeds(Switch::NearGround(index), closest_m, aslant_m.value(), self.radius_m);
-        if thrust_n.value() <= 0.0 {
-            return T::one();
-        }
+        let (closest, aslant_m) = (T::constant(closest_m), height_m / upright.at_least(f64::MIN_POSITIVE));
+        let close = branches.exceeds(Switch::NearGround(index), closest, aslant_m, self.radius_m);
         // Not beyond the bound in either mode: the image has a pole there.
-        let distance_m = if close { T::constant(closest_m) } else { aslant_m.at_least(closest_m) };
+        let distance_m = if close { closest } else { aslant_m.at_least(closest_m) };
         let image = T::constant(self.radius_m) / (distance_m * 4.0);
         let disc_m2 = PI * self.radius_m * self.radius_m;
         let below = thrust_n / (thrust_n + lateral_m2_s2 * (2.0 * AIR_DENSITY_KG_M3 * disc_m2));
-        T::one() / (T::one() - image * image * below)
+        let ratio = T::one() / (T::one() - image * image * below);
+        thrust_n.where_greater(T::zero(), ratio, T::one())
     }
 }
 

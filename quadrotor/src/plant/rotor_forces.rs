@@ -31,7 +31,7 @@ impl<T: Real> RotorForces<T> {
         airframe: &Airframe,
         state: &PlantState<T>,
         around: &Surroundings<T>,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> Self {
         if airframe.is_centred() && airframe.rotor_aerodynamics.is_static() {
             let wrench = wrench_of_rotors(airframe, &state.rotor_speed_rad_s);
@@ -45,7 +45,7 @@ impl<T: Real> RotorForces<T> {
         airframe: &Airframe,
         state: &PlantState<T>,
         around: &Surroundings<T>,
-        branches: &mut impl Branches,
+        branches: &mut impl Branches<T>,
     ) -> Self {
         let (k1, k2) = (airframe.thrust_coefficient_n_s2, airframe.torque_coefficient_n_m_s2);
         let aerodynamics = &airframe.rotor_aerodynamics;

@@ -27,9 +27,10 @@ impl Airframe {
     /// Time constant of the lag of a rotor that turns at `present_rad_s` towards `goal_rad_s`, s. It jumps where the two
     /// meet, but the acceleration (goal − present)/τ is zero there and stays continuous.
     #[inline]
-    pub(crate) fn lag_s(&self, goal_rad_s: f64, present_rad_s: f64) -> f64 {
+    pub(crate) fn lag_s<T: Real>(&self, goal_rad_s: T, present_rad_s: T) -> T {
         let rising_s = self.rotor_time_constant_s;
-        if goal_rad_s < present_rad_s { rising_s * self.rotor_spin.fall_time_ratio } else { rising_s }
+        let [falling, rising] = [rising_s * self.rotor_spin.fall_time_ratio, rising_s].map(T::constant);
+        present_rad_s.where_greater(goal_rad_s, falling, rising)
     }
 
     /// Near hover, the reaction to spin-up is the drag torque's rate of change times this, s: J_r Ω̇ = J_r/(2k₂Ω) · d(k₂Ω²)/dt.

@@ -3,10 +3,11 @@
 use std::num::NonZeroUsize;
 
 use quadrotor::{
-    Configuration, ControllerKind, Disturbance, Fleet, FleetError, Inputs, Sensors, Simulation,
+    Configuration, ControllerKind, Disturbance, Fleet, FleetError, Inputs, RotorFault, Sensors, Simulation,
     SimulationError,
 };
 
+use crate::common::physics::all_physics;
 use crate::common::{goal, unshaped};
 
 const VEHICLES: usize = 13;
@@ -94,4 +95,42 @@ fn the_vehicle_that_cannot_fly_is_named() {
     let refused = Fleet::new(&configurations, inputs).unwrap_err();
     assert!(matches!(refused, FleetError::Configuration { vehicle: 7, .. }), "{refused}");
     assert!(Fleet::new(&[], inputs).unwrap().is_empty());
+}
+
+/// Vehicles of two airframes, in winds of their own, some on the ground, one with a weak rotor, one with noise.
+fn of_all_kinds(vehicle: usize) -> (Configuration, Inputs) {
+    let mut configuration = unshaped();
+    configuration.environment.ground_plane = true;
+    if vehicle.is_multiple_of(2) {
+        configuration.airframe = all_physics();
+    }
+    configuration.sensors.seed = (vehicle % 5) as u32;
+    configuration.sensors.position_noise_m = if vehicle == 3 { 0.01 } else { 0.0 };
+    configuration.initial.position_m[2] = if vehicle.is_multiple_of(7) { 0.0 } else { -2.0 };
+    let mut inputs = goal([0.3 * vehicle as f64, -1.0, -2.5], 0.1);
+    inputs.armed = vehicle != 14;
+    inputs.disturbance.wind_m_s = [vehicle as f64 * 0.2, -0.5, 0.1].into();
+    inputs.rotor_faults[1] = (vehicle == 6).then_some(RotorFault::Weak { share: 0.9 });
+    (configuration, inputs)
+}
+
+/// The plants of vehicles that are alike step at once: the doubles are those of each alone.
+#[test]
+fn with_all_physics_each_flight_is_that_of_a_vehicle_alone_bit_for_bit() {
+    const COUNT: usize = 17;
+    let configurations: Vec<Configuration> = (0..COUNT).map(|vehicle| of_all_kinds(vehicle).0).collect();
+    let inputs = |vehicle: usize| of_all_kinds(vehicle).1;
+    let mut fleet = Fleet::with_threads(&configurations, inputs, NonZeroUsize::new(2)).unwrap();
+    // One is ahead of the others, and then waits for them.
+    fleet.vehicles_mut().nth(5).unwrap().advance_to(333_300, &inputs(5)).unwrap();
+    for time_us in [400_500, 777_100, END_US] {
+        fleet.advance_to(time_us, inputs);
+    }
+    for (vehicle, flown) in fleet.vehicles().enumerate() {
+        let mut alone = Simulation::new(&configurations[vehicle], &inputs(vehicle)).unwrap();
+        alone.advance_to(END_US, &inputs(vehicle)).unwrap();
+        assert_eq!(flown.state(), alone.state(), "vehicle {vehicle}");
+        let bits = |simulation: &Simulation| simulation.plant_state().to_array().map(f64::to_bits);
+        assert_eq!(bits(flown), bits(&alone), "vehicle {vehicle}");
+    }
 }

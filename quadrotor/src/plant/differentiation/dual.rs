@@ -4,7 +4,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use num_traits::{One, Zero};
 
-use super::real::Real;
+use super::real::{Real, Valued};
 
 /// A dual number a + b ε with ε² = 0: a value, and its derivative along one direction. Calculating with it is forward-mode
 /// differentiation, exact up to rounding (Griewank, Walther 2008, "Evaluating derivatives", chapter 3).
@@ -150,8 +150,8 @@ impl Real for Dual {
         Self::new(value, 0.0)
     }
 
-    fn value(self) -> f64 {
-        self.value
+    fn where_greater(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        if self.value > bound.value { then } else { otherwise }
     }
 
     fn sqrt(self) -> Self {
@@ -169,6 +169,12 @@ impl Real for Dual {
             return Self::constant(0.0);
         }
         Self::new(length, (self.value * self.tangent + other.value * other.tangent) / length)
+    }
+}
+
+impl Valued for Dual {
+    fn value(self) -> f64 {
+        self.value
     }
 
     fn cos(self) -> Self {
@@ -192,7 +198,7 @@ impl Real for Dual {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{Dual, Real};
+    use super::{Dual, Real, Valued};
 
     /// Slope of g at x by central differences, of fourth order.
     fn slope(g: impl Fn(f64) -> f64, x: f64) -> f64 {

@@ -5,7 +5,8 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use nalgebra::{Scalar, Vector3};
 use num_traits::{One, Zero};
 
-/// A real number of the plant's equations: an `f64`, or a [`Dual`](crate::Dual), which carries a derivative.
+/// A real number of the plant's equations: an `f64`, a [`Dual`](crate::Dual), which carries a derivative, or a number of each of
+/// several vehicles that fly side by side.
 ///
 /// Constants of the vehicle are `f64`, and mix with any such number. For `f64` all operations are those of nalgebra and libm, so
 /// that generic equations give the doubles that plain ones give.
@@ -31,8 +32,8 @@ pub trait Real:
     /// A number that does not depend on anything.
     fn constant(value: f64) -> Self;
 
-    /// The number itself, without its derivative: what branches are chosen by.
-    fn value(self) -> f64;
+    /// `then` where its value is greater than that of `bound`, `otherwise` elsewhere.
+    fn where_greater(self, bound: Self, then: Self, otherwise: Self) -> Self;
 
     /// √x; the derivative of √0 counts as zero where x does not change.
     fn sqrt(self) -> Self;
@@ -43,6 +44,18 @@ pub trait Real:
     /// √(x² + y²); its derivative at the origin counts as zero.
     fn hypot(self, other: Self) -> Self;
 
+    /// The larger of the two, the constant where they are equal.
+    fn at_least(self, bound: f64) -> Self {
+        let bound = Self::constant(bound);
+        self.where_greater(bound, self, bound)
+    }
+}
+
+/// A real number of one vehicle: its value chooses branches.
+pub trait Valued: Real {
+    /// The number itself, without its derivative.
+    fn value(self) -> f64;
+
     /// cos x.
     fn cos(self) -> Self;
 
@@ -51,11 +64,6 @@ pub trait Real:
 
     /// The angle of the point (`x`, self), rad.
     fn atan2(self, x: Self) -> Self;
-
-    /// The larger of the two, the constant where they are equal.
-    fn at_least(self, bound: f64) -> Self {
-        if self.value() > bound { self } else { Self::constant(bound) }
-    }
 }
 
 impl Real for f64 {
@@ -63,8 +71,9 @@ impl Real for f64 {
         value
     }
 
-    fn value(self) -> f64 {
-        self
+    #[inline(always)]
+    fn where_greater(self, bound: Self, then: Self, otherwise: Self) -> Self {
+        if self > bound { then } else { otherwise }
     }
 
     fn sqrt(self) -> Self {
@@ -77,6 +86,12 @@ impl Real for f64 {
 
     fn hypot(self, other: Self) -> Self {
         libm::hypot(self, other)
+    }
+}
+
+impl Valued for f64 {
+    fn value(self) -> f64 {
+        self
     }
 
     fn cos(self) -> Self {

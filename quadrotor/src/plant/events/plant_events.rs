@@ -3,7 +3,7 @@
 use super::branches::Watched;
 use super::plant_mode::PlantMode;
 use super::switch::Switch;
-use crate::plant::differentiation::real::Real;
+use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::dynamics::{held, hold};
 use crate::{Plant, PlantInputs, PlantOutputs, PlantState};
 
@@ -42,7 +42,7 @@ impl Plant {
     }
 
     /// What can be observed in a mode.
-    pub fn outputs_in<T: Real>(
+    pub fn outputs_in<T: Valued>(
         &self,
         mode: PlantMode,
         state: &PlantState<T>,

@@ -1,0 +1,98 @@
+//! Flights that go on side by side in one thread.
+
+use core::array::from_fn;
+
+use crate::plant::lanes::LANES;
+use crate::{InputSignal, PlantState, Simulation, SimulationError};
+
+/// From so many vehicles on a step of all lanes takes less time than a step of each.
+const WORTHWHILE: usize = 3;
+
+/// A vehicle that flies side by side with others of the same plant.
+pub(crate) struct LaneFlight<'a, S> {
+    simulation: &'a mut Simulation,
+    failure: &'a mut Option<SimulationError>,
+    inputs: S,
+    /// Where its plant flies to, µs, if it has not come to its end.
+    next_us: Option<u64>,
+}
+
+impl<'a, S: InputSignal> LaneFlight<'a, S> {
+    /// Of a vehicle, and where to tell why it could not go on.
+    pub(crate) fn new(
+        simulation: &'a mut Simulation,
+        failure: &'a mut Option<SimulationError>,
+        inputs: S,
+    ) -> Self {
+        Self { simulation, failure, inputs, next_us: None }
+    }
+
+    /// Samples at its last event if that is due, and looks for its next event before `time_us` or there.
+    fn look_ahead(&mut self, time_us: u64) {
+        if self.failure.is_some() {
+            return;
+        }
+        match self.simulation.next_event_us(time_us, &self.inputs) {
+            Ok(next_us) => self.next_us = next_us,
+            Err(failure) => self.fail(failure),
+        }
+    }
+
+    fn fail(&mut self, failure: SimulationError) {
+        *self.failure = Some(failure);
+        self.next_us = None;
+    }
+
+    /// Time to its next event, µs.
+    fn interval_us(&self) -> Option<u64> {
+        Some(self.next_us? - self.simulation.event_us())
+    }
+
+    /// Flies to its next event, if there is one, with the plant that has stepped there or steps now.
+    fn arrive(&mut self, stepped: Option<PlantState>) {
+        let Some(next_us) = self.next_us else { return };
+        let plant = stepped.unwrap_or_else(|| self.simulation.plant_at(next_us));
+        if let Err(failure) = self.simulation.arrive(next_us, plant) {
+            self.fail(failure);
+        }
+    }
+}
+
+/// Flies up to [`LANES`] vehicles of one plant on to `time_us`, each as [`Simulation::advance_to`] does, bit for bit: at each event all of
+/// them sample one after the other, and then their plants step at once.
+pub(crate) fn advance_side_by_side<S: InputSignal>(flights: &mut [LaneFlight<'_, S>], time_us: u64) {
+    for flight in flights.iter_mut() {
+        if let Err(failure) = flight.simulation.check_order(time_us) {
+            flight.fail(failure);
+        }
+    }
+    loop {
+        for flight in flights.iter_mut() {
+            flight.look_ahead(time_us);
+        }
+        let Some(first) = flights.iter().position(|flight| flight.next_us.is_some()) else { break };
+        let stepped = stepped(flights, first);
+        for (flight, stepped) in flights.iter_mut().zip(stepped) {
+            flight.arrive(stepped);
+        }
+    }
+    for flight in flights.iter_mut().filter(|flight| flight.failure.is_none()) {
+        flight.simulation.rest_at(time_us);
+    }
+}
+
+/// Plants at the next events of the `first` vehicle and of all that step by the same time, if they can step at once.
+fn stepped<S: InputSignal>(flights: &[LaneFlight<'_, S>], first: usize) -> [Option<PlantState>; LANES] {
+    let interval_us = |lane: usize| flights.get(lane).and_then(LaneFlight::interval_us);
+    let together: [bool; LANES] = from_fn(|lane| interval_us(lane) == interval_us(first));
+    let many = together.iter().filter(|one| **one).count() >= WORTHWHILE;
+    let Some(interval_us) = interval_us(first).filter(|_| many) else { return [None; LANES] };
+    // The first one flies in lanes that nobody has, too.
+    let in_lane = |lane: usize| &*flights[if together[lane] { lane } else { first }].simulation;
+    let stepped = in_lane(first).plant().step_side_by_side(
+        &from_fn(|lane| *in_lane(lane).plant_state()),
+        &from_fn(|lane| in_lane(lane).plant_inputs()),
+        interval_us as f64 / 1e6,
+    );
+    stepped.map_or([None; LANES], |states| from_fn(|lane| together[lane].then_some(states[lane])))
+}
