@@ -86,7 +86,7 @@ impl<const N: usize, const P: usize> Region<N, P> {
             measured,
             increment,
             error: SVector::from_fn(|at, _| scaled(2 * N, at, self.error[at])),
-            before: ControllerState::new(measured - increment, feedback, SVector::zeros()),
+            before: ControllerState::new(measured - increment, feedback, SVector::zeros()).keeping(),
             limited: true,
         }
     }

@@ -22,8 +22,8 @@ pub struct Moment<const N: usize, const P: usize, const E: usize> {
     pub increment: SVector<f64, N>,
     /// y(k) − r(k) as it is seen.
     pub error: SVector<f64, P>,
-    /// The controller before, with the limits that were active last.
-    pub before: ControllerState<N, P, E>,
+    /// The controller before, with the limits that were active last and what it keeps of them.
+    pub before: ControllerState<N, P, E, f64, E>,
     /// Whether its solver was needed.
     pub limited: bool,
 }
@@ -47,15 +47,16 @@ impl<const N: usize, const P: usize, const E: usize> Moment<N, P, E> {
     }
 
     /// The same controller without the limits that were active last.
-    pub fn forgetful(&self) -> ControllerState<N, P, E> {
+    pub fn forgetful(&self) -> ControllerState<N, P, E, f64, E> {
         ControllerState::new(self.before.measured(), self.before.applied(), self.before.input_reference())
+            .keeping()
     }
 }
 
 /// Flies to random goals, in random directions, so many legs per flight.
 pub fn fly<const N: usize, const P: usize, const E: usize>(
     linear: &LinearLoop,
-    law: &impl Controller<N, P, P, E>,
+    law: &impl Controller<N, P, P, E, f64, E>,
     flights: usize,
     legs: usize,
 ) -> Vec<Moment<N, P, E>> {
@@ -65,7 +66,7 @@ pub fn fly<const N: usize, const P: usize, const E: usize>(
     for flight in 0..flights {
         let mut state = SVector::<f64, N>::zeros();
         let mut increment = SVector::<f64, N>::zeros();
-        let mut controller = ControllerState::<N, P, E>::at_rest();
+        let mut controller = ControllerState::<N, P, E>::at_rest().keeping();
         let mut goal = SVector::<f64, P>::zeros();
         for sample in 0..legs * LEG {
             if sample % LEG == 0 {

@@ -1,8 +1,8 @@
 //! Cost of the position controller's step against the size of its program, along flights that reach its limits.
 
 use lmpc::{
-    Augmented, Controller, ControllerState, Dlqr, SignalLimit, StabilizedMpc, StateSpaceMpc,
-    StateSpaceMpcDesign, StateSpaceMpcWeights, unknowns,
+    Augmented, Controller, Dlqr, SignalLimit, StabilizedMpc, StateSpaceMpc, StateSpaceMpcDesign,
+    StateSpaceMpcWeights, unknowns,
 };
 use quadrotor::{Configuration, HoverLoops, LinearLoop, Simulation};
 use recording::{TERMS, TWO};
@@ -107,15 +107,22 @@ fn state_space(linear: &LinearLoop, moves: usize, quick: bool) -> Result<f64, Fa
     Ok(limited_step::<{ unknowns(2, MOVES) }>(linear, &law, quick))
 }
 
-fn limited_step<const E: usize>(linear: &LinearLoop, law: &impl Controller<12, 2, 2, E>, quick: bool) -> f64 {
+fn limited_step<const E: usize>(
+    linear: &LinearLoop,
+    law: &impl Controller<12, 2, 2, E, f64, E>,
+    quick: bool,
+) -> f64 {
     let watch = Stopwatch::calibrated();
     let moments = fly(linear, law, if quick { 2 } else { 8 }, 2);
     let times = moments.iter().filter(|moment| moment.limited).map(|moment| {
-        let (sample, start) = (moment.sample(&linear.upper), moment.forgetful());
-        let step = |state: ControllerState<12, 2, E>| {
-            std::hint::black_box(law.step(&mut { state }, &sample));
+        let sample = moment.sample(&linear.upper);
+        let timed = |_| {
+            let mut state = moment.forgetful();
+            watch.time(|| {
+                std::hint::black_box(law.step(&mut state, &sample));
+            })
         };
-        (0..3).map(|_| watch.time(|| step(start))).fold(f64::INFINITY, f64::min)
+        (0..3).map(timed).fold(f64::INFINITY, f64::min)
     });
     median(times.collect())
 }

@@ -3,17 +3,24 @@
 use nalgebra::SVector;
 
 use crate::Precision;
-use crate::dense::{dot, subtract_scaled};
+use crate::dense::{combination, dot, subtract_scaled};
 
 /// Share of a vector's square that must be left after removing the active normals, so that removing them again changes nothing but
-/// rounding.
+/// rounding. With 0.01 a step takes a tenth less time, and degenerate programs come out as if they had no solution.
 const LEFT: f64 = 0.25;
 
-/// Active constraint normals v_j (unit vectors) as Q R, Q with orthonormal columns and R upper triangular,
+/// Active constraint normals v_j (unit vectors) as Q R, Q with orthonormal columns and R upper triangular, of which the inverse is kept,
 /// with their multipliers: of `unknowns` ≤ N elements and as many at most, no allocation. Elements beyond the unknowns are zero: loops
 /// over all N, whose number the compiler knows, take less time than those over fewer.
-#[derive(Clone, Debug)]
+///
+/// A search may begin with the columns that the last one left. Those that it takes over are what it would get by adding their constraints
+/// one by one, bit for bit, so that a result does not depend on what was kept.
+#[derive(Clone, Copy)]
 pub(crate) struct ActiveSet<const N: usize, T> {
+    /// Which normals the columns are of: [`Constraints::identity`](crate::dual_search::Constraints::identity).
+    identity: u64,
+    /// So many first columns come from adding their constraints one by one, with none removed between them.
+    pristine: usize,
     /// Constraint index of each column.
     constraints: [usize; N],
     /// b of each constraint v·z ≤ b.
@@ -23,9 +30,16 @@ pub(crate) struct ActiveSet<const N: usize, T> {
     multipliers: [T; N],
     count: usize,
     unknowns: usize,
-    /// Columns of Q, and of R.
+    /// Columns of Q, and of R⁻¹.
     q: [SVector<T, N>; N],
-    r: [SVector<T, N>; N],
+    r_inverse: [SVector<T, N>; N],
+}
+
+/// Where a search begins.
+pub(crate) enum Start<const N: usize, T> {
+    /// Zero, which depends on no normal.
+    Origin,
+    At(SVector<T, N>),
 }
 
 /// A normal against the active ones: v = Q Qᵀv + rest.
@@ -38,18 +52,46 @@ pub(crate) struct Split<const N: usize, T> {
     pub(crate) rest_squared: T,
 }
 
+impl<const N: usize, T: Precision> Split<N, T> {
+    pub(crate) fn of_nothing() -> Self {
+        Self { within: SVector::zeros(), rest: SVector::zeros(), rest_squared: T::zero() }
+    }
+}
+
 impl<const N: usize, T: Precision> ActiveSet<N, T> {
-    pub(crate) fn empty(unknowns: usize) -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
+            identity: 0,
+            pristine: 0,
             constraints: [0; N],
             bounds: SVector::zeros(),
             met_at: SVector::zeros(),
             multipliers: [T::zero(); N],
             count: 0,
-            unknowns,
+            unknowns: 0,
             q: [SVector::zeros(); N],
-            r: [SVector::zeros(); N],
+            r_inverse: [SVector::zeros(); N],
         }
+    }
+
+    /// Empties the set for a search among normals of `unknowns` elements. Columns of the same normals can be [kept](Self::keep).
+    pub(crate) fn begin(&mut self, identity: u64, unknowns: usize) {
+        if (self.identity, self.unknowns) != (identity, unknowns) {
+            (self.identity, self.unknowns, self.pristine) = (identity, unknowns, 0);
+        }
+        self.count = 0;
+    }
+
+    /// Takes over the next column if it is that of `constraint`, with a multiplier of zero. [`ActiveSet::meet_bounds`] is left to do.
+    pub(crate) fn keep(&mut self, constraint: usize, bound: T) -> bool {
+        let next = self.count;
+        let is_kept = next < self.pristine && self.constraints[next] == constraint;
+        if is_kept {
+            self.bounds[next] = bound;
+            self.multipliers[next] = T::zero();
+            self.count += 1;
+        }
+        is_kept
     }
 
     pub(crate) fn constraints(&self) -> &[usize] {
@@ -65,30 +107,24 @@ impl<const N: usize, T: Precision> ActiveSet<N, T> {
         &self.multipliers[..self.count]
     }
 
-    /// Qᵀv, v − Q Qᵀv and ‖v − Q Qᵀv‖² by Gram and Schmidt's method: twice, which is enough (Kahan), unless the first time leaves so
-    /// much that its rounding is small beside it (Daniel, Gragg, Kaufman and Stewart 1976).
-    fn orthogonal_part(&self, vector: &SVector<T, N>) -> (SVector<T, N>, SVector<T, N>, T) {
-        let mut within = SVector::<T, N>::zeros();
-        let mut rest = *vector;
-        let whole_squared = dot(rest.as_slice(), rest.as_slice());
-        let mut rest_squared = whole_squared;
-        // Of nothing no part is taken away.
-        let times = if self.count == 0 || whole_squared == T::zero() { 0 } else { 2 };
-        for _ in 0..times {
-            let along = self.along(&rest);
-            within += along;
-            for (q_j, share) in self.q[..self.count].iter().zip(&along) {
-                subtract_scaled(rest.as_mut_slice(), q_j.as_slice(), *share);
-            }
-            rest_squared = dot(rest.as_slice(), rest.as_slice());
-            if rest_squared >= T::of(LEFT) * whole_squared {
-                break;
-            }
+    /// Splits a vector into what depends on the active normals and the rest, by Gram and Schmidt's method: twice, which is enough (Kahan),
+    /// unless the first time leaves so much that its rounding is small beside it (Daniel, Gragg, Kaufman and Stewart 1976).
+    fn split_vector(&self, vector: &SVector<T, N>, split: &mut Split<N, T>) {
+        let whole_squared = dot(vector.as_slice(), vector.as_slice());
+        split.within = self.along(vector);
+        split.rest = *vector;
+        self.take_away(&split.within, &mut split.rest);
+        split.rest_squared = dot(split.rest.as_slice(), split.rest.as_slice());
+        if split.rest_squared < T::of(LEFT) * whole_squared {
+            let again = self.along(&split.rest);
+            split.within += again;
+            self.take_away(&again, &mut split.rest);
+            split.rest_squared = dot(split.rest.as_slice(), split.rest.as_slice());
         }
-        (within, rest, rest_squared)
     }
 
     /// Qᵀ v.
+    #[inline]
     fn along(&self, vector: &SVector<T, N>) -> SVector<T, N> {
         let mut along = SVector::<T, N>::zeros();
         for (share, q_j) in along.iter_mut().zip(&self.q[..self.count]) {
@@ -97,70 +133,100 @@ impl<const N: usize, T: Precision> ActiveSet<N, T> {
         along
     }
 
-    /// Splits a normal into what depends on the active ones and the rest.
-    pub(crate) fn split(&self, normal: &SVector<T, N>) -> Split<N, T> {
-        let (within, mut rest, mut rest_squared) = self.orthogonal_part(normal);
-        if rest_squared <= T::DEPENDENT * T::DEPENDENT || self.is_full() {
-            rest.fill(T::zero());
-            rest_squared = T::zero();
+    /// v ← v − Q shares.
+    #[inline]
+    fn take_away(&self, shares: &SVector<T, N>, vector: &mut SVector<T, N>) {
+        for (q_j, share) in self.q[..self.count].iter().zip(shares) {
+            subtract_scaled(vector.as_mut_slice(), q_j.as_slice(), *share);
         }
-        Split { within, rest, rest_squared }
+    }
+
+    /// Splits a normal into what depends on the active ones and the rest.
+    pub(crate) fn split(&self, normal: &SVector<T, N>, split: &mut Split<N, T>) {
+        self.split_vector(normal, split);
+        if split.rest_squared <= T::DEPENDENT * T::DEPENDENT || self.is_full() {
+            split.rest.fill(T::zero());
+            split.rest_squared = T::zero();
+        }
     }
 
     /// r = R⁻¹ Qᵀ v: by how much the multipliers sink per unit of the multiplier of v.
     pub(crate) fn exchange(&self, split: &Split<N, T>) -> SVector<T, N> {
-        self.back_substituted(&split.within)
+        combination(&self.r_inverse[..self.count], split.within.as_slice())
     }
 
-    /// Adds a normal with its bound and multiplier. `false` when it depends on the active ones.
-    pub(crate) fn add(&mut self, constraint: usize, split: &Split<N, T>, bound: T, multiplier: T) -> bool {
+    /// Adds a normal of which the exchange is known, with its bound and multiplier, unless it depends on the active ones.
+    pub(crate) fn add(
+        &mut self,
+        constraint: usize,
+        split: &Split<N, T>,
+        exchange: &SVector<T, N>,
+        (bound, multiplier): (T, T),
+    ) {
         if split.rest_squared == T::zero() {
-            return false;
+            return;
         }
-        let length = split.rest_squared.sqrt();
-        self.q[self.count] = split.rest / length;
-        self.r[self.count] = split.within;
-        self.r[self.count][self.count] = length;
-        self.constraints[self.count] = constraint;
-        self.bounds[self.count] = bound;
-        self.multipliers[self.count] = multiplier;
+        let (added, before) = (self.count, ..self.count);
+        let inverse = T::one() / split.rest_squared.sqrt();
+        for (element, rest) in self.q[added].iter_mut().zip(&split.rest) {
+            *element = *rest * inverse;
+        }
+        // The inverse of [R, w; 0, ρ] is [R⁻¹, −R⁻¹w/ρ; 0, 1/ρ].
+        for (element, exchange) in self.r_inverse[added].iter_mut().zip(exchange) {
+            *element = -*exchange * inverse;
+        }
+        self.r_inverse[added][added] = inverse;
+        self.constraints[added] = constraint;
+        self.bounds[added] = bound;
+        self.met_at[added] =
+            (bound - dot(&split.within.as_slice()[before], &self.met_at.as_slice()[before])) * inverse;
+        self.multipliers[added] = multiplier;
+        if self.pristine >= added {
+            self.pristine = added + 1;
+        }
         self.count += 1;
-        self.meet_bounds(self.count - 1);
-        true
     }
 
-    /// Removes the constraint in column `column` and restores the triangle by Givens rotations.
+    /// Removes the constraint in column `column`. Of its row of R⁻¹, Givens rotations of the columns leave nothing but the last element, which
+    /// goes with the last column; the rows below it move up.
     pub(crate) fn remove(&mut self, column: usize) {
-        for j in column + 1..self.count {
-            self.r[j - 1] = self.r[j];
-            self.constraints[j - 1] = self.constraints[j];
-            self.bounds[j - 1] = self.bounds[j];
-            self.multipliers[j - 1] = self.multipliers[j];
-        }
-        self.count -= 1;
-        for j in column..self.count {
-            let (a, b) = (self.r[j][j], self.r[j][j + 1]);
-            // Not near zero: b was on the diagonal, where dependent normals do not come.
+        let count = self.count;
+        for j in column..count - 1 {
+            let (a, b) = (self.r_inverse[j][column], self.r_inverse[j + 1][column]);
+            // Not near zero: a was on the diagonal, or is the length before.
             let length = (a * a + b * b).sqrt();
-            let (cosine, sine) = (a / length, b / length);
-            for r_k in &mut self.r[j..self.count] {
-                let (upper, lower) = (r_k[j], r_k[j + 1]);
-                r_k[j] = cosine * upper + sine * lower;
-                r_k[j + 1] = cosine * lower - sine * upper;
+            let inverse = T::one() / length;
+            let turned = |(left, right): (T, T)| {
+                let (cosine, sine) = (b * inverse, -a * inverse);
+                (left * cosine + right * sine, right * cosine - left * sine)
+            };
+            let (before, after) = self.q.split_at_mut(j + 1);
+            for (left, right) in before[j].iter_mut().zip(&mut after[0]) {
+                (*left, *right) = turned((*left, *right));
             }
-            let (left, right) = (self.q[j], self.q[j + 1]);
-            self.q[j] = left * cosine + right * sine;
-            self.q[j + 1] = right * cosine - left * sine;
+            let (before, after) = self.r_inverse.split_at_mut(j + 1);
+            let (left, right) = (&mut before[j], &mut after[0]);
+            for row in 0..column {
+                (left[row], right[row]) = turned((left[row], right[row]));
+            }
+            right[column] = length;
+            for row in column + 1..j + 2 {
+                (left[row - 1], right[row]) = turned((left[row], right[row]));
+            }
         }
+        let later = column + 1..count;
+        self.constraints.copy_within(later.clone(), column);
+        self.bounds.as_mut_slice().copy_within(later.clone(), column);
+        self.multipliers.copy_within(later, column);
+        self.pristine = self.pristine.min(column);
+        self.count -= 1;
         self.meet_bounds(column);
     }
 
     /// R⁻ᵀ b from column `first` on.
-    fn meet_bounds(&mut self, first: usize) {
+    pub(crate) fn meet_bounds(&mut self, first: usize) {
         for i in first..self.count {
-            let of_those_before = &self.r[i];
-            let known = dot(&of_those_before.as_slice()[..i], &self.met_at.as_slice()[..i]);
-            self.met_at[i] = (self.bounds[i] - known) / of_those_before[i];
+            self.met_at[i] = dot(&self.r_inverse[i].as_slice()[..=i], &self.bounds.as_slice()[..=i]);
         }
     }
 
@@ -175,32 +241,32 @@ impl<const N: usize, T: Precision> ActiveSet<N, T> {
     /// last column with a negative one, if any: what has become active last is the first to be released.
     ///
     /// ```text
-    /// R u = Qᵀz − R⁻ᵀ b
+    /// u = R⁻¹ (Qᵀz − R⁻ᵀ b)
     /// ```
-    pub(crate) fn solve_multipliers(&mut self, z: &SVector<T, N>) -> Option<usize> {
-        let u = self.back_substituted(&(self.along(z) - self.met_at));
+    pub(crate) fn solve_multipliers(&mut self, z: &Start<N, T>) -> Option<usize> {
+        let u = match z {
+            Start::Origin => combination(&self.r_inverse[..self.count], (-self.met_at).as_slice()),
+            Start::At(z) => {
+                combination(&self.r_inverse[..self.count], (self.along(z) - self.met_at).as_slice())
+            }
+        };
         self.multipliers[..self.count].copy_from_slice(&u.as_slice()[..self.count]);
         self.multipliers().iter().rposition(|multiplier| *multiplier < T::zero())
     }
 
     /// The point nearest to z where Vᵀz = b: (I − Q Qᵀ) z + Q R⁻ᵀ b.
-    pub(crate) fn nearest(&self, z: &SVector<T, N>) -> SVector<T, N> {
-        let mut nearest = if self.is_full() { SVector::zeros() } else { self.orthogonal_part(z).1 };
+    pub(crate) fn nearest(&self, z: &Start<N, T>) -> SVector<T, N> {
+        let mut nearest = SVector::zeros();
+        if let Start::At(z) = z
+            && !self.is_full()
+        {
+            let mut split = Split::of_nothing();
+            self.split_vector(z, &mut split);
+            nearest = split.rest;
+        }
         for (q_j, met_at) in self.q[..self.count].iter().zip(&self.met_at) {
             subtract_scaled(nearest.as_mut_slice(), q_j.as_slice(), -*met_at);
         }
         nearest
-    }
-
-    /// R⁻¹ y on the active columns.
-    fn back_substituted(&self, y: &SVector<T, N>) -> SVector<T, N> {
-        let mut x = *y;
-        for i in (0..self.count).rev() {
-            let column = &self.r[i];
-            x[i] /= column[i];
-            let solved = x[i];
-            subtract_scaled(&mut x.as_mut_slice()[..i], &column.as_slice()[..i], solved);
-        }
-        x
     }
 }

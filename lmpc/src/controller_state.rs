@@ -3,20 +3,26 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
+use crate::kept_active_set::KeptActiveSet;
 use crate::relaxable::RelaxableWarmStart;
 use crate::{Precision, Sample, Solution, Status, Step};
 
 /// All that a [`Controller`](crate::Controller) of N states and P inputs remembers from one sample to the next: the
 /// last state, the last input, and the active set of its last solution, of up to W limits. A law without limits
 /// needs no room for them: W = 0.
+///
+/// With K > 0 it also keeps what a [`StabilizedMpc`](crate::StabilizedMpc) of up to K unknowns has factorised, about 16 K² bytes in double
+/// precision, so that the next sample need not do it again. That changes no result; it is neither compared nor saved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "T: Precision")]
-pub struct ControllerState<const N: usize, const P: usize, const W: usize = 0, T = f64> {
+pub struct ControllerState<const N: usize, const P: usize, const W: usize = 0, T = f64, const K: usize = 0> {
     measured: SVector<T, N>,
     /// v(k−1) = u(k−1) − u_r(k−1): the part of the applied input that feedback added.
     feedback: SVector<T, P>,
     input_reference: SVector<T, P>,
     pub(crate) warm_start: RelaxableWarmStart<W>,
+    #[serde(skip)]
+    pub(crate) kept: KeptActiveSet<K, T>,
 }
 
 impl<const N: usize, const P: usize, const W: usize, T: Precision> ControllerState<N, P, W, T> {
@@ -28,12 +34,23 @@ impl<const N: usize, const P: usize, const W: usize, T: Precision> ControllerSta
             feedback: applied - input_reference,
             input_reference,
             warm_start: RelaxableWarmStart::default(),
+            kept: KeptActiveSet::default(),
         }
     }
 
     /// A controller that takes over a plant at rest at x = 0 under no input.
     pub fn at_rest() -> Self {
         Self::new(SVector::zeros(), SVector::zeros(), SVector::zeros())
+    }
+}
+
+impl<const N: usize, const P: usize, const W: usize, T: Precision, const K: usize>
+    ControllerState<N, P, W, T, K>
+{
+    /// The same memory with room for the factors of programs of up to `UNKNOWNS` unknowns; zero for none.
+    pub fn keeping<const UNKNOWNS: usize>(self) -> ControllerState<N, P, W, T, UNKNOWNS> {
+        let Self { measured, feedback, input_reference, warm_start, .. } = self;
+        ControllerState { measured, feedback, input_reference, warm_start, kept: KeptActiveSet::default() }
     }
 
     /// Reports the input that was applied in truth, so that saturation further down cannot wind the
@@ -69,18 +86,15 @@ impl<const N: usize, const P: usize, const W: usize, T: Precision> ControllerSta
         }
     }
 
-    /// The same memory in other coordinates of the state and of the input.
-    pub fn map(
-        &self,
+    /// Puts the memory into other coordinates of the state and of the input.
+    pub fn turn(
+        &mut self,
         state: impl Fn(&SVector<T, N>) -> SVector<T, N>,
         input: impl Fn(&SVector<T, P>) -> SVector<T, P>,
-    ) -> Self {
-        Self {
-            measured: state(&self.measured),
-            feedback: input(&self.feedback),
-            input_reference: input(&self.input_reference),
-            warm_start: self.warm_start,
-        }
+    ) {
+        self.measured = state(&self.measured);
+        self.feedback = input(&self.feedback);
+        self.input_reference = input(&self.input_reference);
     }
 
     /// v(k−1), the part of the applied input that feedback added.

@@ -1,5 +1,7 @@
 //! Inner loops over slices of equal length.
 
+use nalgebra::SVector;
+
 use crate::Precision;
 
 /// Σ aᵢ bᵢ in four partial sums, which the compiler turns into vector instructions.
@@ -30,6 +32,27 @@ pub(crate) fn subtract_scaled<T: Precision>(a: &mut [T], b: &[T], t: T) {
     }
 }
 
+/// Σ tⱼ bⱼ, a few elements at a time, which stay in registers through the sum.
+#[inline]
+pub(crate) fn combination<const N: usize, T: Precision>(b: &[SVector<T, N>], t: &[T]) -> SVector<T, N> {
+    const FEW: usize = 8;
+    let mut sum = SVector::<T, N>::zeros();
+    let whole = N / FEW * FEW;
+    for first in (0..whole).step_by(FEW) {
+        let mut few = [T::zero(); FEW];
+        for (b_j, t_j) in b.iter().zip(t) {
+            for (x, y) in few.iter_mut().zip(&b_j.as_slice()[first..first + FEW]) {
+                *x += *t_j * *y;
+            }
+        }
+        sum.as_mut_slice()[first..first + FEW].copy_from_slice(&few);
+    }
+    for element in whole..N {
+        sum[element] = b.iter().zip(t).map(|(b_j, t_j)| *t_j * b_j[element]).sum();
+    }
+    sum
+}
+
 /// The least of some numbers, infinity of none; NaN counts as none.
 #[inline]
 pub(crate) fn least<T: Precision>(values: &[T]) -> T {
@@ -46,8 +69,9 @@ pub(crate) fn least<T: Precision>(values: &[T]) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::{dot, dot_of_magnitudes, least, subtract_scaled};
+    use super::{combination, dot, dot_of_magnitudes, least, subtract_scaled};
     use alloc::vec::Vec;
+    use nalgebra::SVector;
 
     /// Whole numbers, whose sums are exact in any order: Σ i (i + 1) = n (n + 1)(n + 2) / 3.
     #[test]
@@ -71,6 +95,15 @@ mod tests {
             values[place] = -1.0;
             assert_eq!(least(&values), -1.0, "at {place}");
         }
+    }
+
+    #[test]
+    fn a_combination_is_summed_up_element_by_element() {
+        let columns: [SVector<f64, 11>; 3] =
+            core::array::from_fn(|column| SVector::from_fn(|row, _| (row * (column + 1)) as f64));
+        // row (2 · 1 − 3 · 2)
+        let expected = SVector::<f64, 11>::from_fn(|row, _| -4.0 * row as f64);
+        assert_eq!(combination(&columns[..2], &[2.0, -3.0, 7.0]), expected);
     }
 
     #[test]

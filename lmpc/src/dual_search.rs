@@ -2,7 +2,7 @@
 
 use nalgebra::SVector;
 
-use crate::active_set::ActiveSet;
+use crate::active_set::{ActiveSet, Split, Start};
 use crate::dense::{dot, subtract_scaled};
 use crate::{Outcome, Precision, WarmStart};
 
@@ -10,6 +10,9 @@ use crate::{Outcome, Precision, WarmStart};
 pub(crate) trait Constraints<const N: usize, T> {
     /// Number of unknowns; elements beyond are zero.
     fn unknowns(&self) -> usize;
+
+    /// A number that constraints with other normals do not have. Their bounds may differ.
+    fn identity(&self) -> u64;
 
     /// How many constraints there are.
     fn count(&self) -> usize;
@@ -27,23 +30,32 @@ pub(crate) trait Constraints<const N: usize, T> {
 /// One run of the dual method of Goldfarb and Idnani (1983): the point nearest to z₀ that keeps all constraints.
 pub(crate) struct DualSearch<'a, const N: usize, T, C: Constraints<N, T>> {
     constraints: &'a mut C,
-    z_0: SVector<T, N>,
+    z_0: Start<N, T>,
     pub(crate) z: SVector<T, N>,
-    pub(crate) active: ActiveSet<N, T>,
+    pub(crate) active: &'a mut ActiveSet<N, T>,
     pub(crate) iterations: u32,
+    /// The normal that was looked at last.
+    split: Split<N, T>,
 }
 
 impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T, C> {
     /// A search that begins at the unconstrained optimum, or with the constraints that were active before as far as they
-    /// still push instead of pull.
+    /// still push instead of pull. `active` may be that of an earlier search.
     pub(crate) fn new<const W: usize>(
         constraints: &'a mut C,
-        z_0: SVector<T, N>,
+        z_0: Start<N, T>,
+        active: &'a mut ActiveSet<N, T>,
         warm_start: &WarmStart<W>,
     ) -> Self {
-        let active = ActiveSet::empty(constraints.unknowns());
-        let mut search = Self { constraints, z_0, z: z_0, active, iterations: 0 };
-        search.resume(warm_start);
+        active.begin(constraints.identity(), constraints.unknowns());
+        let z = match &z_0 {
+            Start::Origin => SVector::zeros(),
+            Start::At(z) => *z,
+        };
+        let mut search = Self { constraints, z_0, z, active, iterations: 0, split: Split::of_nothing() };
+        if !warm_start.is_empty() {
+            search.resume(warm_start);
+        }
         search
     }
 
@@ -53,12 +65,14 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
                 continue;
             }
             let bound = self.constraints.bound(constraint);
-            if bound.is_finite() {
+            if bound.is_finite() && !self.active.keep(constraint, bound) {
                 // A repeated constraint depends on itself and is not added again.
-                let split = self.active.split(&self.constraints.normal(constraint));
-                self.active.add(constraint, &split, bound, T::zero());
+                self.active.split(&self.constraints.normal(constraint), &mut self.split);
+                let exchange = self.active.exchange(&self.split);
+                self.active.add(constraint, &self.split, &exchange, (bound, T::zero()));
             }
         }
+        self.active.meet_bounds(0);
         while let Some(column) = self.active.solve_multipliers(&self.z_0) {
             self.active.remove(column);
         }
@@ -98,8 +112,9 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
                 return Err(Outcome::IterationLimit);
             }
             self.iterations += 1;
-            let split = self.active.split(&normal);
-            let sinking = self.active.exchange(&split);
+            self.active.split(&normal, &mut self.split);
+            let split = &self.split;
+            let sinking = self.active.exchange(split);
             // How far until the first active multiplier is used up, and until the constraint is met.
             let leaving = self.first_to_leave(&sinking);
             let until_met = if split.rest_squared > T::zero() {
@@ -119,7 +134,7 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
             match leaving {
                 Some((column, until)) if until < until_met => self.active.remove(column),
                 _ => {
-                    self.active.add(constraint, &split, bound, multiplier);
+                    self.active.add(constraint, split, &sinking, (bound, multiplier));
                     if self.active.is_full() {
                         // All of z follows from bounds, which may be much smaller than z₀ and its steps.
                         self.meet_active();
@@ -136,16 +151,14 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
         self.z = self.active.nearest(&self.z_0);
     }
 
+    /// The first active multiplier that is used up, and how far that is: the least u/r of all r > 0.
     fn first_to_leave(&self, sinking: &SVector<T, N>) -> Option<(usize, T)> {
-        let mut first: Option<(usize, T)> = None;
-        for (column, &multiplier) in self.active.multipliers().iter().enumerate() {
-            if sinking[column] > T::zero() {
-                let until = multiplier / sinking[column];
-                if first.is_none_or(|(_, earliest)| until < earliest) {
-                    first = Some((column, until));
-                }
+        let mut first: Option<(usize, T, T)> = None;
+        for (column, (&multiplier, &rate)) in self.active.multipliers().iter().zip(sinking).enumerate() {
+            if rate > T::zero() && first.is_none_or(|(_, least, of)| multiplier * of < least * rate) {
+                first = Some((column, multiplier, rate));
             }
         }
-        first
+        first.map(|(column, multiplier, rate)| (column, multiplier / rate))
     }
 }

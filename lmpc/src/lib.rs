@@ -46,7 +46,8 @@
 //!
 //! Every step of the design returns a [`DesignError`] when a precondition is violated. Of the const generics, N, P and Q
 //! are the numbers of states, inputs and outputs of the plant. E is the capacity of a program, at least its
-//! [number of unknowns](unknowns); W is the number of active limits that a [`ControllerState`] has room for.
+//! [number of unknowns](unknowns); W is the number of active limits that a [`ControllerState`] has room for,
+//! K the number of unknowns whose factors it [keeps](ControllerState::keeping) from one step to the next.
 #![doc = include_str!("equations.md")]
 #![no_std]
 #![forbid(unsafe_code)]
@@ -72,6 +73,7 @@ mod error;
 mod exponential;
 mod hessenberg_qr;
 mod kalman;
+mod kept_active_set;
 mod laguerre;
 mod laguerre_mpc;
 mod laguerre_walk;
@@ -102,6 +104,7 @@ mod step;
 mod unit_scaling;
 mod validate;
 mod weighting;
+mod worst_constraint;
 
 pub use augmented::Augmented;
 pub use capacity::unknowns;

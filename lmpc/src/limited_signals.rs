@@ -10,7 +10,9 @@ use crate::sparse_columns::SparseColumns;
 use crate::{DesignError, Precision, Sample, SignalLimit, StabilizedDesign, validate};
 
 /// Most components of a limited signal.
-const COMPONENTS: usize = 3;
+pub(crate) const COMPONENTS: usize = 3;
+/// Most directions of a limit.
+const DIRECTIONS: usize = u16::MAX as usize;
 /// Most values of signals on all samples together: what a step keeps on the stack.
 pub(crate) const SIGNALS: usize = 640;
 /// Samples that are looked at side by side.
@@ -39,7 +41,9 @@ pub(crate) struct LimitedSignals<T> {
     plan_of_component: [Range<usize>; COMPONENTS],
     /// m, which limit, and which of its samples that is, in the order of m.
     by_sample: Vec<(usize, usize, usize)>,
-    /// One over the length of each row in z and the slack, in the order of [`LimitedSignals::place`].
+    /// Limit, sample and direction of each row.
+    places: Vec<[u16; 3]>,
+    /// One over the length of each row in z and the slack, limit by limit, direction by direction, sample by sample.
     scales: Vec<T>,
 }
 
@@ -51,10 +55,11 @@ pub(crate) struct PlacedLimit<T> {
     /// Length of the longest direction.
     pub(crate) longest: T,
     pub(crate) relaxation: T,
-    /// The largest of its rows' [`LimitedSignals::scale`].
+    /// The largest and the smallest of [`PlacedLimit::scales`].
     pub(crate) largest_scale: T,
+    pub(crate) smallest_scale: T,
     pub(crate) samples: usize,
-    components: usize,
+    pub(crate) components: usize,
     /// Index of its first bound among [`Sample::upper`].
     first_bound: usize,
     /// Index of its first value among [`Sample::moved`].
@@ -76,6 +81,7 @@ impl<T: Precision> PlacedLimit<T> {
             longest: number(self.longest),
             relaxation: number(self.relaxation),
             largest_scale: number(self.largest_scale),
+            smallest_scale: number(self.smallest_scale),
             samples: self.samples,
             components: self.components,
             first_bound: self.first_bound,
@@ -98,10 +104,10 @@ impl<T: Precision> PlacedLimit<T> {
         &bounds[..bounds.len().min(self.directions.len())]
     }
 
-    /// The sample of the longest signal, and its |signal|². Several samples are looked at side by side.
+    /// The largest |signal|². Several samples are looked at side by side.
     #[inline]
-    pub(crate) fn longest_signal(&self, signals: &[T]) -> (usize, T) {
-        let mut longest = (0, T::zero());
+    pub(crate) fn largest_square(&self, signals: &[T]) -> T {
+        let mut largest = [T::zero(); BLOCK];
         for first in (0..self.samples).step_by(BLOCK) {
             let samples = BLOCK.min(self.samples - first);
             let mut squares = [T::zero(); BLOCK];
@@ -111,11 +117,23 @@ impl<T: Precision> PlacedLimit<T> {
                     *square += *value * *value;
                 }
             }
-            for (within, square) in squares.into_iter().enumerate() {
-                longest = if square > longest.1 { (first + within, square) } else { longest };
+            for (largest, square) in largest.iter_mut().zip(squares) {
+                *largest = if square > *largest { square } else { *largest };
             }
         }
-        longest
+        largest.into_iter().fold(T::zero(), |a, b| if b > a { b } else { a })
+    }
+
+    /// One over the length of the rows of a direction, sample by sample; `scales` being those of all limits.
+    #[inline]
+    pub(crate) fn scales<'a>(&self, side: usize, scales: &'a [T]) -> &'a [T] {
+        &scales[self.first_row + side * self.samples..][..self.samples]
+    }
+
+    /// The values of its first C components.
+    #[inline]
+    pub(crate) fn components<'a, const C: usize>(&self, signals: &'a [T]) -> [&'a [T]; C] {
+        core::array::from_fn(|component| &signals[self.first[component]..][..self.samples])
     }
 
     /// The components at a sample among all signals.
@@ -156,6 +174,8 @@ pub(crate) struct Place<'a, T> {
     pub(crate) limit: &'a PlacedLimit<T>,
     pub(crate) sample: usize,
     pub(crate) direction: usize,
+    /// One over the length of its normal in z and the slack.
+    pub(crate) scale: T,
 }
 
 /// χ(m) = Fᵐ \[x; η\] summed up: where the moves, and the states that they move, come from.
@@ -202,6 +222,7 @@ impl LimitedSignals<f64> {
             of_plan: SparseColumns::default(),
             plan_of_component: Default::default(),
             by_sample: Vec::new(),
+            places: Vec::new(),
             scales: Vec::new(),
         };
         let end = limits.iter().flat_map(|limit| &limit.samples).max().map_or(0, |last| last + 1);
@@ -215,7 +236,7 @@ impl LimitedSignals<f64> {
             validate::shape(
                 "directions of a limit",
                 &limit.directions,
-                (limit.directions.nrows(), components.min(COMPONENTS)),
+                (limit.directions.nrows().min(DIRECTIONS), components.min(COMPONENTS)),
             )?;
             signals.push(placed.add::<N, P, Q>(limit, &motion, coordinates, slack_unit, bounds));
             bounds += limit.directions.nrows();
@@ -263,8 +284,12 @@ impl LimitedSignals<f64> {
         state.add_block(0, components, N, |row, at| limit.state[(row, at)]);
         input.add_block(0, components, P, |row, at| limit.input[(row, at)]);
         let first_row = self.scales.len();
-        for signal in &signals {
-            for direction in limit.directions.row_iter() {
+        for sample in 0..signals.len() {
+            let row = |side| [self.limits.len(), sample, side].map(|index| index as u16);
+            self.places.extend((0..limit.directions.nrows()).map(row));
+        }
+        for direction in limit.directions.row_iter() {
+            for signal in &signals {
                 let along = direction * &signal.of_plan;
                 let give = limit.relaxation * slack_unit;
                 let length = libm::sqrt(along.norm_squared() + give * give);
@@ -276,6 +301,7 @@ impl LimitedSignals<f64> {
             longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
             relaxation: limit.relaxation,
             largest_scale: self.scales[first_row..].iter().copied().fold(0.0, f64::max),
+            smallest_scale: self.scales[first_row..].iter().copied().fold(f64::INFINITY, f64::min),
             samples: signals.len(),
             components,
             first_bound,
@@ -320,6 +346,7 @@ impl<T: Precision> LimitedSignals<T> {
             of_plan: self.of_plan.to_precision(),
             plan_of_component: self.plan_of_component.clone(),
             by_sample: self.by_sample.clone(),
+            places: self.places.clone(),
             scales: self.scales.iter().map(|scale| U::of(scale.to_f64())).collect(),
         }
     }
@@ -330,22 +357,19 @@ impl<T: Precision> LimitedSignals<T> {
 
     /// How many constraints there are.
     pub(crate) fn rows(&self) -> usize {
-        self.scales.len()
+        self.places.len()
     }
 
-    /// One over the length of a constraint's normal in z and the slack.
-    pub(crate) fn scale(&self, row: usize) -> T {
-        self.scales[row]
+    /// One over the length of each normal in z and the slack, for [`PlacedLimit::scales`].
+    pub(crate) fn scales(&self) -> &[T] {
+        &self.scales
     }
 
     /// Where a constraint is.
     pub(crate) fn place(&self, row: usize) -> Place<'_, T> {
-        let after = self.limits.partition_point(|limit| limit.first_row <= row);
-        // A limit that no plan moves has no row.
-        let limit = &self.limits[after - 1];
-        let within = row - limit.first_row;
-        let sides = limit.directions.len();
-        Place { limit, sample: within / sides, direction: within % sides }
+        let [limit, sample, direction] = self.places[row].map(usize::from);
+        let limit = &self.limits[limit];
+        Place { limit, sample, direction, scale: limit.scales(direction, &self.scales)[sample] }
     }
 
     /// How many values there are.

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-use crate::active_set::ActiveSet;
+use crate::active_set::{ActiveSet, Start};
 use crate::bounds::{Bounds, GivenBounds};
 use crate::dense::{dot, dot_of_magnitudes, subtract_scaled};
 use crate::dual_search::{Constraints, DualSearch};
@@ -197,18 +197,19 @@ impl<const N: usize, T: Precision> QuadraticProgram<N, T> {
         let magnitude = z_0.amax();
         if !(magnitude * magnitude).is_finite() || (0..self.constraints()).any(|row| h.bound(row).is_nan()) {
             *warm_start = WarmStart::default();
-            return self.solution(&z_0, &ActiveSet::empty(self.unknowns), Outcome::NotFinite, 0);
+            return self.solution(&z_0, &ActiveSet::empty(), Outcome::NotFinite, 0);
         }
 
         let mut rows = Rows { program: self, h };
-        let mut search = DualSearch::new(&mut rows, z_0, warm_start);
+        let mut active = ActiveSet::empty();
+        let mut search = DualSearch::new(&mut rows, Start::At(z_0), &mut active, warm_start);
         let outcome = search.run(iteration_limit);
         if outcome == Outcome::Optimal {
             warm_start.remember(search.active.constraints());
         } else {
             *warm_start = WarmStart::default();
         }
-        self.solution(&search.z, &search.active, outcome, search.iterations)
+        self.solution(&search.z, search.active, outcome, search.iterations)
     }
 
     /// −L⁻¹ f
@@ -257,6 +258,11 @@ struct Rows<'a, const N: usize, T, H> {
 impl<const N: usize, T: Precision, H: Bounds<T>> Constraints<N, T> for Rows<'_, N, T, H> {
     fn unknowns(&self) -> usize {
         self.program.unknowns
+    }
+
+    /// Each search begins with an empty set.
+    fn identity(&self) -> u64 {
+        0
     }
 
     fn count(&self) -> usize {

@@ -78,19 +78,37 @@ impl<T: Precision> SparseColumns<T> {
     /// sums ← sums + A x.
     pub(crate) fn add_product(&self, x: &[T], sums: &mut [T]) {
         for tile in &self.tiles {
+            if tile.columns.is_empty() {
+                continue;
+            }
             let product = product(&self.columns[tile.columns.clone()], x);
-            for (sum, product) in sums[tile.rows.clone()].iter_mut().zip(product) {
-                *sum += product;
+            let sums = &mut sums[tile.rows.clone()];
+            if let Some(sums) = sums.first_chunk_mut() {
+                add_whole(sums, &product);
+            } else {
+                for (sum, product) in sums.iter_mut().zip(&product) {
+                    *sum += *product;
+                }
             }
         }
     }
 
     /// A row of the block that is at `block`, told element by element.
     pub(crate) fn for_each_in_row(&self, block: Range<usize>, row: usize, mut tell: impl FnMut(usize, T)) {
-        let Some(tile) = self.tiles[block].iter().find(|tile| tile.rows.contains(&row)) else { return };
+        let tiles = &self.tiles[block];
+        let Some(first) = tiles.first() else { return };
+        let tile = &tiles[(row - first.rows.start) / ROWS];
         for column in &self.columns[tile.columns.clone()] {
             tell(column.source, column.values[row - tile.rows.start]);
         }
+    }
+}
+
+/// The sum of a whole tile, whose size the compiler knows.
+#[inline]
+fn add_whole<T: Precision>(sums: &mut [T; ROWS], product: &[T; ROWS]) {
+    for (sum, product) in sums.iter_mut().zip(product) {
+        *sum += *product;
     }
 }
 

@@ -1,15 +1,15 @@
 //! Stabilized Laguerre MPC under limits, at run time.
 
-use core::iter;
-
 use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::active_set::{ActiveSet, Start};
 use crate::controller_state::Decision;
 use crate::dense::{dot, least};
 use crate::dual_search::{Constraints, DualSearch};
 use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS, along};
 use crate::precision::converted;
+use crate::worst_constraint::Worst;
 use crate::{
     Controller, ControllerState, DesignError, Outcome, Precision, Sample, SignalLimit, StabilizedDesign,
     StateFeedback, Status, Step, WarmStart,
@@ -28,7 +28,7 @@ const ITERATIONS: u32 = 100;
 /// The first move of min V(x, η) + c σ² under D · signal ≤ upper + relaxation · σ. All limits share the slack σ and give way in
 /// proportion to their relaxations, so that every program has a solution. When the plan without limits keeps them, the
 /// step is that of the linear law; else an exact dual active-set method looks for what to add to this plan, warm-started from the last
-/// active set.
+/// active set. A [`ControllerState`] with K ≥ ΣN + 1 keeps the factors of that set, which saves half of such a step or more.
 ///
 /// ```text
 /// u(k+m)   = u_r(k) + v(k−1) + Σ_{i ≤ m} Δu(k+i)
@@ -46,6 +46,8 @@ pub struct StabilizedMpc<const N: usize, const P: usize, const Q: usize, const E
     signals: LimitedSignals<T>,
     /// 1/√c: the slack per element of z that stands for it.
     slack_unit: T,
+    /// A hash of the normals of all constraints: factors that were kept are of these if theirs is the same.
+    identity: u64,
 }
 
 impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedMpc<N, P, Q, E> {
@@ -87,13 +89,15 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
         let coordinates = PlanCoordinates { unlimited, by_z };
 
         let slack_unit = 1.0 / libm::sqrt(slack_cost);
-        Ok(Self {
+        let controller = Self {
             unconstrained: StateFeedback::new(design.gain())?,
             unknowns: terms + 1,
             first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
             signals: LimitedSignals::new::<N, P, Q>(design, limits, &coordinates, slack_unit)?,
             slack_unit,
-        })
+            identity: 0,
+        };
+        Ok(controller.identified())
     }
 }
 
@@ -102,13 +106,26 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
 {
     /// The same controller in another precision.
     pub fn to_precision<U: Precision>(&self) -> StabilizedMpc<N, P, Q, E, U> {
-        StabilizedMpc {
+        let controller = StabilizedMpc {
             unconstrained: self.unconstrained.to_precision(),
             unknowns: self.unknowns,
             first_move: converted(&self.first_move),
             signals: self.signals.to_precision(),
             slack_unit: U::of(self.slack_unit.to_f64()),
+            identity: 0,
+        };
+        controller.identified()
+    }
+
+    /// With the hash of all normals (FNV-1a, number by number).
+    fn identified(self) -> Self {
+        let mut identity = 0xcbf2_9ce4_8422_2325_u64;
+        for constraint in 0..self.signals.rows() {
+            for element in &self.normal::<E>(constraint) {
+                identity = (identity ^ element.to_f64().to_bits()).wrapping_mul(0x0100_0000_01b3);
+            }
         }
+        Self { identity, ..self }
     }
 
     /// The law without limits.
@@ -128,14 +145,22 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
     }
 
     /// σ that an element of z stands for.
-    fn slack_of(&self, z: &SVector<T, E>) -> T {
+    fn slack_of<const D: usize>(&self, z: &SVector<T, D>) -> T {
         z[self.unknowns - 1] * self.slack_unit
     }
 
+    /// The unit normal of a constraint, with room for D ≥ n elements.
+    fn normal<const D: usize>(&self, constraint: usize) -> SVector<T, D> {
+        let place = self.signals.place(constraint);
+        let mut normal: SVector<T, D> = self.signals.normal(&place);
+        normal[self.unknowns - 1] = -place.limit.relaxation * self.slack_unit;
+        normal * place.scale
+    }
+
     /// What limits make of the plan without them, with room for S signals; `None` when it keeps them.
-    fn limited<const W: usize, const S: usize>(
+    fn limited<const W: usize, const K: usize, const S: usize>(
         &self,
-        state: &mut ControllerState<N, P, W, T>,
+        state: &mut ControllerState<N, P, W, T, K>,
         sample: &Sample<'_, N, P, Q, T>,
     ) -> Option<Decision<P, T>> {
         let mut program = self.program::<S>(sample, &(sample.input_reference + state.feedback()));
@@ -146,28 +171,16 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
         if warm_start.is_empty() && program.worst(&program.unlimited, T::zero(), &[]).is_none() {
             return None;
         }
-        let mut search = DualSearch::new(&mut program, SVector::zeros(), warm_start);
-        let outcome = search.run(ITERATIONS);
-        if outcome == Outcome::Optimal {
-            warm_start.remember(search.active.constraints());
-            if warm_start.is_empty() {
-                return None;
-            }
+        let found = if self.unknowns <= K {
+            program.search(&mut state.kept.0, warm_start)
         } else {
-            *warm_start = WarmStart::default();
-        }
+            program.search(&mut ActiveSet::<E, T>::empty(), warm_start)
+        }?;
         // Δu = −K [Δx; y − r] + L(0)ᵀ L⁻ᵀ z
-        let increment = self.first_move * search.z
+        let increment = found.first_move
             - self.unconstrained.state_gain() * sample.increment
             - self.unconstrained.output_gain() * sample.error;
-        let status = match outcome {
-            Outcome::Optimal if self.slack_of(&search.z) > T::of(RELAXED) => Status::Relaxed,
-            Outcome::Optimal => Status::Optimal,
-            // The slack meets all limits; in floating point they may come out as if not.
-            Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
-        };
-        let active = search.active.constraints().len();
-        Some(Decision::program(state.feedback() + increment, status, search.iterations, active))
+        Some(Decision::program(state.feedback() + increment, found.status, found.iterations, found.active))
     }
 
     /// The program of one sample.
@@ -177,8 +190,11 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
         input: &SVector<T, P>,
     ) -> Program<'a, N, P, Q, E, S, T> {
         let limits = self.signals.limits();
-        let least_of =
-            |index: usize| limits.get(index).map_or(-T::INFINITY, |limit| least(limit.bounds(sample.upper)));
+        let least_of = |index: usize| match limits.get(index) {
+            // Those of one component are looked at without it.
+            Some(limit) if limit.components > 1 => least(limit.bounds(sample.upper)),
+            _ => -T::INFINITY,
+        };
         Program {
             controller: self,
             upper: sample.upper,
@@ -187,6 +203,14 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
             signals: [T::zero(); S],
         }
     }
+}
+
+/// What a search has found to add to the plan without limits.
+struct Found<const P: usize, T> {
+    first_move: SVector<T, P>,
+    status: Status,
+    iterations: u32,
+    active: usize,
 }
 
 /// The limits of one sample, as constraints of z, with room for S signals.
@@ -206,74 +230,77 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
 {
     /// Whether its numbers can be calculated with.
     fn is_finite(&self) -> bool {
-        dot(&self.unlimited, &self.unlimited).is_finite() && self.upper.iter().all(|upper| !upper.is_nan())
+        let signals = &self.unlimited[..self.controller.signals.count()];
+        dot(signals, signals).is_finite() && self.upper.iter().all(|upper| !upper.is_nan())
+    }
+
+    /// Looks for the plan that keeps the limits, beginning with those in `warm_start`; `None` if it is the one without limits.
+    fn search<const W: usize, const D: usize>(
+        &mut self,
+        active: &mut ActiveSet<D, T>,
+        warm_start: &mut WarmStart<W>,
+    ) -> Option<Found<P, T>> {
+        let controller = self.controller;
+        let mut search = DualSearch::new(self, Start::Origin, active, warm_start);
+        let outcome = search.run(ITERATIONS);
+        if outcome == Outcome::Optimal {
+            warm_start.remember(search.active.constraints());
+            if warm_start.is_empty() {
+                return None;
+            }
+        } else {
+            *warm_start = WarmStart::default();
+        }
+        let mut first_move = SVector::<T, P>::zeros();
+        for (of_element, element) in controller.first_move.column_iter().zip(&search.z) {
+            first_move += of_element * *element;
+        }
+        let status = match outcome {
+            Outcome::Optimal if controller.slack_of(&search.z) > T::of(RELAXED) => Status::Relaxed,
+            Outcome::Optimal => Status::Optimal,
+            // The slack meets all limits; in floating point they may come out as if not.
+            Outcome::Infeasible | Outcome::IterationLimit | Outcome::NotFinite => Status::IterationLimit,
+        };
+        let active = search.active.constraints().len();
+        Some(Found { first_move, status, iterations: search.iterations, active })
     }
 
     /// The constraint that some signals violate most under a slack σ, by more than rounding, among those that are not active.
     fn worst(&self, signals: &[T; S], slack: T, active: &[usize]) -> Option<usize> {
         let placed = &self.controller.signals;
-        let (mut worst, mut most) = (None, T::zero());
+        let mut worst = Worst { scales: placed.scales(), active, constraint: None, room: T::zero() };
         for (index, limit) in placed.limits().iter().enumerate() {
-            let give = limit.relaxation * slack;
-            let least_bound = self.least.get(index).map_or(-T::INFINITY, |bound| *bound + give);
-            // Up to this length no signal breaks the limit by more than rounding, and more than the worst so far:
-            // |direction · signal| ≤ |direction| |signal|.
-            let kept = |most: T| {
-                let room = (least_bound * (T::one() + T::LIMIT) - most / limit.largest_scale) / limit.longest;
-                if room > T::zero() { room * room } else { -T::INFINITY }
-            };
-            let mut squared_room = kept(most);
-            // Most limits end here. The longest signal of the others is likely to leave the rest nothing to look at.
-            let (longest, square) = limit.longest_signal(signals);
-            if square <= squared_room {
-                continue;
-            }
-            for sample in iter::once(longest).chain((0..limit.samples).filter(|sample| *sample != longest)) {
-                let signal = limit.at(sample, signals);
-                if along(&signal, &signal) <= squared_room {
-                    continue;
-                }
-                // What is not bounded is not violated.
-                for (side, (direction, bound)) in
-                    limit.directions.iter().zip(limit.bounds(self.upper)).enumerate()
-                {
-                    let (value, upper) = (along(direction, &signal), *bound + give);
-                    if value <= upper {
-                        continue;
-                    }
-                    let constraint = limit.row(sample, side);
-                    let scale = placed.scale(constraint);
-                    let room = (upper - value) * scale;
-                    let size: T = signal.iter().map(|component| component.abs()).sum();
-                    let rounding = T::LIMIT * (upper.abs() + size) * scale;
-                    if room < most && room < -rounding && !active.contains(&constraint) {
-                        (worst, most) = (Some(constraint), room);
-                        squared_room = kept(most);
-                    }
-                }
-            }
+            let least_bound = self.least.get(index).copied().unwrap_or(-T::INFINITY);
+            worst.look_at(limit, signals, (limit.bounds(self.upper), least_bound), limit.relaxation * slack);
         }
-        worst
+        worst.constraint
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T: Precision>
-    Constraints<E, T> for Program<'_, N, P, Q, E, S, T>
+impl<
+    const N: usize,
+    const P: usize,
+    const Q: usize,
+    const E: usize,
+    const S: usize,
+    const D: usize,
+    T: Precision,
+> Constraints<D, T> for Program<'_, N, P, Q, E, S, T>
 {
     fn unknowns(&self) -> usize {
         self.controller.unknowns
+    }
+
+    fn identity(&self) -> u64 {
+        self.controller.identity
     }
 
     fn count(&self) -> usize {
         self.controller.signals.rows()
     }
 
-    fn normal(&self, constraint: usize) -> SVector<T, E> {
-        let controller = self.controller;
-        let place = controller.signals.place(constraint);
-        let mut normal: SVector<T, E> = controller.signals.normal(&place);
-        normal[controller.unknowns - 1] = -place.limit.relaxation * controller.slack_unit;
-        normal * controller.signals.scale(constraint)
+    fn normal(&self, constraint: usize) -> SVector<T, D> {
+        self.controller.normal(constraint)
     }
 
     fn bound(&self, constraint: usize) -> T {
@@ -282,24 +309,35 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
         let unlimited =
             along(&place.limit.directions[place.direction], &place.limit.at(place.sample, &self.unlimited));
         let upper = place.limit.bounds(self.upper).get(place.direction).copied().unwrap_or(T::INFINITY);
-        (upper - unlimited) * signals.scale(constraint)
+        (upper - unlimited) * place.scale
     }
 
-    fn most_violated(&mut self, z: &SVector<T, E>, active: &[usize]) -> Option<usize> {
+    fn most_violated(&mut self, z: &SVector<T, D>, active: &[usize]) -> Option<usize> {
         let controller = self.controller;
         controller.signals.set_at(&self.unlimited, z.as_slice(), &mut self.signals);
         self.worst(&self.signals, controller.slack_of(z), active)
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize, T: Precision>
-    Controller<N, P, Q, W, T> for StabilizedMpc<N, P, Q, E, T>
+impl<
+    const N: usize,
+    const P: usize,
+    const Q: usize,
+    const E: usize,
+    const W: usize,
+    T: Precision,
+    const K: usize,
+> Controller<N, P, Q, W, T, K> for StabilizedMpc<N, P, Q, E, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
+    fn step(
+        &self,
+        state: &mut ControllerState<N, P, W, T, K>,
+        sample: &Sample<'_, N, P, Q, T>,
+    ) -> Step<P, T> {
         let decision = if self.signals.count() <= FEW_SIGNALS {
-            self.limited::<W, FEW_SIGNALS>(state, sample)
+            self.limited::<W, K, FEW_SIGNALS>(state, sample)
         } else {
-            self.limited::<W, SIGNALS>(state, sample)
+            self.limited::<W, K, SIGNALS>(state, sample)
         };
         match decision {
             Some(decision) => state.take(sample, &decision),

@@ -63,10 +63,14 @@ impl<const N: usize, const P: usize, const Q: usize, T: Precision> StateFeedback
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const W: usize, T: Precision> Controller<N, P, Q, W, T>
-    for StateFeedback<N, P, Q, T>
+impl<const N: usize, const P: usize, const Q: usize, const W: usize, T: Precision, const K: usize>
+    Controller<N, P, Q, W, T, K> for StateFeedback<N, P, Q, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
+    fn step(
+        &self,
+        state: &mut ControllerState<N, P, W, T, K>,
+        sample: &Sample<'_, N, P, Q, T>,
+    ) -> Step<P, T> {
         let integral = -(self.output_gain * sample.error);
         let feedback = state.feedback() - self.state_gain * sample.increment + integral;
         state.warm_start = RelaxableWarmStart::default();

@@ -101,10 +101,21 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
     }
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const W: usize, T: Precision>
-    Controller<N, P, Q, W, T> for StateSpaceMpc<N, P, Q, E, T>
+impl<
+    const N: usize,
+    const P: usize,
+    const Q: usize,
+    const E: usize,
+    const W: usize,
+    T: Precision,
+    const K: usize,
+> Controller<N, P, Q, W, T, K> for StateSpaceMpc<N, P, Q, E, T>
 {
-    fn step(&self, state: &mut ControllerState<N, P, W, T>, sample: &Sample<'_, N, P, Q, T>) -> Step<P, T> {
+    fn step(
+        &self,
+        state: &mut ControllerState<N, P, W, T, K>,
+        sample: &Sample<'_, N, P, Q, T>,
+    ) -> Step<P, T> {
         let feedback = state.feedback();
         let driving = feedback + sample.disturbance;
         let input = sample.input_reference + feedback;

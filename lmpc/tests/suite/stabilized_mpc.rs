@@ -122,6 +122,27 @@ proptest! {
             start = after(&design, &start, step.input.x);
         }
     }
+
+    /// What a state keeps from sample to sample changes no bit beside a state that keeps nothing: not after it was saved, which loses it,
+    /// and not when other laws step with it in between.
+    #[test]
+    fn kept_factors_change_no_bit(case in case(), goal in -5.0..5.0, upper in prop::array::uniform4(0.3..1.0)) {
+        let design = case.design(1);
+        let laws = [1.0, 0.2].map(|relaxation| Law::new(&design, &limits(0..25, relaxation), SLACK_COST).unwrap());
+        let mut start = at_rest(goal);
+        let mut forgetting = state(&start);
+        let mut keeping = forgetting.keeping::<E>();
+        for at in 0..60 {
+            if at % 7 == 6 {
+                keeping = serde_json::from_str(&serde_json::to_string(&keeping).unwrap()).unwrap();
+            }
+            let law = &laws[usize::from(at % 5 == 4)];
+            let step = law.step(&mut keeping, &sample(&start, &upper));
+            prop_assert_eq!(step, law.step(&mut forgetting, &sample(&start, &upper)));
+            prop_assert_eq!(keeping.keeping(), forgetting);
+            start = after(&design, &start, step.input.x);
+        }
+    }
 }
 
 proptest! {

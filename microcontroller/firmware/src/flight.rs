@@ -75,16 +75,16 @@ impl<const N: usize, const P: usize, const E: usize> Loop<N, P, E> {
             largest: 0.0,
         };
         let mut left = self.moments;
-        let mut state = ControllerState::<N, P, E, f32>::at_rest();
+        let mut state = ControllerState::<N, P, E, f32>::at_rest().keeping::<E>();
         for _ in 0..count {
             let moment: Moment<N, P> = read(&mut left).map_err(|_| "no moment")?;
             if moment.begins {
-                state = ControllerState::at_rest();
+                state = ControllerState::at_rest().keeping();
             }
             let sample = moment.sample(&self.recorded.upper);
-            let (_, stack_bytes) = stack::depth_of(|| {
-                core::hint::black_box(self.recorded.law.step(&mut state.clone(), &sample))
-            });
+            let mut tried = state;
+            let (_, stack_bytes) =
+                stack::depth_of(|| core::hint::black_box(self.recorded.law.step(&mut tried, &sample)));
             let (step, instructions) = counter.of(|| self.recorded.law.step(&mut state, &sample));
             // Both go on from the same input.
             state.apply(&moment.applied);

@@ -9,7 +9,7 @@ use crate::control::governor::{Governor, integral_rate};
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
-use crate::design::capacities::ALTITUDE_MANY;
+use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY};
 use crate::design::position_limits::{closing_share, horizon_m};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
@@ -22,7 +22,7 @@ const BRAKING_SHARE: f64 = 0.25;
 /// State of the altitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AltitudeController {
-    controller: ControllerState<3, 1, ALTITUDE_MANY>,
+    controller: ControllerState<3, 1, ALTITUDE_MANY, f64, ALTITUDE_FEW>,
     observed: ObservedMotion<3, 1>,
     reference: ReferenceMotion<1>,
 }
@@ -31,7 +31,8 @@ impl AltitudeController {
     /// Takes over a vehicle at height z, m, as if it had been at rest there: its whole velocity then
     /// counts as motion to be explained, and is damped from the first sample on.
     pub fn new(z_m: f64) -> Self {
-        let start = ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros());
+        let start =
+            ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros()).keeping();
         Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
@@ -118,7 +119,7 @@ impl AltitudeController {
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector1<f64>) -> Vector1<f64>) {
         let applied = term(&self.controller.applied());
         let before = self.controller.measured();
-        self.controller = self.controller.map(
+        self.controller.turn(
             |state| Vector3::new(state.x, state.y, term(&Vector1::new(state.z)).x),
             Vector1::clone_owned,
         );

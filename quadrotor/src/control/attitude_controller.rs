@@ -12,7 +12,7 @@ use crate::control::attitude_reference::AttitudeReference;
 use crate::control::spin::Spin;
 use crate::design::attitude_design::{AXIS_STATES, AttitudeDesign};
 use crate::design::attitude_limits::RotorRoom;
-use crate::design::capacities::{LEAN_MANY, TURN_MANY};
+use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
 use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration};
 
@@ -63,9 +63,9 @@ const HELD_TURN_SHARE: f64 = 0.8;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AttitudeController {
     /// Of roll and pitch.
-    lean: ControllerState<{ 2 * AXIS_STATES }, 2, LEAN_MANY>,
+    lean: ControllerState<{ 2 * AXIS_STATES }, 2, LEAN_MANY, f64, LEAN_FEW>,
     /// Of yaw.
-    turn: ControllerState<AXIS_STATES, 1, TURN_MANY>,
+    turn: ControllerState<AXIS_STATES, 1, TURN_MANY, f64, TURN_FEW>,
     attitude: UnitQuaternion<f64>,
     /// Deviation from the reference at the last sample.
     deviation: Deviation,
@@ -160,8 +160,8 @@ impl AttitudeController {
     /// from the first sample on.
     pub fn new(attitude: &UnitQuaternion<f64>) -> Self {
         Self {
-            lean: ControllerState::at_rest(),
-            turn: ControllerState::at_rest(),
+            lean: ControllerState::at_rest().keeping(),
+            turn: ControllerState::at_rest().keeping(),
             attitude: *attitude,
             deviation: Deviation::default(),
             integral_rad_s2: Vector3::zeros(),
@@ -283,9 +283,10 @@ impl AttitudeController {
         let applied = self.applied_rad_s2();
         let reference = joined(&self.lean.input_reference(), &self.turn.input_reference());
         let reference = if is_incremental { Vector3::zeros() } else { reference };
-        self.lean = ControllerState::new(self.lean.measured(), applied.xy(), reference.xy());
+        self.lean = ControllerState::new(self.lean.measured(), applied.xy(), reference.xy()).keeping();
         self.turn =
-            ControllerState::new(self.turn.measured(), Vector1::new(applied.z), Vector1::new(reference.z));
+            ControllerState::new(self.turn.measured(), Vector1::new(applied.z), Vector1::new(reference.z))
+                .keeping();
         self.integral_rad_s2 = Vector3::zeros();
     }
 

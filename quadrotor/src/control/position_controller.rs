@@ -8,7 +8,7 @@ use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::HorizontalMotion;
-use crate::design::capacities::POSITION_MANY;
+use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
     AXIS_STATES, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
 };
@@ -29,7 +29,7 @@ const ASKED: [usize; 8] = [5, 10, 15, 20, 30, 45, 75, 110];
 /// turns the acceleration into a direction of the thrust.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionController {
-    controller: ControllerState<POSITION_STATES, 2, POSITION_MANY>,
+    controller: ControllerState<POSITION_STATES, 2, POSITION_MANY, f64, POSITION_FEW>,
     observed: ObservedMotion<POSITION_STATES, 2>,
     reference: ReferenceMotion<2>,
 }
@@ -39,7 +39,7 @@ impl PositionController {
     pub fn new(position_m: Vector2<f64>) -> Self {
         let zero = Vector2::zeros();
         let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
-        let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros());
+        let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros()).keeping();
         Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
     }
 
@@ -122,10 +122,10 @@ impl PositionController {
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
-        let mut along = self.controller.map(|state| turn.state(state), |input| turn.vector(input));
-        let mut step = design.position.law.step(&mut along, &sample);
+        self.controller.turn(|state| turn.state(state), |input| turn.vector(input));
+        let mut step = design.position.law.step(&mut self.controller, &sample);
         let back = turn.inverse();
-        self.controller = along.map(|state| back.state(state), |input| back.vector(input));
+        self.controller.turn(|state| back.state(state), |input| back.vector(input));
         step.input = back.vector(&step.input);
         self.reference = *reference;
         let applied = step.input.cap_magnitude(present_m_s2);
@@ -152,7 +152,7 @@ impl PositionController {
             }))
         };
         let before = self.controller.measured();
-        self.controller = self.controller.map(measured, Vector2::clone_owned);
+        self.controller.turn(measured, Vector2::clone_owned);
         self.controller.apply(&applied);
         self.observed.believe(&(self.controller.measured() - before));
     }

@@ -97,11 +97,15 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
     }
 
     /// One sample.
-    pub(crate) fn step(&self, state: &mut ControllerState<N, P, L>, sample: &Sample<'_, N, P, P>) -> Step<P> {
+    pub(crate) fn step(
+        &self,
+        state: &mut ControllerState<N, P, L, f64, S>,
+        sample: &Sample<'_, N, P, P>,
+    ) -> Step<P> {
         self.controller().step(state, sample)
     }
 
-    fn controller(&self) -> &dyn Controller<N, P, P, L> {
+    fn controller(&self) -> &dyn Controller<N, P, P, L, f64, S> {
         match self {
             Self::FewTerms(controller) => controller,
             Self::ManyTerms(controller) => controller,

@@ -10,8 +10,8 @@ pub(crate) const MOST_TERMS: usize = 20;
 pub(crate) const MOST_MOVES: usize = 30;
 
 /// Laguerre terms per input up to which the smaller programs are used: at most so many fly by default, and come within 1 % of
-/// the optimum. Their square matrices have a tenth of the elements that those of the larger programs have, and a step under
-/// active limits clears two of them.
+/// the optimum. Their square matrices have a tenth of the elements that those of the larger programs have, which a controller's state has
+/// room for: it keeps them from one step to the next.
 pub(crate) const FEW_TERMS: usize = 8;
 
 /// Coefficients per input of the larger programs.

@@ -101,7 +101,7 @@ mod tests {
 
     /// The first move from rest, per unit of one thing that the law is told.
     fn answer(law: &Law, sample: Sample<'_, 3, 1, 1>) -> f64 {
-        law.step(&mut ControllerState::at_rest(), &sample).input.x
+        law.step(&mut ControllerState::at_rest().keeping(), &sample).input.x
     }
 
     #[test]
@@ -128,7 +128,8 @@ mod tests {
             let (law, _) = designed(kind);
             let sample_time_s = Configuration::default().controllers.altitude.sample_time_s();
             let mut state =
-                ControllerState::new(Vector3::new(2.0, 0.0, 0.0), Vector1::zeros(), Vector1::zeros());
+                ControllerState::new(Vector3::new(2.0, 0.0, 0.0), Vector1::zeros(), Vector1::zeros())
+                    .keeping();
             let (mut z, mut v, mut input) = (2.0, 0.0, 0.0);
             for _ in 0..(8.0 / sample_time_s) as usize {
                 let measured = Vector3::new(z, v, input);

@@ -40,7 +40,8 @@ impl<const C: usize> LinearLaw<C> {
         law: &TrackingLaw<N, P, S, L>,
     ) -> [Self; P] {
         let answer = |held: f64, sample: Sample<'_, N, P, P>| {
-            let mut state = ControllerState::new(SVector::zeros(), SVector::repeat(held), SVector::zeros());
+            let mut state =
+                ControllerState::new(SVector::zeros(), SVector::repeat(held), SVector::zeros()).keeping();
             law.step(&mut state, &sample).input
         };
         // One channel's states after the other's.
