@@ -18,9 +18,9 @@ use crate::{
     SimulationError,
 };
 
-/// Many vehicles that fly side by side on all cores. The plants of vehicles with the same airframe step together, several in one
-/// instruction. Each flight is the one that it would be alone, bit for bit, however many
-/// there are and on however many threads: a vehicle that cannot go on stops where it is, and the others fly on.
+/// Many vehicles that fly side by side on all cores. The plants of vehicles with the same airframe step together, by vector
+/// instructions. Each flight is the one that it would be alone, bit for bit, however many there are and on however many threads: a
+/// vehicle that cannot go on stops where it is, and the others fly on.
 ///
 /// ```
 /// use quadrotor::{Configuration, Fleet, Inputs, PositionReference};
@@ -209,7 +209,9 @@ impl Fleet {
         };
         self.threads.install(|| {
             flying
-                .par_chunk_by_mut(|(one, ..), (other, ..)| one == other)
+                .par_chunk_by_mut(|(likeness, _, member), (other_likeness, _, other)| {
+                    likeness == other_likeness && member.vehicle.plant() == other.vehicle.plant()
+                })
                 .for_each(|of_one_plant| of_one_plant.par_chunks_mut(LANES).for_each(fly));
         });
     }
