@@ -13,6 +13,7 @@ use crate::context::Context;
 use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 use crate::file_store::Nothing;
 use crate::file_work::{FileWorker, Immediate};
+use crate::log_queue::LogQueue;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::service::registry::Registry;
@@ -62,6 +63,7 @@ impl Autopilot {
             streams: services.streams(settings.identity),
             capabilities: services.capabilities(settings.identity),
             links: links.to_vec(),
+            log_queue: LogQueue::default(),
             reboot_us: None,
         };
         context.parameters.statistics_mut().reset(unix_start_us / 1_000_000);
@@ -108,6 +110,7 @@ impl Autopilot {
         context.vehicle.set_unix_start_us(unix_start_us);
         context.reboot_us = None;
         context.outbox.restart();
+        context.log_queue.close();
         context.parameters.statistics_mut().boots += 1;
         self.before_us += lasted_us;
         self.boots += 1;
@@ -171,6 +174,16 @@ impl Autopilot {
     /// Lines for the pilot since the last call, with their times, µs.
     pub fn take_texts(&mut self) -> Vec<(u64, Severity, String)> {
         self.context.outbox.take_lines()
+    }
+
+    /// The log that a client gets while it is written.
+    pub fn log_queue(&self) -> &LogQueue {
+        &self.context.log_queue
+    }
+
+    /// The same, to be filled. It changes nothing of the flight.
+    pub fn log_queue_mut(&mut self) -> &mut LogQueue {
+        &mut self.context.log_queue
     }
 
     /// Gives clients files to reach. They change nothing of the flight.

@@ -8,6 +8,7 @@ use vehicle::{Severity, Vehicle};
 use crate::codec::command_name;
 use crate::envelope::LinkProfile;
 use crate::file_work::FileWorker;
+use crate::log_queue::LogQueue;
 use crate::outbox::Outbox;
 use crate::parameters::Parameters;
 use crate::stream::{Component, StreamTable};
@@ -30,6 +31,8 @@ pub struct Context {
     pub capabilities: MavProtocolCapability,
     /// What each link is for, by the number of the link.
     pub links: Vec<LinkProfile>,
+    /// A log that a client gets while it is written.
+    pub log_queue: LogQueue,
     /// When the vehicle boots again, µs after its start, if it was asked to.
     pub reboot_us: Option<u64>,
 }

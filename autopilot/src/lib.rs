@@ -22,6 +22,7 @@ pub mod envelope;
 mod event_catalog;
 pub mod file_store;
 pub mod file_work;
+pub mod log_queue;
 mod outbox;
 mod parameter_metadata;
 mod parameters;

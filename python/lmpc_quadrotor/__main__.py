@@ -39,7 +39,7 @@ def _benchmark(arguments: list[str]) -> int:
 COMMANDS = {
     "sitl": (_sitl, "the MAVLink vehicle; takes the flags of lmpc-sitl"),
     "fmu": (_fmu, "prints the path of an FMU"),
-    "view": (_view, "writes or serves a page that shows the flight of a CSV file"),
+    "view": (_view, "writes or serves a page that shows a flight: a table (.csv), a log (.ulg) or a record (.lmpc)"),
     "benchmark": (_benchmark, "measures how fast vehicles fly on this machine"),
 }
 

@@ -73,7 +73,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _check(np.atleast_1d(np.genfromtxt(chosen.file, delimiter=",", names=True, deletechars="", encoding="utf-8", dtype=float)))
         _write(chosen.file, output)
     except (OSError, ValueError) as problem:
-        print(f"error: {chosen.file}: {problem}", file=sys.stderr)
+        # Some messages name the file themselves.
+        named = "" if str(chosen.file) in str(problem) else f"{chosen.file}: "
+        print(f"error: {named}{problem}", file=sys.stderr)
         return 1
     print(output)
     if chosen.open:

@@ -65,7 +65,7 @@ pub fn write_address(path: &Path, address: &str) -> Result<(), Failure> {
 /// [`Failure::File`]
 pub fn write_view(path: &Path, view: &str) -> Result<(), Failure> {
     let content = serde_json::json!({ "process_id": std::process::id(), "view": view });
-    write_content(path, &content, Readers::All)
+    write_content(path, &content, Readers::Owner)
 }
 
 fn write_content(path: &Path, content: &serde_json::Value, readers: Readers) -> Result<(), Failure> {

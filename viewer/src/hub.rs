@@ -8,7 +8,7 @@ use axum::extract::ws::Utf8Bytes;
 use tokio::sync::watch;
 
 use crate::order::Order;
-use crate::recording::Recording;
+use crate::server::Past;
 use crate::token::Token;
 
 /// Browsers at once that only look on.
@@ -35,15 +35,14 @@ pub struct Hub {
     pub scene: watch::Sender<Utf8Bytes>,
     pub news: watch::Sender<Utf8Bytes>,
     pub orders: SyncSender<Order>,
-    /// What the page opens instead of a flight.
-    pub recording: Option<Recording>,
+    pub past: Past,
     watchers: AtomicUsize,
     pilots: AtomicUsize,
 }
 
 impl Hub {
     /// Nothing is published yet.
-    pub fn new(host: String, token: Token, orders: SyncSender<Order>, recording: Option<Recording>) -> Self {
+    pub fn new(host: String, token: Token, orders: SyncSender<Order>, past: Past) -> Self {
         Self {
             host,
             token,
@@ -51,7 +50,7 @@ impl Hub {
             scene: watch::Sender::new(Utf8Bytes::default()),
             news: watch::Sender::new(Utf8Bytes::default()),
             orders,
-            recording,
+            past,
             watchers: AtomicUsize::new(0),
             pilots: AtomicUsize::new(0),
         }

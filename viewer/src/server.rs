@@ -4,20 +4,22 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use axum::Router;
-use axum::body::Bytes;
+use axum::body::{Body, Bytes, to_bytes};
+use axum::extract::connect_info::IntoMakeServiceWithConnectInfo;
 use axum::extract::ws::{Utf8Bytes, WebSocketUpgrade};
-use axum::extract::{Request, State};
-use axum::http::{HeaderValue, StatusCode, Uri, header};
+use axum::extract::{ConnectInfo, Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{any, get};
+use axum::routing::{any, get, post};
 use serde::Serialize;
 use tokio::sync::{oneshot, watch};
 
 use crate::assets::asset;
-use crate::bounded_listener::BoundedListener;
+use crate::bounded_listener::{BoundedListener, Work};
 use crate::client;
 use crate::frame::Frame;
 use crate::guard;
@@ -25,6 +27,7 @@ use crate::hub::Hub;
 use crate::news::News;
 use crate::order::Order;
 use crate::recording::Recording;
+use crate::replayer::{NoFilm, Replayer};
 use crate::scene::Scene;
 use crate::token::Token;
 
@@ -32,6 +35,10 @@ use crate::token::Token;
 const MOST_ORDERS: usize = 64;
 /// Longest message of a browser, bytes.
 const LONGEST_MESSAGE: usize = 4096;
+/// Bytes of the largest record that a browser may send: hours of flight.
+const LARGEST_RECORD: usize = 256 << 20;
+/// A connection on which nothing comes and goes for this long is closed: browsers keep some that they may never use.
+const IDLE: Duration = Duration::from_secs(10);
 
 /// What every answer says: nothing from other hosts, nothing inline, in no other page, and the address goes nowhere.
 const PROTECTION: [(header::HeaderName, HeaderValue); 5] = [
@@ -68,6 +75,15 @@ pub enum ViewerError {
     Token(#[from] getrandom::Error),
 }
 
+/// Flights of the past that the page can show.
+#[derive(Clone, Debug, Default)]
+pub struct Past {
+    /// What the page opens instead of a live flight.
+    pub recording: Option<Recording>,
+    /// Who flies records again that are opened in the page.
+    pub replayer: Option<Replayer>,
+}
+
 /// A running server.
 #[derive(Debug)]
 pub struct Viewer {
@@ -79,18 +95,18 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// Listens on a host and a port; port 0 is any free one. The page opens the recording, if there is one.
+    /// Listens on a host and a port; port 0 is any free one.
     ///
     /// # Errors
     /// [`ViewerError`]
-    pub fn open(host: &str, port: u16, recording: Option<Recording>) -> Result<Self, ViewerError> {
+    pub fn open(host: &str, port: u16, past: Past) -> Result<Self, ViewerError> {
         let unusable = |source| ViewerError::Address { address: format!("{host}:{port}"), source };
         let bare = host.trim_start_matches('[').trim_end_matches(']');
         let listener = TcpListener::bind((bare, port)).map_err(unusable)?;
         listener.set_nonblocking(true).map_err(unusable)?;
         let address = listener.local_addr().map_err(unusable)?;
         let (sender, orders) = sync_channel(MOST_ORDERS);
-        let hub = Arc::new(Hub::new(bare.to_owned(), Token::random()?, sender, recording));
+        let hub = Arc::new(Hub::new(bare.to_owned(), Token::random()?, sender, past));
         let (stop, stopped) = oneshot::channel();
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_io()
@@ -103,9 +119,11 @@ impl Viewer {
                 let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
                 tokio::select! {
                     _stopped = stopped => {}
-                    _never = axum::serve(BoundedListener::new(listener), router(served)) => {}
+                    _never = axum::serve(BoundedListener::new(listener, IDLE), service(served)) => {}
                 }
             });
+            // Nobody waits for a record that is being replayed.
+            runtime.shutdown_background();
         };
         let thread =
             std::thread::Builder::new().name("viewer".to_owned()).spawn(run).map_err(ViewerError::Start)?;
@@ -185,14 +203,16 @@ fn publish(slot: &watch::Sender<Utf8Bytes>, name: &str, content: &impl Serialize
     });
 }
 
-fn router(hub: Arc<Hub>) -> Router {
+fn service(hub: Arc<Hub>) -> IntoMakeServiceWithConnectInfo<Router, Work> {
     Router::new()
         .route("/stream", any(stream))
         .route("/session.json", get(session))
         .route("/recording", get(recording))
+        .route("/film", post(film))
         .fallback(get(file))
         .layer(from_fn_with_state(Arc::clone(&hub), protect))
         .with_state(hub)
+        .into_make_service_with_connect_info()
 }
 
 /// Refuses strangers, and sets what every answer says.
@@ -205,22 +225,29 @@ async fn protect(State(hub): State<Arc<Hub>>, request: Request, next: Next) -> R
     response
 }
 
-async fn stream(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Response {
-    upgrade
-        .max_message_size(LONGEST_MESSAGE)
-        .max_frame_size(LONGEST_MESSAGE)
-        .on_upgrade(move |socket| client::serve(socket, hub))
+async fn stream(
+    State(hub): State<Arc<Hub>>,
+    ConnectInfo(work): ConnectInfo<Work>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade.max_message_size(LONGEST_MESSAGE).max_frame_size(LONGEST_MESSAGE).on_upgrade(
+        async move |socket| {
+            // Nothing is sent while nothing changes.
+            let _lasting = work.begin();
+            client::serve(socket, hub).await;
+        },
+    )
 }
 
 /// What the page is for.
 async fn session(State(hub): State<Arc<Hub>>) -> Response {
-    let recording = hub.recording.as_ref().map(Recording::name);
+    let recording = hub.past.recording.as_ref().map(Recording::name);
     let session = serde_json::json!({ "recording": recording }).to_string();
     ([(header::CONTENT_TYPE, "application/json")], session).into_response()
 }
 
 async fn recording(State(hub): State<Arc<Hub>>) -> Response {
-    match &hub.recording {
+    match &hub.past.recording {
         Some(recording) => {
             ([(header::CONTENT_TYPE, "application/octet-stream")], recording.content()).into_response()
         }
@@ -228,6 +255,39 @@ async fn recording(State(hub): State<Arc<Hub>>) -> Response {
             (StatusCode::NOT_FOUND, "There is no recording: start with --view-record FILE.\n").into_response()
         }
     }
+}
+
+/// A record that was flown again.
+async fn film(
+    State(hub): State<Arc<Hub>>,
+    ConnectInfo(work): ConnectInfo<Work>,
+    headers: HeaderMap,
+    body: Body,
+) -> Response {
+    let refused = |status, why: &str| (status, why.to_owned()).into_response();
+    let Some(replayer) = &hub.past.replayer else {
+        return refused(StatusCode::NOT_FOUND, "this program replays no records");
+    };
+    if !is_trusted(&headers, &hub.token) {
+        let why =
+            "only a page with the token can have records replayed: open the address that lmpc-sitl printed";
+        return refused(StatusCode::FORBIDDEN, why);
+    }
+    let _lasting = work.begin();
+    let largest = LARGEST_RECORD >> 20;
+    let too_large =
+        || NoFilm::Refused(format!("larger than {largest} MiB; run lmpc-sitl --view-record with it"));
+    match replayer.film(async { to_bytes(body, LARGEST_RECORD).await.map_err(|_| too_large()) }).await {
+        Ok(film) => ([(header::CONTENT_TYPE, "application/octet-stream")], film).into_response(),
+        Err(NoFilm::Busy) => refused(StatusCode::CONFLICT, "another record is being replayed; try again"),
+        Err(NoFilm::Refused(why)) => refused(StatusCode::UNPROCESSABLE_ENTITY, &why),
+    }
+}
+
+/// Whether a request has the token, as a bearer.
+fn is_trusted(headers: &HeaderMap, token: &Token) -> bool {
+    let value = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
+    value.and_then(|value| value.strip_prefix("Bearer ")).is_some_and(|word| token.is(word))
 }
 
 async fn file(uri: Uri) -> Response {

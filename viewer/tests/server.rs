@@ -2,27 +2,38 @@
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
+use std::sync::Mutex;
+use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::protocol::WebSocket;
 use tungstenite::{Error, Message};
-use viewer::{Action, Frame, News, Order, Recording, Scene, VehicleNews, VehicleState, Viewer};
+use viewer::{
+    Action, Frame, News, Order, Past, Recording, Replayer, Scene, VehicleNews, VehicleState, Viewer,
+};
 
 /// Longest wait for anything.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 fn viewer() -> Viewer {
-    Viewer::open("127.0.0.1", 0, None).expect("a free port")
+    Viewer::open("127.0.0.1", 0, Past::default()).expect("a free port")
 }
 
 /// The answer to a GET request with these headers.
 fn get(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> String {
+    ask(address, &format!("GET {path}"), headers, b"")
+}
+
+/// The answer to a request.
+fn ask(address: SocketAddr, what: &str, headers: &[(&str, &str)], body: &[u8]) -> String {
     let mut stream = TcpStream::connect(address).expect("a server");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     let lines: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
-    write!(stream, "GET {path} HTTP/1.1\r\n{lines}Connection: close\r\n\r\n").expect("sent");
+    write!(stream, "{what} HTTP/1.1\r\n{lines}Connection: close\r\n\r\n").expect("sent");
+    // What is refused is not read to its end.
+    let _refused = stream.write_all(body);
     let mut bytes = Vec::new();
     stream.read_to_end(&mut bytes).expect("an answer");
     String::from_utf8_lossy(&bytes).into_owned()
@@ -268,18 +279,69 @@ fn a_recording_is_served_by_its_name() {
     std::fs::write(&path, "time,position.x\n0,1\n").expect("written");
     let recording = Recording::read(&path).expect("a file");
     std::fs::remove_dir_all(&folder).expect("removed");
-    let viewer = Viewer::open("127.0.0.1", 0, Some(recording)).expect("a free port");
+    let viewer = Viewer::open("127.0.0.1", 0, Past { recording: Some(recording), replayer: None })
+        .expect("a free port");
     assert!(get_ours(viewer.address(), "/session.json").ends_with(r#"{"recording":"flight.csv"}"#));
     let answer = get_ours(viewer.address(), "/recording");
     assert!(answer.starts_with("HTTP/1.1 200") && answer.ends_with("time,position.x\n0,1\n"), "{answer}");
 }
 
 #[test]
+fn a_record_is_replayed_for_who_has_the_token_one_at_a_time() {
+    let (begun, is_begun) = sync_channel::<()>(0);
+    let (may_end, end) = sync_channel::<()>(0);
+    let end = Mutex::new(end);
+    let replayer = Replayer::new(move |record: &[u8]| match record {
+        b"slow" => {
+            begun.send(()).expect("a test that waits");
+            end.lock().expect("no panic").recv().expect("a test that goes on");
+            Ok(b"film of the slow one".to_vec())
+        }
+        b"strange" => Err("line 1 is not the header of one".to_owned()),
+        record => Ok([b"film of ", record].concat()),
+    });
+    let past = Past { recording: None, replayer: Some(replayer) };
+    let viewer = Viewer::open("127.0.0.1", 0, past).expect("a free port");
+    let address = viewer.address();
+    let url = viewer.pilot_url();
+    let token = url.rsplit('=').next().expect("a token").to_owned();
+    let post = |token: &str, record: &[u8]| {
+        let (host, length) = (address.to_string(), record.len().to_string());
+        let headers =
+            [("Host", &*host), ("Authorization", &format!("Bearer {token}")), ("Content-Length", &length)];
+        ask(address, "POST /film", &headers, record)
+    };
+    let answer = post(&token, b"a flight");
+    assert!(answer.starts_with("HTTP/1.1 200") && answer.ends_with("\r\n\r\nfilm of a flight"), "{answer}");
+    let answer = post(&token, b"strange");
+    assert!(
+        answer.starts_with("HTTP/1.1 422") && answer.ends_with("line 1 is not the header of one"),
+        "{answer}"
+    );
+    let answer = post("0123456789abcdef0123456789abcdef", b"a flight");
+    assert!(answer.starts_with("HTTP/1.1 403") && answer.contains("token"), "{answer}");
+    assert!(ask(address, "POST /film", &[("Host", &address.to_string())], b"").starts_with("HTTP/1.1 403"));
+    std::thread::scope(|scope| {
+        let slow = scope.spawn(|| post(&token, b"slow"));
+        is_begun.recv().expect("it begins");
+        let answer = post(&token, b"a flight");
+        assert!(answer.starts_with("HTTP/1.1 409") && answer.contains("try again"), "{answer}");
+        may_end.send(()).expect("it waits");
+        assert!(slow.join().expect("no panic").ends_with("film of the slow one"));
+    });
+    let replays_none = self::viewer();
+    let token = replays_none.pilot_url().rsplit('=').next().expect("a token").to_owned();
+    let address = replays_none.address();
+    let headers = [("Host", &*address.to_string()), ("Authorization", &format!("Bearer {token}"))];
+    assert!(ask(address, "POST /film", &headers, b"").starts_with("HTTP/1.1 404"));
+}
+
+#[test]
 fn a_taken_port_is_an_error_that_names_it_and_an_ended_server_frees_its_own() {
     let first = viewer();
     let port = first.address().port();
-    let error = Viewer::open("127.0.0.1", port, None).expect_err("taken").to_string();
+    let error = Viewer::open("127.0.0.1", port, Past::default()).expect_err("taken").to_string();
     assert!(error.contains(&format!("127.0.0.1:{port}")) && error.contains("choose another"), "{error}");
     drop(first);
-    assert!(Viewer::open("127.0.0.1", port, None).is_ok());
+    assert!(Viewer::open("127.0.0.1", port, Past::default()).is_ok());
 }

@@ -11,7 +11,7 @@ use xtask::process;
 use xtask::workspace::Workspace;
 
 /// The crates that stand on their own, each after those that it depends on.
-const PUBLISHED: [&str; 3] = ["lmpc", "quadrotor", "fmi"];
+pub const PUBLISHED: [&str; 3] = ["lmpc", "quadrotor", "fmi"];
 
 /// Packages the libraries, and compiles what was packed with the oldest versions of its dependencies that it allows.
 pub fn check(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
@@ -66,7 +66,8 @@ fn manifest(folders: &[(&str, String)]) -> String {
     )
 }
 
-fn succeed(progress: &Progress, text: &str, command: &mut Command) -> Result<(), Failure> {
+/// Runs a program that says itself why it fails.
+pub fn succeed(progress: &Progress, text: &str, command: &mut Command) -> Result<(), Failure> {
     let status = progress.timed(text, || process::status(command))?;
     if status.success() { Ok(()) } else { Err(Failure::Ended { what: text.to_lowercase(), status }) }
 }

@@ -20,6 +20,7 @@ mod program;
 mod progress;
 mod python;
 mod release;
+mod semver;
 mod sitl;
 mod test;
 mod threads;
@@ -136,6 +137,17 @@ enum Task {
     Book,
     /// Packages lmpc, quadrotor and fmi as for a registry, and compiles them with the oldest dependencies that they allow.
     Crates,
+    /// Compares lmpc, quadrotor and fmi with the last release: fails when a change needs a higher version than they have.
+    ///
+    /// Without an earlier release there is nothing to compare with, and it says so.
+    Semver {
+        /// Compares with this revision instead.
+        #[arg(long, value_name = "REVISION")]
+        baseline: Option<String>,
+        /// Installs cargo-semver-checks first, which takes minutes to build.
+        #[arg(long)]
+        install: bool,
+    },
     /// Flies the controllers of the cascade in single precision on an emulated Cortex-M4F: instructions, load, memory, accuracy.
     ///
     /// Needs qemu-system-arm. Fails if commands differ from double precision, or if all controllers together take more than a tenth of
@@ -249,6 +261,9 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Counts { update } => counts::run(&workspace, &progress, *update),
         Task::Microcontroller { install, peers } => {
             microcontroller::run(&workspace, &progress, *install, *peers)
+        }
+        Task::Semver { baseline, install } => {
+            semver::check(&workspace, &progress, baseline.as_deref(), *install)
         }
         Task::Crates => crates::check(&workspace, &progress),
         Task::Test { package: true, .. } => test::run_package(&workspace, &progress),

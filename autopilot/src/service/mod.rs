@@ -29,6 +29,7 @@ pub(crate) mod heartbeat;
 mod high_latency;
 mod identification;
 mod log;
+mod log_stream;
 mod magnetometer_calibration;
 mod manual_control;
 mod message_interval;

@@ -45,6 +45,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::global_origin::GlobalOrigin),
         Box::new(super::file_transfer::FileServer::default()),
         Box::new(super::log::LogServer::default()),
+        Box::new(super::log_stream::LogStreams::default()),
         Box::new(super::telemetry::Telemetry),
         Box::new(super::event::Events::default()),
         Box::new(super::range::Ranges),

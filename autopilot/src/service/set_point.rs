@@ -193,10 +193,19 @@ impl Given {
 
 fn local_position(frame: u8, position_m: Vector3<f64>, vehicle: &Vehicle) -> Result<Vector3<f64>, Refusal> {
     match frame {
-        frame::LOCAL_NED | frame::BODY_NED | frame::BODY_OFFSET_NED => Ok(position_m),
+        frame::LOCAL_NED => Ok(meant_position(position_m, vehicle)),
+        frame::BODY_NED | frame::BODY_OFFSET_NED => Ok(position_m),
         frame::LOCAL_OFFSET_NED => Ok(position_m + vehicle.outputs().position_m),
         other => Err(Refusal::denied(format!("Set-point rejected: frame {other} is not supported"))),
     }
+}
+
+/// A position of the local frame in which clients count. What is no number stays none; the others need a whole place.
+fn meant_position(told_m: Vector3<f64>, vehicle: &Vehicle) -> Vector3<f64> {
+    let present_m = vehicle.told_frame().told_m(&vehicle.outputs().position_m);
+    let whole_m = told_m.zip_map(&present_m, |told, present| if told.is_finite() { told } else { present });
+    let meant_m = vehicle.told_frame().meant_m(&whole_m);
+    told_m.zip_map(&meant_m, |told, meant| if told.is_finite() { meant } else { told })
 }
 
 fn known_global_frame(frame: u8) -> Result<(), Refusal> {

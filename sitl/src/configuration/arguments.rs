@@ -373,7 +373,8 @@ pub struct Arguments {
 
     /// Write the page of --view-record to a file and exit
     ///
-    /// FILE is a single HTML file that contains the page and the flight: browsers open it without a server.
+    /// FILE is a single HTML file that contains the page and the flight: browsers open it without a server. The flight can have
+    /// up to 375 MB; without this flag a table can have 500 MB and a ULog 1 GB.
     #[arg(long, env = "LMPC_SITL_VIEW_PAGE", value_name = "FILE", help_heading = LINKS, hide_short_help = true)]
     pub view_page: Option<PathBuf>,
 

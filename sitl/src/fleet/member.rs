@@ -15,7 +15,7 @@ use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
 use super::loss::Loss;
 use crate::failure::Failure;
 use crate::files::render_plans;
-use crate::flight_log::FlightLog;
+use crate::flight_log::{FlightLog, StreamedLog};
 use crate::radio_port::RadioPort;
 use crate::record::{Digest, Participant};
 use crate::terminal::set_simulation_time;
@@ -44,6 +44,7 @@ pub struct Member {
     /// Boot and revision of the plans that are kept.
     kept_revision: (u32, u32),
     log: Option<FlightLog>,
+    streamed: StreamedLog,
     started: Instant,
     /// Turns so far, and those that are left now.
     turns: u64,
@@ -83,6 +84,7 @@ impl Member {
             plans: None,
             kept_revision: (1, 0),
             log: None,
+            streamed: StreamedLog::default(),
             started: Instant::now(),
             turns: 0,
             turns_left: 0,
@@ -165,6 +167,7 @@ impl Member {
             self.ground_station = None;
         }
         self.digest.update(self.autopilot.vehicle());
+        self.streamed.tick(&mut self.autopilot);
         if let Some(log) = &mut self.log {
             log.tick(&mut self.autopilot, now);
         }

@@ -18,6 +18,7 @@ mod format;
 mod log_file;
 mod settings;
 mod source;
+mod streamed;
 mod ulog;
 
 pub use dataflash::{Field, MESSAGES, Message};
@@ -25,4 +26,5 @@ pub use flight::FlightLog;
 pub use format::LogFormat;
 pub use settings::{LogSettings, LogStart};
 pub use source::LogSource;
+pub use streamed::StreamedLog;
 pub use ulog::{Row, TOPICS, Topic};

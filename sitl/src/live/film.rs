@@ -1,5 +1,6 @@
 //! A record as the page shows it: flown again, and looked at as often as a live flight.
 
+use std::io::Write;
 use std::path::Path;
 
 use autopilot::Autopilot;
@@ -12,6 +13,7 @@ use super::scene::scene;
 use crate::failure::Failure;
 use crate::fleet::Overheard;
 use crate::record::{Audience, replay_before};
+use crate::terminal::aside;
 
 /// Simulation time between two states, µs, unless the record is long.
 const PERIOD_US: u64 = 33_000;
@@ -29,6 +31,24 @@ pub fn film(path: &Path) -> Result<Recording, Failure> {
     replay_before(path, &mut camera)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Recording::new(name, camera.film().encode()))
+}
+
+/// The film of a record that was opened in the page.
+///
+/// # Errors
+/// What is wrong with the record.
+pub fn replayed(record: &[u8]) -> Result<Vec<u8>, String> {
+    let kept = tempfile::NamedTempFile::new().and_then(|mut file| file.write_all(record).map(|()| file));
+    let file = kept.map_err(|error| format!("cannot keep it for the replay: {error}"))?;
+    let mut camera = Camera::new();
+    let outcome = aside(|| replay_before(file.path(), &mut camera));
+    // The browser knows the file by another name.
+    let told = |reason: &str| reason.replace(&*file.path().to_string_lossy(), "RECORD");
+    outcome.map_err(|failure| match &failure {
+        Failure::Content { reason, .. } => told(reason),
+        failure => told(&failure.to_string()),
+    })?;
+    Ok(camera.film().encode())
 }
 
 /// Looks at each vehicle once per period.

@@ -13,8 +13,11 @@ use crate::failure::Failure;
 
 /// How often it is looked whether the program shall end.
 const REST: Duration = Duration::from_millis(50);
-/// Largest file: browsers hold all of it.
-const MOST_BYTES: u64 = 1_000_000_000;
+/// Bytes of the largest file that a browser can hold, and of the largest as one text: tables, and a flight within a page, whose text
+/// is a third longer.
+const LARGEST_FILE: u64 = 1_000_000_000;
+const LARGEST_TEXT: u64 = 500_000_000;
+const LARGEST_WITHIN: u64 = 375_000_000;
 
 /// A page that shows a file, until the program ends.
 #[derive(Debug)]
@@ -27,7 +30,10 @@ pub struct ShownRecording(Viewer);
 pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecording, Failure> {
     check_view_record(arguments)?;
     let address = arguments.view.clone().unwrap_or_default();
-    Ok(ShownRecording(open_viewer(&address, Some(recording(path)?))?))
+    Ok(ShownRecording(open_viewer(
+        &address,
+        Some(recording(path, LARGEST_FILE, "show the log of a shorter flight")?),
+    )?))
 }
 
 /// Writes a page with a recorded flight.
@@ -36,12 +42,12 @@ pub fn show_recording(arguments: &Arguments, path: &Path) -> Result<ShownRecordi
 /// [`Failure`]: a flag does not go with it, the file cannot be shown, or the page cannot be written.
 pub fn write_page(arguments: &Arguments, path: &Path, page: &Path) -> Result<(), Failure> {
     check_view_page(arguments)?;
-    let content = standalone(&recording(path)?);
+    let content = standalone(&recording(path, LARGEST_WITHIN, "show it with --view-record alone")?);
     std::fs::write(page, content).map_err(|source| Failure::write(page, source))
 }
 
-/// A file that the page can open.
-fn recording(path: &Path) -> Result<Recording, Failure> {
+/// A file that the page can open, and how large it may be: `remedy` says what else to do.
+fn recording(path: &Path, largest: u64, remedy: &str) -> Result<Recording, Failure> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let wrong = |reason: &str| Failure::Content { path: path.to_owned(), reason: reason.to_owned() };
     if extension == "lmpc" {
@@ -51,10 +57,21 @@ fn recording(path: &Path) -> Result<Recording, Failure> {
         return Err(wrong("unknown file type; use a flight log (.ulg), a table (.csv) or a record (.lmpc)"));
     }
     let bytes = std::fs::metadata(path).map_err(|source| Failure::read(path, source))?.len();
-    if bytes > MOST_BYTES {
-        return Err(wrong("larger than 1 GB; open a shorter recording"));
+    if extension == "csv" {
+        check_size(path, bytes, LARGEST_TEXT, "write fewer columns or rows")?;
     }
+    check_size(path, bytes, largest, remedy)?;
     Recording::read(path).map_err(|source| Failure::read(path, source))
+}
+
+/// Refuses what browsers cannot open.
+fn check_size(path: &Path, bytes: u64, most: u64, remedy: &str) -> Result<(), Failure> {
+    if bytes <= most {
+        return Ok(());
+    }
+    let [bytes, most] = [bytes, most].map(|bytes| bytes.div_ceil(1_000_000));
+    let reason = format!("{bytes} MB are more than the {most} MB that a browser can open so; {remedy}");
+    Err(Failure::Content { path: path.to_owned(), reason })
 }
 
 impl ShownRecording {
@@ -63,9 +80,9 @@ impl ShownRecording {
         format!("lmpc-sitl {}: recorded flight at {}", env!("CARGO_PKG_VERSION"), self.url())
     }
 
-    /// The address of the page; there is nothing to command.
+    /// The address of the page, with the token that lets it have records replayed.
     pub fn url(&self) -> String {
-        format!("http://{}/", self.0.address())
+        self.0.pilot_url()
     }
 
     /// Serves the page until the program is told to stop.

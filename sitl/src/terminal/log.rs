@@ -1,9 +1,11 @@
 //! The log on the standard error stream.
 
+use std::cell::Cell;
 use std::fmt;
 use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use tracing::subscriber::NoSubscriber;
 use tracing_subscriber::filter::Targets;
 use tracing_subscriber::fmt::format::Writer;
 use tracing_subscriber::fmt::time::{FormatTime, SystemTime};
@@ -16,9 +18,24 @@ use super::screen::has_colours;
 /// Simulation time of what happens now, µs. The log belongs to the process, and so does this.
 static SIMULATION_TIME_US: AtomicU64 = AtomicU64::new(0);
 
+thread_local! {
+    /// Whether this thread does something else.
+    static IS_ASIDE: Cell<bool> = const { Cell::new(false) };
+}
+
 /// What is logged from now on happens at this simulation time, µs.
 pub fn set_simulation_time(time_us: u64) {
-    SIMULATION_TIME_US.store(time_us, Ordering::Relaxed);
+    if !IS_ASIDE.get() {
+        SIMULATION_TIME_US.store(time_us, Ordering::Relaxed);
+    }
+}
+
+/// Does on this thread what does not belong to the flight: nothing of it is logged, and its simulation time is not the log's.
+pub fn aside<R>(work: impl FnOnce() -> R) -> R {
+    IS_ASIDE.set(true);
+    let result = tracing::subscriber::with_default(NoSubscriber::default(), work);
+    IS_ASIDE.set(false);
+    result
 }
 
 /// Logs what passes the filter to the standard error stream. A log that is set up already stays.

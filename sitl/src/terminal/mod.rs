@@ -14,6 +14,6 @@ mod segment;
 mod status;
 
 pub use banner::{banner, hil_banner};
-pub use log::{set_simulation_time, start_log};
+pub use log::{aside, set_simulation_time, start_log};
 pub use panel::Panel;
 pub use status::{of_autopilot, of_fleet, waiting};

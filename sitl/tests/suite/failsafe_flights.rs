@@ -153,8 +153,27 @@ fn a_meaningless_choice_is_refused_with_those_that_there_are() {
         param_type: MavParamType::MAV_PARAM_TYPE_INT32,
     }));
     let told = bench.texts().pop().expect("a reason");
-    let reason = "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)";
+    let reason = "COM_ACT_FAIL_ACT = 1; allowed 0 (Warn), 2 (Land), 4 (Terminate)";
     assert_eq!(told, reason);
+}
+
+/// PX4's default: nothing is done for the pilot, and the controllers do not know of the loss.
+#[test]
+fn who_is_only_warned_of_a_lost_rotor_falls_in_the_mode_that_was() {
+    let mut bench = hovering(Cause::RotorFailure);
+    set(&mut bench, "COM_ACT_FAIL_ACT", 0.0);
+    let mode = bench.autopilot.vehicle().mode();
+    bench.heard.clear();
+    spoil(&mut bench, Cause::RotorFailure);
+    bench.fly(0.6);
+    assert_eq!(
+        (bench.autopilot.vehicle().mode(), count(&bench, "Rotor 1 lost")),
+        (mode, 1),
+        "{:?}",
+        bench.texts()
+    );
+    bench.fly_until("down", 30.0, |bench| bench.position()[2] > -0.5);
+    assert_eq!(bench.autopilot.vehicle().lost_rotor(), Some(0));
 }
 
 /// Without a barometer and a receiver nothing corrects the height; without an accelerometer nothing is known between fixes.

@@ -1,5 +1,6 @@
 //! The live page of a running program: what it is shown, and what comes of its orders.
 
+use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,6 +19,8 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A program with a live page, and a pilot before it.
 struct Pilot {
+    /// Address of the server, and the token.
+    server: (String, String),
     browser: WebSocket<TcpStream>,
     stop: Arc<AtomicBool>,
     program: JoinHandle<Summary>,
@@ -54,7 +57,8 @@ impl Pilot {
         let (mut browser, _) =
             tungstenite::client(format!("ws://{address}/stream"), stream).expect("a stream");
         browser.send(Message::text(format!(r#"{{"token": "{token}"}}"#))).expect("sent");
-        Self { browser, stop, program, orders: 0, news: serde_json::Value::Null }
+        let server = (address.to_owned(), token.to_owned());
+        Self { server, browser, stop, program, orders: 0, news: serde_json::Value::Null }
     }
 
     /// The next message, as JSON if it is text.
@@ -106,6 +110,25 @@ impl Pilot {
         }
     }
 
+    /// The answer to a record that is opened in the page.
+    fn film(&self, record: &[u8]) -> Vec<u8> {
+        let (address, token) = &self.server;
+        let mut stream = TcpStream::connect(address).expect("a server");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+        let length = record.len();
+        write!(
+            stream,
+            "POST /film HTTP/1.1\r\nHost: {address}\r\nAuthorization: Bearer {token}\r\nContent-Length: {length}\r\n\
+             Connection: close\r\n\r\n"
+        )
+        .expect("sent");
+        stream.write_all(record).expect("sent");
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).expect("an answer");
+        let body = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").expect("a head") + 4;
+        answer.split_off(body)
+    }
+
     fn end(self) -> Summary {
         self.stop.store(true, Ordering::Relaxed);
         self.program.join().expect("no panic")
@@ -114,6 +137,19 @@ impl Pilot {
 
 fn near(place_m: [f64; 3], goal_m: [f64; 3]) -> bool {
     place_m.iter().zip(goal_m).all(|(is, goal)| (is - goal).abs() < 0.1)
+}
+
+/// A record once it has a second of its flight.
+fn written(record: &str) -> Vec<u8> {
+    let start = Instant::now();
+    loop {
+        let bytes = std::fs::read(record).expect("a record");
+        if bytes.windows(7).any(|word| word == b"\nstate ") {
+            return bytes;
+        }
+        assert!(start.elapsed() < PATIENCE, "nothing is written");
+        std::thread::yield_now();
+    }
 }
 
 fn fly_there(conventions: &str) {
@@ -132,6 +168,11 @@ fn fly_there(conventions: &str) {
         _ => assert!(refused.is_some_and(|why| why.contains("set it at the start by --wind"))),
     }
     assert_eq!(pilot.order(serde_json::json!({ "action": "fault", "fault": "rotor3=weak" })), None);
+    // The page has the record replayed, as far as it goes, while the flight goes on.
+    let film = pilot.film(&written(record));
+    assert!(film.starts_with(b"LMPCFILM") && film.len() > 10_000, "{}", String::from_utf8_lossy(&film));
+    let refused = String::from_utf8(pilot.film(b"nothing")).expect("text");
+    assert!(refused.starts_with("is not a record: line 1"), "{refused}");
     assert_eq!(pilot.order(serde_json::json!({ "action": "land" })), None);
     pilot.wait("down", |_, place_m| place_m[2] > -0.05);
     let flown = pilot.end();
@@ -160,6 +201,22 @@ fn a_page_is_written_of_a_flight_that_is_named_and_can_be_shown() {
     let with_ready_file =
         refused(&["--view-record", "no.csv", "--view-page", "a.html", "--ready-file", "ready"]);
     assert!(with_ready_file.contains("cannot be used with --view-page"), "{with_ready_file}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let sized = |name: &str, megabytes: u64| {
+        let path = folder.path().join(name);
+        // No blocks of the disk are behind it.
+        std::fs::File::create(&path).and_then(|file| file.set_len(megabytes * 1_000_000)).expect("a file");
+        path.to_str().expect("text").to_owned()
+    };
+    let within = refused(&["--view-record", &sized("a.ulg", 376), "--view-page", "a.html"]);
+    assert!(
+        within.ends_with(
+            "376 MB are more than the 375 MB that a browser can open so; show it with --view-record alone"
+        ),
+        "{within}"
+    );
+    assert!(refused(&["--view-record", &sized("a.csv", 501)]).contains("500 MB"), "a table");
+    assert!(refused(&["--view-record", &sized("b.ulg", 1001)]).contains("1000 MB"), "a log");
     assert!(refused(&["--view-record", "no.lmpc", "--speed", "2"]).contains("--speed: cannot be used"));
 }
 

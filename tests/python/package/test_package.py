@@ -110,13 +110,15 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     command = [sys.executable, "-m", "lmpc_quadrotor", "view", str(tmp_path / "flight.csv"), "--serve"]
     served = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "LMPC_SITL_VIEW": "127.0.0.1:0"})
     try:
-        url = served.stdout.readline().split()[-1]
+        url = served.stdout.readline().split()[-1].split("#")[0]
         with urllib.request.urlopen(url + "session.json", timeout=10) as answer:
             assert json.load(answer) == {"recording": "flight.csv"}
     finally:
         os.killpg(served.pid, signal.SIGINT)  # as Ctrl-C does: the program below gets it, too
         served.wait(10)
-    assert run("view", str(tmp_path / "missing.csv"), "--serve").returncode == 4
+    missing = str(tmp_path / "missing.csv")
+    assert run("view", missing, "--serve").returncode == 4
+    assert run("view", missing).stderr.count("missing.csv") == 1
     (tmp_path / "other.csv").write_text("time,height\n0,1\n")
     wrong = run("view", str(tmp_path / "other.csv"))
     assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z" in wrong.stderr

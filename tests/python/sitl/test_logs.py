@@ -1,11 +1,13 @@
 """Logs of flights: written as ULog, read by pyulog, downloaded by MAVSDK and pymavlink; and the traffic log."""
 
+import base64
 import math
 import time
 
 import numpy as np
 import pytest
 from mavsdk.plugins.log_files import LogFiles, LogFilesResult
+from mavsdk.plugins.log_streaming import LogStreaming
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyulog import ULog
@@ -191,3 +193,73 @@ def test_download_by_mavsdk(fly, tmp_path):  # noqa: F811
     assert len(got) == entries[0].size_bytes and logs(folder)[0].read_bytes().startswith(got)
     # It was being written when it was listed: what is there can be read.
     assert "vehicle_attitude" in topics(ULog(str(tmp_path / "got.ulg")))
+
+
+def streamed(client, lost, fly) -> tuple[bytes, int]:
+    """A log that is streamed until `fly`, which sees each position from the first data on, says that it is enough. The first copy of some reliable
+    chunks is lost. Returns the log, and how many were lost."""
+    client.command(mavlink.MAV_CMD_LOGGING_START, 0)
+    chunks, dropped, reliable = {}, set(), set()
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        message = client.connection.recv_match(type=["LOGGING_DATA", "LOGGING_DATA_ACKED", "LOCAL_POSITION_NED"], blocking=True, timeout=1)
+        if message is None:
+            continue
+        if message.get_type() == "LOCAL_POSITION_NED":
+            if len(chunks) > len(reliable) and fly(message):
+                client.command(mavlink.MAV_CMD_LOGGING_STOP)
+                assert sorted(chunks) == list(range(len(chunks))), "nothing is missing"
+                assert reliable == set(range(len(reliable))), "the definitions come first"
+                return b"".join(data for _, data in sorted(chunks.items())), len(dropped)
+            continue
+        assert (message.target_system, message.target_component) == (client.mav.srcSystem, client.mav.srcComponent)
+        if message.get_type() == "LOGGING_DATA_ACKED":
+            if lost(message.sequence) and message.sequence not in dropped:
+                dropped.add(message.sequence)
+                continue
+            reliable.add(message.sequence)
+            client.mav.logging_ack_send(*client.target, message.sequence)
+        chunks[message.sequence] = bytes(message.data[:message.length])
+        # A whole entry of the log: its length, and its letter.
+        if message.first_message_offset < message.length - 3 and message.sequence:
+            assert chr(message.data[message.first_message_offset + 2]) in "BIFMPADOS", message
+    raise AssertionError(f"{len(chunks)} chunks in 60 s")
+
+
+def test_a_log_is_streamed_while_it_is_written(start, connect, tmp_path):
+    client = connect(start("--speed", "2", "--set", "RTL_RETURN_ALT=12.5"))
+    heights = []
+
+    def fly(message):
+        """Takes off to 2.5 m and lands."""
+        ask = lambda number, *values: client.mav.command_long_send(*client.target, number, 0, *values, *[math.nan] * (7 - len(values)))  # noqa: E731
+        if not heights:
+            ask(mavlink.MAV_CMD_NAV_TAKEOFF)
+            ask(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+        elif max(heights) < 2.4 <= -message.z:
+            ask(mavlink.MAV_CMD_NAV_LAND)
+        heights.append(-message.z)
+        return max(heights) > 2.4 and heights[-1] < 0.02
+
+    log, lost = streamed(client, lambda sequence: sequence % 7 == 3, fly)
+    assert lost >= 5
+    path = tmp_path / "streamed.ulg"
+    path.write_bytes(log)
+    read = ULog(str(path))
+    assert not read.file_corruption and not read.dropouts
+    assert read.initial_parameters["RTL_RETURN_ALT"] == 12.5
+    times, downs = (topics(read)["vehicle_local_position"][name] for name in ("timestamp", "z"))
+    # In simulation time, each sample is there.
+    assert np.diff(times) == pytest.approx(np.diff(times)[0]) and -downs.min() == pytest.approx(max(heights), abs=0.1) and abs(downs[-1]) < 0.2
+
+
+def test_mavsdk_gets_a_streamed_log(fly, tmp_path):
+    system = fly()
+    streaming, pieces = LogStreaming(system), []
+    streaming.subscribe_log_streaming_raw(lambda raw, _: pieces.append(base64.b64decode(raw.data_base64)))
+    streaming.start_log_streaming()
+    eventually("a second of data", lambda: sum(map(len, pieces)) > 200_000)
+    streaming.stop_log_streaming()
+    path = tmp_path / "streamed.ulg"
+    path.write_bytes(b"".join(pieces))
+    assert "vehicle_attitude" in topics(ULog(str(path)))

@@ -128,3 +128,25 @@ def test_hold_stops_on_the_way(fly):
     assert telemetry.flight_mode() == FlightMode.HOLD
     action.land()
     eventually("disarmed", lambda: not telemetry.armed(), 60)
+
+
+def test_the_origin_of_the_local_frame_moves_and_the_vehicle_does_not(fly):
+    system = fly("--speed", "2", "--home", "47.0,8.0,400")
+    telemetry, action, offboard = Telemetry(system), Action(system), Offboard(system)
+    eventually("health", telemetry.health_all_ok)
+    # 1e-4 of a degree of latitude is 11.1 m there.
+    action.set_gps_global_origin(46.9999, 8.0, 390.0)
+    origin = telemetry.get_gps_global_origin()
+    assert (origin.latitude_deg, origin.longitude_deg) == pytest.approx((46.9999, 8.0), abs=1e-7)
+    assert origin.altitude_m == pytest.approx(390.0, abs=1e-3)
+    place = lambda: telemetry.position_velocity_ned().position  # noqa: E731
+    north_m, down_m = 11.117, -10.0
+    eventually("it is north of the origin and above it", lambda: math.dist((place().north_m, place().east_m, place().down_m), (north_m, 0, down_m)) < 0.1)
+    assert telemetry.position().latitude_deg == pytest.approx(47.0, abs=1e-6)
+    action.arm()
+    offboard.set_position_ned(PositionNedYaw(north_m, 2.0, down_m - 5.0, 0.0))
+    offboard.start()
+    # 2 m east of its place, 5 m up.
+    degree_m = 111_320 * math.cos(math.radians(47))
+    eventually("there", lambda: abs((telemetry.position().longitude_deg - 8.0) * degree_m - 2.0) < 0.1
+               and abs(telemetry.position().latitude_deg - 47.0) < 2e-6 and abs(telemetry.position().relative_altitude_m - 5.0) < 0.1, 30)

@@ -256,6 +256,14 @@ def test_a_record_is_flown_again_and_shown(start, connect, look, tmp_path):
     shown.page.get_by_role("slider", name="Time in the recording").fill(str(times[-1]))
     shown.page.get_by_text("Disarmed after landing").wait_for()
     assert "Land" in {news["mode"] for news in shown.value("page.recording.news")}
+    # The page of a live flight has the program replay what is opened in it.
+    live = look(start("--view", "127.0.0.1:0").ready["view"], expected=["422 (Unprocessable Entity)"])
+    live.wait("page.isPilot && page.frame")
+    live.page.set_input_files("#file", record)
+    live.wait("page.recording?.name === 'flight.lmpc' && page.frame")
+    assert live.value("page.recording.states.get(1).map((state) => -state.position[2])") == heights
+    live.page.set_input_files("#file", {"name": "broken.lmpc", "mimeType": "application/octet-stream", "buffer": b"nothing"})
+    live.page.get_by_text("broken.lmpc: is not a record: line 1").first.wait_for()
 
 
 def test_a_page_with_the_flight_in_it_opens_from_the_disk(program, look, tmp_path):

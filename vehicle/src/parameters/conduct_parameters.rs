@@ -51,4 +51,4 @@ pub(super) const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Land, 5, "Land"),
 ];
 const ROTOR_ACTIONS: &[(Action, i32, &str)] =
-    &[(Action::Land, 2, "Land"), (Action::Terminate, 4, "Terminate")];
+    &[(Action::Warn, 0, "Warn"), (Action::Land, 2, "Land"), (Action::Terminate, 4, "Terminate")];

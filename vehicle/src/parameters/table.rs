@@ -366,7 +366,7 @@ mod tests {
             ),
             ("C_ATT_N", 2.5, "C_ATT_N = 2.5; allowed whole numbers 1–20"),
             ("CTRL_KIND", 4.0, "CTRL_KIND = 4; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
-            ("COM_ACT_FAIL_ACT", 1.0, "COM_ACT_FAIL_ACT = 1; allowed 2 (Land), 4 (Terminate)"),
+            ("COM_ACT_FAIL_ACT", 1.0, "COM_ACT_FAIL_ACT = 1; allowed 0 (Warn), 2 (Land), 4 (Terminate)"),
             ("COM_WIND_MAX", 60.0, "COM_WIND_MAX = 60 m/s; allowed -1 to 50 m/s"),
             ("BAT_LOW_THR", 2.0, "BAT_LOW_THR = 2; allowed 0–0.9"),
             (

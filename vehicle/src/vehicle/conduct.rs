@@ -160,7 +160,7 @@ impl Conduct {
             set_point_timeout_s: if ardupilot { 3.0 } else { 1.0 },
             return_height_m: if ardupilot { 15.0 } else { 30.0 },
             acceptance_radius_m: 2.0,
-            return_near_m: 5.0,
+            return_near_m: 10.0,
             land_speed_m_s: 0.7,
             land_slow_below_m: two(),
             land_fast_m_s: 0.0,

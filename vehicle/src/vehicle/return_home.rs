@@ -381,7 +381,9 @@ mod tests {
         assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -1.0])), [4.0]);
         assert_eq!(heights(Scene::hovering_at([1.0, 0.0, -1.5])), [2.0]);
         assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -10.0])), [10.0]);
-        assert_eq!(heights(Scene::hovering_at([6.0, 0.0, -10.0])), [30.0]);
+        // RTL_MIN_DIST is 10 m.
+        assert_eq!(heights(Scene::hovering_at([9.5, 0.0, -1.0])), [9.5]);
+        assert_eq!(heights(Scene::hovering_at([10.5, 0.0, -1.0])), [30.0]);
         let mut wide = Scene::hovering_at([4.5, 0.0, -1.0]);
         wide.conduct.return_home.cone_rad = 0.0;
         assert_eq!(heights(wide), [30.0]);

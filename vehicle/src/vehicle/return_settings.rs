@@ -56,6 +56,6 @@ impl ReturnSettings {
         if ardupilot {
             return Self { wait_s: 5.0, cone_slope: 3.0, ..none };
         }
-        Self { wait_height_m: 30.0, cone_rad: 45_f64.to_radians(), ..none }
+        Self { wait_height_m: 10.0, cone_rad: 45_f64.to_radians(), ..none }
     }
 }

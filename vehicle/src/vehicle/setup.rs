@@ -3,7 +3,7 @@
 use super::conduct::Conduct;
 use super::settings::VehicleSettings;
 use crate::identity::Identity;
-use crate::world::{LocalFrame, WindSettings};
+use crate::world::{Geodetic, LocalFrame, ToldFrame, WindSettings};
 
 /// What only a user changes.
 #[derive(Clone, Debug)]
@@ -11,6 +11,7 @@ pub struct Setup {
     identity: Identity,
     conduct: Conduct,
     frame: LocalFrame,
+    told: ToldFrame,
     /// What it started with: the wind, and the voltage of the full battery, V.
     wind: WindSettings,
     full_battery_v: f64,
@@ -21,9 +22,10 @@ impl Setup {
     /// Starts at an unknown time of day.
     pub fn new(settings: &VehicleSettings, full_battery_v: f64) -> Self {
         let frame = LocalFrame::new(settings.origin);
+        let told = ToldFrame::new(frame);
         let (identity, wind) = (settings.identity, settings.wind);
         let conduct = settings.conduct;
-        let mut setup = Self { identity, conduct, frame, wind, full_battery_v, unix_start_us: 0 };
+        let mut setup = Self { identity, conduct, frame, told, wind, full_battery_v, unix_start_us: 0 };
         setup.set_conduct(conduct);
         setup
     }
@@ -52,6 +54,16 @@ impl Setup {
     /// The local frame.
     pub fn frame(&self) -> &LocalFrame {
         &self.frame
+    }
+
+    /// The local frame in which clients count.
+    pub fn told_frame(&self) -> &ToldFrame {
+        &self.told
+    }
+
+    /// Moves the origin of the local frame in which clients count.
+    pub fn move_origin(&mut self, origin: Geodetic) {
+        self.told.move_to(origin);
     }
 
     /// Time of the start since 1970, µs.

@@ -4,6 +4,7 @@ mod atmosphere;
 mod heading;
 mod local_frame;
 mod magnetic_field;
+mod told_frame;
 mod wind;
 pub mod wind_drag;
 
@@ -11,4 +12,5 @@ pub use atmosphere::{atmospheric_pressure_pa, atmospheric_temperature_degc, pres
 pub use heading::heading_deg;
 pub use local_frame::{FARTHEST_M, Geodetic, LocalFrame};
 pub use magnetic_field::earth_field_ned;
+pub use told_frame::ToldFrame;
 pub use wind::{Wind, WindProfile, WindSettings, WindShape};

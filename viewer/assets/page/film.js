@@ -14,6 +14,13 @@ export function isFilm(buffer) {
   return ascii(buffer, MAGIC.length) === MAGIC;
 }
 
+/** Has the program that serves the page fly a record again. Resolves with the film; throws with what is wrong. */
+export async function replayed(record, token) {
+  const answer = await fetch("/film", { method: "POST", headers: { authorization: `Bearer ${token ?? ""}` }, body: record });
+  if (!answer.ok) throw new Error(await answer.text());
+  return answer.arrayBuffer();
+}
+
 /** Times, s, states of all vehicles, and what was said of them. */
 export function readFilm(buffer) {
   const length = new DataView(buffer).getUint32(MAGIC.length, true);

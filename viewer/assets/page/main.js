@@ -1,6 +1,7 @@
 // The page: what comes from the program or from a recording is drawn, what the pilot asks for goes back.
 
 import { Controls } from "./controls.js";
+import { replayed } from "./film.js";
 import { graphics } from "./graphics.js";
 import { History } from "./history.js";
 import { Horizon } from "./horizon.js";
@@ -8,7 +9,7 @@ import { Panel } from "./panel.js";
 import { Plots } from "./plots.js";
 import { Rarely } from "./rarely.js";
 import { Redraw } from "./redraw.js";
-import { Recording, readRecording } from "./replay.js";
+import { Recording, isRecord, readRecording } from "./replay.js";
 import { View } from "./scene.js";
 import { Stream, token } from "./stream.js";
 
@@ -194,9 +195,14 @@ function show(recording) {
   redraw.ask();
 }
 
-function open(name, buffer) {
+async function open(name, buffer) {
   try {
-    show(new Recording(name, readRecording(name, buffer)));
+    let content = buffer;
+    if (isRecord(name, buffer) && isServed()) {
+      write("connection", `replaying ${name}`);
+      content = await replayed(buffer, token());
+    }
+    show(new Recording(name, readRecording(name, content)));
   } catch (error) {
     write("answer", `${name}: ${error.message}`);
     write("connection", `${name}: ${error.message}`);
@@ -229,6 +235,11 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   plots.build();
   redraw.ask();
 });
+
+/** Whether a program serves the page: what is on a disk has none. */
+function isServed() {
+  return location.protocol.startsWith("http");
+}
 
 /** The recording that is within the page, if it is a file of its own. */
 function enclosed() {

@@ -4,13 +4,18 @@ import { readCsv } from "./csv.js";
 import { isFilm, readFilm } from "./film.js";
 import { readUlog } from "./ulog.js";
 
+/** Whether a file is a record, which only the program can fly again. */
+export function isRecord(name, buffer) {
+  return /\.lmpc$/i.test(name) && !isFilm(buffer);
+}
+
 /** Reads a file by its name: .ulg or .csv. A record is read if the program has flown it again. Throws with what is wrong. */
 export function readRecording(name, buffer) {
   if (isFilm(buffer)) return readFilm(buffer);
   if (/\.ulg$/i.test(name)) return readUlog(buffer);
   if (/\.csv$/i.test(name)) return readCsv(new TextDecoder().decode(buffer));
-  if (/\.lmpc$/i.test(name)) throw new Error(`A browser cannot replay a record (.lmpc); run lmpc-sitl --view-record ${name}`);
-  throw new Error("Only .ulg and .csv files can be opened.");
+  if (isRecord(name, buffer)) throw new Error(`A browser cannot replay a record (.lmpc); run lmpc-sitl --view-record ${name}`);
+  throw new Error("Only .ulg, .csv and .lmpc files can be opened.");
 }
 
 /** The place of the last of some times that is not after a time. */

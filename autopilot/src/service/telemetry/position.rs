@@ -12,7 +12,7 @@ use crate::codec::{boot_ms, centimetres_per_second, floats, millimetres, scaled_
 /// LOCAL_POSITION_NED.
 pub fn local_position_ned(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let [x, y, z] = floats(&outputs.position_m);
+    let [x, y, z] = floats(&vehicle.told_frame().told_m(&outputs.position_m));
     let [vx, vy, vz] = floats(&outputs.velocity_m_s);
     let time_boot_ms = boot_ms(outputs.time_us);
     MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA { time_boot_ms, x, y, z, vx, vy, vz })
@@ -41,7 +41,7 @@ pub fn global_position_int(vehicle: &Vehicle) -> MavMessage {
 pub fn home_position(vehicle: &Vehicle) -> MavMessage {
     let home = vehicle.home();
     let place = vehicle.frame().to_geodetic(&home.position_m);
-    let [x, y, z] = floats(&home.position_m);
+    let [x, y, z] = floats(&vehicle.told_frame().told_m(&home.position_m));
     MavMessage::HOME_POSITION(HOME_POSITION_DATA {
         latitude: scaled_degrees(place.latitude_deg),
         longitude: scaled_degrees(place.longitude_deg),
@@ -57,13 +57,14 @@ pub fn home_position(vehicle: &Vehicle) -> MavMessage {
 
 /// ALTITUDE: every kind of it; terrain is the flat ground.
 pub fn altitude(vehicle: &Vehicle) -> MavMessage {
-    let above_ground_m = -vehicle.outputs().position_m.z;
+    let position_m = vehicle.outputs().position_m;
+    let above_ground_m = -position_m.z;
     let amsl_m = vehicle.frame().origin().altitude_m + above_ground_m;
     MavMessage::ALTITUDE(ALTITUDE_DATA {
         time_usec: vehicle.time_us(),
         altitude_monotonic: amsl_m as f32,
         altitude_amsl: amsl_m as f32,
-        altitude_local: above_ground_m as f32,
+        altitude_local: -vehicle.told_frame().told_m(&position_m).z as f32,
         altitude_relative: (vehicle.home().position_m.z + above_ground_m) as f32,
         altitude_terrain: above_ground_m as f32,
         bottom_clearance: above_ground_m as f32,
@@ -87,7 +88,7 @@ pub fn vfr_hud(vehicle: &Vehicle) -> MavMessage {
 /// ODOMETRY: pose in the local frame, velocity in the body's.
 pub fn odometry(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let [x, y, z] = floats(&outputs.position_m);
+    let [x, y, z] = floats(&vehicle.told_frame().told_m(&outputs.position_m));
     let [vx, vy, vz] = floats(&outputs.body_velocity_m_s);
     let [rollspeed, pitchspeed, yawspeed] = floats(&outputs.body_rate_rad_s);
     // NaN in the first place: the covariance is unknown.

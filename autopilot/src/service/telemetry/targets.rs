@@ -86,11 +86,12 @@ fn reference_local_ned(vehicle: &Vehicle) -> MavMessage {
 /// A place, m, with its velocity, m/s, and acceleration, m/s², and the heading that the cascade tracks.
 fn local_ned(
     vehicle: &Vehicle,
-    [[x, y, z], [vx, vy, vz], [afx, afy, afz]]: [[f32; 3]; 3],
+    [place, [vx, vy, vz], [afx, afy, afz]]: [[f32; 3]; 3],
     type_mask: PositionTargetTypemask,
 ) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
+    let [x, y, z] = floats(&vehicle.told_frame().told_m(&place.map(f64::from).into()));
     MavMessage::POSITION_TARGET_LOCAL_NED(POSITION_TARGET_LOCAL_NED_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         x,

@@ -16,6 +16,12 @@ fn message(into: &mut Vec<u8>, kind: u8, pieces: &[&[u8]]) {
     into.extend(pieces.iter().flat_map(|piece| piece.iter()).take(length));
 }
 
+/// Bytes of the message that some bytes begin with.
+pub fn entry_length(bytes: &[u8]) -> Option<usize> {
+    let [low, high, _kind, ..] = bytes else { return None };
+    Some(3 + usize::from(u16::from_le_bytes([*low, *high])))
+}
+
 /// Appends a message of a key with its type, and a value.
 fn keyed(into: &mut Vec<u8>, kind: u8, key: &str, value: &[u8]) {
     message(into, kind, &[&[key.len() as u8], key.as_bytes(), value]);

@@ -5,6 +5,7 @@ mod row;
 mod topics;
 mod writer;
 
+pub use bytes::entry_length;
 pub use row::Row;
 pub use topics::{TOPICS, Topic};
 pub use writer::ULogWriter;

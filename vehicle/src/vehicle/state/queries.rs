@@ -22,7 +22,7 @@ use crate::foreign::{ForeignDescription, ForeignMotion};
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanKind, Plans, Site};
-use crate::world::LocalFrame;
+use crate::world::{LocalFrame, ToldFrame};
 
 impl Vehicle {
     /// Whose conventions it follows.
@@ -103,6 +103,11 @@ impl Vehicle {
     /// The local frame.
     pub fn frame(&self) -> &LocalFrame {
         self.setup.frame()
+    }
+
+    /// The local frame in which clients count.
+    pub fn told_frame(&self) -> &ToldFrame {
+        self.setup.told_frame()
     }
 
     /// Velocity of the air, NED, m/s.
