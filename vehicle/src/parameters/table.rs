@@ -4,6 +4,7 @@ use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 
 use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
+use super::equipment_parameters::equipment_parameters;
 use super::limit_names::LIMIT_NAMES;
 use super::loop_access::write;
 use super::loop_names::loop_name;
@@ -59,6 +60,7 @@ impl ParameterTable {
             (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
         };
         let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
+        let carried = equipment_parameters().filter(|_| ardupilot);
         let of_conduct = CONDUCT_PARAMETERS
             .iter()
             .chain(own)
@@ -66,6 +68,7 @@ impl ParameterTable {
             .chain(radio_parameters(ardupilot))
             .chain(around)
             .chain(simulated)
+            .chain(carried)
             .flat_map(|parameter| {
                 let names = parameter.names_in(identity);
                 names.map(|(id, scale, is_other)| Entry {
