@@ -54,13 +54,11 @@ impl ParameterTable {
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
         let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
-        let (own, of_modes) = if ardupilot {
-            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
+        let (own, of_modes, around) = if ardupilot {
+            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS, ARDUPILOT_SURROUNDINGS)
         } else {
-            (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
+            (PX4_PARAMETERS, PX4_MODE_PARAMETERS, PX4_SURROUNDINGS)
         };
-        let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
-        let carried = equipment_parameters().filter(|_| ardupilot);
         let of_conduct = CONDUCT_PARAMETERS
             .iter()
             .chain(own)
@@ -68,7 +66,7 @@ impl ParameterTable {
             .chain(radio_parameters(ardupilot))
             .chain(around)
             .chain(simulated)
-            .chain(carried)
+            .chain(equipment_parameters().filter(|_| ardupilot))
             .flat_map(|parameter| {
                 let names = parameter.names_in(identity);
                 names.map(|(id, scale, is_other)| Entry {

@@ -51,6 +51,11 @@ impl PrecisionLanding {
         self.target.filter(|_| self.told).map(|(target_m, ..)| target_m)
     }
 
+    /// North and east of it, m, if landings go to it.
+    pub fn place_m(&self, settings: &PrecisionSettings) -> Option<[f64; 2]> {
+        self.target_m().filter(|_| settings.enabled).map(|target_m| target_m.xy().into())
+    }
+
     /// When it was seen last, µs.
     pub fn seen_us(&self) -> Option<u64> {
         self.target.map(|(.., seen_us)| seen_us)

@@ -103,13 +103,9 @@ impl Vehicle {
 
     fn around(settings: &VehicleSettings, closed_loop: ClosedLoop) -> Self {
         let configuration = settings.flown_configuration();
-        let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
-            let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
-            Navigation::new(settings.sensors.seed, start)
-        });
-        let perception = Perception::new(&closed_loop, navigation);
-        let frame = LocalFrame::new(settings.origin);
         let home_m = Vector3::from(configuration.initial.position_m);
+        let perception = Perception::new(&closed_loop, navigation(settings, home_m));
+        let frame = LocalFrame::new(settings.origin);
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
@@ -366,6 +362,14 @@ impl Vehicle {
     }
 }
 
+/// Instruments and estimator of a vehicle that flies by them, and is told that it stands at a place, NED, m.
+fn navigation(settings: &VehicleSettings, start_m: Vector3<f64>) -> Option<Navigation> {
+    (settings.sensors.model == SensorModel::Realistic).then(|| {
+        let start = Estimate::unaligned(start_m, settings.heading_rad);
+        Navigation::new(settings.sensors.seed, start)
+    })
+}
+
 /// The situation that is shown to the machines of a vehicle.
 fn situation<'a>(
     setup: &'a Setup,
@@ -409,11 +413,7 @@ fn situation<'a>(
         region: decided.region(),
         landed: landing.is_landed(),
         lost_rotor: machines.rotors.lost_rotor(),
-        landing_target_m: machines
-            .precision
-            .target_m()
-            .filter(|_| conduct.precision.enabled)
-            .map(|target_m| target_m.xy().into()),
+        landing_target_m: machines.precision.place_m(&conduct.precision),
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         fence_is_on: conduct.failsafe.fence_enabled || machines.fence.is_on_by_itself(),

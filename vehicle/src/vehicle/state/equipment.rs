@@ -27,7 +27,7 @@ impl Vehicle {
             self.refuse_functions(*channel)?;
         }
         if matches!(operation, Operation::MoveLandingGear { .. }) && !self.conduct().equipment.landing_gear {
-            return Err(Refusal::Unsupported("no landing gear; LGR_ENABLE = 1 adds one".to_owned()));
+            return Err(Refusal::Failed("no landing gear; LGR_ENABLE = 1 adds one".to_owned()));
         }
         let around = self.surroundings();
         self.machines.equipment.operate(operation, &around)?;
