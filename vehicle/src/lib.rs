@@ -44,12 +44,13 @@ pub use flight_error::FlightError;
 pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions,
-    BatteryLimits, BatteryPack, Cause, ChangeError, Conduct, Encounter, Failsafe, FailsafeSettings,
-    FenceOptions, FenceParts, FenceRecord, FenceStart, FollowHeading, FollowHeight, FollowSettings,
-    HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest, Notice,
-    ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus, Pilot,
-    PositionSetPoint, Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId,
-    SetPoint, Severity, Simulated, SteeringKind, StickSettings, Sticks, SurroundingsSettings, TICK_US,
-    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle,
-    VehicleSettings, Weakness, YawTarget, wrapped,
+    BatteryLimits, BatteryPack, BeaconBeam, Cause, ChangeError, Conduct, Encounter, Failsafe,
+    FailsafeSettings, FenceOptions, FenceParts, FenceRecord, FenceStart, FollowHeading, FollowHeight,
+    FollowSettings, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus, MotorTest,
+    Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
+    Pilot, PositionSetPoint, PrecisionLanding, PrecisionSettings, Pulses, Recovery, Refusal, RemoteId,
+    Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Sighting, Simulated, SteeringKind,
+    StickSettings, Sticks, SurroundingsSettings, TICK_US, TargetReport, Threat, TrackedAttitude,
+    TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings, Weakness, YawTarget,
+    wrapped,
 };

@@ -15,6 +15,7 @@ mod interface;
 pub(crate) mod registry;
 
 mod action;
+mod button;
 mod calibration;
 mod command;
 mod component_metadata;
@@ -28,6 +29,7 @@ mod greeting;
 pub(crate) mod heartbeat;
 mod high_latency;
 mod identification;
+mod landing_target;
 mod log;
 mod log_stream;
 mod magnetometer_calibration;

@@ -216,7 +216,7 @@ impl Camera {
             trigger: self.triggers,
             time_us: around.time_us,
             position_m: around.position_m,
-            home_z_m: around.home_z_m,
+            home_z_m: around.home_m.z,
             attitude_rad: around.attitude_rad,
             camera_attitude_rad,
         });
@@ -237,12 +237,16 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::{Camera, STORAGE_MIB, Surroundings, Vector3};
+    use crate::equipment::MountSettings;
 
     fn around(time_us: u64) -> Surroundings {
         Surroundings {
             time_us,
             position_m: Vector3::new(1.0, 2.0, -3.0),
-            home_z_m: 0.0,
+            home_m: Vector3::zeros(),
+            mount: MountSettings::default(),
+            deflections: [0.0; 3],
+            radio_is_lost: false,
             attitude_rad: Vector3::zeros(),
             region_m: None,
             looks: false,

@@ -6,7 +6,9 @@ use super::camera::Camera;
 use super::controller::GimbalControl;
 use super::gimbal::Gimbal;
 use super::gripper::Gripper;
+use super::mount::MountSettings;
 use super::operation::{Operation, Pointing};
+use super::parachute::Parachute;
 use super::relays::Relays;
 use super::servos::{FIRST_FREE_CHANNEL, Servos};
 use super::surroundings::Surroundings;
@@ -22,12 +24,20 @@ pub struct Equipment {
     servos: Servos,
     relays: Relays,
     gripper: Gripper,
+    /// Where the landing gear is; `None`: it hangs loose.
+    landing_gear_is_down: Option<bool>,
+    parachute: Parachute,
     camera: Camera,
     gimbal: Gimbal,
     gimbal_control: GimbalControl,
 }
 
 impl Equipment {
+    /// With a gimbal that is mounted so.
+    pub fn new(mount: &MountSettings) -> Self {
+        Self { gimbal: Gimbal::mounted(mount), ..Self::default() }
+    }
+
     /// The servo outputs.
     pub fn servos(&self) -> &Servos {
         &self.servos
@@ -41,6 +51,21 @@ impl Equipment {
     /// The gripper.
     pub fn gripper(&self) -> &Gripper {
         &self.gripper
+    }
+
+    /// Whether the landing gear is down; `None`: it hangs loose, as nobody has moved it.
+    pub fn landing_gear_is_down(&self) -> Option<bool> {
+        self.landing_gear_is_down
+    }
+
+    /// The parachute.
+    pub fn parachute(&self) -> &Parachute {
+        &self.parachute
+    }
+
+    /// The parachute, to be released or opened.
+    pub fn parachute_mut(&mut self) -> &mut Parachute {
+        &mut self.parachute
     }
 
     /// The camera.
@@ -83,6 +108,7 @@ impl Equipment {
     /// [`Refusal`] of what there is not, or not now.
     pub fn operate(&mut self, operation: &Operation, around: &Surroundings) -> Result<(), Refusal> {
         let now_us = around.time_us;
+        self.gimbal.mount(&around.mount);
         match *operation {
             Operation::SetServo { channel, pulse_us } => self.servos.set(channel, pulse_us),
             Operation::RepeatServo { channel, pulse_us, cycles, period_s } => {
@@ -97,19 +123,38 @@ impl Equipment {
                 self.gripper.command(grabs, now_us);
                 Ok(())
             }
+            Operation::MoveLandingGear { down } => {
+                self.landing_gear_is_down = Some(down);
+                Ok(())
+            }
             Operation::Point(pointing) => {
                 self.gimbal.point(&pointing, around.attitude_rad.z);
                 Ok(())
             }
-            Operation::CentreGimbal => {
-                self.gimbal.centre();
-                Ok(())
-            }
-            Operation::RetractGimbal => {
-                self.gimbal.retract();
+            Operation::CentreGimbal
+            | Operation::RetractGimbal
+            | Operation::SetGimbalMode(_)
+            | Operation::HoldGimbal
+            | Operation::LockGimbal
+            | Operation::LookAt(_)
+            | Operation::UnlockGimbal { .. } => {
+                self.operate_gimbal(operation, around);
                 Ok(())
             }
             of_camera => self.operate_camera(&of_camera, around),
+        }
+    }
+
+    fn operate_gimbal(&mut self, operation: &Operation, around: &Surroundings) {
+        match *operation {
+            Operation::CentreGimbal => self.gimbal.centre(),
+            Operation::RetractGimbal => self.gimbal.retract(),
+            Operation::SetGimbalMode(mode) => self.gimbal.set_mode(mode),
+            Operation::HoldGimbal => self.gimbal.stay(),
+            Operation::LockGimbal => self.gimbal.lock_on(around),
+            Operation::UnlockGimbal { forget } => self.gimbal.look_off(forget),
+            Operation::LookAt(place_m) => self.gimbal.look_at(place_m),
+            _ => {}
         }
     }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::mount::{GimbalMode, MountSettings};
 use super::operation::Pointing;
 use super::surroundings::Surroundings;
 use crate::wrapped;
@@ -19,8 +20,8 @@ pub struct GimbalLimits {
     pub rate_rad_s: f64,
 }
 
-/// Where the parts that are folded away point, rad.
-const FOLDED_RAD: f64 = -core::f64::consts::FRAC_PI_2;
+/// Roll, pitch and yaw of ours when it is folded away, rad.
+const FOLDED_RAD: [f64; 3] = [0.0, -core::f64::consts::FRAC_PI_2, 0.0];
 
 /// What an axis is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +33,7 @@ enum Demand {
 }
 
 /// What it is pointed at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Aim {
     /// The horizon ahead.
     Neutral,
@@ -42,6 +43,12 @@ enum Aim {
     Demands,
     /// What the vehicle looks at.
     Region,
+    /// A place, NED, m, while it is locked on that.
+    Place(Vector3<f64>),
+    /// Home.
+    Home,
+    /// Where the pilot's channels point it.
+    Radio,
 }
 
 /// The gimbal.
@@ -58,6 +65,10 @@ pub struct Gimbal {
     rates_rad_s: Vector3<f64>,
     /// Whether the vehicle looked at something.
     looked: bool,
+    /// The place that it was locked on, NED, m.
+    locked_on_m: Option<Vector3<f64>>,
+    /// How it is mounted.
+    mount: MountSettings,
 }
 
 impl GimbalLimits {
@@ -85,11 +96,92 @@ impl Default for Gimbal {
             angles_rad: Vector3::zeros(),
             rates_rad_s: Vector3::zeros(),
             looked: false,
+            locked_on_m: None,
+            mount: MountSettings::default(),
         }
     }
 }
 
 impl Gimbal {
+    /// Mounted by these settings, in its first mode.
+    pub fn mounted(mount: &MountSettings) -> Self {
+        let mut gimbal = Self { mount: *mount, ..Self::default() };
+        gimbal.set_mode(mount.resting_mode());
+        gimbal
+    }
+
+    /// It is mounted so from now on.
+    pub fn mount(&mut self, mount: &MountSettings) {
+        self.mount = *mount;
+    }
+
+    /// Changes to a mode.
+    pub fn set_mode(&mut self, mode: GimbalMode) {
+        match mode {
+            GimbalMode::Retracted => self.retract(),
+            GimbalMode::Neutral => self.centre(),
+            GimbalMode::Commands => self.stay(),
+            GimbalMode::Radio => self.aim = Aim::Radio,
+            GimbalMode::Home => self.aim = Aim::Home,
+            // Without anything to be looked at it stays.
+            GimbalMode::Region if self.looked => self.aim = Aim::Region,
+            GimbalMode::Region => {}
+        }
+    }
+
+    /// Stays at the angles that it has, or that commands ask for.
+    pub fn stay(&mut self) {
+        if self.aim != Aim::Demands {
+            let [roll, pitch, yaw] = self.angles_rad.data.0[0].map(|angle| self.to(angle));
+            *self = Self { aim: Aim::Demands, roll, pitch, yaw, yaw_lock: false, ..*self };
+        }
+    }
+
+    /// Locks on the place at which it looks, on the ground at `ground_z_m`, or on the one that it was locked on before.
+    pub fn lock_on(&mut self, around: &Surroundings) {
+        let seen = || self.seen_on_the_ground(around);
+        if let Some(place_m) = self.locked_on_m.or_else(seen) {
+            (self.locked_on_m, self.aim) = (Some(place_m), Aim::Place(place_m));
+        }
+    }
+
+    /// Looks at a place, NED, m.
+    pub fn look_at(&mut self, place_m: Vector3<f64>) {
+        self.aim = Aim::Place(place_m);
+    }
+
+    /// Looks elsewhere than at the place that it is locked on, which it forgets if that is asked for.
+    pub fn look_off(&mut self, forget: bool) {
+        self.locked_on_m = self.locked_on_m.filter(|_| !forget);
+        if matches!(self.aim, Aim::Place(_)) {
+            self.set_mode(self.mount.resting_mode());
+        }
+    }
+
+    /// Where its view meets the ground, NED, m; `None` above the horizon.
+    fn seen_on_the_ground(&self, around: &Surroundings) -> Option<Vector3<f64>> {
+        let [_, pitch_rad, _] = self.angles_rad.data.0[0];
+        let heading_rad = self.yaw_in(true, around.attitude_rad.z);
+        let ahead = libm::cos(pitch_rad);
+        let view = Vector3::new(
+            ahead * libm::cos(heading_rad),
+            ahead * libm::sin(heading_rad),
+            -libm::sin(pitch_rad),
+        );
+        let below_m = around.home_m.z - around.position_m.z;
+        (view.z > 0.0 && below_m > 0.0).then(|| around.position_m + view * (below_m / view.z))
+    }
+
+    /// Whether the pilot's channels point it.
+    pub fn is_pointed_by_radio(&self) -> bool {
+        self.aim == Aim::Radio
+    }
+
+    /// A demand for an angle, rad, as fast as it can.
+    fn to(&self, angle_rad: f64) -> Demand {
+        Demand::Angle(angle_rad, self.mount.limits().rate_rad_s)
+    }
+
     /// Roll and pitch to the horizon and yaw from the nose, rad.
     pub fn angles_rad(&self) -> Vector3<f64> {
         self.angles_rad
@@ -100,9 +192,15 @@ impl Gimbal {
         self.rates_rad_s
     }
 
-    /// Whether its yaw is kept from north.
+    /// Whether its yaw is told from north.
     pub fn is_locked(&self) -> bool {
-        self.yaw_lock || self.aim == Aim::Region
+        // ArduPilot tells the yaw of its mounts from the nose.
+        self.is_kept_from_north() && !self.mount.is_set_up()
+    }
+
+    /// Whether its yaw is kept from north.
+    fn is_kept_from_north(&self) -> bool {
+        self.yaw_lock || matches!(self.aim, Aim::Region | Aim::Place(_) | Aim::Home)
     }
 
     /// Whether it points to the horizon ahead.
@@ -122,7 +220,7 @@ impl Gimbal {
 
     /// Whether roll, pitch and yaw are at a limit that holds them back.
     pub fn at_limit(&self) -> [bool; 3] {
-        let limits = GimbalLimits::OURS;
+        let limits = self.mount.limits();
         let at = |angle: f64, [low, high]: [f64; 2]| angle <= low || angle >= high;
         let [roll, pitch, _] = self.angles_rad.data.0[0];
         // The yaw goes round and round.
@@ -131,7 +229,7 @@ impl Gimbal {
 
     /// Points it.
     pub fn point(&mut self, to: &Pointing, heading_rad: f64) {
-        let fastest = GimbalLimits::OURS.rate_rad_s;
+        let fastest = self.mount.limits().rate_rad_s;
         let [roll_rad, pitch_rad, _] = self.angles_rad.data.0[0];
         let demand = |angle: Option<f64>, rate: Option<f64>, now: Demand, held: f64| match (angle, rate) {
             (Some(angle), rate) => {
@@ -155,17 +253,20 @@ impl Gimbal {
         (self.aim, self.yaw_lock) = (Aim::Demands, to.yaw_lock);
     }
 
-    /// Points it to the horizon ahead.
+    /// Points it ahead: to the horizon, or as it is set up.
     pub fn centre(&mut self) {
-        let ahead = Demand::Angle(0.0, GimbalLimits::OURS.rate_rad_s);
-        *self = Self { aim: Aim::Neutral, roll: ahead, pitch: ahead, yaw: ahead, yaw_lock: false, ..*self };
+        self.turn_to(Aim::Neutral, if self.mount.is_set_up() { self.mount.neutral_rad } else { [0.0; 3] });
     }
 
     /// Folds it away.
     pub fn retract(&mut self) {
-        self.centre();
-        self.pitch = Demand::Angle(FOLDED_RAD, GimbalLimits::OURS.rate_rad_s);
-        self.aim = Aim::Retracted;
+        let folded_rad = if self.mount.is_set_up() { self.mount.folded_rad } else { FOLDED_RAD };
+        self.turn_to(Aim::Retracted, folded_rad);
+    }
+
+    fn turn_to(&mut self, aim: Aim, angles_rad: [f64; 3]) {
+        let [roll, pitch, yaw] = angles_rad.map(|angle| self.to(angle));
+        *self = Self { aim, roll, pitch, yaw, yaw_lock: false, ..*self };
     }
 
     /// Yaw from the nose, or from north, rad.
@@ -181,7 +282,8 @@ impl Gimbal {
         };
         let [roll, pitch, yaw] = self.angles_rad.data.0[0];
         looks == self.looked
-            && !self.is_locked()
+            && !self.is_kept_from_north()
+            && self.aim != Aim::Radio
             && still(self.roll, roll)
             && still(self.pitch, pitch)
             && still(self.yaw, yaw)
@@ -190,25 +292,49 @@ impl Gimbal {
 
     /// Moves on by a time, s.
     pub fn step(&mut self, around: &Surroundings, dt_s: f64) {
+        self.mount(&around.mount);
         self.notice_region(around);
-        let limits = GimbalLimits::OURS;
-        let fastest = limits.rate_rad_s;
-        let (mut roll, mut pitch, mut yaw) = (self.roll, self.pitch, self.yaw);
-        if self.aim == Aim::Region {
-            let [pitch_rad, yaw_rad] = direction(around).unwrap_or([0.0, around.attitude_rad.z]);
-            (roll, pitch) = (Demand::Angle(0.0, fastest), Demand::Angle(pitch_rad, fastest));
-            yaw = Demand::Angle(yaw_rad, fastest);
-        }
+        let limits = self.mount.limits();
+        let (roll, pitch, yaw) = self.demands(around);
         let before_rad = self.angles_rad;
         let heading_rad = around.attitude_rad.z;
-        let now_yaw_rad = self.yaw_in(self.is_locked(), heading_rad);
+        let now_yaw_rad = self.yaw_in(self.is_kept_from_north(), heading_rad);
         let yaw_step = step_of(yaw, now_yaw_rad, true, dt_s);
         self.angles_rad.x = moved(before_rad.x, step_of(roll, before_rad.x, false, dt_s), limits.roll_rad);
         self.angles_rad.y = moved(before_rad.y, step_of(pitch, before_rad.y, false, dt_s), limits.pitch_rad);
-        self.angles_rad.z = wrapped(before_rad.z + yaw_step);
+        let [least_rad, most_rad] = limits.yaw_rad;
+        self.angles_rad.z = wrapped(before_rad.z + yaw_step).clamp(least_rad, most_rad);
         let change = self.angles_rad - before_rad;
         self.rates_rad_s = Vector3::new(change.x, change.y, wrapped(change.z)) / dt_s;
         self.keep_lock(heading_rad);
+    }
+
+    /// What its axes are to do now: roll, pitch, and yaw from north or from the nose.
+    fn demands(&self, around: &Surroundings) -> (Demand, Demand, Demand) {
+        let place_m = match self.aim {
+            Aim::Region => around.region_m,
+            Aim::Place(place_m) => Some(place_m),
+            Aim::Home => Some(around.home_m),
+            Aim::Radio => return self.asked_by_radio(around),
+            Aim::Neutral | Aim::Retracted | Aim::Demands => return (self.roll, self.pitch, self.yaw),
+        };
+        let ahead = [0.0, around.attitude_rad.z];
+        let [pitch_rad, yaw_rad] = place_m.map_or(ahead, |place_m| direction(&place_m, around));
+        (self.to(0.0), self.to(pitch_rad), self.to(yaw_rad))
+    }
+
+    /// Where the pilot's channels point it: angles between its limits, or rates, which end with the radio.
+    fn asked_by_radio(&self, around: &Surroundings) -> (Demand, Demand, Demand) {
+        let rate_rad_s = around.mount.radio_rate_rad_s;
+        let asked = |deflection: f64, [least_rad, most_rad]: [f64; 2]| {
+            if rate_rad_s > 0.0 {
+                Demand::Rate(if around.radio_is_lost { 0.0 } else { deflection * rate_rad_s })
+            } else {
+                self.to(least_rad + (deflection + 1.0) / 2.0 * (most_rad - least_rad))
+            }
+        };
+        let ([roll, pitch, yaw], limits) = (around.deflections, self.mount.limits());
+        (asked(roll, limits.roll_rad), asked(pitch, limits.pitch_rad), asked(yaw, limits.yaw_rad))
     }
 
     /// While the yaw is locked and turns on by a rate, the angle that it has is the one that is kept.
@@ -216,7 +342,7 @@ impl Gimbal {
         if let (Demand::Rate(rate), true) = (self.yaw, self.yaw_lock)
             && rate == 0.0
         {
-            self.yaw = Demand::Angle(self.yaw_in(true, heading_rad), GimbalLimits::OURS.rate_rad_s);
+            self.yaw = self.to(self.yaw_in(true, heading_rad));
         }
     }
 
@@ -224,7 +350,7 @@ impl Gimbal {
     fn notice_region(&mut self, around: &Surroundings) {
         match (around.looks, self.looked) {
             (true, false) => self.aim = Aim::Region,
-            (false, true) if self.aim == Aim::Region => self.centre(),
+            (false, true) if self.aim == Aim::Region => self.set_mode(around.mount.resting_mode()),
             _ => {}
         }
         self.looked = around.looks;
@@ -236,13 +362,13 @@ impl Gimbal {
     }
 }
 
-/// Pitch and yaw from north to what is looked at, rad.
-fn direction(around: &Surroundings) -> Option<[f64; 2]> {
-    let way = around.region_m? - around.position_m;
+/// Pitch and yaw from north to a place, NED, m: rad.
+fn direction(place_m: &Vector3<f64>, around: &Surroundings) -> [f64; 2] {
+    let way = place_m - around.position_m;
     let level_m = way.xy().norm();
     let pitch_rad = libm::atan2(-way.z, level_m);
     let yaw_rad = if level_m > 1e-3 { libm::atan2(way.y, way.x) } else { around.attitude_rad.z };
-    Some([pitch_rad, yaw_rad])
+    [pitch_rad, yaw_rad]
 }
 
 /// By how much an axis that is at an angle, rad, moves in a time, s.
@@ -261,79 +387,4 @@ fn moved(angle_rad: f64, by_rad: f64, [low, high]: [f64; 2]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
-
-    use super::{Gimbal, GimbalLimits, Pointing, Surroundings, Vector3};
-
-    fn around(yaw_rad: f64) -> Surroundings {
-        Surroundings {
-            time_us: 0,
-            position_m: Vector3::new(0.0, 0.0, -10.0),
-            home_z_m: 0.0,
-            attitude_rad: Vector3::new(0.0, 0.0, yaw_rad),
-            region_m: None,
-            looks: false,
-        }
-    }
-
-    fn settle(gimbal: &mut Gimbal, around: &Surroundings) -> [f64; 3] {
-        for _ in 0..3_000 {
-            gimbal.step(around, 0.001);
-        }
-        gimbal.angles_rad().data.0[0]
-    }
-
-    fn near(one: [f64; 3], other: [f64; 3]) -> bool {
-        one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-6)
-    }
-
-    #[test]
-    fn yaw_follows_the_nose_or_is_kept_from_north() {
-        let mut gimbal = Gimbal::default();
-        assert!(gimbal.rests(false));
-        let down = Pointing { pitch_rad: Some(-FRAC_PI_2), yaw_rad: Some(0.5), ..Pointing::default() };
-        gimbal.point(&down, 1.0);
-        assert!(near(settle(&mut gimbal, &around(1.0)), [0.0, -FRAC_PI_2, 0.5]));
-        assert!(near(settle(&mut gimbal, &around(2.0)), [0.0, -FRAC_PI_2, 0.5]));
-        gimbal.point(&Pointing { yaw_lock: true, ..down }, 2.0);
-        assert!(near(settle(&mut gimbal, &around(2.0)), [0.0, -FRAC_PI_2, -1.5]));
-        assert!(near(settle(&mut gimbal, &around(0.5)), [0.0, -FRAC_PI_2, 0.0]));
-        gimbal.centre();
-        assert!(near(settle(&mut gimbal, &around(0.5)), [0.0; 3]) && gimbal.rests(false));
-    }
-
-    #[test]
-    fn it_turns_at_its_rate_and_stops_at_its_limits() {
-        let mut gimbal = Gimbal::default();
-        let up = Pointing { pitch_rate_rad_s: Some(0.2), yaw_rate_rad_s: Some(-0.3), ..Pointing::default() };
-        gimbal.point(&up, 0.0);
-        for _ in 0..1_000 {
-            gimbal.step(&around(0.0), 0.001);
-        }
-        assert!(near(gimbal.angles_rad().data.0[0], [0.0, 0.2, -0.3]), "{gimbal:?}");
-        assert!((gimbal.rates_rad_s() - Vector3::new(0.0, 0.2, -0.3)).norm() < 1e-6);
-        gimbal.point(&Pointing { pitch_rad: Some(FRAC_PI_2), ..Pointing::default() }, 0.0);
-        assert_eq!(settle(&mut gimbal, &around(0.0))[1], FRAC_PI_4);
-        assert_eq!(gimbal.at_limit(), [false, true, false]);
-        gimbal.point(&Pointing { pitch_rad: Some(0.0), ..Pointing::default() }, 0.0);
-        gimbal.step(&around(0.0), 0.1);
-        assert!((gimbal.rates_rad_s().y + GimbalLimits::OURS.rate_rad_s).abs() < 1e-9, "no faster");
-    }
-
-    #[test]
-    fn it_tracks_what_is_looked_at() {
-        let mut gimbal = Gimbal::default();
-        let looking =
-            Surroundings { region_m: Some(Vector3::new(0.0, 10.0, 0.0)), looks: true, ..around(0.25) };
-        assert!(!gimbal.rests(true));
-        assert!(near(settle(&mut gimbal, &looking), [0.0, -FRAC_PI_4, FRAC_PI_2 - 0.25]));
-        // Who points it elsewhere takes it off the place, which then ends for it, too.
-        gimbal.point(&Pointing { pitch_rad: Some(0.1), yaw_rad: Some(0.0), ..Pointing::default() }, 0.25);
-        assert!(near(settle(&mut gimbal, &looking), [0.0, 0.1, 0.0]));
-        assert!(near(settle(&mut gimbal, &around(0.25)), [0.0, 0.1, 0.0]));
-        settle(&mut gimbal, &looking);
-        assert!(gimbal.tracks());
-        assert!(near(settle(&mut gimbal, &around(0.25)), [0.0; 3]), "ahead again");
-    }
-}
+mod tests;

@@ -1,7 +1,11 @@
 //! What can be asked of the equipment.
 
+use nalgebra::Vector3;
+
 use super::camera::CameraMode;
 use super::lens::Drive;
+use super::mount::GimbalMode;
+use super::parachute::ParachuteOrder;
 use super::trigger::Oblique;
 
 /// How a relay is switched.
@@ -78,4 +82,18 @@ pub enum Operation {
     CentreGimbal,
     /// Folds it away.
     RetractGimbal,
+    /// Lets others point it, or at something else.
+    SetGimbalMode(GimbalMode),
+    /// Keeps it at its angles.
+    HoldGimbal,
+    /// Locks it on the place on the ground that it sees, or on the one that it was locked on before.
+    LockGimbal,
+    /// Points the gimbal at a place, NED, m.
+    LookAt(Vector3<f64>),
+    /// Lets go of that place, and forgets it if that is asked for.
+    UnlockGimbal { forget: bool },
+    /// Moves the landing gear.
+    MoveLandingGear { down: bool },
+    /// Asks something of the parachute.
+    Parachute(ParachuteOrder),
 }

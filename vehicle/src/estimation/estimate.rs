@@ -20,6 +20,8 @@ pub struct Estimate {
     pub test_ratios: TestRatios,
     /// How often position, height or velocity have been set anew because measurements contradicted them for long.
     pub resets: u32,
+    /// When it started again last, as the inertial unit contradicted the receiver, µs.
+    pub restarted_us: Option<u64>,
 }
 
 /// What of an estimate can be flown by.
@@ -85,6 +87,7 @@ impl Estimate {
             vertical_accuracy_m: 0.0,
             test_ratios: TestRatios::default(),
             resets: 0,
+            restarted_us: None,
         }
     }
 }

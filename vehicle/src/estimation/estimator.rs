@@ -106,8 +106,9 @@ impl Estimator {
         self.read(reading, dt_s);
     }
 
-    /// Takes a fix in, and tells whether it fitted.
-    pub fn gps(&mut self, fix: &GpsFix) -> bool {
+    /// Takes a fix in, and tells whether it fitted. `starts_again` tells whether a receiver that goes on contradicting the inertial unit
+    /// is believed in its place.
+    pub fn gps(&mut self, fix: &GpsFix, starts_again: bool) -> bool {
         if !self.filter.is_initialized() {
             return true;
         }
@@ -130,7 +131,7 @@ impl Estimator {
         );
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
         self.hold_back(&before);
-        if self.lockout.update(fix, fitted(motion)) {
+        if self.lockout.update(fix, fitted(motion)) && starts_again {
             self.start_again(fix);
         }
         fitted(place.horizontal) && fitted(place.height) && fitted(motion)
@@ -228,7 +229,10 @@ impl Estimator {
             State { velocity: Velocity::from_array(single(&fix.velocity_m_s)), ..self.filter.state() };
         let doubts = Covariance::from_sigmas(tuning::DOUBTS);
         match self.filter.initialize_from(state, doubts, Timestamp::from_micros(self.predicted_us)) {
-            Ok(_) => self.resets += 1,
+            Ok(_) => {
+                self.resets += 1;
+                self.estimate.restarted_us = Some(self.predicted_us);
+            }
             Err(error) => tracing::warn!(%error, "the estimator does not start again"),
         }
     }

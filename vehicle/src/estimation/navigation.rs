@@ -185,7 +185,8 @@ impl Navigation {
             None => fix,
         });
         if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
-            let fitted = self.estimator.gps(&fix);
+            let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
+            let fitted = self.estimator.gps(&fix, starts_again);
             self.gps_trust.update(fitted, gps::PERIOD_US);
             self.gps_watch.update(time_us, fix.position_m.into());
             self.readings.gps = Some(fix);

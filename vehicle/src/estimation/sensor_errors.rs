@@ -71,6 +71,8 @@ pub struct SensorSwitches {
     pub barometer_control: bool,
     /// Whether the magnetometer is used (EKF2_MAG_TYPE: 5 is not at all).
     pub magnetometer: MagnetometerUse,
+    /// Whether the estimator starts again by a receiver that goes on contradicting the inertial unit (FS_VIBE_ENABLE).
+    pub starts_again: bool,
     /// Whether the barometer says nothing.
     pub barometer_off: bool,
     /// Whether the barometer repeats itself.
@@ -130,6 +132,7 @@ impl Default for SensorSwitches {
             gps_control: 7.0,
             barometer_control: true,
             magnetometer: MagnetometerUse::Automatic,
+            starts_again: true,
             barometer_off: false,
             barometer_frozen: false,
             magnetometer_off: false,

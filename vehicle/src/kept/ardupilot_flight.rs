@@ -107,7 +107,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("FENCE_ALT_MIN_TP", 1, 0..=3, "", "What FENCE_ALT_MIN is above; here home"),
         ("RALLY_INCL_HOME", 1, 0..=1, "", "Home counts as a rally point"),
         ("FS_DR_ENABLE", 2, 0..=6, "", "Action when only dead reckoning is left; the estimate counts as lost then, see FS_EKF_ACTION"),
-        ("FS_VIBE_ENABLE", 1, 0..=1, "", "Compensation of vibrations; the estimator weighs heights and accelerations by itself"),
         ("INITIAL_MODE", 0, 0..=27, "", "Mode at the start; here Loiter"),
         ("ARMING_NEED_LOC", 0, 0..=1, "", "A place is needed to arm; modes that fly by it need one in any case"),
         ("ARMING_CRSDP_IGN", 0, 0..=1, "", "Arm in spite of a crash dump"),
@@ -119,8 +118,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("THROW_MOT_START", 0, 0..=1, "", "Motors before a throw; here they rest"),
         ("ZIGZ_AUTO_ENABLE", 0, 0..=1, "", "Automatic ZigZag; there is no such mode"),
         ("DEV_OPTIONS", 0, 0..=7, "", "Options for developers"),
-        ("PLND_ENABLED", 0, 0..=1, "", "Precision landing; there is no such sensor"),
-        ("PLND_TYPE", 0, 0..=4, "", "Sensor of the precision landing"),
         ("FHLD_BRAKE_RATE", 8, 1..=30, "deg/s", "Braking of FlowHold; there is no such mode"),
     ]),
 ];

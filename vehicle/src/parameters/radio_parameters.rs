@@ -1,7 +1,7 @@
 //! The pilot's radio and sticks by the names and numbers of both autopilots.
 
-use super::ConductParameter;
-use super::conduct_parameter::{bitmask, choice, real};
+use super::conduct_parameter::{bitmask, choice, real, switch};
+use super::{ConductParameter, NamedValue};
 use crate::radio::{InputChoice, PX4_SLOTS, RadioFailure, RadioLossAction, RudderArming};
 use crate::vehicle::Trainer;
 
@@ -31,6 +31,8 @@ macro_rules! whole {
         }
     };
 }
+
+pub(super) use whole as number;
 
 /// Ends, trim, dead zone and direction of one channel, and for ArduPilot the function of its switch.
 macro_rules! channel {
@@ -116,6 +118,54 @@ macro_rules! px4_channel {
     };
 }
 
+/// Pin and function of one button.
+macro_rules! button {
+    ($number:literal, $index:literal) => {
+        &[
+            whole!(
+                concat!("BTN_PIN", $number),
+                -1.0..=31.0,
+                conduct,
+                conduct.radio.buttons.buttons[$index].pin,
+                "",
+                "Pin of the button; -1: none"
+            ),
+            whole!(
+                concat!("BTN_FUNC", $number),
+                0.0..=400.0,
+                conduct,
+                conduct.radio.buttons.buttons[$index].function,
+                "",
+                "Function of the button, as of a switch (RCn_OPTION) that is high while it is pressed; 0: none"
+            ),
+            ConductParameter {
+                get: |conduct| f64::from(u8::from(conduct.radio.buttons.buttons[$index].inverted)) * INVERTED,
+                set: |conduct, value| {
+                    let means = value == 0.0 || value == INVERTED;
+                    if means {
+                        conduct.radio.buttons.buttons[$index].inverted = value == INVERTED;
+                    }
+                    means
+                },
+                names: || vec![NamedValue::new(0, "Pressed while high"), NamedValue::new(2, "Pressed while low")],
+                ..whole!(
+                    concat!("BTN_OPTIONS", $number),
+                    0.0..=2.0,
+                    conduct,
+                    conduct.radio.mode_channel,
+                    "",
+                    "When the button is pressed"
+                )
+            },
+        ]
+    };
+}
+
+/// The bit of BTN_OPTIONSn that inverts the pin.
+const INVERTED: f64 = 2.0;
+
+static BUTTONS: [Group; 4] = [button!("1", 0), button!("2", 1), button!("3", 2), button!("4", 3)];
+
 type Group = &'static [ConductParameter];
 
 macro_rules! all {
@@ -148,7 +198,8 @@ static PX4_CHANNELS: [Group; 16] = all!(px4_channel);
 pub fn radio_parameters(ardupilot: bool) -> impl Iterator<Item = &'static ConductParameter> {
     let (channels, others) =
         if ardupilot { (&ARDUPILOT_CHANNELS, ARDUPILOT_RADIO) } else { (&PX4_CHANNELS, PX4_RADIO) };
-    channels.iter().copied().flatten().chain(others)
+    let buttons = BUTTONS.iter().filter(move |_| ardupilot);
+    channels.iter().chain(buttons).copied().flatten().chain(others)
 }
 
 macro_rules! flight_mode {
@@ -183,6 +234,9 @@ static ARDUPILOT_RADIO: &[ConductParameter] = &[
     whole!("FS_THR_VALUE", 910.0..=1100.0, conduct, conduct.radio.low_throttle_us, "us", "Throttle below which the receiver has lost its sender"),
     real!("RC_OVERRIDE_TIME", None, -1.0..=120.0, radio.override_s, "s", "Time for which an override of a channel counts; -1 is for ever, 0 ignores overrides"),
     choice!("ARMING_RUDDER", RUDDER, radio.rudder, "What the rudder stick does that is held at an end with the throttle low"),
+    switch!("BTN_ENABLE", radio.buttons.enabled, "Look at buttons"),
+    real!("BTN_REPORT_SEND", None, 0.0..=3600.0, radio.buttons.told_s, "s", "For how long a change of the buttons is told (BUTTON_CHANGE)"),
+    bitmask!("SIM_PIN_MASK", PINS, radio.buttons.high_pins, same, same, "Pins of buttons that are simulated as high"),
     choice!("SIM_RC_FAIL", FAILURES, radio.failure, "Simulated failure of the receiver"),
     real!("ANGLE_MAX", None, 1000.0..=8000.0, sticks.lean_rad, 5_729.577_951_308_232, "cdeg", "Lean angle at full stick deflection"),
     real!("PILOT_Y_RATE", None, 1.0..=360.0, sticks.turn_rad_s, 57.295_779_513_082_32, "deg/s", "Rate of turn at full stick deflection"),
@@ -308,6 +362,10 @@ const OPTIONS: &[&str] = &[
     "Continue a landing",
     "Continue with a pilot without the ground station",
     "Release the gripper",
+];
+const PINS: &[&str] = &[
+    "Pin 0", "Pin 1", "Pin 2", "Pin 3", "Pin 4", "Pin 5", "Pin 6", "Pin 7", "Pin 8", "Pin 9", "Pin 10",
+    "Pin 11", "Pin 12", "Pin 13", "Pin 14", "Pin 15",
 ];
 const SLOTS: &[&str] = &["Position 1", "Position 2", "Position 3", "Position 4", "Position 5", "Position 6"];
 const OVERRIDES: &[&str] = &["Automatic modes", "Offboard"];

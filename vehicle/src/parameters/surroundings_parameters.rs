@@ -2,7 +2,7 @@
 
 use super::ConductParameter;
 use super::conduct_parameter::{choice, real, switch};
-use crate::vehicle::{Action, Conduct, Recovery};
+use crate::vehicle::{Action, BeaconBeam, Conduct, Recovery};
 
 /// A whole number.
 macro_rules! whole {
@@ -62,6 +62,16 @@ pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
     real!("AVD_F_DIST_Z", None, 0.0..=10_000.0, surroundings.traffic.near_vertical_m, "m", "Vertical distance of traffic that is too near"),
     real!("AVD_W_DIST_Z", None, 0.0..=10_000.0, surroundings.traffic.warning_vertical_m, "m", "Vertical distance of traffic that is reported"),
     real!("AVD_F_ALT_MIN", None, 0.0..=1000.0, surroundings.traffic.least_height_m, "m", "Height above home below which traffic is only reported"),
+    switch!("PLND_ENABLED", precision.enabled, "Land at a target that is seen"),
+    choice!("PLND_TYPE", LANDING_SENSORS, precision.sensor, "What sees the target of a landing"),
+    real!("PLND_XY_DIST_MAX", None, 0.0..=10.0, precision.farthest_m, "m", "Distance beside the target of a landing beyond which the vehicle does not sink; 0: it always sinks"),
+    switch!("SIM_PLD_ENABLE", precision.simulated, "Whether a target of landings is simulated"),
+    real!("SIM_PLD_LAT", None, -90.0..=90.0, precision.latitude_deg, "deg", "Latitude of the simulated target; 0 with SIM_PLD_LON 0: where the vehicle started"),
+    real!("SIM_PLD_LON", None, -180.0..=180.0, precision.longitude_deg, "deg", "Longitude of the simulated target"),
+    real!("SIM_PLD_HEIGHT", None, -1000.0..=1000.0, precision.height_m, "m", "Height of the simulated target above the start"),
+    real!("SIM_PLD_ALT_LMT", None, 0.0..=1000.0, precision.beam_height_m, "m", "Greatest height above the simulated target at which it is seen"),
+    real!("SIM_PLD_DIST_LMT", None, 0.0..=1000.0, precision.beam_radius_m, "m", "Greatest distance beside the simulated target at which it is seen"),
+    choice!("SIM_PLD_TYPE", BEAMS, precision.beam, "Shape of the beam of the simulated target"),
     switch!("DID_ENABLE", surroundings.remote_id, "Remote identification (Open Drone ID)"),
     switch!("DID_OPTIONS", surroundings.remote_id_to_arm, "Options of remote identification", ["None", "Needed to arm"]),
 ];
@@ -84,6 +94,17 @@ const RECOVERIES: &[(Recovery, i32, &str)] = &[
     (Recovery::Resume, 1, "Resume the mode before"),
     (Recovery::Return, 2, "Return"),
     (Recovery::ResumeMission, 3, "Resume the mission, else Loiter"),
+];
+const LANDING_SENSORS: &[(u8, i32, &str)] = &[
+    (0, 0, "None"),
+    (1, 1, "Companion computer (LANDING_TARGET)"),
+    (2, 2, "Infrared sensor of the simulated target"),
+    (4, 4, "Simulated target"),
+];
+const BEAMS: &[(BeaconBeam, i32, &str)] = &[
+    (BeaconBeam::Cylinder, 0, "Cylinder"),
+    (BeaconBeam::Cone, 1, "Cone"),
+    (BeaconBeam::Sphere, 2, "Sphere"),
 ];
 /// Names of PX4's values; the second and the third both switch it on.
 const REMOTE_ID: &[(bool, i32, &str)] =

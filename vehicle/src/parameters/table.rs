@@ -4,6 +4,7 @@ use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 
 use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
+use super::equipment_parameters::equipment_parameters;
 use super::limit_names::LIMIT_NAMES;
 use super::loop_access::write;
 use super::loop_names::loop_name;
@@ -53,12 +54,11 @@ impl ParameterTable {
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
         let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
-        let (own, of_modes) = if ardupilot {
-            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS)
+        let (own, of_modes, around) = if ardupilot {
+            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS, ARDUPILOT_SURROUNDINGS)
         } else {
-            (PX4_PARAMETERS, PX4_MODE_PARAMETERS)
+            (PX4_PARAMETERS, PX4_MODE_PARAMETERS, PX4_SURROUNDINGS)
         };
-        let around = if ardupilot { ARDUPILOT_SURROUNDINGS } else { PX4_SURROUNDINGS };
         let of_conduct = CONDUCT_PARAMETERS
             .iter()
             .chain(own)
@@ -66,6 +66,7 @@ impl ParameterTable {
             .chain(radio_parameters(ardupilot))
             .chain(around)
             .chain(simulated)
+            .chain(equipment_parameters().filter(|_| ardupilot))
             .flat_map(|parameter| {
                 let names = parameter.names_in(identity);
                 names.map(|(id, scale, is_other)| Entry {

@@ -78,6 +78,7 @@ pub const NAV_FENCE_CIRCLE_EXCLUSION: u16 = 5004;
 pub const NAV_RALLY_POINT: u16 = 5100;
 pub const NAV_SCRIPT_TIME: u16 = 42702;
 pub const DO_WINCH: u16 = 42600;
+pub const AIRFRAME_CONFIGURATION: u16 = 2520;
 
 /// What is known of a command of missions.
 pub(super) struct MissionCommand {

@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 
 use super::command::*;
 use super::step::{Do, Step};
-use crate::equipment::{CameraMode, Drive, Oblique, Operation, Pointing, Switch};
+use crate::equipment::{CameraMode, Drive, GimbalMode, Oblique, Operation, ParachuteOrder, Pointing, Switch};
 use crate::radio::Position;
 
 /// Ranges of parameters, with their names.
@@ -92,7 +92,13 @@ pub(super) static EQUIPMENT_COMMANDS: &[MissionCommand] = &[
         (3, "pitch rate", RATE.0, RATE.1), (4, "yaw rate", RATE.0, RATE.1)], pitch_and_yaw),
     absent(DO_GIMBAL_MANAGER_CONFIGURE, |_| Step::Do(Do::Mark)),
     command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], |source| Step::Do(Do::EnableFence(source.value(1) > 0.5))),
-    absent(DO_PARACHUTE, |_| without("parachute")),
+    command(DO_PARACHUTE, &[1], &[(1, "action", 0.0, 2.0)], parachute),
+    command(AIRFRAME_CONFIGURATION, &[2], &[(2, "landing gear", 0.0, 1.0)], |source| {
+        if !source.site.identity.is_ardupilot() {
+            return without("landing gear");
+        }
+        operate(Operation::MoveLandingGear { down: source.value(2) < 0.5 })
+    }),
     absent(DO_WINCH, |_| without("winch")),
     absent(DO_SPRAYER, |_| without("sprayer")),
     absent(DO_ENGINE_CONTROL, |_| without("combustion engine")),
@@ -208,13 +214,29 @@ fn focus(kind: f64, value: f64) -> Drive {
     }
 }
 
+/// PARACHUTE_ACTION; ArduPilot's only.
+fn parachute(source: &Source<'_>) -> Step {
+    if !source.site.identity.is_ardupilot() {
+        return without("parachute");
+    }
+    operate(Operation::Parachute(match source.value(1) as u8 {
+        0 => ParachuteOrder::Disable,
+        1 => ParachuteOrder::Enable,
+        _ => ParachuteOrder::Release,
+    }))
+}
+
 /// MAV_MOUNT_MODE of DO_MOUNT_CONFIGURE.
 fn mount_mode(source: &Source<'_>) -> Step {
     match source.value(1) as u8 {
         0 => operate(Operation::RetractGimbal),
         1 => operate(Operation::CentreGimbal),
         // It is pointed by what follows.
-        _ => Step::Do(Do::Mark),
+        _ if !source.site.identity.is_ardupilot() => Step::Do(Do::Mark),
+        2 => operate(Operation::SetGimbalMode(GimbalMode::Commands)),
+        3 => operate(Operation::SetGimbalMode(GimbalMode::Radio)),
+        6 => operate(Operation::SetGimbalMode(GimbalMode::Home)),
+        _ => operate(Operation::SetGimbalMode(GimbalMode::Region)),
     }
 }
 
@@ -351,6 +373,7 @@ mod tests {
             (DO_GIMBAL_MANAGER_CONFIGURE, [0.0; 7], mark),
             (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::EnableFence(true))),
             (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("parachute")),
+            (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("landing gear")),
             (DO_WINCH, [0.0; 7], absent("winch")),
             (DO_SPRAYER, [0.0; 7], absent("sprayer")),
             (DO_ENGINE_CONTROL, [0.0; 7], absent("combustion engine")),
@@ -379,6 +402,21 @@ mod tests {
     }
 
     #[test]
+    fn ardupilot_has_a_landing_gear_and_a_parachute() {
+        for (position, down) in [(0.0, true), (1.0, false)] {
+            let parameters = [-1.0, position, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let asked = step(Identity::ArduPilot, AIRFRAME_CONFIGURATION, parameters);
+            assert_eq!(asked, operate(Operation::MoveLandingGear { down }));
+        }
+        for (action, order) in
+            [(0.0, ParachuteOrder::Disable), (1.0, ParachuteOrder::Enable), (2.0, ParachuteOrder::Release)]
+        {
+            let asked = step(Identity::ArduPilot, DO_PARACHUTE, [action, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            assert_eq!(asked, operate(Operation::Parachute(order)));
+        }
+    }
+
+    #[test]
     fn ardupilot_counts_the_way_and_leaves_the_mode_of_the_mount_out() {
         let by_distance =
             step(Identity::ArduPilot, DO_SET_CAM_TRIGG_DIST, [5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
@@ -386,6 +424,16 @@ mod tests {
         assert_eq!(by_distance, operate(expected));
         let switch = step(Identity::ArduPilot, DO_AUX_FUNCTION, [70.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert_eq!(switch, Step::Do(Do::MoveSwitch { function: 70, position: Position::High }));
+        for (mode, expected) in [
+            (2.0, GimbalMode::Commands),
+            (3.0, GimbalMode::Radio),
+            (4.0, GimbalMode::Region),
+            (5.0, GimbalMode::Region),
+            (6.0, GimbalMode::Home),
+        ] {
+            let mount = step(Identity::ArduPilot, DO_MOUNT_CONFIGURE, [mode, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            assert_eq!(mount, operate(Operation::SetGimbalMode(expected)));
+        }
         let mount = step(Identity::ArduPilot, DO_MOUNT_CONTROL, [-45.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         assert!(matches!(mount, Step::Do(Do::Operate(Operation::Point(_)))), "{mount:?}");
     }

@@ -39,6 +39,20 @@ pub enum Function {
     Image,
     /// Records a video.
     Video,
+    /// Folds the gimbal away.
+    RetractGimbal,
+    /// Locks the gimbal on the place that it sees.
+    LockGimbal,
+    /// Moves the landing gear.
+    LandingGear,
+    /// Lets the parachute open.
+    ParachuteEnable,
+    /// Releases it.
+    ParachuteRelease,
+    /// Both, and at the low end neither.
+    Parachute,
+    /// Lets Loiter stay above the target that is seen.
+    PrecisionLoiter,
 }
 
 /// Numbers that there are.
@@ -55,8 +69,13 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (17, Function::Mode(15)),
     (18, Function::Mode(9)),
     (19, Function::Gripper),
+    (21, Function::ParachuteEnable),
+    (22, Function::ParachuteRelease),
+    (23, Function::Parachute),
     (24, Function::ResetMission),
+    (27, Function::RetractGimbal),
     (28, Function::Relay(0)),
+    (29, Function::LandingGear),
     (31, Function::EmergencyStop),
     (33, Function::Mode(17)),
     (34, Function::Relay(1)),
@@ -64,6 +83,7 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (36, Function::Relay(3)),
     (37, Function::Mode(18)),
     (38, Function::Traffic),
+    (39, Function::PrecisionLoiter),
     (40, Function::Proximity),
     (41, Function::Arming),
     (42, Function::Mode(21)),
@@ -87,7 +107,18 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (154, Function::Arming),
     (165, Function::ArmingOrStop),
     (166, Function::Video),
+    (186, Function::LockGimbal),
 ];
+
+/// Numbers of channels that are no switches, but point the gimbal: roll, pitch, yaw.
+pub const GIMBAL_AXES: [u32; 3] = [212, 213, 214];
+
+impl Function {
+    /// Whether it counts where a switch with it is found at first.
+    pub fn counts_at_first(self) -> bool {
+        matches!(self, Self::ParachuteEnable | Self::Parachute)
+    }
+}
 
 /// The function of a number; `None`: there is none.
 pub fn function(number: u32) -> Option<Function> {

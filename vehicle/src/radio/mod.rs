@@ -4,17 +4,20 @@
 //!  channel    ends, trim, dead zone and direction of a channel; deflections
 //!  switch     positions of switches, and when they count
 //!  function   what a switch can do, by ArduPilot's numbers
+//!  button     buttons on the vehicle that do the same
 //!  settings   all of it for one vehicle
 //! ```
 
+mod button;
 mod channel;
 mod function;
 mod loss;
 mod settings;
 mod switch;
 
+pub use button::{BUTTONS, Button, ButtonSettings};
 pub use channel::Channel;
-pub use function::{Function, function};
+pub use function::{Function, GIMBAL_AXES, function};
 pub use loss::RadioLossAction;
 pub use settings::{Axes, InputChoice, PX4_SLOTS, RadioFailure, RadioSettings, RudderArming, Switches};
 pub use switch::{Debounced, Position, position, sixth};

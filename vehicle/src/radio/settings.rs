@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Channel;
+use super::button::ButtonSettings;
+use super::channel::Channel;
 
 /// Channels of the sticks, from 1; 0: none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,6 +116,9 @@ pub struct RadioSettings {
     pub take_over_percent: f64,
     /// What is broken.
     pub failure: RadioFailure,
+    /// Buttons beside the radio.
+    #[serde(default)]
+    pub buttons: ButtonSettings,
 }
 
 impl Default for RadioSettings {
@@ -153,6 +157,7 @@ impl RadioSettings {
             take_over: 1,
             take_over_percent: 30.0,
             failure: RadioFailure::None,
+            buttons: ButtonSettings::default(),
         }
     }
 

@@ -10,6 +10,7 @@ use super::follow_settings::FollowSettings;
 use super::heading_policy::HeadingPolicy;
 use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
+use super::precision_settings::PrecisionSettings;
 use super::return_settings::ReturnSettings;
 use super::simulated::Simulated;
 use super::stick_settings::StickSettings;
@@ -17,6 +18,7 @@ use super::surroundings_settings::SurroundingsSettings;
 use super::takeoff_check::TakeoffCheckSettings;
 use super::throw::ThrowSettings;
 use super::trail::TrailSettings;
+use crate::equipment::EquipmentSettings;
 use crate::kept::KeptValues;
 use crate::radio::RadioSettings;
 
@@ -114,6 +116,12 @@ pub struct Conduct {
     /// What is looked at before a takeoff.
     #[serde(default)]
     pub takeoff_check: TakeoffCheckSettings,
+    /// What it carries.
+    #[serde(default)]
+    pub equipment: EquipmentSettings,
+    /// Landings at a target that is seen.
+    #[serde(default)]
+    pub precision: PrecisionSettings,
 }
 
 /// Records of before it could be chosen have this one.
@@ -195,6 +203,8 @@ impl Conduct {
             radio: RadioSettings::new(ardupilot),
             throw: ThrowSettings::default(),
             takeoff_check: TakeoffCheckSettings::default(),
+            equipment: EquipmentSettings::default(),
+            precision: PrecisionSettings::default(),
         }
     }
 }

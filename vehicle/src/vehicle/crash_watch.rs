@@ -7,6 +7,7 @@
 use nalgebra::Vector3;
 
 use super::crash_settings::CIRCUIT_BROKEN;
+use super::lasting::Lasting;
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::situation::Situation;
@@ -14,7 +15,7 @@ use super::steering::SteeringKind;
 
 /// The crash check: lean and error of the attitude, rad, acceleration, m/s², speed, m/s, and how long all must last, µs.
 const LEAST_LEAN_RAD: f64 = 15.0 * DEGREE;
-const LEAST_ERROR_RAD: f64 = 30.0 * DEGREE;
+pub(super) const LEAST_ERROR_RAD: f64 = 30.0 * DEGREE;
 const MOST_ACCELERATION_M_S2: f64 = 3.0;
 const MOST_SPEED_M_S: f64 = 10.0;
 const CRASHED_US: u64 = 2_000_000;
@@ -26,18 +27,6 @@ const MOST_LEAN_RAD: f64 = 15.0 * DEGREE;
 const WEAK_US: u64 = 1_000_000;
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
-
-/// Since when something is so, µs.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-struct Lasting(Option<u64>);
-
-impl Lasting {
-    /// Whether it has been so for a time.
-    fn update(&mut self, is_so: bool, time_us: u64, least_us: u64) -> bool {
-        self.0 = is_so.then(|| self.0.unwrap_or(time_us));
-        self.0.is_some_and(|since_us| time_us - since_us >= least_us)
-    }
-}
 
 /// What has been seen of an armed vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -152,7 +141,7 @@ impl CrashWatch {
 }
 
 /// Whether its attitude is kept for it: who flies by body rates may turn over.
-fn keeps_a_lean(situation: &Situation) -> bool {
+pub(super) fn keeps_a_lean(situation: &Situation) -> bool {
     !situation.steering.is_by_rates()
 }
 
@@ -163,7 +152,7 @@ fn lean_rad(situation: &Situation) -> f64 {
 }
 
 /// Angle between the thrust axis and the one that is asked for, rad.
-fn attitude_error_rad(situation: &Situation) -> f64 {
+pub(super) fn attitude_error_rad(situation: &Situation) -> f64 {
     let strongest_n = situation.configuration.airframe.thrust_range_n().1;
     let wanted = situation.steering.tracked_attitude(situation.outputs, strongest_n).attitude;
     let actual = situation.outputs.orientation();
@@ -227,7 +216,7 @@ mod tests {
             change(&mut scene);
             // The filter takes a while to know the acceleration.
             watch(&mut crash, &mut scene, 1.0);
-            crash.crashing = super::Lasting::default();
+            crash.crashing = Default::default();
             assert!(watch(&mut crash, &mut scene, 4.0).is_empty(), "change {number}");
         }
     }

@@ -18,7 +18,7 @@ const LATE_M_S: f64 = 0.3;
 /// Share of the weight per error of the sink rate, s/m.
 const SINK_GAIN: f64 = 0.5;
 
-/// One tick of a descent, above a place (north and east, m) or wherever the vehicle comes to rest.
+/// One tick of a descent, above a target that is seen, a place (north and east, m), or wherever the vehicle comes to rest.
 pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f64; 2]>) {
     if situation.landed {
         match proposal.steering().kind() {
@@ -33,6 +33,7 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
         descend_blind(situation, proposal);
         return;
     }
+    let above = situation.landing_target_m.or(above);
     let height_m = -situation.outputs.setpoint.position_m.z;
     let slow = situation.conduct.land_speed_m_s;
     // Slower towards the ground, within what the shaper is allowed.
@@ -47,12 +48,21 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let speed = (slow
         + approach(height_m - situation.conduct.land_slow_below_m, slowing_per_s, braking_m_s2))
     .clamp(slow, fastest);
+    let speed = if waits_above(situation) { 0.0 } else { speed };
     let [x, y] = match above {
         Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
         None => [AxisTarget::HOLD; 2],
     };
     let axes = [x, y, AxisTarget::Velocity(speed)];
     proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+}
+
+/// Whether it is too far beside its target to sink.
+fn waits_above(situation: &Situation) -> bool {
+    let farthest_m = situation.conduct.precision.farthest_m;
+    let here_m = situation.outputs.position_m.xy();
+    let beside_m = situation.landing_target_m.map_or(0.0, |[x, y]| libm::hypot(x - here_m.x, y - here_m.y));
+    farthest_m > 0.0 && beside_m > farthest_m
 }
 
 /// A descent without an estimate of the place: level, the thrust by the sink rate. It drifts with the wind.

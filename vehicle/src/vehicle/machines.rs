@@ -2,6 +2,7 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::button_watch::ButtonWatch;
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
@@ -15,7 +16,9 @@ use super::motor_test::MotorTests;
 use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
+use super::parachute_watch::ParachuteWatch;
 use super::pilot_watch::PilotWatch;
+use super::precision_landing::PrecisionLanding;
 use super::pushes::PushClock;
 use super::receiver::Receiver;
 use super::remote_id::RemoteId;
@@ -29,6 +32,7 @@ use super::takeoff::Takeoff;
 use super::takeoff_check::TakeoffCheck;
 use super::throw::Throw;
 use super::traffic_watch::TrafficWatch;
+use super::vibration_watch::VibrationWatch;
 use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
@@ -44,6 +48,8 @@ pub struct Machines {
     pub fence: FenceWatch,
     /// Failsafes.
     pub failsafe: Failsafe,
+    /// What is told of accelerometers that are not believed.
+    pub vibration: VibrationWatch,
     /// The rotors, and the descent without one.
     pub rotors: RotorWatch,
     /// Whether the position can be held.
@@ -68,6 +74,8 @@ pub struct Machines {
     pub receiver: Receiver,
     /// What the pilot asks for by switches and gestures.
     pub pilot_watch: PilotWatch,
+    /// Buttons on the vehicle.
+    pub buttons: ButtonWatch,
     /// What the pilot's sticks refer to.
     pub simple: SimpleFlight,
     /// Modes that lean as the sticks say.
@@ -78,6 +86,8 @@ pub struct Machines {
     pub return_home: Return,
     /// The trail, and the way back on it.
     pub smart_return: SmartReturn,
+    /// The target of a landing.
+    pub precision: PrecisionLanding,
     /// Orbits.
     pub orbit: Orbit,
     /// The target that is followed.
@@ -92,6 +102,8 @@ pub struct Machines {
     pub remote_id: RemoteId,
     /// Speeds that hold instead of the parameters'.
     pub speeds: Speeds,
+    /// Whether its parachute is needed.
+    pub parachute: ParachuteWatch,
     /// What it carries.
     pub equipment: Equipment,
 }

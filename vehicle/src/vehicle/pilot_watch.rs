@@ -5,7 +5,8 @@ use super::situation::Situation;
 use super::sticks::Sticks;
 use crate::mode::{Leader, Mode};
 use crate::radio::{
-    Debounced, Function, PX4_SLOTS, Position, RadioSettings, RudderArming, function, position, sixth,
+    Debounced, Function, GIMBAL_AXES, PX4_SLOTS, Position, RadioSettings, RudderArming, function, position,
+    sixth,
 };
 
 /// A stick at this share of its way is at the end.
@@ -116,10 +117,15 @@ impl PilotWatch {
         let channels = settings.channels.iter().zip(pulses).zip(&mut self.functions);
         for ((channel, pulse), seen) in channels.filter(|((channel, _), _)| channel.option > 0.0) {
             let Some(now) = position(*pulse) else { continue };
-            // Where a switch is found at first changes nothing.
-            if let Some((Some(_), now)) = seen.see(now, time_us) {
-                let number = channel.option as u32;
-                wishes.push(function(number).map_or(Wish::Unknown(number), |what| Wish::Function(what, now)));
+            let number = channel.option as u32;
+            if GIMBAL_AXES.contains(&number) {
+                continue;
+            }
+            let Some((before, now)) = seen.see(now, time_us) else { continue };
+            let what = function(number);
+            // Where a switch is found at first mostly changes nothing.
+            if before.is_some() || what.is_some_and(Function::counts_at_first) {
+                wishes.push(what.map_or(Wish::Unknown(number), |what| Wish::Function(what, now)));
             }
         }
     }

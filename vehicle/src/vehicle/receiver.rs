@@ -29,6 +29,10 @@ pub struct Pilot {
     pub throttle_is_zero: bool,
     /// The pulses that count now; `None`: no radio.
     pub pulses: Option<Pulses>,
+    /// The pulses of when the radio was last to be believed.
+    pub believed: Option<Pulses>,
+    /// Whether the pulses are not to be believed, as the radio is lost or is about to be.
+    pub is_doubted: bool,
     /// Whether a radio has ever been received.
     pub has_radio: bool,
 }
@@ -152,7 +156,10 @@ impl Receiver {
         self.zero_since_us = at_zero.then(|| self.zero_since_us.unwrap_or(time_us));
         let lost = low || gone;
         self.optional &= lost && !identity.is_ardupilot();
+        let is_doubted = lost || self.low_since_us.is_some();
         self.now = Pilot {
+            believed: pulses.filter(|_| !is_doubted).or(self.now.believed),
+            is_doubted,
             sticks,
             lost,
             missed: lost && !self.optional,

@@ -54,6 +54,11 @@ impl RotorWatch {
         self.loss.map(|loss| loss.rotor)
     }
 
+    /// Whether more than one rotor is known to be lost.
+    pub fn falls(&self) -> bool {
+        self.loss.is_some_and(|loss| loss.falls)
+    }
+
     /// Looks at the rotors' speeds after a tick of `dt_s`.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal, dt_s: f64) {
         let measured = situation.truth.rotor_speed_rad_s;

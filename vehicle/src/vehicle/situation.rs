@@ -77,6 +77,8 @@ pub struct Situation<'a> {
     pub landed: bool,
     /// The rotor that is known to be lost: front (0), right, back or left (3).
     pub lost_rotor: Option<usize>,
+    /// North and east of a target that landings go to, m.
+    pub landing_target_m: Option<[f64; 2]>,
     /// What of the fence is breached, or is about to be.
     pub breach: Option<Breach>,
     /// Whether that still lies ahead.

@@ -4,6 +4,8 @@ mod ardupilot_arming;
 mod arming;
 mod decision;
 mod equipment;
+mod outputs;
+mod parachute;
 mod pilot;
 mod plan_requests;
 mod plan_start;
@@ -17,6 +19,7 @@ use quadrotor::ConfigurationError;
 
 use super::autostart::Autostart;
 use super::battery::{Battery, capacity_ah, full_voltage_v};
+use super::button_watch::ButtonWatch;
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
@@ -38,9 +41,11 @@ use super::notice::Severity;
 use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
+use super::parachute_watch::ParachuteWatch;
 use super::perception::Perception;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
+use super::precision_landing::PrecisionLanding;
 use super::pushes::PushClock;
 use super::receiver::Receiver;
 use super::remote_id::RemoteId;
@@ -58,6 +63,7 @@ use super::takeoff_check::TakeoffCheck;
 use super::throw::Throw;
 use super::tick::{TICK_S, TICK_US};
 use super::traffic_watch::TrafficWatch;
+use super::vibration_watch::VibrationWatch;
 use crate::FlightError;
 use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
@@ -97,13 +103,9 @@ impl Vehicle {
 
     fn around(settings: &VehicleSettings, closed_loop: ClosedLoop) -> Self {
         let configuration = settings.flown_configuration();
-        let navigation = (settings.sensors.model == SensorModel::Realistic).then(|| {
-            let start = Estimate::unaligned(configuration.initial.position_m.into(), settings.heading_rad);
-            Navigation::new(settings.sensors.seed, start)
-        });
-        let perception = Perception::new(&closed_loop, navigation);
-        let frame = LocalFrame::new(settings.origin);
         let home_m = Vector3::from(configuration.initial.position_m);
+        let perception = Perception::new(&closed_loop, navigation(settings, home_m));
+        let frame = LocalFrame::new(settings.origin);
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
@@ -116,6 +118,7 @@ impl Vehicle {
             fence: FenceWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
+            vibration: VibrationWatch::default(),
             hold: HoldWatch::default(),
             crash: CrashWatch::default(),
             landing: Landing::new(-perception.truth().position_m.z),
@@ -127,11 +130,13 @@ impl Vehicle {
             turn: CommandedTurn::default(),
             receiver: Receiver::default(),
             pilot_watch: PilotWatch::default(),
+            buttons: ButtonWatch::default(),
             simple: SimpleFlight::default(),
             stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
             return_home: Return::default(),
             smart_return: SmartReturn::default(),
+            precision: PrecisionLanding::default(),
             orbit: Orbit::default(),
             follow: Follow::default(),
             mission: Mission::new(program),
@@ -139,7 +144,8 @@ impl Vehicle {
             traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
             remote_id: RemoteId::default(),
             speeds: Speeds::new(&configuration.limits),
-            equipment: Equipment::default(),
+            parachute: ParachuteWatch::default(),
+            equipment: Equipment::new(&settings.conduct.equipment.mount),
         };
         let mut vehicle = Self {
             setup: Setup::new(settings, full_battery_v),
@@ -194,12 +200,22 @@ impl Vehicle {
         self.discharge();
         self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
         self.step_equipment();
+        self.step_parachute();
         Ok(())
     }
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
         self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
+        let restarted_us = self.perception.estimate().and_then(|estimate| estimate.restarted_us);
+        if let Some(restarted_us) = restarted_us.filter(|_| self.identity().is_ardupilot()) {
+            self.consult(|parts, situation, proposal| {
+                parts.vibration.watch(situation, proposal, restarted_us);
+            });
+        }
+        if self.conduct().precision.enabled {
+            self.consult(|parts, situation, proposal| parts.precision.watch(situation, proposal));
+        }
         let easing = self.closed_loop.simulation().control().state().is_easing();
         if is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
@@ -237,7 +253,10 @@ impl Vehicle {
             Mode::Throw => parts.throw.step(situation, proposal),
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
-            Mode::Position => fly_by_velocity(situation, proposal),
+            Mode::Position => {
+                fly_by_velocity(situation, proposal);
+                parts.precision.stay_above(situation, proposal);
+            }
             Mode::PositionHold if situation.pilot.sticks.is_some_and(|sticks| sticks.leans()) => {
                 parts.stick_flight.step_by_height(situation, proposal);
             }
@@ -282,7 +301,8 @@ impl Vehicle {
         let pushes = &self.setup.conduct().simulated.pushes;
         let airframe = &self.closed_loop.simulation().configuration().airframe;
         let (truth, time_us) = (self.perception.truth(), self.time_us());
-        let load = self.machines.pushes.load(pushes, airframe, truth, time_us);
+        let (push_n, torque_n_m) = self.machines.pushes.load(pushes, airframe, truth, time_us);
+        let load = (push_n + self.parachute_drag_n(), torque_n_m);
         let conditions = Conditions {
             load,
             outputs: self.perception.outputs(),
@@ -342,6 +362,14 @@ impl Vehicle {
     }
 }
 
+/// Instruments and estimator of a vehicle that flies by them, and is told that it stands at a place, NED, m.
+fn navigation(settings: &VehicleSettings, start_m: Vector3<f64>) -> Option<Navigation> {
+    (settings.sensors.model == SensorModel::Realistic).then(|| {
+        let start = Estimate::unaligned(start_m, settings.heading_rad);
+        Navigation::new(settings.sensors.seed, start)
+    })
+}
+
 /// The situation that is shown to the machines of a vehicle.
 fn situation<'a>(
     setup: &'a Setup,
@@ -385,6 +413,7 @@ fn situation<'a>(
         region: decided.region(),
         landed: landing.is_landed(),
         lost_rotor: machines.rotors.lost_rotor(),
+        landing_target_m: machines.precision.place_m(&conduct.precision),
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         fence_is_on: conduct.failsafe.fence_enabled || machines.fence.is_on_by_itself(),

@@ -10,6 +10,7 @@ use vehicle::equipment::{Controller, GimbalControl, Operation, Pointing};
 use vehicle::{Refusal, Vehicle};
 
 use super::gimbal_messages as messages;
+use super::mount_control::control_mount;
 use super::operate::operate;
 use crate::codec::{Command, Frame, Payload, id};
 use crate::context::Context;
@@ -20,12 +21,13 @@ use crate::stream::{Build, Group, Stream};
 
 const CONFIGURE: u16 = MavCmd::MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE as u16;
 const PITCHYAW: u16 = MavCmd::MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW as u16;
+const MOUNT_CONTROL: u16 = MavCmd::MAV_CMD_DO_MOUNT_CONTROL as u16;
 
 const COMMANDS: &[CommandEntry] = &[
     CommandEntry::action(CONFIGURE),
     CommandEntry::action(PITCHYAW),
     CommandEntry::action(MavCmd::MAV_CMD_DO_MOUNT_CONFIGURE as u16),
-    CommandEntry::action(MavCmd::MAV_CMD_DO_MOUNT_CONTROL as u16),
+    CommandEntry::action(MOUNT_CONTROL),
 ];
 
 const STREAMS: &[Stream] = &[
@@ -103,9 +105,13 @@ impl Service for GimbalManager {
                 may_point(&context.vehicle, origin)?;
                 operate(&mut context.vehicle, command)?;
             }
-            _ => {
+            number => {
                 // The older commands take control.
-                operate(&mut context.vehicle, command)?;
+                if number == MOUNT_CONTROL && context.vehicle.identity().is_ardupilot() {
+                    control_mount(&mut context.vehicle, command)?;
+                } else {
+                    operate(&mut context.vehicle, command)?;
+                }
                 let control = context.vehicle.equipment().gimbal_control();
                 let primary = Some(controller(origin));
                 context.vehicle.give_gimbal_control(GimbalControl { primary, ..control });

@@ -6,7 +6,7 @@ use mavlink::dialects::ardupilotmega::{
     GimbalDeviceFlags, GimbalManagerCapFlags, GimbalManagerFlags, MOUNT_STATUS_DATA, MavMessage,
     MavMountMode,
 };
-use vehicle::equipment::{EquipmentVoice, Gimbal, GimbalLimits};
+use vehicle::equipment::{EquipmentVoice, Gimbal};
 use vehicle::{Vehicle, wrapped};
 
 use super::camera_messages::quaternion;
@@ -36,7 +36,7 @@ fn own_id(component: &Component<'_>) -> u8 {
 
 /// GIMBAL_MANAGER_INFORMATION.
 pub fn manager_information(component: &Component<'_>) -> MavMessage {
-    let [roll, pitch, yaw] = ranges();
+    let [roll, pitch, yaw] = ranges(component.vehicle);
     // The manager's flags begin with those of the device.
     let able = GimbalManagerCapFlags::from_bits_truncate(capabilities().bits())
         | GimbalManagerCapFlags::GIMBAL_MANAGER_CAP_FLAGS_CAN_POINT_LOCATION_GLOBAL
@@ -76,7 +76,7 @@ pub fn manager_status(component: &Component<'_>) -> MavMessage {
 
 /// GIMBAL_DEVICE_INFORMATION.
 pub fn device_information(component: &Component<'_>) -> MavMessage {
-    let [roll, pitch, yaw] = ranges();
+    let [roll, pitch, yaw] = ranges(component.vehicle);
     let able = capabilities();
     MavMessage::GIMBAL_DEVICE_INFORMATION(GIMBAL_DEVICE_INFORMATION_DATA {
         uid: u64::from(component.parameters.system_id()),
@@ -149,6 +149,8 @@ pub fn mount_status(vehicle: &Vehicle) -> MavMessage {
             MavMountMode::MAV_MOUNT_MODE_NEUTRAL
         } else if gimbal.tracks() {
             MavMountMode::MAV_MOUNT_MODE_GPS_POINT
+        } else if gimbal.is_pointed_by_radio() {
+            MavMountMode::MAV_MOUNT_MODE_RC_TARGETING
         } else {
             MavMountMode::MAV_MOUNT_MODE_MAVLINK_TARGETING
         },
@@ -156,8 +158,8 @@ pub fn mount_status(vehicle: &Vehicle) -> MavMessage {
 }
 
 /// Ranges of roll, pitch and yaw, rad.
-fn ranges() -> [[f32; 2]; 3] {
-    let limits = GimbalLimits::OURS;
+fn ranges(vehicle: &Vehicle) -> [[f32; 2]; 3] {
+    let limits = vehicle.conduct().equipment.mount.limits();
     [limits.roll_rad, limits.pitch_rad, limits.yaw_rad].map(|range| range.map(|angle| angle as f32))
 }
 

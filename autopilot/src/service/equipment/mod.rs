@@ -9,6 +9,7 @@ mod camera_messages;
 mod gimbal;
 mod gimbal_messages;
 mod heartbeat;
+mod mount_control;
 mod operate;
 mod outputs;
 mod tracked_system;

@@ -1,4 +1,4 @@
-//! Servos, relays and the gripper.
+//! Servos, relays, gripper, landing gear and parachute.
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, RELAY_STATUS_DATA};
@@ -19,6 +19,8 @@ const COMMANDS: &[CommandEntry] = &[
     CommandEntry::action(MavCmd::MAV_CMD_DO_SET_RELAY as u16),
     CommandEntry::action(MavCmd::MAV_CMD_DO_REPEAT_RELAY as u16),
     CommandEntry::action(MavCmd::MAV_CMD_DO_GRIPPER as u16),
+    CommandEntry::action(MavCmd::MAV_CMD_DO_PARACHUTE as u16),
+    CommandEntry::action(MavCmd::MAV_CMD_AIRFRAME_CONFIGURATION as u16),
 ];
 
 const STREAMS: &[Stream] = &[Stream::new(RELAY_STATUS_DATA::ID, [0.0, 0.0], relay_status)];
@@ -29,7 +31,7 @@ pub struct Outputs;
 
 impl Service for Outputs {
     fn summary(&self) -> &'static str {
-        "Servos, relays and a gripper"
+        "Servos, relays, a gripper, a landing gear and a parachute"
     }
 
     fn commands(&self) -> &'static [CommandEntry] {

@@ -1,6 +1,7 @@
 //! Another system as the region of interest: the vehicle and its gimbal look at where it says that it is.
 
 use mavlink::dialects::ardupilotmega::MavCmd;
+use vehicle::equipment::{GimbalMode, Operation};
 use vehicle::plan::{Altitude, Look, Place};
 use vehicle::world::Geodetic;
 use vehicle::{Refusal, Vehicle};
@@ -18,7 +19,12 @@ const COMMANDS: &[CommandEntry] = &[CommandEntry::action(DO_SET_ROI_SYSID)];
 pub struct TrackedSystem {
     system: Option<u8>,
     seen: Option<Look>,
+    /// When it was seen last, µs; `None`: the gimbal has been told to stay where it was.
+    seen_us: Option<u64>,
 }
+
+/// ArduPilot's gimbals stay where they are once the system has not been heard for so long, µs.
+const STALE_US: u64 = 3_000_000;
 
 impl Service for TrackedSystem {
     fn summary(&self) -> &'static str {
@@ -45,8 +51,25 @@ impl Service for TrackedSystem {
             return;
         }
         if let Some(look) = place(vehicle, frame) {
+            // One that stayed where it was tracks again, wherever the system is.
+            if self.seen_us.is_none() {
+                let _tracks = vehicle.operate(&Operation::SetGimbalMode(GimbalMode::Region));
+            }
             vehicle.look(Some(&look));
-            self.seen = Some(look);
+            (self.seen, self.seen_us) = (Some(look), Some(vehicle.time_us()));
+        }
+    }
+
+    fn tick(&mut self, context: &mut Context) {
+        let vehicle = &mut context.vehicle;
+        let stale = self.seen_us.is_some_and(|seen_us| vehicle.time_us() > seen_us + STALE_US);
+        if stale && vehicle.identity().is_ardupilot() {
+            self.seen_us = None;
+            let still = self.seen.is_some_and(|seen| vehicle.looks_at(&seen));
+            if still && vehicle.equipment().gimbal().tracks() {
+                // Staying is never refused.
+                let _stays = vehicle.operate(&Operation::HoldGimbal);
+            }
         }
     }
 
@@ -55,7 +78,7 @@ impl Service for TrackedSystem {
         let system = command.whole(1).and_then(|system| u8::try_from(system).ok());
         let system =
             system.ok_or_else(|| Refusal::denied("DO_SET_ROI_SYSID requires a system from 0 to 255"))?;
-        *self = Self { system: (system > 0).then_some(system), seen: None };
+        *self = Self { system: (system > 0).then_some(system), ..Self::default() };
         Ok(Progress::Done)
     }
 }

@@ -145,31 +145,30 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
 }
 
 /// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most, and the servos
-/// behind them, 0 where nothing has been asked of one.
+/// behind them, 0 where nothing drives one.
 pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
         outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
-    let servos = vehicle.equipment().servos();
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
         time_usec: boot_us(outputs.time_us),
         servo1_raw,
         servo2_raw,
         servo3_raw,
         servo4_raw,
-        servo5_raw: servos.pulse_us(5),
-        servo6_raw: servos.pulse_us(6),
-        servo7_raw: servos.pulse_us(7),
-        servo8_raw: servos.pulse_us(8),
-        servo9_raw: servos.pulse_us(9),
-        servo10_raw: servos.pulse_us(10),
-        servo11_raw: servos.pulse_us(11),
-        servo12_raw: servos.pulse_us(12),
-        servo13_raw: servos.pulse_us(13),
-        servo14_raw: servos.pulse_us(14),
-        servo15_raw: servos.pulse_us(15),
-        servo16_raw: servos.pulse_us(16),
+        servo5_raw: vehicle.output_us(5),
+        servo6_raw: vehicle.output_us(6),
+        servo7_raw: vehicle.output_us(7),
+        servo8_raw: vehicle.output_us(8),
+        servo9_raw: vehicle.output_us(9),
+        servo10_raw: vehicle.output_us(10),
+        servo11_raw: vehicle.output_us(11),
+        servo12_raw: vehicle.output_us(12),
+        servo13_raw: vehicle.output_us(13),
+        servo14_raw: vehicle.output_us(14),
+        servo15_raw: vehicle.output_us(15),
+        servo16_raw: vehicle.output_us(16),
         ..SERVO_OUTPUT_RAW_DATA::default()
     })
 }

@@ -44,22 +44,26 @@ pub const RCIN: &[Field] = &[
     field("C14", 'H', 'Y', '-', |source| channel_us(source, 13)),
 ];
 
-/// Motor outputs, µs; without a motor 0.
+fn servo_us(source: &LogSource<'_>, output: usize) -> f64 {
+    f64::from(source.vehicle.output_us(output))
+}
+
+/// Outputs of motors and servos, µs; 0 where nothing drives one.
 pub const RCOU: &[Field] = &[
     field("C1", 'H', 'Y', '-', |source| pulse_us(source, 0)),
     field("C2", 'H', 'Y', '-', |source| pulse_us(source, 1)),
     field("C3", 'H', 'Y', '-', |source| pulse_us(source, 2)),
     field("C4", 'H', 'Y', '-', |source| pulse_us(source, 3)),
-    field("C5", 'H', 'Y', '-', |_| 0.0),
-    field("C6", 'H', 'Y', '-', |_| 0.0),
-    field("C7", 'H', 'Y', '-', |_| 0.0),
-    field("C8", 'H', 'Y', '-', |_| 0.0),
-    field("C9", 'H', 'Y', '-', |_| 0.0),
-    field("C10", 'H', 'Y', '-', |_| 0.0),
-    field("C11", 'H', 'Y', '-', |_| 0.0),
-    field("C12", 'H', 'Y', '-', |_| 0.0),
-    field("C13", 'H', 'Y', '-', |_| 0.0),
-    field("C14", 'H', 'Y', '-', |_| 0.0),
+    field("C5", 'H', 'Y', '-', |source| servo_us(source, 5)),
+    field("C6", 'H', 'Y', '-', |source| servo_us(source, 6)),
+    field("C7", 'H', 'Y', '-', |source| servo_us(source, 7)),
+    field("C8", 'H', 'Y', '-', |source| servo_us(source, 8)),
+    field("C9", 'H', 'Y', '-', |source| servo_us(source, 9)),
+    field("C10", 'H', 'Y', '-', |source| servo_us(source, 10)),
+    field("C11", 'H', 'Y', '-', |source| servo_us(source, 11)),
+    field("C12", 'H', 'Y', '-', |source| servo_us(source, 12)),
+    field("C13", 'H', 'Y', '-', |source| servo_us(source, 13)),
+    field("C14", 'H', 'Y', '-', |source| servo_us(source, 14)),
 ];
 
 /// The mixer: nothing is compensated or limited by the battery.

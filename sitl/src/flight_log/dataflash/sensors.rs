@@ -125,3 +125,40 @@ pub const MAG: &[Field] = &[
     }),
     field("S", 'I', 's', 'F', |source| source.vehicle.time_us() as f64),
 ];
+
+/// The downward rangefinder: 25 is down, 4 is a good range, 3 is one that is too far.
+pub const RFND: &[Field] = &[
+    instance("Instance"),
+    field("Dist", 'f', 'm', '0', |source| source.vehicle.obstacles().below_m().unwrap_or(0.0)),
+    field(
+        "Stat",
+        'B',
+        '-',
+        '-',
+        |source| if source.vehicle.obstacles().below_m().is_some() { 4.0 } else { 3.0 },
+    ),
+    field("Orient", 'B', '-', '-', |_| 25.0),
+    field("Quality", 'b', '%', '0', |_| -1.0),
+];
+
+/// From the vehicle to the target of a landing, NED, m.
+fn way_to_target_m(source: &LogSource<'_>, axis: usize) -> f64 {
+    let target_m = source.vehicle.precision_landing().target_m();
+    let way_m = target_m.map(|target_m| target_m - source.vehicle.outputs().position_m);
+    way_m.and_then(|way_m| way_m.get(axis).copied()).unwrap_or(0.0)
+}
+
+/// The target of a landing.
+pub const PL: &[Field] = &[
+    field("Heal", 'B', '-', '-', |_| 1.0),
+    field("TAcq", 'B', '-', '-', |source| {
+        f64::from(u8::from(source.vehicle.precision_landing().target_m().is_some()))
+    }),
+    field("pX", 'f', 'm', '0', |source| way_to_target_m(source, 0)),
+    field("pY", 'f', 'm', '0', |source| way_to_target_m(source, 1)),
+    field("vX", 'f', 'n', '0', |source| -source.vehicle.outputs().velocity_m_s.x),
+    field("vY", 'f', 'n', '0', |source| -source.vehicle.outputs().velocity_m_s.y),
+    field("LastMeasMS", 'I', 's', 'C', |source| {
+        source.vehicle.precision_landing().seen_us().map_or(0.0, |seen_us| (seen_us / 1000) as f64)
+    }),
+];

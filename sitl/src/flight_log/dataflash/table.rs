@@ -4,7 +4,8 @@ use super::estimates::{XKF1, XKF2, XKF3, XKF4};
 use super::field::Field;
 use super::motion::{ATT, CTUN, POS, PSCD, PSCE, PSCN, RATE, SIM};
 use super::power::{BAT, MOTB, PM, RCIN, RCOU};
-use super::sensors::{BARO, GPA, GPS, IMU, MAG, VIBE};
+use super::sensors::{BARO, GPA, GPS, IMU, MAG, PL, RFND, VIBE};
+use crate::flight_log::LogSource;
 
 /// Bits of LOG_BITMASK.
 const ATTITUDE_FAST: u8 = 0;
@@ -39,6 +40,8 @@ pub struct Message {
     pub fields: &'static [Field],
     /// How often it is written, µs, by the bits of LOG_BITMASK: the fastest that is set counts. Without bits it is always written.
     pub periods: &'static [(Option<u8>, u64)],
+    /// Whether there is something to be written.
+    pub applies: fn(&LogSource<'_>) -> bool,
 }
 
 impl Message {
@@ -66,7 +69,14 @@ const fn message(
     fields: &'static [Field],
     periods: &'static [(Option<u8>, u64)],
 ) -> Message {
-    Message { number, name, fields, periods }
+    Message { number, name, fields, periods, applies: |_| true }
+}
+
+impl Message {
+    /// The same, which is written only where there is what it is of.
+    const fn when(self, applies: fn(&LogSource<'_>) -> bool) -> Self {
+        Self { applies, ..self }
+    }
 }
 
 const ATTITUDE: &[(Option<u8>, u64)] = &[(Some(ATTITUDE_FAST), FAST_US), (Some(ATTITUDE_MEDIUM), MEDIUM_US)];
@@ -99,4 +109,6 @@ pub static MESSAGES: &[Message] = &[
     message(21, "XKF3", XKF3, ALWAYS),
     message(22, "XKF4", XKF4, ALWAYS),
     message(23, "RCIN", RCIN, &[(Some(RADIO), MEDIUM_US)]),
+    message(24, "RFND", RFND, ALWAYS).when(|source| source.vehicle.has_rangefinder()),
+    message(25, "PL", PL, ALWAYS).when(|source| source.vehicle.conduct().precision.enabled),
 ];

@@ -86,7 +86,8 @@ impl LogWriter for DataFlashWriter {
         let first = !std::mem::replace(&mut self.begun, true);
         for message in MESSAGES {
             let Some(period_us) = message.period_us(bits) else { continue };
-            if !first && !time_us.is_multiple_of(period_us) {
+            let due = first || time_us.is_multiple_of(period_us);
+            if !due || !(message.applies)(source) {
                 continue;
             }
             bytes::head(into, message.number);

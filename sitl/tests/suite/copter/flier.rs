@@ -66,6 +66,14 @@ impl Flier {
         self.bench.autopilot.receive_radio(self.pulses);
     }
 
+    /// Moves channels of the radio at once.
+    pub fn rc_all(&mut self, pulses: &[(usize, u16)]) {
+        for (channel, pulse_us) in pulses {
+            self.pulses[channel - 1] = *pulse_us;
+        }
+        self.bench.autopilot.receive_radio(self.pulses);
+    }
+
     pub fn command(&mut self, command: MavCmd, parameters: [f32; 7]) -> u8 {
         self.bench.command(command, parameters)
     }
@@ -191,16 +199,24 @@ impl Flier {
     pub fn reboot(&mut self) {
         let parameters = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(self.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, parameters), ACCEPTED);
+        // It has booted with the next tick.
+        self.fly(0.01);
         self.bench.autopilot.receive_radio(self.pulses);
         self.fly(3.0);
     }
 
     /// The latest message that a choice takes something of.
     pub fn latest<T>(&self, choose: impl Fn(&MavMessage) -> Option<T>) -> Option<T> {
-        self.bench.heard.iter().rev().find_map(|message| match message {
+        self.all(choose).pop()
+    }
+
+    /// What a choice takes of all messages, the latest last.
+    pub fn all<T>(&self, choose: impl Fn(&MavMessage) -> Option<T>) -> Vec<T> {
+        let typed = |message: &Message| match message {
             Message::Typed(message) => choose(message),
             _ => None,
-        })
+        };
+        self.bench.heard.iter().filter_map(typed).collect()
     }
 }
 

@@ -86,6 +86,43 @@ fn a_switch_switches_the_rangefinder() {
     }
 }
 
+/// Suite: Button. A change is told at once and then each second; a button does what a switch does.
+#[test]
+fn buttons_are_told_and_do_what_switches_do() {
+    let mut flier = Flier::new();
+    flier.set_all(&[("SIM_PIN_MASK", 0.0), ("BTN_ENABLE", 1.0), ("BTN_PIN4", 3.0)]);
+    let states = |flier: &Flier| {
+        flier.all(|message| match message {
+            MavMessage::BUTTON_CHANGE(change) => Some((change.state, change.last_change_ms)),
+            _ => None,
+        })
+    };
+    flier.bench.heard.clear();
+    flier.fly(1.0);
+    assert!(states(&flier).is_empty());
+    flier.set("SIM_PIN_MASK", 8.0);
+    flier.bench.heard.clear();
+    flier.fly(20.0);
+    let pressed = states(&flier);
+    assert!((10..=11).contains(&pressed.len()) && pressed.iter().all(|(state, _)| *state == 8));
+    flier.set("SIM_PIN_MASK", 0.0);
+    flier.fly(0.1);
+    let (state, changed_ms) = *states(&flier).last().expect("told at once");
+    assert!(state == 0 && changed_ms > pressed[0].1);
+
+    flier.set("BTN_FUNC4", 41.0);
+    for armed in [true, false] {
+        flier.set("SIM_PIN_MASK", if armed { 8.0 } else { 0.0 });
+        flier.fly(0.1);
+        assert_eq!(flier.is_armed(), armed);
+    }
+    flier.set("BTN_FUNC4", 4.0);
+    flier.set("SIM_PIN_MASK", 8.0);
+    flier.wait_mode(RTL, 1.0);
+    flier.set("SIM_PIN_MASK", 0.0);
+    flier.wait_mode(STABILIZE, 1.0);
+}
+
 /// Whether SYS_STATUS shows a sensor as enabled.
 fn enabled(flier: &Flier, sensor: MavSysStatusSensor) -> Option<bool> {
     flier.latest(|message| match message {

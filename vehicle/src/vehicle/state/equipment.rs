@@ -4,8 +4,9 @@ use super::super::notice::{Refusal, Severity};
 use super::super::region::RegionOfInterest;
 use super::super::tick::TICK_S;
 use super::Vehicle;
-use crate::equipment::{Equipment, GimbalControl, Operation, Surroundings};
+use crate::equipment::{Equipment, GimbalControl, Operation, OutputFunction, Surroundings};
 use crate::plan::Look;
+use crate::radio::{Channel, GIMBAL_AXES};
 
 impl Vehicle {
     /// What it carries.
@@ -18,11 +19,28 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] of what there is not, or not now.
     pub fn operate(&mut self, operation: &Operation) -> Result<(), Refusal> {
+        if let Operation::Parachute(order) = operation {
+            self.order_parachute(*order);
+            return Ok(());
+        }
+        if let Operation::SetServo { channel, .. } | Operation::RepeatServo { channel, .. } = operation {
+            self.refuse_functions(*channel)?;
+        }
+        if matches!(operation, Operation::MoveLandingGear { .. }) && !self.conduct().equipment.landing_gear {
+            return Err(Refusal::Failed("no landing gear; LGR_ENABLE = 1 adds one".to_owned()));
+        }
         let around = self.surroundings();
         self.machines.equipment.operate(operation, &around)?;
-        if let Operation::Grip { grabs } = operation {
-            let what = if *grabs { "grabbing" } else { "releasing" };
-            self.decided.say(Severity::Info, format!("Gripper load {what}"));
+        match operation {
+            Operation::Grip { grabs } => {
+                let what = if *grabs { "grabbing" } else { "releasing" };
+                self.decided.say(Severity::Info, format!("Gripper load {what}"));
+            }
+            Operation::MoveLandingGear { down } => {
+                let what = if *down { "DEPLOY" } else { "RETRACT" };
+                self.decided.say(Severity::Info, format!("LandingGear: {what}"));
+            }
+            _ => {}
         }
         Ok(())
     }
@@ -59,13 +77,45 @@ impl Vehicle {
         Surroundings {
             time_us: outputs.time_us,
             position_m: outputs.position_m,
-            home_z_m: self.decided.home().position_m.z,
+            home_m: self.decided.home().position_m,
             attitude_rad: outputs.attitude_rad,
             region_m: match region {
                 Some(RegionOfInterest::Place(place_m)) => Some(place_m),
                 _ => None,
             },
             looks: region.is_some(),
+            mount: self.conduct().equipment.mount,
+            deflections: self.gimbal_deflections(),
+            radio_is_lost: self.pilot().is_doubted,
         }
+    }
+
+    /// Deflections of the pilot's channels for roll, pitch and yaw of the gimbal, within ±1, while they point it. Without the radio they
+    /// stay where they were.
+    fn gimbal_deflections(&self) -> [f64; 3] {
+        if !self.equipment().gimbal().is_pointed_by_radio() {
+            return [0.0; 3];
+        }
+        let channels = &self.conduct().radio.channels;
+        let deflection = |option: u32| {
+            let is_for_it = |channel: &Channel| channel.option == f64::from(option);
+            let (index, channel) = channels.iter().enumerate().find(|(_, channel)| is_for_it(channel))?;
+            let pulse_us = self.pilot().believed?.get(index).copied().filter(|pulse_us| *pulse_us > 0)?;
+            Some(channel.deflection(pulse_us))
+        };
+        GIMBAL_AXES.map(|option| deflection(option).unwrap_or_default())
+    }
+
+    /// Refuses commands to an output that follows something else.
+    fn refuse_functions(&self, channel: u8) -> Result<(), Refusal> {
+        let number = usize::from(channel);
+        let output = self.conduct().equipment.output(number);
+        let taken = output.is_some_and(|output| output.follows(number) != OutputFunction::Command);
+        if taken {
+            return Err(Refusal::Failed(format!(
+                "Servo {channel} follows a function; set SERVO{channel}_FUNCTION to 0 first"
+            )));
+        }
+        Ok(())
     }
 }

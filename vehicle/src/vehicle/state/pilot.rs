@@ -7,7 +7,7 @@ use super::super::simple_flight::StickReference;
 use super::super::sticks::Sticks;
 use super::super::tick::TICK_S;
 use super::Vehicle;
-use crate::equipment::{Operation, Switch};
+use crate::equipment::{GimbalMode, Operation, ParachuteOrder, Switch};
 use crate::mode::{Leader, Mode};
 use crate::plan::{MissionItem, PlanKind, frame};
 use crate::radio::{CHANNELS, Function, Position, RadioLossAction, function};
@@ -48,12 +48,29 @@ impl Vehicle {
         let watched = conduct.failsafe.pilot_lost != RadioLossAction::None;
         let how = (conduct.stick_timeout_s, watched);
         self.machines.receiver.look(identity, &conduct.radio, how, time_us);
+        self.watch_buttons();
         let (situation, parts) = self.situation_and_machines();
         for wish in parts.pilot_watch.look(&situation, TICK_S) {
             if let Err(refusal) = self.grant(wish) {
                 self.decided.say(Severity::Warning, refusal.to_string());
             }
         }
+    }
+
+    /// Does what buttons ask for that have been pressed or released.
+    fn watch_buttons(&mut self) {
+        let time_us = self.time_us();
+        let settings = &self.setup.conduct().radio.buttons;
+        for (number, position) in self.machines.buttons.look(settings, time_us) {
+            if let Err(refusal) = self.move_switch(number, position) {
+                self.decided.say(Severity::Warning, refusal.to_string());
+            }
+        }
+    }
+
+    /// The buttons that are pressed, as bits, and when that has changed last, µs; `None`: never.
+    pub fn buttons(&self) -> (u8, Option<u64>) {
+        self.machines.buttons.state()
     }
 
     fn grant(&mut self, wish: Wish) -> Result<(), Refusal> {
@@ -151,8 +168,29 @@ impl Vehicle {
                 self.switch_instrument(function, position == Position::High);
                 Ok(())
             }
-            (Function::Image | Function::Video | Function::Gripper | Function::Relay(_), position) => {
-                operation(function, position).map_or(Ok(()), |operation| self.operate(&operation))
+            (
+                Function::Image
+                | Function::Video
+                | Function::Gripper
+                | Function::Relay(_)
+                | Function::RetractGimbal
+                | Function::LockGimbal
+                | Function::LandingGear
+                | Function::ParachuteEnable
+                | Function::ParachuteRelease,
+                position,
+            ) => operation(function, position).map_or(Ok(()), |operation| self.operate(&operation)),
+            (Function::PrecisionLoiter, position) => {
+                self.machines.precision.let_loiter(position == Position::High);
+                Ok(())
+            }
+            (Function::Parachute, position) => {
+                let enabled = position != Position::Low;
+                self.order_parachute(if enabled { ParachuteOrder::Enable } else { ParachuteOrder::Disable });
+                if position == Position::High {
+                    self.order_parachute(ParachuteOrder::Release);
+                }
+                Ok(())
             }
         }
     }
@@ -244,6 +282,20 @@ fn operation(function: Function, position: Position) -> Option<Operation> {
     match (function, position) {
         (Function::Image, Position::High) => Some(Operation::Shoot),
         (Function::Video, Position::High | Position::Low) => Some(Operation::Record(on)),
+        (Function::LandingGear, Position::High | Position::Low) => {
+            Some(Operation::MoveLandingGear { down: !on })
+        }
+        (Function::RetractGimbal, Position::High) => Some(Operation::RetractGimbal),
+        (Function::RetractGimbal, Position::Low) => Some(Operation::SetGimbalMode(GimbalMode::Radio)),
+        (Function::LockGimbal, Position::High) => Some(Operation::LockGimbal),
+        (Function::LockGimbal, position) => {
+            Some(Operation::UnlockGimbal { forget: position == Position::Low })
+        }
+        (Function::ParachuteEnable, position) => {
+            Some(Operation::Parachute(if on { ParachuteOrder::Enable } else { ParachuteOrder::Disable }))
+                .filter(|_| position != Position::Middle)
+        }
+        (Function::ParachuteRelease, Position::High) => Some(Operation::Parachute(ParachuteOrder::Release)),
         (Function::Gripper, Position::High | Position::Low) => Some(Operation::Grip { grabs: on }),
         (Function::Relay(relay), Position::High | Position::Low) => {
             Some(Operation::SetRelay { relay, to: if on { Switch::On } else { Switch::Off } })

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::obstacle_watch::{ObstacleWatch, one_direction};
+use super::super::precision_landing::{PrecisionLanding, Sighting};
 use super::super::remote_id::RemoteId;
 use super::super::traffic_watch::{Encounter, TrafficWatch};
 use super::Vehicle;
@@ -32,6 +33,21 @@ impl Vehicle {
         let (time_us, position_m) = (outputs.time_us, outputs.position_m);
         let heading_rad = outputs.attitude_rad.z + angle_rad;
         self.machines.obstacles.take(one_direction(time_us, position_m, heading_rad, width_rad, reading));
+    }
+
+    /// The target that landings go to.
+    pub fn precision_landing(&self) -> &PrecisionLanding {
+        &self.machines.precision
+    }
+
+    /// Takes what a companion computer sees of the place to land at.
+    pub fn see_landing_target(&mut self, sighting: Sighting) {
+        if !self.conduct().precision.hears() {
+            return;
+        }
+        let range_m = self.machines.obstacles.below_m();
+        let (situation, parts) = self.situation_and_machines();
+        parts.precision.take(&situation, range_m, sighting);
     }
 
     /// Who flies around.

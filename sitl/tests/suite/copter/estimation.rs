@@ -1,0 +1,73 @@
+//! Instruments that mislead the estimator.
+
+use super::flier::*;
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::identity::Identity;
+
+/// With instruments that have errors, once the estimator has aligned.
+fn with_instruments() -> Flier {
+    let mut start = crate::common::settings(Identity::ArduPilot);
+    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
+    let mut flier = Flier::with(&start);
+    flier.fly(4.0);
+    flier
+}
+
+/// True height, m.
+fn true_height_m(flier: &Flier) -> f64 {
+    -flier.vehicle().truth().position_m.z
+}
+
+/// Suite: VibrationFailsafe.
+#[test]
+fn accelerometers_that_mislead_are_told_and_the_vehicle_comes_down() {
+    let mut flier = with_instruments();
+    flier.take_off(20.0, LOITER);
+    flier.fly(3.0);
+    flier.bench.heard.clear();
+    flier.set("SIM_ACC1_BIAS_Z", 2.0);
+    flier.wait_text("Vibration compensation ON", 30.0);
+    flier.change_mode(LAND);
+    flier.wait("2 m", 50.0, |flier| true_height_m(flier) < 2.0);
+}
+
+/// The same with FS_VIBE_ENABLE = 0: the estimator goes on by the accelerometers.
+#[test]
+fn compensation_of_vibrations_can_be_switched_off() {
+    let mut flier = with_instruments();
+    flier.set("FS_VIBE_ENABLE", 0.0);
+    flier.take_off(20.0, LOITER);
+    flier.fly(3.0);
+    flier.bench.heard.clear();
+    flier.set("SIM_ACC1_BIAS_Z", 2.0);
+    flier.fly(10.0);
+    assert!(!flier.has_said("Vibration compensation"));
+}
+
+/// Suite: GPSGlitchLoiter: jumps of the receiver, 30 to 110 m, each for less than half a second.
+#[test]
+fn jumps_of_the_receiver_do_not_lead_away_a_vehicle_that_loiters() {
+    let mut flier = with_instruments();
+    flier.take_off(10.0, LOITER);
+    flier.rc(2, 1100);
+    flier.wait("60 m", 60.0, |flier| flier.distance_m() > 60.0);
+    flier.rc(2, 1500);
+    flier.wait("a stop", 30.0, |flier| flier.speed_m_s() < 0.3);
+    let from_m = flier.vehicle().truth().position_m;
+    for (north_deg, east_deg) in [(3, 7), (7, 10), (10, 2), (4, -6), (-5, -8), (-9, 3), (6, 6)] {
+        flier.set_all(&[
+            ("SIM_GPS1_GLTCH_X", f64::from(north_deg) * 1e-4),
+            ("SIM_GPS1_GLTCH_Y", f64::from(east_deg) * 1e-4),
+        ]);
+        flier.fly(0.45);
+    }
+    flier.set_all(&[("SIM_GPS1_GLTCH_X", 0.0), ("SIM_GPS1_GLTCH_Y", 0.0)]);
+    for _ in 0..27 {
+        flier.fly(1.0);
+        let moved_m = (flier.vehicle().truth().position_m - from_m).xy().norm();
+        assert!(moved_m < 20.0 && flier.mode() == LOITER, "{moved_m} m, mode {}", flier.mode());
+    }
+    flier.change_mode(RTL);
+    flier.wait_disarmed(200.0);
+    assert!(flier.vehicle().truth().position_m.xy().norm() < 10.0);
+}
