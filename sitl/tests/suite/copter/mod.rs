@@ -5,4 +5,7 @@ mod fences;
 mod flier;
 mod missions;
 mod modes;
+mod proximity;
+mod sticks;
 mod switches;
+mod wind;
