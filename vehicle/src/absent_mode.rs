@@ -42,11 +42,9 @@ const PX4: &[AbsentMode] = &[
 
 const ARDUPILOT: &[AbsentMode] = &[
     absent(11, "Drift", "use Loiter"),
-    absent(14, "Flip", "send body rates by SET_ATTITUDE_TARGET in Guided"),
     absent(15, "AutoTune", NO_TUNING),
     absent(19, "Avoid_ADSB", "use Guided"),
     absent(22, "FlowHold", "there is no optical flow; use Loiter"),
-    absent(24, "ZigZag", "upload the lines as a mission and use Auto"),
     absent(25, "SystemID", "send the signals by SET_ATTITUDE_TARGET in Guided"),
     absent(26, "Autorotate", "this is a quadrotor; use Land"),
     absent(28, "Turtle", "the vehicle cannot lie upside down; restart it"),

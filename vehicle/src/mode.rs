@@ -37,6 +37,10 @@ pub enum Mode {
     Follow,
     /// Flies back along its own way and lands.
     SmartReturn,
+    /// Turns over once and goes on as before (ArduPilot: FLIP).
+    Flip,
+    /// By sticks between two ends that a switch flies across to (ArduPilot: ZIGZAG).
+    ZigZag,
     /// Waits until it is thrown, and catches itself (ArduPilot: THROW).
     Throw,
 }
@@ -69,6 +73,7 @@ impl Mode {
         match self {
             Self::Position
             | Self::PositionHold
+            | Self::ZigZag
             | Self::Altitude
             | Self::Stabilize
             | Self::Manual
@@ -83,6 +88,7 @@ impl Mode {
             | Self::Land
             | Self::Orbit
             | Self::Follow
+            | Self::Flip
             | Self::Throw => Leader::Vehicle,
         }
     }
@@ -95,7 +101,7 @@ impl Mode {
     /// What of its motion the vehicle must know for it.
     pub fn needs(self) -> Needs {
         match self {
-            Self::Stabilize | Self::Manual | Self::Acro => Needs::Attitude,
+            Self::Stabilize | Self::Manual | Self::Acro | Self::Flip => Needs::Attitude,
             Self::Altitude | Self::GuidedAttitude => Needs::Height,
             _ => Needs::Place,
         }

@@ -62,6 +62,8 @@ const MODES: &[Row] = &[
     row(Mode::Follow, known(px4(4, 8), "Follow Me"), known(23, "Follow")),
     row(Mode::SmartReturn, None, known(21, "Smart RTL")),
     row(Mode::Throw, None, known(18, "Throw")),
+    row(Mode::Flip, None, known(14, "Flip")),
+    row(Mode::ZigZag, None, known(24, "ZigZag")),
 ];
 
 /// Other numbers that mean a mode: PX4's automatic mode without a sub-mode is the one that waits.

@@ -3,7 +3,7 @@
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
     DISTANCE_SENSOR_DATA, MavDistanceSensor, MavFrame, MavMessage, MavSensorOrientation,
-    OBSTACLE_DISTANCE_DATA, RANGEFINDER_DATA,
+    OBSTACLE_DISTANCE_3D_DATA, OBSTACLE_DISTANCE_DATA, RANGEFINDER_DATA,
 };
 use vehicle::surroundings::{FARTHEST_RANGE_M, NEAREST_RANGE_M, Reading, SECTOR_RAD, SECTORS};
 
@@ -15,7 +15,7 @@ use crate::stream::{Build, Component, Group, Stream};
 
 const STREAMS: &[Stream] = &[
     Stream::when(OBSTACLE_DISTANCE_DATA::ID, [1.0, 10.0], Build::Several(around)),
-    Stream::when(DISTANCE_SENSOR_DATA::ID, [1.0, 10.0], Build::Several(below)),
+    Stream::when(DISTANCE_SENSOR_DATA::ID, [1.0, 10.0], Build::Several(distances)),
     Stream::when(RANGEFINDER_DATA::ID, [0.0, 0.0], Build::Several(below_in_metres)).of(Group::Extra3),
 ];
 
@@ -29,7 +29,7 @@ impl Service for Ranges {
     }
 
     fn messages(&self) -> &'static [u32] {
-        &[OBSTACLE_DISTANCE_DATA::ID, DISTANCE_SENSOR_DATA::ID]
+        &[OBSTACLE_DISTANCE_DATA::ID, DISTANCE_SENSOR_DATA::ID, OBSTACLE_DISTANCE_3D_DATA::ID]
     }
 
     fn streams(&self) -> &'static [Stream] {
@@ -39,6 +39,7 @@ impl Service for Ranges {
     fn receive(&mut self, context: &mut Context, _origin: &Origin, frame: &Frame) {
         match frame.message_id() {
             OBSTACLE_DISTANCE_DATA::ID => take_scan(context, &frame.payload()),
+            OBSTACLE_DISTANCE_3D_DATA::ID => take_point(context, &frame.payload()),
             _ => take_direction(context, &frame.payload()),
         }
     }
@@ -105,6 +106,17 @@ fn take_direction(context: &mut Context, payload: &Payload) {
     context.vehicle.see_ahead(f64::from(orientation) * STEP_RAD, width_rad, reading);
 }
 
+/// OBSTACLE_DISTANCE_3D: a point in the frame of the body (MAV_FRAME_BODY_FRD), m; it counts where it lies around.
+fn take_point(context: &mut Context, payload: &Payload) {
+    const BODY_FRD: u8 = 12;
+    let [ahead, right, down, nearest, farthest] = [4, 8, 12, 16, 20].map(|at| f64::from(payload.f32(at)));
+    let range_m = ahead.hypot(right).hypot(down);
+    // NaN is not within.
+    if payload.u8(27) == BODY_FRD && (nearest..=farthest).contains(&range_m) {
+        context.vehicle.see_ahead(right.atan2(ahead), 0.0, Reading::At(ahead.hypot(right)));
+    }
+}
+
 fn centimetres(range_m: f64) -> u16 {
     (range_m * 100.0).round().clamp(0.0, f64::from(u16::MAX - 1)) as u16
 }
@@ -131,6 +143,44 @@ fn around(component: &Component<'_>) -> Vec<MavMessage> {
         })
     };
     component.vehicle.obstacles().lidar().map(message).into_iter().collect()
+}
+
+/// Directions around the vehicle in which ArduPilot tells a distance.
+const DIRECTIONS: [MavSensorOrientation; 8] = [
+    MavSensorOrientation::MAV_SENSOR_ROTATION_NONE,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_45,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_90,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_135,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_180,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_225,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_270,
+    MavSensorOrientation::MAV_SENSOR_ROTATION_YAW_315,
+];
+/// What its first direction is numbered with.
+const FIRST_DIRECTION: u8 = 10;
+
+/// DISTANCE_SENSOR: around, as ArduPilot tells what a companion computer has told it, and below.
+fn distances(component: &Component<'_>) -> Vec<MavMessage> {
+    let vehicle = component.vehicle;
+    let [has_proximity, ..] = vehicle.proximity();
+    let told = vehicle.obstacles().companion(vehicle.time_us());
+    let told = told.filter(|_| has_proximity && vehicle.identity().is_ardupilot());
+    let nose_rad = vehicle.outputs().attitude_rad.z;
+    let nearest = told.map(|scan| scan.nearest_m::<{ DIRECTIONS.len() }>(nose_rad));
+    let around = nearest.into_iter().flatten().zip(0..).zip(DIRECTIONS);
+    let around = around.filter_map(|((range_m, number), orientation)| {
+        Some(MavMessage::DISTANCE_SENSOR(DISTANCE_SENSOR_DATA {
+            time_boot_ms: boot_ms(vehicle.time_us()),
+            min_distance: centimetres(NEAREST_RANGE_M),
+            max_distance: centimetres(FARTHEST_RANGE_M),
+            current_distance: centimetres(range_m?),
+            mavtype: MavDistanceSensor::MAV_DISTANCE_SENSOR_LASER,
+            id: FIRST_DIRECTION + number,
+            orientation,
+            ..DISTANCE_SENSOR_DATA::default()
+        }))
+    });
+    around.chain(below(component)).collect()
 }
 
 /// DISTANCE_SENSOR of the downward rangefinder; out of its range it shows a little more than that.

@@ -150,7 +150,7 @@ fn a_mode_that_there_is_not_names_those_that_there_are() {
             Identity::ArduPilot,
             99.0,
             FAILED,
-            "Mode 99 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, Auto RTL, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL, Throw",
+            "Mode 99 is not available; available: Stabilize, Acro, AltHold, Loiter, PosHold, Brake, Auto, Auto RTL, RTL, Land, Guided, Guided NoGPS, Circle, Follow, Smart RTL, Throw, Flip, ZigZag",
         ),
     ] {
         let mut bench = Bench::new(identity);

@@ -219,8 +219,8 @@ fn absent_modes_name_a_remedy() {
     const FAILED: u8 = 4;
     for (identity, main, sub, name, instead) in [
         (Identity::ArduPilot, 15.0, 0.0, "AutoTune", "need no tuning"),
-        (Identity::ArduPilot, 14.0, 0.0, "Flip", "SET_ATTITUDE_TARGET"),
-        (Identity::ArduPilot, 24.0, 0.0, "ZigZag", "Auto"),
+        (Identity::ArduPilot, 11.0, 0.0, "Drift", "Loiter"),
+        (Identity::ArduPilot, 28.0, 0.0, "Turtle", "restart"),
         (Identity::Px4, 4.0, 9.0, "Precision Land", "use Land"),
         (Identity::Px4, 4.0, 11.0, "External 1", "Offboard"),
     ] {

@@ -79,7 +79,7 @@ def test_identity_and_modes(start, connect):
     bodies = [first] + [bytes(client.wait("UNKNOWN_435").get_msgbuf())[10:-2] for _ in range(first[8] - 1)]
     names = {body[11:].rstrip(b"\0").decode() for body in bodies}
     assert names == {"Stabilize", "Acro", "AltHold", "Loiter", "PosHold", "Brake", "Auto", "Auto RTL", "RTL", "Land", "Guided", "Guided NoGPS",
-                     "Circle", "Follow", "Smart RTL", "Throw"}
+                     "Circle", "Follow", "Smart RTL", "Throw", "Flip", "ZigZag"}
     client.command(mavlink.MAV_CMD_REQUEST_MESSAGE, 395, result=mavlink.MAV_RESULT_UNSUPPORTED)
     # An integer of ArduPilot travels as a number.
     assert client.set_parameter("COM_OBL_RC_ACT", 3.0, mavlink.MAV_PARAM_TYPE_INT32).param_value == 3.0

@@ -14,7 +14,7 @@ mod zones;
 
 pub use breach::{Breach, Fence};
 pub use inclusions::Inclusions;
-pub use polygon::{Polygon, PolygonFault};
+pub use polygon::{Polygon, PolygonFault, distance_to};
 pub use route::{Progress, RouteSearch};
 pub use zone::{Shape, Zone};
 pub use zones::Zones;

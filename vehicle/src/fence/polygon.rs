@@ -140,7 +140,8 @@ impl Polygon {
         self.sides().map(|(a, b)| turn(first, a, b)).sum::<f64>() / 2.0
     }
 
-    fn sides(&self) -> impl Iterator<Item = Side> {
+    /// Its sides.
+    pub fn sides(&self) -> impl Iterator<Item = Side> {
         let next = self.corners.iter().cycle().skip(1);
         self.corners.iter().zip(next).map(|(one, other)| (*one, *other))
     }
@@ -183,7 +184,8 @@ fn minus([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> [f64; 2] {
     [ax - bx, ay - by]
 }
 
-fn distance_to((a, b): &Side, point: [f64; 2]) -> f64 {
+/// Distance of a point to a side, m.
+pub fn distance_to((a, b): &Side, point: [f64; 2]) -> f64 {
     let (along, offset) = (minus(*b, *a), minus(point, *a));
     let length_squared = along[0] * along[0] + along[1] * along[1];
     let share = if length_squared > 0.0 {

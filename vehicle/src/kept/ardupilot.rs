@@ -114,7 +114,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("LOIT_OPTIONS", 0, 0..=1, "", "Options of loitering"),
         ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
         ("WP_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
-        ("PILOT_THR_BHV", 0, 0..=7, "", "Behaviour of the throttle stick"),
         ("LAND_REPOSITION", 1, 0..=1, "", "Sticks move the place of a landing"),
         ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; the ground is flat here"),
         ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; the ground is flat here"),

@@ -7,7 +7,7 @@ use crate::vehicle::Action;
 /// The vehicle's own parameters.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
-    real!("MIS_TAKEOFF_ALT", Some(("PILOT_TKOFF_ALT", 100.0)), 0.5..=1000.0, takeoff_height_m, "m", "Height above home of a takeoff without an altitude of its own").also(&[("PILOT_TKO_ALT_M", 1.0)]),
+    real!("MIS_TAKEOFF_ALT", None, 0.5..=1000.0, takeoff_height_m, "m", "Height above home of a takeoff without an altitude of its own"),
     real!("COM_OF_LOSS_T", Some(("GUID_TIMEOUT", 1.0)), 0.1..=60.0, set_point_timeout_s, "s", "Time without set-points after which they count as lost"),
     choice!("COM_OBL_RC_ACT", SET_POINTS_ACTIONS, failsafe.set_points_lost, "Action when set-points are lost"),
     real!("COM_DL_LOSS_T", Some(("FS_GCS_TIMEOUT", 1.0)), 1.0..=300.0, failsafe.ground_station_timeout_s, "s", "Time without heartbeats after which the ground station counts as lost"),

@@ -3,7 +3,7 @@
 use super::ConductParameter;
 use super::NamedValue;
 use super::conduct_parameter::{bitmask, choice, real, switch};
-use crate::vehicle::{FollowHeading, FollowHeight, HeadingPolicy, OrbitHeading, ReturnGoal};
+use crate::vehicle::{FollowHeading, FollowHeight, HeadingPolicy, IntoWind, OrbitHeading, ReturnGoal};
 
 /// A whole number: identifier, range, field and its type, text.
 macro_rules! whole {
@@ -82,6 +82,18 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     degrees!("CIRCLE_RATE", -90.0..=90.0, orbit.rate_rad_s, "deg/s", "Rate of the circle mode; negative is counter-clockwise"),
     bitmask!("CIRCLE_OPTIONS", CIRCLE_OPTIONS, orbit.options, u32::from, options, "Options of the circle mode"),
     bitmask!("GUID_OPTIONS", GUIDED_OPTIONS, guided_options, u32::from, options, "Options of the guided mode"),
+    bitmask!("AUTO_OPTIONS", AUTO_OPTIONS, auto_options, u32::from, options, "Options of Auto; arming and taking off in it are always allowed"),
+    real!("PILOT_TKOFF_ALT", None, 0.0..=1000.0, pilot_takeoff_m, 100.0, "cm", "Height above the ground to which a takeoff by hand goes on by itself; 0: it does not").also(&[("PILOT_TKO_ALT_M", 1.0)]),
+    bitmask!("PILOT_THR_BHV", THROTTLE, sticks.throttle_behaviour, u32::from, options, "What the throttle does besides: value 4 disarms soon after a landing by hand, otherwise DISARM_DELAY counts; the others have no effect"),
+    choice!("WVANE_ENABLE", WAYS, weathervane.way, "What is turned into the wind, where GUID_OPTIONS and AUTO_OPTIONS allow it"),
+    choice!("WVANE_TAKEOFF", OTHER_WAYS, weathervane.takeoff, "The same on takeoffs"),
+    real!("WVANE_GAIN", None, 0.0..=4.0, weathervane.gain_1_s, "1/s", "Rate of turn into the wind for a lean"),
+    degrees!("WVANE_ANG_MIN", 0.0..=10.0, weathervane.least_lean_rad, "deg", "Lean that is no reason to turn into the wind"),
+    real!("WVANE_HGT_MIN", None, 0.0..=50.0, weathervane.least_height_m, "m", "Height above home up to which nothing is turned into the wind; 0: none"),
+    real!("WVANE_SPD_MAX", None, 0.0..=50.0, weathervane.fastest_m_s, "m/s", "Horizontal speed above which nothing is turned into the wind; 0: any"),
+    real!("WVANE_VELZ_MAX", None, 0.0..=5.0, weathervane.fastest_climb_m_s, "m/s", "Climb or sink rate above which nothing is turned into the wind; 0: any"),
+    switch!("WVANE_OPTIONS", weathervane.with_pitch, "Pitch turns nose or tail faster into the wind"),
+    real!("ZIGZ_WP_DELAY", None, 0.0..=127.0, zigzag_wait_s, "s", "Time that ZigZag waits where it has flown across to"),
     switch!("FOLL_ENABLE", follow.enabled, "Enable the follow mode"),
     whole!("FOLL_SYSID", 0.0..=255.0, follow.system_id, u8, "System id of the target that is followed; 0 is the first one that is heard"),
     real!("FOLL_DIST_MAX", None, 0.0..=1000.0, follow.farthest_m, "m", "Distance beyond which a target is not followed; 0 is any"),
@@ -152,6 +164,35 @@ const CIRCLE_OPTIONS: &[&str] = &[
     "Face along the circle",
     "Start at the centre",
     "Look at the centre with the mount",
+];
+
+const WAYS: &[(IntoWind, i32, &str)] = &[
+    (IntoWind::OnlyOnTakeoff, -1, "Only on takeoffs"),
+    (IntoWind::Off, 0, "Nothing"),
+    (IntoWind::Nose, 1, "Nose"),
+    (IntoWind::NoseOrTail, 2, "Nose or tail"),
+    (IntoWind::Side, 3, "Side"),
+    (IntoWind::Tail, 4, "Tail"),
+];
+const OTHER_WAYS: &[(Option<IntoWind>, i32, &str)] = &[
+    (None, -1, "As elsewhere"),
+    (Some(IntoWind::Off), 0, "Nothing"),
+    (Some(IntoWind::Nose), 1, "Nose"),
+    (Some(IntoWind::NoseOrTail), 2, "Nose or tail"),
+    (Some(IntoWind::Side), 3, "Side"),
+    (Some(IntoWind::Tail), 4, "Tail"),
+];
+const THROTTLE: &[&str] =
+    &["Centred in its middle", "A high throttle cancels a landing", "A landing by hand disarms"];
+const AUTO_OPTIONS: &[&str] = &[
+    "Allow arming",
+    "Take off without raising the throttle",
+    "Ignore the pilot's yaw",
+    "Reserved",
+    "Reserved",
+    "Reserved",
+    "Reserved",
+    "Allow weathervaning",
 ];
 
 const GUIDED_OPTIONS: &[&str] = &[

@@ -45,7 +45,8 @@ pub static PX4_SURROUNDINGS: &[ConductParameter] = &[
 pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
     whole!("AVOID_ENABLE", 7_u8, avoided, "What is avoided, added up: 1 fence, 2 what the proximity sensor sees, 4 beacons; in Loiter sticks do not lead over the fence"),
     real!("AVOID_BACKUP_SPD", None, 0.0..=2.0, surroundings.backing_m_s, "m/s", "Speed with which sticks that are let go or lead outwards back away from the margin of the fence"),
-    real!("AVOID_MARGIN", None, 1.0..=10.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Loiter and Guided mode"),
+    real!("AVOID_MARGIN", None, 1.0..=10.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Loiter, ZigZag and Guided mode"),
+    real!("AVOID_ALT_MIN", None, 0.0..=100.0, surroundings.avoided_above_m, "m", "Height up to which obstacles are not avoided"),
     whole!("PRX1_TYPE", 17_u8, proximity_kind, "Proximity sensor: 0 none; any other kind is the lidar of --world and what companions send"),
     whole!("RNGFND1_TYPE", 100_u8, rangefinder_kind, "Downward rangefinder: 0 none; any other kind is the simulated one"),
     real!("RNGFND1_MAX", None, 0.5..=100.0, surroundings.rangefinder_farthest_m, "m", "Farthest that the rangefinder measures").also(&[("RNGFND1_MAX_CM", 100.0)]),

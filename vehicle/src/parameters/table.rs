@@ -380,7 +380,7 @@ mod tests {
             ("FRAME_MAS", 1.0, "unknown parameter FRAME_MAS; did you mean FRAME_MASS?"),
             ("AF_MAS", 1.0, "unknown parameter AF_MAS; did you mean FRAME_MASS?"),
             ("com_wind_max", 1.0, "unknown parameter com_wind_max; did you mean COM_WIND_MAX?"),
-            ("PILOT_TKOFF_ALT", 1.0, "unknown parameter PILOT_TKOFF_ALT; did you mean MIS_TAKEOFF_ALT?"),
+            ("LOIT_SPEED", 1.0, "unknown parameter LOIT_SPEED; did you mean MPC_VEL_MANUAL?"),
             ("NO_SUCH", 1.0, "unknown parameter NO_SUCH"),
         ] {
             let mut values = start;

@@ -212,6 +212,9 @@ pub(super) fn mission_command(number: u16) -> Option<&'static MissionCommand> {
     MISSION_COMMANDS.iter().chain(EQUIPMENT_COMMANDS).find(|command| command.number == number)
 }
 
+/// The largest number of a tag.
+pub const LARGEST_TAG: f64 = LAST;
+
 /// Number of the item that has a tag, if there is one.
 pub fn tagged_item(items: &[MissionItem], tag: f64) -> Option<usize> {
     items.iter().position(|item| item.command == JUMP_TAG && item.parameter(1) == tag)

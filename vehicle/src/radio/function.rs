@@ -5,6 +5,8 @@
 pub enum Function {
     /// Enters a mode, by ArduPilot's number, and leaves it for that of the mode switch.
     Mode(u32),
+    /// Marks the ends of the zigzag mode, and flies across to them.
+    ZigZagEnd,
     /// Adds the place to the mission.
     SaveWaypoint,
     /// Lets the mission begin anew.
@@ -93,6 +95,7 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (57, Function::Mode(23)),
     (58, Function::ClearMission),
     (60, Function::Mode(24)),
+    (61, Function::ZigZagEnd),
     (66, Function::Relay(4)),
     (67, Function::Relay(5)),
     (68, Function::Mode(0)),

@@ -72,6 +72,20 @@ impl RangeScan {
         Self { time_us, position_m, heading_rad, sectors }
     }
 
+    /// The nearest thing in each of some equal parts of the turn, the first of them around a heading, rad; m.
+    pub fn nearest_m<const PARTS: usize>(&self, heading_rad: f64) -> [Option<f64>; PARTS] {
+        let mut nearest_m = [None; PARTS];
+        for (reading, sector) in self.sectors.iter().zip(0..) {
+            let Reading::At(range_m) = *reading else { continue };
+            let off = (self.heading_rad + f64::from(sector) * SECTOR_RAD - heading_rad) / TAU * PARTS as f64;
+            let part = (libm::floor(off + 0.5) as i64).rem_euclid(PARTS as i64) as usize;
+            if let Some(nearest) = nearest_m.get_mut(part) {
+                *nearest = Some(nearest.map_or(range_m, |other: f64| other.min(range_m)));
+            }
+        }
+        nearest_m
+    }
+
     /// Where things are, seen from a place, NED, m: north and east, m.
     pub fn seen_from(&self, position_m: Vector3<f64>) -> impl Iterator<Item = Vector2<f64>> {
         let moved_m = (self.position_m - position_m).xy();

@@ -18,6 +18,7 @@ use super::surroundings_settings::SurroundingsSettings;
 use super::takeoff_check::TakeoffCheckSettings;
 use super::throw::ThrowSettings;
 use super::trail::TrailSettings;
+use super::weathervane::WeathervaneSettings;
 use crate::equipment::EquipmentSettings;
 use crate::kept::KeptValues;
 use crate::radio::RadioSettings;
@@ -27,6 +28,9 @@ use crate::radio::RadioSettings;
 pub struct Conduct {
     /// Height of a takeoff that names none, m.
     pub takeoff_height_m: f64,
+    /// Height above the ground to which a takeoff by hand goes on by itself, m; 0: it does not (ArduPilot: PILOT_TKOFF_ALT).
+    #[serde(default)]
+    pub pilot_takeoff_m: f64,
     /// Set-points are lost when none has come for this long, s.
     pub set_point_timeout_s: f64,
     /// Height above home of the way home, m.
@@ -77,6 +81,15 @@ pub struct Conduct {
     /// Options of ArduPilot's guided mode, as the parameter adds them up.
     #[serde(default = "thrust_as_thrust")]
     pub guided_options: u8,
+    /// Options of its automatic mode.
+    #[serde(default)]
+    pub auto_options: u8,
+    /// How it turns into the wind.
+    #[serde(default)]
+    pub weathervane: WeathervaneSettings,
+    /// Time that the zigzag mode waits where it has flown across to, s.
+    #[serde(default)]
+    pub zigzag_wait_s: f64,
     /// How a target is followed.
     #[serde(default)]
     pub follow: FollowSettings,
@@ -152,7 +165,7 @@ fn thrust_as_thrust() -> u8 {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s | PX4's |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s, up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | PX4's, within our limits of speed |
+/// | sticks | 5 m/s (ArduPilot 12.5), up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | theirs, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | not allowed; ArduPilot: allowed | PX4's; ArduPilot has no such parameter |
 impl Conduct {
@@ -165,6 +178,7 @@ impl Conduct {
     pub fn new(ardupilot: bool) -> Self {
         Self {
             takeoff_height_m: 2.5,
+            pilot_takeoff_m: 0.0,
             set_point_timeout_s: if ardupilot { 3.0 } else { 1.0 },
             return_height_m: if ardupilot { 15.0 } else { 30.0 },
             acceptance_radius_m: 2.0,
@@ -174,7 +188,7 @@ impl Conduct {
             land_fast_m_s: 0.0,
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
-            stick_speed_m_s: 5.0,
+            stick_speed_m_s: if ardupilot { 12.5 } else { 5.0 },
             stick_climb_m_s: 2.0,
             stick_sink_m_s: 1.5,
             stick_timeout_s: if ardupilot { 1.0 } else { 0.5 },
@@ -190,6 +204,9 @@ impl Conduct {
             },
             orbit: OrbitSettings::default(),
             guided_options: 0,
+            auto_options: 0,
+            weathervane: WeathervaneSettings::default(),
+            zigzag_wait_s: 0.0,
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
             mission_restarts: false,

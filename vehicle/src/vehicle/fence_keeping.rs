@@ -4,7 +4,8 @@ use nalgebra::{Vector2, Vector3};
 
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
-use crate::fence::{Fence, Inclusions, Zone};
+use crate::fence::{Fence, Inclusions, Shape, Zone, distance_to};
+use crate::mode::Mode;
 
 /// Of AVOID_ENABLE.
 const FENCE: u8 = 1;
@@ -12,15 +13,25 @@ const FENCE: u8 = 1;
 const GAIN_PER_S: f64 = 1.0;
 /// Share of the acceleration that braking plans with.
 const SHARE: f64 = 0.5;
+/// A difference of speed that does not matter, m/s.
+const SMALL_M_S: f64 = 1e-6;
 /// How far apart places are whose room is compared, m.
 const APART_M: f64 = 0.05;
 
+/// Whether sticks are kept from leading over the fence now.
+pub fn keeps_sticks_inside(situation: &Situation) -> bool {
+    matches!(situation.mode, Mode::Position | Mode::ZigZag) && applies(situation)
+}
+
+fn applies(situation: &Situation) -> bool {
+    situation.identity.is_ardupilot()
+        && situation.conduct.surroundings.avoided & FENCE != 0
+        && !situation.landed
+}
+
 /// A velocity that leads over the fence, or into its margin, is slowed down; one that begins there leads back.
 pub fn keep_inside(situation: &Situation, set_point: PositionSetPoint) -> PositionSetPoint {
-    let applies = situation.identity.is_ardupilot()
-        && situation.conduct.surroundings.avoided & FENCE != 0
-        && !situation.landed;
-    let Some(fence) = situation.fence().filter(|_| applies) else { return set_point };
+    let Some(fence) = situation.fence().filter(|_| applies(situation)) else { return set_point };
     let [AxisTarget::Velocity(north), AxisTarget::Velocity(east), AxisTarget::Velocity(down)] =
         set_point.axes
     else {
@@ -32,7 +43,23 @@ pub fn keep_inside(situation: &Situation, set_point: PositionSetPoint) -> Positi
     PositionSetPoint { axes: velocity.data.0[0].map(AxisTarget::Velocity), ..set_point }
 }
 
-fn keep_over_ground(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -> Vector2<f64> {
+/// In a corner what one side leaves may lead over the other: they are looked at in turns, so often at most.
+const TURNS: usize = 8;
+
+fn keep_over_ground(situation: &Situation, fence: &Fence, velocity: Vector2<f64>) -> Vector2<f64> {
+    let mut velocity = velocity;
+    for _ in 0..TURNS {
+        let kept = kept_once(situation, fence, velocity);
+        if (kept - velocity).norm() < SMALL_M_S {
+            return kept;
+        }
+        velocity = kept;
+    }
+    velocity
+}
+
+/// What every border leaves of a velocity, one after the other.
+fn kept_once(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -> Vector2<f64> {
     let margin_m = situation.conduct.failsafe.fence_margin_m;
     let acceleration = situation.limits().acceleration_horizontal_m_s2;
     let here = situation.outputs.position_m.xy();
@@ -52,7 +79,14 @@ fn keep_over_ground(situation: &Situation, fence: &Fence, mut velocity: Vector2<
     let zones = || fence.zones.iter().flat_map(|zones| &zones.zones);
     let alone = |zone: &Zone| !zone.inclusion || fence.inclusions == Inclusions::All;
     for zone in zones().filter(|zone| alone(zone)) {
-        keep(&|place| room_m(zone, place));
+        match &zone.shape {
+            Shape::Polygon(polygon) if !zone.forbids(here.into()) => {
+                for side in polygon.sides() {
+                    keep(&|place| distance_to(&side, place.into()));
+                }
+            }
+            _ => keep(&|place| room_m(zone, place)),
+        }
     }
     // It is enough to be in one of the others: that with the most room.
     if zones().any(|zone| !alone(zone)) {
@@ -85,7 +119,7 @@ fn keep_height(situation: &Situation, fence: &Fence, down_m_s: f64) -> f64 {
 }
 
 /// The fastest towards a border with so much room before it, m/s; negative beyond it.
-fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2: f64) -> f64 {
+pub(super) fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2: f64) -> f64 {
     if room_m < 0.0 {
         return (GAIN_PER_S * room_m).max(-situation.conduct.surroundings.backing_m_s);
     }
@@ -101,7 +135,7 @@ fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2: f64) -> f6
 #[cfg(test)]
 mod tests {
     use super::{AxisTarget, PositionSetPoint, keep_inside};
-    use crate::fence::{Shape, Zone};
+    use crate::fence::{Polygon, Shape, Zone};
     use crate::identity::Identity;
     use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
@@ -158,6 +192,24 @@ mod tests {
         assert_eq!(kept(&scene, [-1.0, 0.0, 0.0]), [-1.0, 0.0, 0.0]);
         scene.come_to([-7.0, 0.0, -10.0], [0.0; 3]);
         assert!(kept(&scene, [-1.0, 0.0, 0.0])[0].abs() < 1e-6, "it ends at the margin");
+    }
+
+    /// In the acute corner of a triangle, a velocity into it is left by neither side.
+    #[test]
+    fn nothing_leads_into_a_corner() {
+        let mut scene = scene();
+        let corners = vec![[0.0, 0.0], [20.0, -10.0], [20.0, 10.0]];
+        let shape = Shape::Polygon(Polygon::new(corners).expect("a triangle"));
+        scene.zones.zones = vec![Zone { shape, inclusion: true }];
+        // As far from both sides as the margin, 3 m.
+        let corner_m = 3.0 / (0.5_f64.atan()).sin();
+        scene.come_to([corner_m, 0.0, -10.0], [0.0; 3]);
+        for velocity in [[-2.0, 0.0, 0.0], [-2.0, 1.0, 0.0], [-1.0, 2.0, 0.0]] {
+            let [north, east, _] = kept(&scene, velocity);
+            let outwards = |side: f64| (-north + 2.0 * side * east) / 5.0_f64.sqrt();
+            let most = outwards(1.0).max(outwards(-1.0));
+            assert!(most < 0.1, "{velocity:?}: {north} {east}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use quadrotor::Limits;
 
 use super::failsafe::FenceStart;
+use super::fence_keeping::keeps_sticks_inside;
 use super::motion::Motion;
 use super::notice::Refusal;
 use super::set_point::{AxisTarget, PositionSetPoint};
@@ -121,7 +122,8 @@ impl FenceWatch {
         let was_ahead = self.record.is_ahead;
         // The way to a stop is costly to predict: only for a fence that has bounds.
         let bounded = situation.fence().is_some_and(|fence| fence.bounds());
-        let predicts = bounded && situation.conduct.failsafe.fence_ahead;
+        // Sticks that do not lead over it may lead along it.
+        let predicts = bounded && situation.conduct.failsafe.fence_ahead && !keeps_sticks_inside(situation);
         let ahead = || if predicts { breach_ahead(situation, &situation.braking_limits()) } else { None };
         self.record.now = here.or_else(ahead);
         self.record.is_ahead = here.is_none() && self.record.now.is_some();

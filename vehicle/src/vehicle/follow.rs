@@ -226,7 +226,7 @@ impl Follow {
             bearing_rad: wrapped(libm::atan2(off.y, off.x) - bearing_rad),
             left_rad,
         };
-        self.place.adjust(&sticks, &errors, TICK_S);
+        self.place.adjust(&sticks.live(&situation.conduct.sticks), &errors, TICK_S);
     }
 
     /// PX4's height, z, m.

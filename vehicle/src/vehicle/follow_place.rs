@@ -54,9 +54,9 @@ impl FollowPlace {
         }
     }
 
-    /// The throttle lifts it, the pitch stick takes it away from the target, the roll stick around it, for a time, s.
+    /// The throttle lifts it, the pitch stick takes it away from the target, the roll stick around it, for a time, s. Sticks are without their
+    /// dead zones.
     pub fn adjust(&mut self, sticks: &Sticks, errors: &FollowErrors, dt_s: f64) {
-        let sticks = sticks.live();
         let before_m = [self.height_m, self.distance_m];
         if errors.height_m.abs() < CLIMB_M_S * AHEAD_S {
             self.height_m = moved(self.height_m, sticks.up * CLIMB_M_S * dt_s);
@@ -81,6 +81,7 @@ fn moved(value_m: f64, change_m: f64) -> f64 {
 mod tests {
     use super::{FollowErrors, FollowPlace, LEAST_M, MOST_M};
     use crate::vehicle::FollowSettings;
+    use crate::vehicle::stick_settings::StickSettings;
     use crate::vehicle::sticks::Sticks;
 
     fn place() -> FollowPlace {
@@ -91,6 +92,7 @@ mod tests {
 
     fn held(place: &mut FollowPlace, sticks: Sticks, seconds: f64) {
         for _ in 0..(seconds * 100.0).round() as usize {
+            let sticks = sticks.live(&StickSettings::default());
             place.adjust(&sticks, &FollowErrors::default(), 0.01);
         }
     }

@@ -5,7 +5,7 @@ use super::notice::Severity;
 use super::proposal::Proposal;
 use super::situation::Situation;
 use super::steering::SteeringKind;
-use crate::mode::Mode;
+use crate::mode::{Leader, Mode};
 
 /// How the vehicle stands, and since when.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,12 +99,23 @@ impl Landing {
             }
             SteeringKind::Position | SteeringKind::Descent => return,
         }
-        let conduct = situation.conduct;
-        let wait_s =
-            if self.flown { conduct.disarm_after_landing_s } else { conduct.disarm_before_takeoff_s };
+        let wait_s = self.wait_s(situation);
         let waited_s = (situation.time_us - self.grounded_since_us) as f64 / 1e6;
         if wait_s > 0.0 && waited_s >= wait_s {
             proposal.stop_rotors(if self.flown { "Disarmed after landing" } else { "Disarmed: no takeoff" });
+        }
+    }
+
+    /// How long the rotors idle before they stop, s. With ArduPilot a pilot who has landed may take off again for as long as before the
+    /// first takeoff.
+    fn wait_s(&self, situation: &Situation) -> f64 {
+        let conduct = situation.conduct;
+        let stops = conduct.sticks.disarms_on_landing() && !situation.mode.is_flown_by_thrust();
+        let by_hand = situation.identity.is_ardupilot() && situation.mode.leader() == Leader::Sticks;
+        if self.flown && (stops || !by_hand) {
+            conduct.disarm_after_landing_s
+        } else {
+            conduct.disarm_before_takeoff_s
         }
     }
 }
@@ -117,6 +128,8 @@ fn is_loaded(situation: &Situation) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{Landing, Mode, SteeringKind};
+    use crate::identity::Identity;
+    use crate::vehicle::Conduct;
     use crate::vehicle::proposal::Request;
     use crate::vehicle::scene::{Scene, said};
     use crate::vehicle::set_point::PositionSetPoint;
@@ -162,6 +175,30 @@ mod tests {
         assert_eq!(wait(&mut landing, &mut scene), [stop]);
         landing.disarm();
         assert!(!landing.has_flown());
+    }
+
+    /// A pilot of ArduPilot's waits for DISARM_DELAY, unless PILOT_THR_BHV says otherwise.
+    #[test]
+    fn a_pilot_may_take_off_again() {
+        for (mode, options, delay_s, seconds) in [
+            (Mode::Position, 0, 10.0, Some(10)),
+            (Mode::Position, 0, 0.0, None),
+            (Mode::Position, 4, 0.0, Some(2)),
+            (Mode::Stabilize, 4, 10.0, Some(10)),
+            (Mode::Land, 0, 0.0, Some(2)),
+        ] {
+            let mut scene = Scene::on_the_ground();
+            (scene.identity, scene.conduct, scene.mode) = (Identity::ArduPilot, Conduct::new(true), mode);
+            scene.conduct.disarm_before_takeoff_s = delay_s;
+            scene.conduct.sticks.throttle_behaviour = options;
+            let mut landing = Landing::new(0.0);
+            (landing.flown, landing.grounded_since_us) = (true, scene.outputs.time_us);
+            let stopped = (1..=20).find(|_| {
+                scene.wait_us(1_000_000);
+                !wait(&mut landing, &mut scene).is_empty()
+            });
+            assert_eq!(stopped, seconds, "{mode:?} {options} {delay_s}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::flip::Flip;
 use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
@@ -17,6 +18,7 @@ use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::parachute_watch::ParachuteWatch;
+use super::pilot_takeoff::PilotTakeoff;
 use super::pilot_watch::PilotWatch;
 use super::precision_landing::PrecisionLanding;
 use super::pushes::PushClock;
@@ -33,6 +35,8 @@ use super::takeoff_check::TakeoffCheck;
 use super::throw::Throw;
 use super::traffic_watch::TrafficWatch;
 use super::vibration_watch::VibrationWatch;
+use super::weathervane::Weathervane;
+use super::zigzag::ZigZag;
 use crate::equipment::Equipment;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
@@ -62,10 +66,18 @@ pub struct Machines {
     pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
+    /// Takeoffs by hand.
+    pub pilot_takeoff: PilotTakeoff,
     /// What the rotors have against one.
     pub takeoff_check: TakeoffCheck,
     /// Throws.
     pub throw: Throw,
+    /// Flips.
+    pub flip: Flip,
+    /// The zigzag mode.
+    pub zigzag: ZigZag,
+    /// The turn into the wind.
+    pub weathervane: Weathervane,
     /// Pushes that a user gives the vehicle.
     pub pushes: PushClock,
     /// The turn that a command asks for.

@@ -5,9 +5,10 @@ use nalgebra::{Vector2, Vector3};
 use super::fence_watch::stopping_place_m;
 use super::notice::Severity;
 use super::proposal::Proposal;
+use super::proximity_keeping::keep_away;
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
-use crate::mode::Mode;
+use crate::mode::{Leader, Mode};
 use crate::surroundings::{Aircraft, Obstacle, RangeScan, Reading, SECTOR_RAD, SECTORS};
 
 /// The lidar turns ten times per second.
@@ -24,6 +25,8 @@ const STANDING_M_S: f64 = 0.1;
 const SMALL: f64 = 0.02;
 /// What is nearer than the distance that is kept stops only a motion that leads towards it within this cosine.
 const TOWARDS: f64 = 0.5;
+/// ArduPilot's kind of the instrument that its simulation has (PRX1_TYPE).
+const SIMULATED: u8 = 10;
 /// A stop is told again when the way was free for so long, µs.
 const TOLD_US: u64 = 2_000_000;
 /// The sphere around the vehicle that must touch nothing, in lengths of its arms.
@@ -59,6 +62,28 @@ impl ObstacleWatch {
     /// The latest turn of our lidar; `None` without obstacles.
     pub fn lidar(&self) -> Option<&RangeScan> {
         self.lidar.as_ref()
+    }
+
+    /// What a companion computer tells, if that is not too old.
+    pub fn companion(&self, time_us: u64) -> Option<&RangeScan> {
+        self.companion.as_ref().filter(|scan| is_fresh(scan, time_us))
+    }
+
+    /// Whether something measures around, or is to by the parameters.
+    pub fn has_proximity(&self, situation: &Situation) -> bool {
+        let chosen = situation.identity.is_ardupilot() && situation.conduct.surroundings.proximity_kind > 0;
+        self.lidar.is_some() || chosen
+    }
+
+    /// Whether it measures now.
+    pub fn measures_around(&self, situation: &Situation) -> bool {
+        let simulated = situation.conduct.surroundings.proximity_kind == SIMULATED;
+        self.lidar.is_some() || simulated || self.companion(situation.time_us).is_some()
+    }
+
+    /// Whether a distance is kept from what is measured, as far as a switch says.
+    pub fn proximity_is_on(&self) -> bool {
+        !self.proximity_off
     }
 
     /// What the downward rangefinder shows, m; `None` if there is none, or nothing is in its range.
@@ -139,6 +164,12 @@ impl ObstacleWatch {
         self.obstacles.iter().find(|obstacle| obstacle.distance_m(&situation.truth.position_m) < reach_m)
     }
 
+    /// Whether it is so high that obstacles are avoided: above the ground if that is measured, else above home.
+    fn is_high(&self, situation: &Situation) -> bool {
+        let above_home_m = situation.home.position_m.z - situation.outputs.position_m.z;
+        self.below_m.unwrap_or(above_home_m) > situation.conduct.surroundings.avoided_above_m
+    }
+
     /// Ends the flight of a vehicle that touches something.
     pub fn watch_contact(&self, situation: &Situation, proposal: &mut Proposal) {
         if !situation.armed {
@@ -150,19 +181,23 @@ impl ObstacleWatch {
         }
     }
 
-    /// Stops the vehicle before what is measured, in the modes that keep a distance.
+    /// What is measured, north and east of here, m; `None`: nothing has been for a while.
+    fn seen_m(&self, situation: &Situation) -> Option<Vec<Vector2<f64>>> {
+        let lidar = self.lidar.as_ref().filter(|scan| is_fresh(scan, situation.time_us));
+        let mut scans = lidar.into_iter().chain(self.companion(situation.time_us)).peekable();
+        scans.peek()?;
+        Some(scans.flat_map(|scan| scan.seen_from(situation.outputs.position_m)).collect())
+    }
+
+    /// Stops the vehicle before what is measured, in the modes that keep a distance. ArduPilot's sticks slide along it.
     pub fn keep_distance(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let keeps = !self.proximity_off && keeps_distance(situation);
         let Some(asked) = proposal.steering().asked().filter(|_| keeps) else {
             self.stopped = false;
             return;
         };
-        let fresh = |scan: &&RangeScan| situation.time_us.saturating_sub(scan.time_us) <= OLD_US;
-        let scans: Vec<&RangeScan> =
-            [&self.lidar, &self.companion].into_iter().flatten().filter(fresh).collect();
-        let here_m = situation.outputs.position_m;
-        let direction = wanted(&asked, &here_m).try_normalize(SMALL);
-        if scans.is_empty() {
+        let direction = wanted(&asked, &situation.outputs.position_m).try_normalize(SMALL);
+        let Some(points) = self.seen_m(situation) else {
             if !situation.conduct.surroundings.go_without_data && direction.is_some() {
                 if !std::mem::replace(&mut self.told_blind, true) {
                     proposal.say(Severity::Warning, "No range data: not moving");
@@ -170,9 +205,14 @@ impl ObstacleWatch {
                 proposal.follow(situation, &stopped(&asked));
             }
             return;
-        }
+        };
         self.told_blind = false;
-        let points: Vec<_> = scans.iter().flat_map(|scan| scan.seen_from(here_m)).collect();
+        if situation.identity.is_ardupilot() && situation.mode.leader() == Leader::Sticks {
+            if let Some(kept) = keep_away(situation, &points, &asked).filter(|_| self.is_high(situation)) {
+                proposal.follow(situation, &kept);
+            }
+            return;
+        }
         let margin_m = situation.conduct.surroundings.obstacle_distance_m;
         let (course, brakes_m) = braking(situation);
         let free = |direction: &Vector2<f64>| free_m(&points, direction, margin_m);
@@ -189,6 +229,10 @@ impl ObstacleWatch {
     }
 }
 
+fn is_fresh(scan: &RangeScan, time_us: u64) -> bool {
+    time_us.saturating_sub(scan.time_us) <= OLD_US
+}
+
 /// PX4 keeps its distance in Position mode, ArduPilot in Loiter and Guided, if it has a sensor.
 fn keeps_distance(situation: &Situation) -> bool {
     const PROXIMITY: u8 = 2;
@@ -198,7 +242,8 @@ fn keeps_distance(situation: &Situation) -> bool {
     }
     if situation.identity.is_ardupilot() {
         let senses = settings.avoided & PROXIMITY != 0 && settings.proximity_kind > 0;
-        senses && matches!(situation.mode, Mode::Position | Mode::PositionHold | Mode::Offboard)
+        senses
+            && matches!(situation.mode, Mode::Position | Mode::PositionHold | Mode::ZigZag | Mode::Offboard)
     } else {
         situation.mode == Mode::Position
     }

@@ -27,6 +27,7 @@ use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change, Failsafe};
 use super::fence_watch::FenceWatch;
+use super::flip::Flip;
 use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::home::Home;
@@ -43,6 +44,7 @@ use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::parachute_watch::ParachuteWatch;
 use super::perception::Perception;
+use super::pilot_takeoff::PilotTakeoff;
 use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
 use super::precision_landing::PrecisionLanding;
@@ -64,6 +66,8 @@ use super::throw::Throw;
 use super::tick::{TICK_S, TICK_US};
 use super::traffic_watch::TrafficWatch;
 use super::vibration_watch::VibrationWatch;
+use super::weathervane::Weathervane;
+use super::zigzag::ZigZag;
 use crate::FlightError;
 use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
@@ -124,8 +128,12 @@ impl Vehicle {
             landing: Landing::new(-perception.truth().position_m.z),
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
+            pilot_takeoff: PilotTakeoff::default(),
             takeoff_check: TakeoffCheck::default(),
             throw: Throw::default(),
+            flip: Flip::default(),
+            zigzag: ZigZag::default(),
+            weathervane: Weathervane::default(),
             pushes: PushClock::default(),
             turn: CommandedTurn::default(),
             receiver: Receiver::default(),
@@ -254,17 +262,23 @@ impl Vehicle {
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
             Mode::Position => {
-                fly_by_velocity(situation, proposal);
+                fly_by_velocity(&mut parts.pilot_takeoff, situation, proposal);
                 parts.precision.stay_above(situation, proposal);
             }
-            Mode::PositionHold if situation.pilot.sticks.is_some_and(|sticks| sticks.leans()) => {
-                parts.stick_flight.step_by_height(situation, proposal);
+            Mode::Flip => parts.flip.step(situation, proposal),
+            Mode::ZigZag => parts.zigzag.step(&mut parts.pilot_takeoff, situation, proposal),
+            Mode::PositionHold
+                if situation.pilot.sticks.is_some_and(|sticks| sticks.leans(&situation.conduct.sticks)) =>
+            {
+                parts.stick_flight.step_by_height(&mut parts.pilot_takeoff, situation, proposal);
             }
             Mode::PositionHold => {
                 parts.stick_flight.forget();
-                fly_by_velocity(situation, proposal);
+                fly_by_velocity(&mut parts.pilot_takeoff, situation, proposal);
             }
-            Mode::Altitude => parts.stick_flight.step_by_height(situation, proposal),
+            Mode::Altitude => {
+                parts.stick_flight.step_by_height(&mut parts.pilot_takeoff, situation, proposal);
+            }
             Mode::Stabilize | Mode::Manual | Mode::Acro => {
                 parts.stick_flight.step_by_thrust(situation, proposal);
             }
@@ -285,9 +299,11 @@ impl Vehicle {
             if situation.mode != Mode::SmartReturn {
                 parts.smart_return.watch(situation, proposal);
             }
-            if parts.turn.is_on() {
+            // The wind goes before headings that are asked for, as in ArduPilot.
+            let turned = parts.weathervane.step(situation, proposal);
+            if parts.turn.is_on() && !turned {
                 parts.turn.step(proposal);
-            } else if situation.chooses_its_heading() {
+            } else if !turned && situation.chooses_its_heading() {
                 proposal.turn_to_region(situation);
             }
             parts.landing.wait(situation, proposal);

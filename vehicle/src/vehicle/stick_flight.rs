@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::height_hold::HeightHold;
 use super::motion::wrapped;
+use super::pilot_takeoff::PilotTakeoff;
 use super::proposal::Proposal;
 use super::set_point::AttitudeSetPoint;
 use super::situation::Situation;
@@ -60,9 +61,14 @@ impl StickFlight {
     }
 
     /// One tick of a mode in which the throttle is the climb rate.
-    pub fn step_by_height(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    pub fn step_by_height(
+        &mut self,
+        takeoff: &mut PilotTakeoff,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) {
         let sticks = Self::sticks(situation);
-        let climb_m_s = sticks.climb_m_s(situation.conduct);
+        let climb_m_s = takeoff.climb_m_s(situation, sticks.climb_m_s(situation.conduct));
         if situation.landed && climb_m_s <= 0.0 {
             self.rest(situation, proposal);
             return;
@@ -90,8 +96,7 @@ impl StickFlight {
             self.heading_rad = Some(now_rad);
             ([0.0; 2], 0.0)
         } else {
-            let fastest = settings.turn_rad_s.min(limits.yaw_rate_rad_s);
-            (sticks.lean_rad(largest_rad), sticks.turn.clamp(-1.0, 1.0) * fastest)
+            (sticks.lean_rad(largest_rad), sticks.turn_rad_s(settings, limits.yaw_rate_rad_s))
         };
         let heading = self.heading_rad.get_or_insert(now_rad);
         let lead = wrapped(*heading + turn_rad_s * TICK_S - now_rad);

@@ -9,6 +9,13 @@ pub struct StickSettings {
     pub lean_rad: f64,
     /// Rate of turn of a full stick, rad/s.
     pub turn_rad_s: f64,
+    /// Share of a stick's way around its centre that means zero where sticks command a velocity (MPC_HOLD_DZ). ArduPilot's channels have
+    /// dead zones of their own, and sticks none.
+    #[serde(default = "tenth")]
+    pub dead_zone: f64,
+    /// What the throttle does besides, as ArduPilot's parameter adds it up (PILOT_THR_BHV).
+    #[serde(default)]
+    pub throttle_behaviour: u8,
     /// Vertical acceleration, m/s².
     pub climb_m_s2: f64,
     /// Share of the throttle's way above and below its middle that means no climb (THR_DZ).
@@ -42,19 +49,34 @@ pub enum Trainer {
     LevelsAndLimits,
 }
 
+/// Records of before it could be chosen have this one.
+fn tenth() -> f64 {
+    0.1
+}
+
 impl Default for StickSettings {
     fn default() -> Self {
         Self::new(false)
     }
 }
 
+/// Of the behaviours of the throttle.
+const DISARMS_ON_LANDING: u8 = 4;
+
 impl StickSettings {
+    /// Whether a landing by hand ends as the others do.
+    pub fn disarms_on_landing(&self) -> bool {
+        self.throttle_behaviour & DISARMS_ON_LANDING != 0
+    }
+
     /// The defaults of both autopilots.
     pub fn new(ardupilot: bool) -> Self {
         if ardupilot {
             return Self {
                 lean_rad: 30.0_f64.to_radians(),
                 turn_rad_s: 202.5_f64.to_radians(),
+                dead_zone: 0.0,
+                throttle_behaviour: 0,
                 climb_m_s2: 2.5,
                 throttle_dead_zone: 0.1,
                 least_thrust: 0.0,
@@ -70,6 +92,8 @@ impl StickSettings {
         Self {
             lean_rad: 35.0_f64.to_radians(),
             turn_rad_s: 150.0_f64.to_radians(),
+            dead_zone: tenth(),
+            throttle_behaviour: 0,
             climb_m_s2: 3.0,
             throttle_dead_zone: 0.05,
             least_thrust: 0.08,

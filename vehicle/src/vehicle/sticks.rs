@@ -4,6 +4,7 @@ use nalgebra::{Rotation2, Vector2};
 
 use super::conduct::Conduct;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::stick_settings::StickSettings;
 
 /// Deflections, each within ±1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -18,9 +19,6 @@ pub struct Sticks {
     pub turn: f64,
 }
 
-/// Share of a stick's way around its centre that means zero where sticks command a velocity.
-const DEAD_ZONE: f64 = 0.1;
-
 impl Sticks {
     /// Way of the throttle from its low end, 0 to 1.
     pub fn throttle(&self) -> f64 {
@@ -34,27 +32,32 @@ impl Sticks {
     }
 
     /// Without their dead zones.
-    pub fn live(&self) -> Self {
-        let live = |stick| beyond(stick, DEAD_ZONE);
+    pub fn live(&self, settings: &StickSettings) -> Self {
+        let live = |stick| beyond(stick, settings.dead_zone);
         let (forward, right) = (live(self.forward), live(self.right));
         Self { forward, right, up: live(self.up), turn: live(self.turn) }
     }
 
-    /// Velocities in the frame of the heading.
-    pub fn set_point(&self, conduct: &Conduct, yaw_rad: f64, yaw_rate_rad_s: f64) -> PositionSetPoint {
-        let live = self.live();
+    /// The rate of turn that is asked for, rad/s, no faster than a limit.
+    pub fn turn_rad_s(&self, settings: &StickSettings, fastest_rad_s: f64) -> f64 {
+        (self.turn.clamp(-1.0, 1.0) * settings.turn_rad_s).clamp(-fastest_rad_s, fastest_rad_s)
+    }
+
+    /// Velocities in the frame of the heading, and a turn no faster than a limit, rad/s.
+    pub fn set_point(&self, conduct: &Conduct, yaw_rad: f64, fastest_rad_s: f64) -> PositionSetPoint {
+        let live = self.live(&conduct.sticks);
         let stick = Vector2::new(live.forward, live.right);
         // A stick in the corner is not faster than one at the edge.
         let stick = if stick.norm() > 1.0 { stick.normalize() } else { stick };
         let velocity = Rotation2::new(yaw_rad) * stick * conduct.stick_speed_m_s;
-        let turn = live.turn;
+        let turn_rad_s = live.turn_rad_s(&conduct.sticks, fastest_rad_s);
         PositionSetPoint {
             axes: [
                 AxisTarget::Velocity(velocity.x),
                 AxisTarget::Velocity(velocity.y),
                 AxisTarget::Velocity(-self.climb_m_s(conduct)),
             ],
-            yaw: if turn == 0.0 { YawTarget::Hold } else { YawTarget::Rate(turn * yaw_rate_rad_s) },
+            yaw: if turn_rad_s == 0.0 { YawTarget::Hold } else { YawTarget::Rate(turn_rad_s) },
         }
     }
 
@@ -66,8 +69,9 @@ impl Sticks {
     }
 
     /// Whether roll or pitch is asked for.
-    pub fn leans(&self) -> bool {
-        beyond(self.forward, DEAD_ZONE) != 0.0 || beyond(self.right, DEAD_ZONE) != 0.0
+    pub fn leans(&self, settings: &StickSettings) -> bool {
+        let live = self.live(settings);
+        live.forward != 0.0 || live.right != 0.0
     }
 
     /// Share of the largest thrust that a throttle asks for by hand, where this share hovers.

@@ -16,6 +16,9 @@ pub struct SurroundingsSettings {
     pub go_without_data: bool,
     /// What is avoided: bits (ArduPilot: AVOID_ENABLE).
     pub avoided: u8,
+    /// Below this height above the ground, m, obstacles are not avoided (ArduPilot: AVOID_ALT_MIN).
+    #[serde(default)]
+    pub avoided_above_m: f64,
     /// How fast it backs away from the fence, m/s (ArduPilot: AVOID_BACKUP_SPD).
     #[serde(default = "slow")]
     pub backing_m_s: f64,
@@ -103,6 +106,7 @@ impl Default for SurroundingsSettings {
             obstacle_delay_s: 0.4,
             go_without_data: false,
             avoided: 3,
+            avoided_above_m: 0.0,
             backing_m_s: slow(),
             proximity_kind: 0,
             rangefinder_kind: 0,

@@ -34,11 +34,9 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
     };
     let present =
         if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
-    let present = if vehicle.obstacles().lidar().is_some() {
-        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
-    } else {
-        present
-    };
+    let [has_proximity, proximity_is_on, measures_around] = vehicle.proximity();
+    let present =
+        if has_proximity { present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY } else { present };
     let present = if vehicle.has_rangefinder() {
         present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
     } else {
@@ -53,6 +51,11 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         enabled
     } else {
         enabled & !MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
+    };
+    let enabled = if proximity_is_on {
+        enabled
+    } else {
+        enabled & !MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
     };
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
     let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
@@ -71,6 +74,7 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
+        (measures_around || !has_proximity, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);

@@ -119,6 +119,30 @@ impl Flier {
         -self.vehicle().outputs().velocity_m_s.z
     }
 
+    /// Degrees from north through east, 0 to 360.
+    pub fn heading_deg(&self) -> f64 {
+        self.vehicle().outputs().attitude_rad.z.to_degrees().rem_euclid(360.0)
+    }
+
+    /// Whether the nose is within some degrees of a heading.
+    pub fn heads(&self, heading_deg: f64, within_deg: f64) -> bool {
+        let off_deg = (self.heading_deg() - heading_deg + 180.0).rem_euclid(360.0) - 180.0;
+        off_deg.abs() <= within_deg
+    }
+
+    /// Turns until the nose is within 5 degrees of a heading: it has 20 s.
+    pub fn wait_heading(&mut self, heading_deg: f64) {
+        self.wait(&format!("{heading_deg} deg"), 20.0, |flier| flier.heads(heading_deg, 5.0));
+    }
+
+    /// Flies until it is so far, m, from where it is now, give or take 2 m: it has 30 s.
+    pub fn wait_moved(&mut self, metres: f64) {
+        let from_m = self.vehicle().outputs().position_m.xy();
+        self.wait(&format!("{metres} m"), 30.0, |flier| {
+            ((flier.vehicle().outputs().position_m.xy() - from_m).norm() - metres).abs() <= 2.0
+        });
+    }
+
     pub fn fly(&mut self, seconds: f64) {
         self.bench.fly(seconds);
     }

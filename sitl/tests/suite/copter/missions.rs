@@ -65,7 +65,7 @@ fn a_mission_pauses_and_goes_on_however_often_it_is_asked() {
     flier.wait_home();
 }
 
-/// Suite: MissionIndexValidity.
+/// Suite: MissionIndexValidity, InvalidJumpTags.
 #[test]
 fn items_and_tags_that_there_are_not_are_refused() {
     let rows = [(TAKEOFF, 0.0, 0.0, 20.0), (WAYPOINT, 20.0, 0.0, 20.0), (RETURN, 0.0, 0.0, 0.0)];
@@ -77,4 +77,6 @@ fn items_and_tags_that_there_are_not_are_refused() {
     assert_eq!(chosen(&mut flier, 4.0), 2, "denied");
     let no_such_tag = [65_535.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(flier.command(MavCmd::MAV_CMD_DO_JUMP_TAG, no_such_tag), FAILED);
+    let no_tag = [65_536.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_JUMP_TAG, no_tag), 2, "denied");
 }

@@ -8,4 +8,7 @@ mod flier;
 mod missions;
 mod modes;
 mod precision;
+mod proximity;
+mod sticks;
 mod switches;
+mod wind;

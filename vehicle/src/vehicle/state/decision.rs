@@ -101,6 +101,7 @@ impl Vehicle {
         self.machines.turn.forget();
         self.machines.offboard.begin();
         self.machines.stick_flight.forget();
+        self.machines.pilot_takeoff.forget();
         self.consult(|parts, situation, proposal| match mode {
             Mode::Hold | Mode::Position | Mode::PositionHold => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
@@ -114,6 +115,8 @@ impl Vehicle {
             Mode::Orbit => parts.orbit.begin(situation, proposal),
             Mode::Follow => parts.follow.begin(situation, proposal),
             Mode::Throw => parts.throw.begin(),
+            Mode::Flip => parts.flip.begin(before, situation),
+            Mode::ZigZag => parts.zigzag.begin(situation, proposal),
             Mode::GuidedAttitude => {
                 parts.offboard.forget();
                 proposal.hold(situation);
@@ -137,6 +140,7 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
+        self.machines.pilot_takeoff.forget();
         self.machines.turn.forget();
         let speeds = self.machines.speeds.after(SpeedChange::Return(None));
         self.use_speeds_or_say(speeds.after(SpeedChange::ForgetCommands));

@@ -6,6 +6,7 @@ use super::super::receiver::{Pilot, Pulses};
 use super::super::simple_flight::StickReference;
 use super::super::sticks::Sticks;
 use super::super::tick::TICK_S;
+use super::super::zigzag::End;
 use super::Vehicle;
 use crate::equipment::{GimbalMode, Operation, ParachuteOrder, Switch};
 use crate::mode::{Leader, Mode};
@@ -140,6 +141,10 @@ impl Vehicle {
         match (function, position) {
             (Function::Mode(number), Position::High) => self.set_custom_mode(number),
             (Function::Mode(number), _) => self.leave_mode(number),
+            (Function::ZigZagEnd, position) => {
+                self.choose_end(position);
+                Ok(())
+            }
             (Function::SaveWaypoint, Position::High) => self.save_waypoint(),
             (Function::SaveWaypoint, _) => Ok(()),
             (Function::Fence, position) => {
@@ -193,6 +198,18 @@ impl Vehicle {
                 Ok(())
             }
         }
+    }
+
+    /// Low is A and high B of the zigzag mode, the middle is the pilot's.
+    fn choose_end(&mut self, position: Position) {
+        if self.mode() != Mode::ZigZag {
+            return;
+        }
+        self.consult(|parts, situation, proposal| match position {
+            Position::Low => parts.zigzag.choose(End::A, situation, proposal),
+            Position::Middle => parts.zigzag.stop(situation, proposal),
+            Position::High => parts.zigzag.choose(End::B, situation, proposal),
+        });
     }
 
     fn clear_mission(&mut self) -> Result<(), Refusal> {

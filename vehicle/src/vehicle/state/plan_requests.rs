@@ -118,6 +118,10 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without such a tag, and as [`Vehicle::set_mission_item`].
     pub fn jump_to_tag(&mut self, tag: f64) -> Result<(), Refusal> {
+        if !(0.0..=command::LARGEST_TAG).contains(&tag) {
+            let largest = command::LARGEST_TAG;
+            return Err(Refusal::denied(format!("Jump denied: tag {tag} is outside 0 to {largest}")));
+        }
         let items = self.plans().get(PlanKind::Mission).items();
         let index = command::tagged_item(items, tag)
             .ok_or_else(|| Refusal::Failed(format!("Jump rejected: no item has tag {tag}")))?;

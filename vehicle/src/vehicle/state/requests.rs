@@ -7,6 +7,7 @@ use super::super::change_error::ChangeError;
 use super::super::conduct::Conduct;
 use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
+use super::super::flip::Flip;
 use super::super::follow::Follow;
 use super::super::motor_test::MotorTest;
 use super::super::notice::{Notice, Refusal, Severity};
@@ -189,7 +190,7 @@ impl Vehicle {
         if mode != Mode::Land {
             situation.refuse_without_rotor()?;
         }
-        if mode.leader() == Leader::Sticks && mode != Mode::Position {
+        if mode.leader() == Leader::Sticks && !matches!(mode, Mode::Position | Mode::ZigZag) {
             self.refuse_leaning(mode)?;
         }
         match mode {
@@ -203,6 +204,7 @@ impl Vehicle {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
             Mode::Follow => Follow::may_begin(&situation)?,
+            Mode::Flip => Flip::may_begin(&situation)?,
             Mode::Throw if situation.armed => {
                 return Err(Refusal::Failed("Throw mode rejected: disarm first".to_owned()));
             }

@@ -20,6 +20,12 @@ impl Vehicle {
         self.machines.obstacles.has_rangefinder(&self.situation())
     }
 
+    /// Whether something measures around, whether it is switched on, and whether it works.
+    pub fn proximity(&self) -> [bool; 3] {
+        let (situation, watch) = (self.situation(), &self.machines.obstacles);
+        [watch.has_proximity(&situation), watch.proximity_is_on(), watch.measures_around(&situation)]
+    }
+
     /// Takes a scan that somebody else has made, with the middle of its first sector at a heading, rad, from north.
     pub fn see_around(&mut self, heading_rad: f64, sectors: [Reading; crate::surroundings::SECTORS]) {
         let outputs = self.outputs();

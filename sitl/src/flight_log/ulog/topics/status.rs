@@ -50,7 +50,7 @@ fn nav_state(mode: Mode) -> u8 {
         Mode::Manual => 0,
         Mode::Altitude => 1,
         Mode::Acro => 10,
-        Mode::Position | Mode::PositionHold => 2,
+        Mode::Position | Mode::PositionHold | Mode::ZigZag => 2,
         Mode::Mission | Mode::MissionLanding => 3,
         Mode::Hold => 4,
         Mode::Return => 5,
@@ -62,6 +62,7 @@ fn nav_state(mode: Mode) -> u8 {
         // PX4 has no such modes; the nearest ones.
         Mode::SmartReturn => 5,
         Mode::Throw => 4,
+        Mode::Flip => 10,
         Mode::GuidedAttitude => 14,
     }
 }
