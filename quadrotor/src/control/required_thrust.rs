@@ -33,21 +33,26 @@ impl RequiredThrust {
             snap_m_s4: against(&reference.snap_m_s4, &reference.jerk_m_s3),
         };
         let vertical_m_s2 = whole.acceleration_m_s2.z;
-        let most_m_s2 = most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
-            .min(holding_horizontal_m_s2(configuration, -vertical_m_s2));
-        whole.leaning_at_most(most_m_s2)
+        whole.leaning_at_most(|| {
+            most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
+                .min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
+        })
     }
 
-    /// The same with a horizontal acceleration of at most `most_m_s2`:
+    /// The same with a horizontal acceleration of at most `most_m_s2`, which is only asked for if there is one:
     ///
     /// ```text
     /// a = r n,  r′ = n·j,  n′ = (j − r′ n)/r,  r″ = n·s + r |n′|²,  n″ = (s − 2 r′ n′ − r″ n)/r
     /// ```
-    fn leaning_at_most(&self, most_m_s2: f64) -> Self {
+    fn leaning_at_most(&self, most_m_s2: impl FnOnce() -> f64) -> Self {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
         let r = libm::hypot(a.x, a.y);
+        if r <= NOTHING_M_S2 || !r.is_finite() {
+            return *self;
+        }
+        let most_m_s2 = most_m_s2();
         // A direction that nothing is left of does not turn.
-        if r <= most_m_s2.max(NOTHING_M_S2) || !r.is_finite() {
+        if r <= most_m_s2 {
             return *self;
         }
         let n = a / r;

@@ -71,9 +71,8 @@ impl<const N: usize> BoundedEstimate<N> {
     pub(crate) fn forget(&mut self, prior: &Prior<N>, time_s: f64) {
         let kept = prior.kept(time_s);
         for i in 0..N {
-            for j in 0..N {
-                self.covariance[(i, j)] *= kept[i] * kept[j];
-            }
+            let column = self.covariance.column(i).component_mul(&(kept * kept[i]));
+            self.covariance.set_column(i, &column);
             let deviation = prior.deviation[i];
             self.covariance[(i, i)] += (1.0 - kept[i] * kept[i]) * deviation * deviation;
         }
@@ -99,10 +98,12 @@ impl<const N: usize> BoundedEstimate<N> {
         let mean = self.mean + gain * self.innovation(row, value);
         // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, multiplied out: P − k sᵀ − s kᵀ + k (hᵀs + r) kᵀ with s = P h. It stays
         // exactly symmetric.
-        let covariance = SMatrix::<f64, N, N>::from_fn(|i, j| {
-            self.covariance[(i, j)] - (gain[i] * spread[j] + spread[i] * gain[j])
-                + (gain[i] * gain[j]) * expected
-        });
+        // By columns, so that several numbers are calculated at once.
+        let mut covariance = self.covariance;
+        for j in 0..N {
+            let taken = gain * spread[j] + spread * gain[j];
+            covariance.set_column(j, &(self.covariance.column(j) - taken + gain * gain[j] * expected));
+        }
         let finite = |numbers: &[f64]| numbers.iter().fold(true, |all, number| all & number.is_finite());
         // No measurement makes anything less certain.
         let narrower = (0..N)
