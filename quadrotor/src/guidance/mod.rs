@@ -10,12 +10,16 @@ pub(crate) mod heading;
 pub(crate) mod heading_shaper;
 pub(crate) mod held_input;
 pub(crate) mod motion_profile;
+#[cfg(feature = "shaper")]
+pub(crate) mod past_motion;
 pub(crate) mod position_reference;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
 pub(crate) mod reference_plan;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
+#[cfg(feature = "shaper")]
+pub(crate) mod smoothing;
 #[cfg(feature = "shaper")]
 pub(crate) mod state_to_state;
 #[cfg(feature = "shaper")]
