@@ -5,6 +5,7 @@ pub(crate) mod continuation;
 pub(crate) mod derivative_estimator;
 pub(crate) mod direct_reference;
 pub(crate) mod eased_limits;
+pub(crate) mod found_derivatives;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
@@ -22,5 +23,6 @@ pub(crate) mod shaper;
 pub(crate) mod smoothing;
 #[cfg(feature = "shaper")]
 pub(crate) mod state_to_state;
+pub(crate) mod streamed_velocity;
 #[cfg(feature = "shaper")]
 pub(crate) mod way_plan;
