@@ -167,7 +167,7 @@ pub use design::stability::stability_warning::StabilityWarning;
 #[cfg(feature = "fleet")]
 pub use fleet::{Fleet, FleetError};
 pub use guidance::attitude_target::AttitudeTarget;
-pub use guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
+pub use guidance::derivative_estimator::Derivatives;
 pub use guidance::eased_limits::EasedLimits;
 pub use guidance::heading::Heading;
 #[cfg(feature = "shaper")]
@@ -177,6 +177,7 @@ pub use guidance::position_reference::PositionReference;
 pub use guidance::reference_plan::ReferencePlan;
 #[cfg(feature = "shaper")]
 pub use guidance::state_to_state::AxisLimits;
+pub use guidance::streamed_velocity::StreamedVelocity;
 pub use inputs::{InputSignal, Inputs};
 #[cfg(feature = "fleet")]
 pub use kinds::Kinds;

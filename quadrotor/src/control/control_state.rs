@@ -81,7 +81,8 @@ impl ControlState {
             && !shaping
         {
             // The set-point is the reference from the first instant on, before the first sample.
-            guidance.sample(reference, inputs.plan.as_ref(), &configuration.flyable_limits(), time_us);
+            let limits = (&configuration.flyable_limits(), &configuration.response_times());
+            guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
         }
         let first = instruments.read(time_us);
         if !(start.is_possible() && first.is_possible()) {
@@ -299,8 +300,8 @@ impl ControlState {
         self.engage |= law != self.law && self.law != ControlLaw::Cascade;
         self.law = law;
         if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            self.guidance =
-                self.guidance.switched(&self.limits.of_references(configuration), shaping, time_us);
+            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
+            self.guidance = self.guidance.switched(limits, shaping, time_us);
         }
         if inputs.armed && takes_over {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
@@ -335,7 +336,7 @@ impl ControlState {
         match &inputs.target {
             Target::Reference(reference) => {
                 if due.position || due.altitude {
-                    let limits = &configuration.flyable_limits();
+                    let limits = (&configuration.flyable_limits(), &configuration.response_times());
                     self.guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
                 }
                 self.track(design, configuration, &seen, reference, due, time_us);

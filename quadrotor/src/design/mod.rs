@@ -25,6 +25,7 @@ pub(crate) mod position_limits;
 pub(crate) mod prepared_design;
 pub(crate) mod printed_design;
 pub(crate) mod reduced_attitude;
+pub(crate) mod response_times;
 pub(crate) mod rotor_loss_design;
 pub(crate) mod side_force;
 pub(crate) mod stability;

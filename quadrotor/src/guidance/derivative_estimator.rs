@@ -78,6 +78,11 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         Self { samples: [(0, zero); CAPACITY], count: 0, held: zero, since_us: 0 }
     }
 
+    /// Makes it a constant again.
+    pub(crate) fn forget(&mut self) {
+        (self.count, self.held) = (0, SVector::zeros());
+    }
+
     /// The signal at `time_us`. A change that is faster than `fastest` per second is a jump, not motion: what was before it is
     /// forgotten.
     pub fn observe(&mut self, value: &SVector<f64, AXES>, fastest: f64, time_us: u64) {

@@ -1,16 +1,17 @@
 //! A reference that is passed on as it comes.
 
-use nalgebra::{Vector1, Vector3};
+use nalgebra::Vector1;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
-use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
+use crate::guidance::derivative_estimator::DerivativeEstimator;
+use crate::guidance::found_derivatives::FoundDerivatives;
 use crate::guidance::heading::Heading;
 use crate::guidance::held_input::HeldInput;
 use crate::guidance::reference_plan::ReferencePlan;
-use crate::{GRAVITY_M_S2, Limits, PositionReference};
+use crate::{Limits, PositionReference};
 
-/// Multiple of the limits of jerk and of yaw acceleration beyond which a change counts as a jump, not as motion.
+/// Multiple of the limit of yaw acceleration beyond which a change counts as a jump, not as motion.
 const JUMP: f64 = 10.0;
 
 /// Position, velocity and acceleration as given, carried on while an input is held; the heading within its rate limit. Derivatives
@@ -24,7 +25,7 @@ pub struct DirectReference {
     /// The way that it takes, if that is known.
     plan: Option<ReferencePlan>,
     input: HeldInput,
-    accelerations: DerivativeEstimator<3>,
+    found: FoundDerivatives,
     yaw_rates: DerivativeEstimator<1>,
 }
 
@@ -37,7 +38,7 @@ impl DirectReference {
             yaw_time_us: time_us,
             plan: None,
             input: HeldInput::new(time_us),
-            accelerations: DerivativeEstimator::new(),
+            found: FoundDerivatives::new(),
             yaw_rates: DerivativeEstimator::new(),
         }
     }
@@ -55,12 +56,7 @@ impl DirectReference {
     /// Looks at the input, more often than it is sampled: what is not given is found from the instants at which it changes.
     pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         self.input.observe(reference, time_us);
-        if gives_derivatives(reference) {
-            self.accelerations = DerivativeEstimator::new();
-        } else {
-            let fastest = JUMP * limits.jerk_horizontal_m_s3.max(limits.jerk_vertical_m_s3);
-            self.accelerations.observe(&reference.acceleration_m_s2, fastest, time_us);
-        }
+        self.found.watch(reference, limits, time_us);
         if reference.yaw_acceleration_rad_s2 != 0.0 {
             self.yaw_rates = DerivativeEstimator::new();
         } else {
@@ -78,13 +74,7 @@ impl DirectReference {
         time_us: u64,
     ) {
         self.plan = plan.map(|plan| plan.near_heading(self.latest.yaw_rad, time_us));
-        let mut way = *reference;
-        if !gives_derivatives(reference) {
-            let Derivatives { first, second } = self.accelerations.at(self.input.since_us());
-            // What the tilt command may do.
-            way.jerk_m_s3 = at_most(&first, GRAVITY_M_S2 * limits.tilt_rate_rad_s);
-            way.snap_m_s4 = at_most(&second, GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
-        }
+        let way = self.found.completed(reference, limits, self.input.since_us());
         // The point holds at the instant at which it was set.
         let age_s = self.input.age_s(time_us);
         let now = if age_s > 0.0 { way.after(age_s) } else { way };
@@ -113,16 +103,4 @@ impl DirectReference {
         held.yaw_acceleration_rad_s2 = if is_free { acceleration } else { 0.0 };
         self.yaw_time_us = time_us;
     }
-}
-
-/// A vector that is shortened to a largest length above zero. It never divides by the length of a zero vector, not even where
-/// the compiler computes both cases.
-fn at_most(vector: &Vector3<f64>, largest: f64) -> Vector3<f64> {
-    vector * (largest / vector.norm().max(largest))
-}
-
-/// Whether jerk and snap are given with the reference.
-fn gives_derivatives(reference: &PositionReference) -> bool {
-    let zero = Vector3::zeros();
-    reference.jerk_m_s3 != zero || reference.snap_m_s4 != zero
 }

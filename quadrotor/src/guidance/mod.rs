@@ -5,11 +5,14 @@ pub(crate) mod continuation;
 pub(crate) mod derivative_estimator;
 pub(crate) mod direct_reference;
 pub(crate) mod eased_limits;
+pub(crate) mod found_derivatives;
 pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
 pub(crate) mod held_input;
 pub(crate) mod motion_profile;
+#[cfg(feature = "shaper")]
+pub(crate) mod past_motion;
 pub(crate) mod position_reference;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
@@ -17,6 +20,9 @@ pub(crate) mod reference_plan;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
 #[cfg(feature = "shaper")]
+pub(crate) mod smoothing;
+#[cfg(feature = "shaper")]
 pub(crate) mod state_to_state;
+pub(crate) mod streamed_velocity;
 #[cfg(feature = "shaper")]
 pub(crate) mod way_plan;

@@ -108,6 +108,16 @@ impl MotionProfile {
         self
     }
 
+    /// When the jerk jumps after a piece, s, and by how much.
+    #[cfg(feature = "shaper")]
+    pub(crate) fn jumps(&self, after: usize) -> impl Iterator<Item = (f64, f64)> {
+        let pairs = self.pieces().windows(2).skip(after);
+        pairs.filter_map(|pair| match pair {
+            [(_, before), (start_s, next)] => Some((*start_s, next.jerk - before.jerk)),
+            _ => None,
+        })
+    }
+
     /// When each piece begins, s, and its motion there.
     pub fn pieces(&self) -> &[(f64, Motion)] {
         self.pieces.get(..self.count).unwrap_or(&self.pieces)

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 /// With shaping on, position and yaw are a goal, and velocity is the velocity to pass it with. With
 /// shaping off it is one point of a trajectory: velocity, acceleration, jerk and snap are fed forward.
 ///
-/// Jerk and snap that are both zero count as unknown: the control loop estimates them from successive accelerations. So does a
-/// yaw acceleration of zero, from successive yaw rates.
+/// Derivatives that are zero count as unknown without shaping: the control loop estimates jerk and snap from successive accelerations, or
+/// acceleration and jerk from successive velocities, or velocity and acceleration from successive positions, whichever is the highest
+/// derivative that is given. So does a yaw acceleration of zero, from successive yaw rates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PositionReference {
     /// Position, m.

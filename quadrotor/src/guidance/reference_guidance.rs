@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::design::response_times::ResponseTimes;
 use crate::guidance::direct_reference::DirectReference;
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
@@ -46,11 +47,16 @@ impl Guidance {
     }
 
     /// A reference, shaped or not, that goes on from where this one is.
-    pub fn switched(&self, limits: &EasedLimits, shaping: bool, time_us: u64) -> Self {
+    pub fn switched(
+        &self,
+        (limits, times): (&EasedLimits, &ResponseTimes),
+        shaping: bool,
+        time_us: u64,
+    ) -> Self {
         let now = self.reference(time_us);
         #[cfg(feature = "shaper")]
         if shaping {
-            return Self::Shaped(Shaper::moving(&now, limits, time_us));
+            return Self::Shaped(Shaper::moving(&now, limits, times, time_us));
         }
         Self::Direct(DirectReference::new(&now, time_us))
     }
@@ -67,12 +73,12 @@ impl Guidance {
         &mut self,
         reference: &PositionReference,
         plan: Option<&ReferencePlan>,
-        limits: &Limits,
+        (limits, times): (&Limits, &ResponseTimes),
         time_us: u64,
     ) {
         match self {
             #[cfg(feature = "shaper")]
-            Self::Shaped(shaper) => shaper.update(reference, limits, time_us),
+            Self::Shaped(shaper) => shaper.update(reference, (limits, times), time_us),
             Self::Direct(direct) => direct.sample(reference, plan, limits, time_us),
         }
     }

@@ -1,14 +1,16 @@
 //! The jerk-limited reference shaper.
 //!
-//! The profiles are time-optimal for third-order limits from any state to any state. This file decides when to plan, and under
-//! which limits.
+//! The profiles are time-optimal for third-order limits from any state to any state, and smoothed as they are tracked. This file
+//! decides when to plan, and under which limits.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use crate::design::response_times::ResponseTimes;
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::heading::Heading;
 use crate::guidance::heading_shaper::HeadingShaper;
+use crate::guidance::smoothing::Smoothing;
 use crate::guidance::way_plan::{Excursion, WayPlan};
 use crate::{Limits, PositionReference};
 
@@ -46,17 +48,22 @@ impl Shaper {
             goal: rest,
             limits: EasedLimits::new(limits),
             offset_m: Vector3::zeros(),
-            plan: WayPlan::going_on(&rest),
+            plan: WayPlan::going_on(&rest, Smoothing::default()),
             heading: HeadingShaper::moving(&Heading::fixed(yaw_rad), limits, time_us),
         }
     }
 
     /// A shaper that takes over a moving reference and brings it to rest.
-    pub fn moving(reference: &PositionReference, eased: &EasedLimits, time_us: u64) -> Self {
+    pub fn moving(
+        reference: &PositionReference,
+        eased: &EasedLimits,
+        times: &ResponseTimes,
+        time_us: u64,
+    ) -> Self {
         let limits = eased.wanted();
         let at_rest = Self::at_rest(&reference.position_m, reference.yaw_rad, limits, time_us);
         let mut shaper = Self {
-            plan: WayPlan::going_on(reference),
+            plan: WayPlan::going_on(reference, Smoothing::new(eased.kept(), times)),
             limits: *eased,
             heading: HeadingShaper::moving(&Heading::of(reference), eased.kept(), time_us),
             // None that can be asked for: the update below always plans.
@@ -65,7 +72,7 @@ impl Shaper {
         };
         shaper.update(
             &PositionReference::goal(reference.position_m.into(), reference.yaw_rad),
-            limits,
+            (limits, times),
             time_us,
         );
         // Without a plan the motion would go on for ever.
@@ -81,7 +88,12 @@ impl Shaper {
 
     /// Plans anew if the goal or the limits have changed, and only the heading if only that has. A problem that has no
     /// solution leaves the old plan in force, and so do lower limits as long as the motion cannot keep them.
-    pub fn update(&mut self, goal: &PositionReference, limits: &Limits, time_us: u64) {
+    pub fn update(
+        &mut self,
+        goal: &PositionReference,
+        (limits, times): (&Limits, &ResponseTimes),
+        time_us: u64,
+    ) {
         self.heading.update(&Heading::of(goal), limits, time_us);
         let changed = of_way(self.limits.wanted()) != of_way(limits);
         self.limits.want(limits);
@@ -91,12 +103,16 @@ impl Shaper {
             self.offset_m = moved;
             return;
         }
-        let now = self.reference(time_us);
+        let elapsed_s = self.elapsed_s(time_us);
+        let mut now = self.plan.unsmoothed(elapsed_s);
+        now.position_m += self.offset_m;
         let plan = if same_way { self.eased(&now, goal, changed, time_us) } else { self.towards(&now, goal) };
         let Some((plan, as_wanted)) = plan else { return };
         if as_wanted {
             self.limits.release();
         }
+        let smoothing = Smoothing::new(self.limits.kept(), times);
+        let plan = plan.following(&self.plan, elapsed_s, &self.offset_m, smoothing);
         (self.start_us, self.goal, self.offset_m, self.plan) = (time_us, *goal, Vector3::zeros(), plan);
     }
 
@@ -112,7 +128,7 @@ impl Shaper {
     /// Whether a plan that ends before its goal has come near its end.
     fn is_to_be_renewed(&self, time_us: u64) -> bool {
         let end_m = self.plan.end_m();
-        let left_m = (end_m - self.plan.at(self.elapsed_s(time_us)).position_m).amax();
+        let left_m = (end_m - self.plan.unsmoothed(self.elapsed_s(time_us)).position_m).amax();
         left_m < RENEWED_M && (self.goal.position_m - end_m).amax() > SMALL_M
     }
 

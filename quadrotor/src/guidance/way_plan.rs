@@ -1,10 +1,12 @@
-//! A plan of the way: from a state to a goal, axis by axis.
+//! A plan of the way: from a state to a goal, axis by axis, and what is tracked of it.
 
 use nalgebra::{Rotation2, Vector2, Vector3};
 use rsruckig::prelude::ControlInterface;
 use serde::{Deserialize, Serialize};
 
 use crate::guidance::motion_profile::{Motion, MotionProfile};
+use crate::guidance::past_motion::{PastMotion, add};
+use crate::guidance::smoothing::Smoothing;
 use crate::guidance::state_to_state::StateToState;
 use crate::{Limits, PositionReference};
 
@@ -26,12 +28,18 @@ const FASTER_M_S: f64 = 1e-3;
 /// A shorter way, m, may be flown to and fro.
 const SHORT_M: f64 = 0.05;
 
-/// Profiles over time along a bearing, across it to the right, and down.
+/// A velocity below this, m/s, and an acceleration, m/s², are what rounding leaves of rest.
+const RESTS: f64 = 1e-6;
+
+/// Jerk-limited profiles over time along a bearing, across it to the right, and down. What is tracked is smoothed: see [`Smoothing`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WayPlan {
     /// Direction of the first horizontal axis, rad from north.
     bearing_rad: f64,
     axes: [MotionProfile; 3],
+    smoothing: Smoothing,
+    /// What led to the plan, if that is smoothed over at its beginning.
+    past: Option<PastMotion>,
 }
 
 /// What a plan does that lower limits may make worse.
@@ -52,8 +60,9 @@ impl Excursion {
 }
 
 impl WayPlan {
-    /// A motion that goes on as it is, north, east and down.
-    pub fn going_on(reference: &PositionReference) -> Self {
+    /// A motion that goes on with its acceleration, north, east and down.
+    pub fn going_on(reference: &PositionReference, smoothing: Smoothing) -> Self {
+        let reference = &smoothing.leading(reference);
         let motion = |axis: usize| {
             MotionProfile::constant(Motion {
                 position: reference.position_m[axis],
@@ -62,10 +71,11 @@ impl WayPlan {
                 jerk: 0.0,
             })
         };
-        Self { bearing_rad: 0.0, axes: [motion(0), motion(1), motion(2)] }
+        let axes = [motion(0), motion(1), motion(2)];
+        Self { bearing_rad: 0.0, axes, smoothing, past: None }
     }
 
-    /// From a state to a goal, arriving on all axes at the same time; `None` if there is no solution.
+    /// From a state to a goal, arriving on all axes at the same time; `None` if there is no solution. It is not smoothed yet.
     pub fn new(from: &PositionReference, goal: &PositionReference, limits: &Limits) -> Option<Self> {
         let way = (goal.position_m - from.position_m).xy();
         let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
@@ -119,26 +129,94 @@ impl WayPlan {
         .solve()?;
         let start = local(&from.position_m);
         let axes = core::array::from_fn(|axis| axes[axis].moved(start[axis]));
-        Some(Self { bearing_rad, axes })
+        Some(Self { bearing_rad, axes, smoothing: Smoothing::default(), past: None })
     }
 
-    /// Position, velocity, acceleration and jerk so many seconds after its beginning; between two jumps of the jerk the snap is
-    /// zero. The heading is zero.
-    pub fn at(&self, time_s: f64) -> PositionReference {
-        let motions = self.axes.each_ref().map(|axis| axis.at(time_s));
-        let turn = Rotation2::new(self.bearing_rad);
-        let world = |part: fn(&Motion) -> f64| {
-            let [along, across, down] = motions.each_ref().map(part);
-            let horizontal = turn * Vector2::new(along, across);
-            Vector3::new(horizontal.x, horizontal.y, down)
+    /// This plan, which begins `elapsed_s` after the beginning of another one, as many metres away from it, and is smoothed together
+    /// with it. A vehicle that rests is smoothed as is wanted, another one as it was: else it would jump.
+    pub fn following(
+        mut self,
+        before: &Self,
+        elapsed_s: f64,
+        offset_m: &Vector3<f64>,
+        wanted: Smoothing,
+    ) -> Self {
+        self.smoothing = if before.rests_at(elapsed_s) { wanted } else { before.smoothing };
+        let reach_s = self.smoothing.reach_s();
+        let begin_s = elapsed_s - reach_s;
+        let mut past = match &before.past {
+            Some(past) if begin_s < 0.0 => past.seen(elapsed_s, offset_m, -reach_s),
+            _ => {
+                let mut begin = before.unsmoothed(begin_s.max(0.0));
+                begin.position_m += offset_m;
+                PastMotion::new(begin_s.max(0.0) - elapsed_s, &begin)
+            }
         };
-        PositionReference {
-            position_m: world(|motion| motion.position),
-            velocity_m_s: world(|motion| motion.velocity),
-            acceleration_m_s2: world(|motion| motion.acceleration),
-            jerk_m_s3: world(|motion| motion.jerk),
-            ..PositionReference::goal([0.0; 3], 0.0)
+        for (axis, profile) in before.axes.iter().enumerate() {
+            let passed = |(start_s, _): &(f64, f64)| *start_s > begin_s && *start_s <= elapsed_s;
+            for (start_s, jump) in profile.jumps(0).filter(passed) {
+                past.jump(start_s - elapsed_s, &before.in_world(axis, jump));
+            }
         }
+        past.jump(0.0, &(self.unsmoothed(0.0).jerk_m_s3 - before.unsmoothed(elapsed_s).jerk_m_s3));
+        self.past = Some(past);
+        self
+    }
+
+    /// Whether nothing moves, up to rounding.
+    fn rests_at(&self, time_s: f64) -> bool {
+        let rests = |motion: &PositionReference| {
+            motion.velocity_m_s.amax() < RESTS && motion.acceleration_m_s2.amax() < RESTS
+        };
+        let tracked = self.at(time_s);
+        rests(&tracked) && tracked.jerk_m_s3.amax() < RESTS && rests(&self.unsmoothed(time_s))
+    }
+
+    /// A vector along one of the axes.
+    fn in_world(&self, axis: usize, size: f64) -> Vector3<f64> {
+        let (sine, cosine) = (libm::sin(self.bearing_rad), libm::cos(self.bearing_rad));
+        match axis {
+            0 => Vector3::new(cosine, sine, 0.0) * size,
+            1 => Vector3::new(-sine, cosine, 0.0) * size,
+            _ => Vector3::z() * size,
+        }
+    }
+
+    /// Position and its derivatives so many seconds after its beginning, as they are tracked. The heading is zero.
+    pub fn at(&self, time_s: f64) -> PositionReference {
+        match &self.past {
+            Some(past) if time_s < self.smoothing.reach_s() => {
+                let mut now = past.smoothed(&self.smoothing, time_s);
+                add(&mut now, self.in_world_of(|axis| self.smoothing.of_jumps(axis, 0, time_s)));
+                PositionReference { yaw_rad: 0.0, ..now }
+            }
+            _ => {
+                let mut now = PositionReference::goal([0.0; 3], 0.0);
+                add(&mut now, self.in_world_of(|axis| self.smoothing.of(axis, time_s)));
+                now
+            }
+        }
+    }
+
+    /// The jerk-limited motion so many seconds after its beginning.
+    pub fn unsmoothed(&self, time_s: f64) -> PositionReference {
+        let mut now = PositionReference::goal([0.0; 3], 0.0);
+        let parts = |axis: &MotionProfile| {
+            let Motion { position, velocity, acceleration, jerk } = axis.at(time_s);
+            [position, velocity, acceleration, jerk, 0.0]
+        };
+        add(&mut now, self.in_world_of(parts));
+        now
+    }
+
+    /// Position and derivatives of the axes as vectors.
+    fn in_world_of(&self, parts: impl Fn(&MotionProfile) -> [f64; 5]) -> [Vector3<f64>; 5] {
+        let turn = Rotation2::new(self.bearing_rad);
+        let [along, across, down] = self.axes.each_ref().map(parts);
+        core::array::from_fn(|part| {
+            let horizontal = turn * Vector2::new(along[part], across[part]);
+            Vector3::new(horizontal.x, horizontal.y, down[part])
+        })
     }
 
     /// Where it ends, NED, m.
@@ -207,7 +285,10 @@ pub(crate) fn keeps_speed(
 
 #[cfg(test)]
 mod tests {
-    use super::WayPlan;
+    use nalgebra::Vector3;
+
+    use super::{Smoothing, WayPlan};
+    use crate::design::response_times::ResponseTimes;
     use crate::{Limits, PositionReference};
 
     /// A generator of numbers from 0 to 1 (Marsaglia's xorshift).
@@ -248,18 +329,50 @@ mod tests {
                 let goal = PositionReference::goal(goal_m, 0.0);
                 let plan = WayPlan::new(&from, &goal, &limits);
                 let plan = plan.unwrap_or_else(|| panic!("{number}: from {from:?} to {goal_m:?}"));
-                let begin = plan.at(0.0);
+                let begin = plan.unsmoothed(0.0);
                 assert!((begin.position_m - from.position_m).amax() < 2e-6, "{number}");
                 assert!((begin.velocity_m_s - from.velocity_m_s).amax() < 2e-6, "{number}");
                 // A whole plan, or one that is cut off on its way.
                 let until_s =
                     if numbers.next() < 0.8 { 60.0 } else { libm::floor(5000.0 * numbers.next()) / 1000.0 };
-                from = plan.at(until_s);
+                from = plan.unsmoothed(until_s);
                 if until_s == 60.0 {
                     assert!((from.position_m - goal.position_m).amax() < 2e-6, "{number}: {from:?}");
                     assert!(from.velocity_m_s.amax() < 1e-6, "{number}: {from:?}");
                 }
             }
+        }
+    }
+
+    /// Goals that change while it flies, often at each sample: what is tracked goes on to its jerk, and keeps the limits. So it does
+    /// where it is no longer smoothed together with the plan before.
+    #[test]
+    fn a_plan_goes_on_from_another_one_without_a_kick() {
+        let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15);
+        let limits = Limits::default();
+        let times = ResponseTimes { torque_delay_s: 0.035, sample_time_s: 0.05 };
+        let smoothing = Smoothing::new(&limits, &times);
+        let mut way = WayPlan::going_on(&PositionReference::goal([0.0; 3], 0.0), Smoothing::default());
+        for number in 0..3_000 {
+            let elapsed_s = 0.05 * (1.0 + libm::floor(20.0 * numbers.next() * numbers.next()));
+            let goal = PositionReference::goal([0, 1, 2].map(|_| 10.0 * numbers.next() - 5.0), 0.0);
+            let plan = WayPlan::new(&way.unsmoothed(elapsed_s), &goal, &limits).expect("a plan");
+            let next = plan.following(&way, elapsed_s, &Vector3::zeros(), smoothing);
+            let joint_s = smoothing.reach_s();
+            for (before, after) in
+                [(way.at(elapsed_s), next.at(0.0)), (next.at(joint_s - 1e-9), next.at(joint_s + 1e-9))]
+            {
+                let jumps = [
+                    after.position_m - before.position_m,
+                    after.velocity_m_s - before.velocity_m_s,
+                    after.acceleration_m_s2 - before.acceleration_m_s2,
+                    after.jerk_m_s3 - before.jerk_m_s3,
+                ];
+                assert!(jumps.iter().all(|jump| jump.norm() < 2e-6), "{number}: {before:?} {after:?}");
+                let largest = limits.acceleration_horizontal_m_s2;
+                assert!(after.acceleration_m_s2.xy().norm() < 1.001 * largest, "{number}: {after:?}");
+            }
+            way = next;
         }
     }
 }

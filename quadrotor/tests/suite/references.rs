@@ -114,6 +114,46 @@ fn held_inputs_are_followed_as_continuous_ones() {
     }
 }
 
+/// Root mean square of the distance to a circle of 5 m at 0.5 rad/s, flown under the default limits from rest on it, in its second half
+/// of 40 s, m. It is set each `period_us`, with as many derivatives as asked for.
+fn streamed(derivatives: i32, period_us: u64) -> f64 {
+    let circle = Trajectory { amplitude_m: [5.0; 2], ..Trajectory::circle(0.5) };
+    let inputs = move |time_us: u64| {
+        let t = (time_us / period_us * period_us) as f64 * 1e-6;
+        let given =
+            |order: i32| if order <= derivatives { circle.derivative(order, t) } else { Vector3::zeros() };
+        let reference = PositionReference {
+            velocity_m_s: given(1),
+            acceleration_m_s2: given(2),
+            ..PositionReference::goal(given(0).into(), 0.0)
+        };
+        Inputs { reference, ..Inputs::default() }
+    };
+    let mut configuration = unshaped();
+    configuration.initial.position_m = circle.derivative(0, 0.0).into();
+    let (mut square, mut count) = (0.0, 0.0);
+    fly(&configuration, &inputs, 40.0, |outputs| {
+        if outputs.time_us > 20_000_000 {
+            let wanted = circle.derivative(0, outputs.time_us as f64 * 1e-6);
+            square += (outputs.position_m - wanted).norm_squared();
+            count += 1.0;
+        }
+    });
+    f64::sqrt(square / count)
+}
+
+/// Positions and velocities, or positions alone, set as often as importers step. As they are given, the circle was flown 0.7 m beside
+/// itself, or 2.9 m late. Of positions the jerk is not found: it is missing by 0.63 m/s³.
+#[test]
+fn streams_without_derivatives_are_followed() {
+    for period_us in [10_000, 20_000, 50_000, 100_000] {
+        for (derivatives, bar_m) in [(2, 0.0005), (1, 0.002), (0, 0.08)] {
+            let rms = streamed(derivatives, period_us);
+            assert!(rms < bar_m, "{derivatives} derivatives each {period_us} µs: {rms} m");
+        }
+    }
+}
+
 /// What the control loop makes of a figure-eight with a turning heading, without jerk, snap and yaw acceleration, set each 20 ms.
 #[test]
 fn missing_derivatives_are_estimated_in_flight() {

@@ -4,14 +4,12 @@
 //! straight in between, and a curve is flown beside itself. The acceleration is that of the velocities so far.
 
 use nalgebra::Vector3;
-use quadrotor::{DerivativeEstimator, Limits};
+use quadrotor::{Limits, StreamedVelocity};
 
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 
 /// Points that come less often than this, µs, are not a stream.
 const LONGEST_PERIOD_US: u64 = 300_000;
-/// Multiple of the limit of acceleration beyond which a change of the velocity is a jump, not motion.
-const JUMP: f64 = 3.0;
 
 /// The stream so far.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -20,7 +18,7 @@ pub struct StreamedMotion {
     latest: Option<(PositionSetPoint, u64)>,
     /// Mean time between points, µs; 0 if there is no stream yet.
     period_us: u64,
-    velocities: DerivativeEstimator<3>,
+    velocities: StreamedVelocity,
     /// The latest point with the acceleration that was found for it, while that counts.
     bent: Option<PositionSetPoint>,
 }
@@ -53,8 +51,7 @@ impl StreamedMotion {
             }
         }
         self.latest = Some((*set_point, time_us));
-        let strongest = limits.acceleration_horizontal_m_s2.max(limits.acceleration_vertical_m_s2);
-        self.velocities.observe(&velocity_m_s, JUMP * strongest, time_us);
+        self.velocities.observe(&velocity_m_s, limits, time_us);
         let found = within(self.velocities.at(time_us).first, limits);
         self.bent = (found != Vector3::zeros()).then(|| with_acceleration(set_point, &found));
         Some(self.bent.unwrap_or(*set_point))

@@ -1,0 +1,187 @@
+//! Derivatives of a trajectory that nobody gives.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::guidance::derivative_estimator::DerivativeEstimator;
+use crate::guidance::streamed_velocity::StreamedVelocity;
+use crate::{GRAVITY_M_S2, Limits, PositionReference};
+
+/// Multiple of the limits of jerk beyond which a change of the acceleration counts as a jump, not as motion.
+const JERK_JUMP: f64 = 10.0;
+/// The same of the limits of speed for a change of the position.
+const SPEED_JUMP: f64 = 3.0;
+
+/// What is known of the derivatives of points of which only positions are given, or positions and velocities, or no jerk and snap:
+/// two derivatives above the highest one that is given, from its samples. What is zero is not given. A constant has no derivatives, so
+/// that set-points and straight lines stay what they are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FoundDerivatives {
+    positions: DerivativeEstimator<3>,
+    velocities: StreamedVelocity,
+    accelerations: DerivativeEstimator<3>,
+}
+
+impl FoundDerivatives {
+    /// Nothing is known.
+    pub fn new() -> Self {
+        Self {
+            positions: DerivativeEstimator::new(),
+            velocities: StreamedVelocity::default(),
+            accelerations: DerivativeEstimator::new(),
+        }
+    }
+
+    /// Looks at a point, more often than it is sampled: derivatives are found from the instants at which points are set.
+    pub fn watch(&mut self, point: &PositionReference, limits: &Limits, time_us: u64) {
+        let moves = is_given(&point.velocity_m_s);
+        let bends = is_given(&point.acceleration_m_s2);
+        if gives_all(point) {
+            self.accelerations.forget();
+        } else {
+            let fastest = JERK_JUMP * limits.jerk_horizontal_m_s3.max(limits.jerk_vertical_m_s3);
+            self.accelerations.observe(&point.acceleration_m_s2, fastest, time_us);
+        }
+        if bends || gives_all(point) {
+            self.velocities.forget();
+        } else {
+            self.velocities.observe(&point.velocity_m_s, limits, time_us);
+        }
+        if moves || bends || gives_all(point) {
+            self.positions.forget();
+        } else {
+            let fastest = limits.speed_horizontal_m_s.max(limits.speed_up_m_s).max(limits.speed_down_m_s);
+            self.positions.observe(&point.position_m, SPEED_JUMP * fastest, time_us);
+        }
+    }
+
+    /// A point that was set at `since_us` with the derivatives that it lacks, as far as they are known.
+    pub fn completed(&self, point: &PositionReference, limits: &Limits, since_us: u64) -> PositionReference {
+        if gives_all(point) {
+            return *point;
+        }
+        // What the tilt command may do.
+        let most_m_s2 = GRAVITY_M_S2 * libm::tan(limits.tilt_rad);
+        let most_m_s3 = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
+        let most_m_s4 = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+        let mut whole = *point;
+        let found = self.accelerations.at(since_us);
+        whole.jerk_m_s3 = at_most(&found.first, most_m_s3);
+        whole.snap_m_s4 = at_most(&found.second, most_m_s4);
+        if is_given(&point.acceleration_m_s2) {
+            return whole;
+        }
+        // At most one of the estimators has seen a motion.
+        if is_given(&point.velocity_m_s) {
+            let found = self.velocities.at(since_us);
+            whole.acceleration_m_s2 = at_most(&found.first, most_m_s2);
+            whole.jerk_m_s3 += at_most(&found.second, most_m_s3);
+        } else {
+            let found = self.positions.at(since_us);
+            whole.velocity_m_s = found.first;
+            whole.acceleration_m_s2 = at_most(&found.second, most_m_s2);
+        }
+        whole
+    }
+}
+
+/// A vector that is shortened to a largest length above zero. It never divides by the length of a zero vector, not even where
+/// the compiler computes both cases.
+fn at_most(vector: &Vector3<f64>, largest: f64) -> Vector3<f64> {
+    vector * (largest / vector.norm().max(largest))
+}
+
+fn is_given(derivative: &Vector3<f64>) -> bool {
+    *derivative != Vector3::zeros()
+}
+
+/// Whether jerk and snap are given with a point.
+fn gives_all(point: &PositionReference) -> bool {
+    is_given(&point.jerk_m_s3) || is_given(&point.snap_m_s4)
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::FRAC_PI_2;
+
+    use nalgebra::Vector3;
+
+    use super::FoundDerivatives;
+    use crate::{Limits, PositionReference};
+
+    /// A point of a circle of 5 m at 0.5 rad/s with so many of its derivatives.
+    fn circle(t: f64, derivatives: i32) -> PositionReference {
+        let given = |order: i32| {
+            let angle = 0.5 * t + f64::from(order) * FRAC_PI_2;
+            let size = if order <= derivatives { 5.0 * libm::pow(0.5, f64::from(order)) } else { 0.0 };
+            Vector3::new(libm::cos(angle), libm::sin(angle), 0.0) * size
+        };
+        PositionReference {
+            velocity_m_s: given(1),
+            acceleration_m_s2: given(2),
+            jerk_m_s3: given(3),
+            snap_m_s4: given(4),
+            ..PositionReference::goal(given(0).into(), 0.0)
+        }
+    }
+
+    /// The points of a signal that is set each `period_us` for 6 s, as they are given and with what is found: time, s, and both.
+    fn completed(
+        signal: impl Fn(f64) -> PositionReference,
+        period_us: u64,
+    ) -> impl Iterator<Item = (f64, PositionReference, PositionReference)> {
+        let (limits, mut found) = (Limits::default(), FoundDerivatives::new());
+        (0..6_000_u64).filter_map(move |millisecond| {
+            let time_us = millisecond * 1_000;
+            let set_us = time_us / period_us * period_us;
+            let point = signal(set_us as f64 * 1e-6);
+            found.watch(&point, &limits, time_us);
+            (set_us == time_us)
+                .then(|| (set_us as f64 * 1e-6, point, found.completed(&point, &limits, set_us)))
+        })
+    }
+
+    /// The oracle is the circle itself. Each derivative that is found has a part of its size as a bar.
+    #[test]
+    fn two_derivatives_of_a_circle_are_found_above_the_last_one() {
+        for period_us in [10_000, 20_000, 50_000, 100_000] {
+            for given in [0, 1, 2] {
+                for (t, _, found) in completed(|t| circle(t, given), period_us).filter(|(t, ..)| *t > 1.0) {
+                    let whole = circle(t, 4);
+                    let off = [
+                        (found.velocity_m_s - whole.velocity_m_s).norm() / 2.5,
+                        (found.acceleration_m_s2 - whole.acceleration_m_s2).norm() / 1.25,
+                        (found.jerk_m_s3 - whole.jerk_m_s3).norm() / 0.625,
+                        (found.snap_m_s4 - whole.snap_m_s4).norm() / 0.3125,
+                    ];
+                    let next = given as usize;
+                    assert!(
+                        off[next] < 0.01 && off[next + 1] < 0.05,
+                        "{given} each {period_us} µs: {t} {off:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Set-points that jump, stairs, straight lines, and points with all derivatives.
+    #[test]
+    fn what_lacks_nothing_stays_as_it_is() {
+        let goals =
+            |t: f64| PositionReference::goal([libm::floor(t), -2.0 * libm::floor(t / 2.0), -5.0], 0.0);
+        let stairs = |t: f64| PositionReference::goal([0.2 * libm::floor(t / 0.4), 0.0, 0.0], 0.0);
+        let line = |t: f64| PositionReference {
+            velocity_m_s: Vector3::new(1.5, -0.7, 0.2),
+            ..PositionReference::goal([1.5 * t, -0.7 * t, 0.2 * t], 0.0)
+        };
+        let whole = |t: f64| circle(t, 4);
+        let signals: [&dyn Fn(f64) -> PositionReference; 4] = [&goals, &stairs, &line, &whole];
+        for (kind, signal) in signals.into_iter().enumerate() {
+            for period_us in [1_000, 50_000] {
+                for (t, given, found) in completed(signal, period_us) {
+                    assert_eq!(given, found, "{kind} each {period_us} µs: {t}");
+                }
+            }
+        }
+    }
+}

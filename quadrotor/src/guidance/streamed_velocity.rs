@@ -1,0 +1,33 @@
+//! Velocities of a trajectory whose acceleration nobody gives.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use crate::Limits;
+use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
+
+/// Multiple of the limits of acceleration beyond which a change of the velocity is a jump, not motion.
+const JUMP: f64 = 3.0;
+
+/// Finds acceleration and jerk of a trajectory from its velocities, which somebody sets every so often. A velocity that is constant or
+/// jumps has none.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct StreamedVelocity(DerivativeEstimator<3>);
+
+impl StreamedVelocity {
+    /// The velocity at `time_us`, m/s.
+    pub fn observe(&mut self, velocity_m_s: &Vector3<f64>, limits: &Limits, time_us: u64) {
+        let strongest = limits.acceleration_horizontal_m_s2.max(limits.acceleration_vertical_m_s2);
+        self.0.observe(velocity_m_s, JUMP * strongest, time_us);
+    }
+
+    /// Acceleration, m/s², and jerk, m/s³, at `time_us`.
+    pub fn at(&self, time_us: u64) -> Derivatives<3> {
+        self.0.at(time_us)
+    }
+
+    /// Makes it a constant again.
+    pub(crate) fn forget(&mut self) {
+        self.0.forget();
+    }
+}
