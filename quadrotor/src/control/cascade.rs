@@ -1,6 +1,6 @@
 //! The cascade of Figure 2: position → tilt, altitude → thrust, attitude → torques.
 
-use nalgebra::{Vector1, Vector2, Vector3};
+use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::Activity;
@@ -8,6 +8,7 @@ use crate::control::altitude_controller::AltitudeController;
 use crate::control::attitude_controller::AttitudeController;
 use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
 use crate::control::flat_attitude::FlatAttitude;
+use crate::control::followed_way::FollowedWay;
 use crate::control::mass_belief::MassBelief;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
@@ -35,6 +36,7 @@ pub struct Cascade {
     position: PositionController,
     altitude: AltitudeController,
     attitude: AttitudeController,
+    followed: FollowedWay,
     turning: SmoothedAcceleration,
     /// What feedback adds to the acceleration of the reference, NED, m/s².
     feedback_m_s2: Vector3<f64>,
@@ -67,6 +69,7 @@ impl Cascade {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
             attitude: AttitudeController::new(&body.rotation()),
+            followed: FollowedWay::default(),
             turning: SmoothedAcceleration::default(),
             feedback_m_s2: Vector3::zeros(),
             reference_m_s2: Vector3::zeros(),
@@ -115,6 +118,16 @@ impl Cascade {
     /// The acceleration that is commanded, NED, m/s².
     pub(crate) fn acceleration_m_s2(&self) -> Vector3<f64> {
         self.reference_m_s2 + self.feedback_m_s2
+    }
+
+    /// What is followed at a time in place of a reference that nobody can follow; `None` of another one.
+    pub(crate) fn follow(
+        &mut self,
+        configuration: &Configuration,
+        (reference, seen): (&PositionReference, &Observation),
+        time_us: u64,
+    ) -> Option<PositionReference> {
+        self.followed.follow(configuration, (reference, &seen.body), time_us)
     }
 
     /// A sample of the position controller, for a reference that is expected to go on as `ahead` tells for a time, µs.
@@ -220,9 +233,9 @@ impl Cascade {
         self.command_rotors(configuration, design, seen, &required, thrust_n)
     }
 
-    /// The attitude and its motion that a reference requires together with what feedback adds to it, leaning by at most `tilt_rad`. While the thrust pushes
-    /// sideways or down it is level: where the thrust should push cannot be followed, and a way upright that bends with it takes
-    /// longer.
+    /// The attitude and its motion that a reference requires together with what feedback adds to it, leaning by at most
+    /// `tilt_rad`. While the thrust pushes sideways or down it is level: where the thrust should push cannot be followed, and a
+    /// way upright that bends with it takes longer.
     fn required_attitude(
         &self,
         required: &RequiredThrust,
@@ -234,12 +247,11 @@ impl Cascade {
             let none = Vector3::zeros();
             return FlatAttitude::new(&none, &none, &none, heading);
         }
-        let wanted = required.acceleration_m_s2 + self.feedback_m_s2;
-        let horizontal = within_tilt(wanted.xy(), wanted.z, tilt_rad);
-        let within = Vector3::new(horizontal.x, horizontal.y, wanted.z);
-        // Commands that are cut off do not move with the reference.
-        let kept = if horizontal == wanted.xy() { 1.0 } else { 0.0 };
-        FlatAttitude::new(&within, &(required.jerk_m_s3 * kept), &(required.snap_m_s4 * kept), heading)
+        let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
+        // Commands that are cut off turn with the reference.
+        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }
+            .leaning_at_most(|| most_horizontal(wanted_m_s2.z, tilt_rad));
+        FlatAttitude::new(&within.acceleration_m_s2, &within.jerk_m_s3, &within.snap_m_s4, heading)
     }
 
     /// A sample of the attitude controller alone, for an attitude and a thrust from outside.
@@ -314,11 +326,6 @@ fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
 /// acceleration is `vertical_m_s2`: |a| ≤ tan(0.91 tilt) (g − G).
 pub(crate) fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
     libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
-}
-
-/// A horizontal acceleration, NED, m/s², shortened to [`most_horizontal`].
-fn within_tilt(wanted: Vector2<f64>, vertical_m_s2: f64, tilt_rad: f64) -> Vector2<f64> {
-    wanted.cap_magnitude(most_horizontal(vertical_m_s2, tilt_rad))
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

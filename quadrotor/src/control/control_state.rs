@@ -13,6 +13,7 @@ use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::control::rotor_command::RotorCommand;
 use crate::design::loop_design::LoopDesign;
+use crate::guidance::heading::Heading;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlError, Controllers, Measurement,
@@ -408,28 +409,31 @@ impl ControlState {
             self.limits.watch(&design.configuration, attitude.as_ref(), &self.guidance, &seen.body, time_us);
         }
         let configuration = &self.limits.in_force(learned);
+        let followed = self.cascade.follow(configuration, (&self.guidance.reference(time_us), seen), time_us);
+        let way = |guidance: &Guidance, then_us: u64| {
+            let expected = guidance.preview(then_us);
+            followed.map_or(expected, |followed| {
+                let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
+                Heading::of(&expected).on(&followed.expected_after(then_s))
+            })
+        };
         if due.position {
             let guidance = &self.guidance;
-            let references = (&guidance.reference(time_us), |then_us| guidance.preview(then_us));
+            let references = (&way(guidance, time_us), |then_us| way(guidance, then_us));
             self.cascade.sample_position(configuration, cascade, seen, references, time_us);
         }
         if due.altitude {
-            self.cascade.sample_altitude(
-                configuration,
-                cascade,
-                seen,
-                &self.guidance.reference(time_us),
-                time_us,
-            );
+            let reference = way(&self.guidance, time_us);
+            self.cascade.sample_altitude(configuration, cascade, seen, &reference, time_us);
         }
         if due.attitude {
             self.guidance.sample_heading(reference, limits, time_us);
             // A command takes effect as late as the rotors answer, and in the middle of the time for which it is held.
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
             let answered_us = time_us + lag_us + configuration.controllers.attitude.sample_time_us / 2;
-            let references = (self.guidance.reference(time_us), self.guidance.preview(answered_us));
+            let references = [time_us, answered_us].map(|then_us| way(&self.guidance, then_us));
             self.command =
-                self.cascade.sample_attitude(configuration, cascade, seen, (&references.0, &references.1));
+                self.cascade.sample_attitude(configuration, cascade, seen, (&references[0], &references[1]));
         }
     }
 

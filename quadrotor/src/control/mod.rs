@@ -12,6 +12,7 @@ pub(crate) mod control_loop;
 pub(crate) mod control_state;
 pub(crate) mod estimator;
 pub(crate) mod flat_attitude;
+pub(crate) mod followed_way;
 pub(crate) mod governor;
 pub(crate) mod instants;
 mod largest_share;

@@ -10,7 +10,7 @@ use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
-    AXIS_STATES, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
+    AXIS_STATES, Asked, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
 };
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
@@ -19,7 +19,7 @@ use crate::{CascadeDesign, Configuration};
 /// error needs the rest.
 const BRAKING_SHARE: f64 = 0.25;
 
-/// Samples ahead at which it is looked how fast the reference will be, as far as the speed is limited: a reference that will be too fast
+/// Samples ahead at which it is looked what the reference will ask for, as far as its motion is limited: a reference that will be too fast
 /// for the limit would be run ahead of.
 const ASKED: [usize; 8] = [5, 10, 15, 20, 30, 45, 75, 110];
 
@@ -83,16 +83,16 @@ impl PositionController {
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
         // Where the reference rests there is nothing to look ahead at.
-        let (moved, asked_m_s) = if reference.is_at_rest() {
-            (None, 0.0)
+        let (moved, asked) = if reference.is_at_rest() {
+            (None, Asked::default())
         } else {
             let moved = design.position.law.moved(|sample| {
                 let then = ahead(sample);
                 let state = turn.state(&(state_of(&then) - state_of(reference)));
                 (state, turn.vector(&(then.thrust - reference.thrust)))
             });
-            let speeds = ASKED.map(|sample| ahead(sample).velocity.norm());
-            (moved, speeds.into_iter().fold(reference.velocity.norm(), f64::max))
+            let now = asked_by(&Asked::default(), reference);
+            (moved, ASKED.into_iter().fold(now, |asked, sample| asked_by(&asked, &ahead(sample))))
         };
         let deviation = with_position(&(measured - state_of(reference)), &error);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
@@ -118,7 +118,7 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, (present_m_s2, most_m_s2), asked_m_s, under_way),
+            upper: &position_bounds(limits, (present_m_s2, most_m_s2), &asked, under_way),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
@@ -168,6 +168,15 @@ fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
         reference.snap,
         Vector2::zeros(),
     ])
+}
+
+/// What a reference asks for, as far as it is more than what it asks for at other times.
+fn asked_by(asked: &Asked, reference: &ReferenceMotion<2>) -> Asked {
+    Asked {
+        speed_m_s: asked.speed_m_s.max(reference.velocity.norm()),
+        jerk_m_s3: asked.jerk_m_s3.max(reference.jerk.norm()),
+        snap_m_s4: asked.snap_m_s4.max(reference.snap.norm()),
+    }
 }
 
 /// By how much the motion of a reference moves that state from the sample before.

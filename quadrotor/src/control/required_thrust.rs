@@ -25,18 +25,37 @@ pub(crate) struct RequiredThrust {
 impl RequiredThrust {
     /// Of a reference: a + D v and its derivatives, shortened to the largest lean.
     pub(crate) fn of(configuration: &Configuration, reference: &PositionReference) -> Self {
+        Self::whole(configuration, reference).within_lean(configuration)
+    }
+
+    /// Whether a reference leans farther than the largest lean.
+    pub(crate) fn is_beyond_lean(configuration: &Configuration, reference: &PositionReference) -> bool {
+        let whole = Self::whole(configuration, reference);
+        let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
+        horizontal_m_s2 > NOTHING_M_S2 && horizontal_m_s2 > whole.most_horizontal_m_s2(configuration)
+    }
+
+    /// a + D v and its derivatives.
+    fn whole(configuration: &Configuration, reference: &PositionReference) -> Self {
         let drag_1_s = configuration.drag_1_s();
         let against = |motion: &Vector3<f64>, slower: &Vector3<f64>| motion + drag_1_s.component_mul(slower);
-        let whole = Self {
+        Self {
             acceleration_m_s2: against(&reference.acceleration_m_s2, &reference.velocity_m_s),
             jerk_m_s3: against(&reference.jerk_m_s3, &reference.acceleration_m_s2),
             snap_m_s4: against(&reference.snap_m_s4, &reference.jerk_m_s3),
-        };
-        let vertical_m_s2 = whole.acceleration_m_s2.z;
-        whole.leaning_at_most(|| {
-            most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
-                .min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
-        })
+        }
+    }
+
+    /// Shortened to the largest lean.
+    pub(crate) fn within_lean(&self, configuration: &Configuration) -> Self {
+        self.leaning_at_most(|| self.most_horizontal_m_s2(configuration))
+    }
+
+    /// The largest horizontal acceleration beside the vertical one, m/s².
+    fn most_horizontal_m_s2(&self, configuration: &Configuration) -> f64 {
+        let vertical_m_s2 = self.acceleration_m_s2.z;
+        most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
+            .min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
     }
 
     /// The same with a horizontal acceleration of at most `most_m_s2`, which is only asked for if there is one:
@@ -44,7 +63,7 @@ impl RequiredThrust {
     /// ```text
     /// a = r n,  r′ = n·j,  n′ = (j − r′ n)/r,  r″ = n·s + r |n′|²,  n″ = (s − 2 r′ n′ − r″ n)/r
     /// ```
-    fn leaning_at_most(&self, most_m_s2: impl FnOnce() -> f64) -> Self {
+    pub(crate) fn leaning_at_most(&self, most_m_s2: impl FnOnce() -> f64) -> Self {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
         let r = libm::hypot(a.x, a.y);
         if r <= NOTHING_M_S2 || !r.is_finite() {

@@ -73,18 +73,31 @@ pub(crate) struct TurnUnderWay {
     pub(crate) jump_m_s3: f64,
 }
 
-/// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, when the reference asks for speeds up to
-/// `asked_m_s`: see [`most_speed_m_s`].
+/// The most that a reference asks for while it is planned for. What is more than a limit is another's plan, which may be followed: a limit
+/// that its own motion breaks would take the feedback the room to follow it.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Asked {
+    /// Speed, m/s.
+    pub(crate) speed_m_s: f64,
+    /// Jerk, m/s³.
+    pub(crate) jerk_m_s3: f64,
+    /// Snap, m/s⁴.
+    pub(crate) snap_m_s4: f64,
+}
+
+/// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, under what the
+/// reference asks for: see [`most_speed_m_s`] and [`with_faster`].
 pub(crate) fn position_bounds(
     limits: &Limits,
     (present_m_s2, lasting_m_s2): (f64, f64),
-    asked_m_s: f64,
+    asked: &Asked,
     under_way: TurnUnderWay,
 ) -> [f64; POSITION_BOUNDS] {
-    let turning = (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2).max(under_way.snap_m_s4)
+    let turning = with_faster(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2, asked.snap_m_s4)
+        .max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
-    let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked_m_s);
+    let leaning = with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3);
+    let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked.speed_m_s);
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
         _ if bound < 2 * SIDES => lasting_m_s2,
@@ -109,6 +122,11 @@ pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
 /// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
 pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
+}
+
+/// A limit, or more than a reference that asks for more than it.
+fn with_faster(limit: f64, asked: f64) -> f64 {
+    if asked > ROUNDING * limit { asked + CATCHING_UP_WITH_FASTER * limit } else { limit }
 }
 
 fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
@@ -139,7 +157,7 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, position_bounds,
+        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, position_bounds,
         position_limits,
     };
     use crate::{GRAVITY_M_S2, Limits};
@@ -149,7 +167,12 @@ mod tests {
         let sides: usize = position_limits().iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
-        let bounds = position_bounds(&limits, (5.0, 4.0), 3.0, TurnUnderWay::default());
+        let bounds = position_bounds(
+            &limits,
+            (5.0, 4.0),
+            &Asked { speed_m_s: 3.0, ..Asked::default() },
+            TurnUnderWay::default(),
+        );
         assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
         assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
         assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
@@ -164,15 +187,33 @@ mod tests {
         let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
         for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
             let under_way = TurnUnderWay { snap_m_s4: share * turning, jump_m_s3: 0.0 };
-            assert_eq!(position_bounds(&limits, (5.0, 4.0), 3.0, under_way)[2 * SIDES], expected * turning);
+            assert_eq!(
+                position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way)[2 * SIDES],
+                expected * turning
+            );
+        }
+    }
+
+    /// A reference that turns faster than the limits is followed; what is slower changes nothing.
+    #[test]
+    fn a_fast_turn_moves_the_limits_of_the_tilt() {
+        let limits = Limits::default();
+        let [leaning, turning] =
+            [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
+        for (share, expected) in [(0.9, 1.0), (1.0, 1.0), (1.5, 1.6)] {
+            let asked = Asked { jerk_m_s3: share * leaning, snap_m_s4: share * turning, ..Asked::default() };
+            let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
+            assert!((bounds[2 * SIDES] / turning - expected).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - expected).abs() < 1e-12);
         }
     }
 
     /// A reference that is faster than the limit may be caught up with.
     #[test]
     fn a_fast_reference_moves_the_speed_limit() {
-        let speed = |asked_m_s: f64| {
-            position_bounds(&Limits::default(), (5.0, 5.0), asked_m_s, TurnUnderWay::default())
+        let speed = |speed_m_s: f64| {
+            let asked = Asked { speed_m_s, ..Asked::default() };
+            position_bounds(&Limits::default(), (5.0, 5.0), &asked, TurnUnderWay::default())
                 [POSITION_BOUNDS - 1]
         };
         // At the limit by one per cent of it.

@@ -46,6 +46,12 @@ impl PositionReference {
         }
     }
 
+    /// Whether it stays where it is.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        let Self { velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4, .. } = self;
+        [velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4].iter().all(|part| **part == Vector3::zeros())
+    }
+
     /// The name of its first component that is not finite.
     pub(crate) fn not_finite(&self) -> Option<&'static str> {
         let Self { position_m, velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4, .. } = self;
