@@ -223,8 +223,8 @@ impl Flier {
     pub fn reboot(&mut self) {
         let parameters = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(self.command(MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, parameters), ACCEPTED);
-        // It has booted with the next tick.
-        self.fly(0.01);
+        let boots = self.bench.autopilot.boots();
+        self.wait("the boot", 3.0, |flier| flier.bench.autopilot.boots() > boots);
         self.bench.autopilot.receive_radio(self.pulses);
         self.fly(3.0);
     }
