@@ -117,11 +117,14 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
             let sinking = self.active.exchange(split);
             // How far until the first active multiplier is used up, and until the constraint is met.
             let leaving = self.first_to_leave(&sinking);
-            let until_met = if split.rest_squared > T::zero() {
-                let along = dot(normal.as_slice(), self.z.as_slice());
-                (along - bound).max(T::zero()) / split.rest_squared
-            } else {
+            let depends = split.rest_squared <= T::zero();
+            let until_met = if depends {
                 T::INFINITY
+            } else {
+                let along = dot(normal.as_slice(), self.z.as_slice());
+                // Compilers divide before they look whether it counts: 0/0 would be signalled.
+                let rest_squared = if depends { T::one() } else { split.rest_squared };
+                (along - bound).max(T::zero()) / rest_squared
             };
             let until_leaving = leaving.map_or(T::INFINITY, |(_, t)| t);
             let t = until_met.min(until_leaving);
