@@ -71,9 +71,9 @@ impl FoundDerivatives {
         if is_given(&point.acceleration_m_s2) {
             return whole;
         }
-        // At most one of the estimators has seen a motion.
-        if is_given(&point.velocity_m_s) {
-            let found = self.velocities.at(since_us);
+        // A velocity may be zero where a motion turns.
+        let found = self.velocities.at(since_us);
+        if is_given(&point.velocity_m_s) || is_given(&found.first) {
             whole.acceleration_m_s2 = at_most(&found.first, most_m_s2);
             whole.jerk_m_s3 += at_most(&found.second, most_m_s3);
         } else {

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::design::response_times::ResponseTimes;
 use crate::guidance::motion_profile::{Motion, MotionProfile};
-use crate::{GRAVITY_M_S2, Limits, PositionReference};
+use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference};
 
 /// Two means, one of the other, over windows of the past.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
@@ -116,6 +116,13 @@ impl Smoothing {
     fn moments(&self) -> (f64, f64) {
         let [first_s, second_s] = self.windows_s;
         ((first_s + second_s) / 2.0, (first_s * first_s + second_s * second_s) / 12.0)
+    }
+}
+
+impl Configuration {
+    /// How much later shaped motions are than jerk-limited ones that begin alike, s: they are smoothed.
+    pub fn shaping_delay_s(&self) -> f64 {
+        Smoothing::new(&self.limits, &self.response_times()).moments().0
     }
 }
 
