@@ -173,6 +173,8 @@ pub(super) fn stopping_place_m(situation: &Situation, limits: &Limits) -> Vector
     if !matches!(steering, Steering::Motion(_) | Steering::Goal(_) | Steering::Path(_)) {
         motion.position_m += motion.velocity_m_s * REACTION_S;
     }
+    // What is planned next is smoothed, and turns later.
+    motion.position_m += motion.velocity_m_s * situation.configuration.shaping_delay_s();
     let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
     let mut braking = Motion::from(motion, PositionSetPoint::HOLD, 0);
     for _ in 0..(LONGEST_STOP_S / STEP_S) as usize {
@@ -228,8 +230,10 @@ mod tests {
     use super::{
         AxisTarget, Breach, FenceStart, FenceWatch, Mode, PositionSetPoint, check_goal, check_set_point,
     };
+    use crate::identity::Identity;
     use crate::vehicle::scene::Scene;
     use crate::vehicle::set_point::YawTarget;
+    use crate::vehicle::sticks::Sticks;
 
     fn scene() -> Scene {
         let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
@@ -256,6 +260,28 @@ mod tests {
         assert_eq!(watch.record().count, 0);
         watch.count(7);
         assert_eq!((watch.record().count, watch.record().latest), (1, Some((Breach::Distance(50.0), 7))));
+    }
+
+    /// Sticks are kept inside as they lead; a way to a place is predicted, and so is a flight without a pilot.
+    #[test]
+    fn only_where_sticks_lead_nothing_is_predicted() {
+        let mut scene = scene();
+        (scene.identity, scene.mode) = (Identity::ArduPilot, Mode::ZigZag);
+        scene.conduct.failsafe.fence_ahead = true;
+        let mut ahead = |sticks: Option<Sticks>, set_point: PositionSetPoint| {
+            scene.come_to([48.0, 0.0, -10.0], [8.0, 0.0, 0.0]);
+            scene.pilot.sticks = sticks;
+            scene.show(|situation, proposal| proposal.follow(situation, &set_point));
+            let mut watch = FenceWatch::default();
+            watch.watch(&scene.situation());
+            watch.record().now
+        };
+        let axes = [70.0, 0.0, -10.0].map(AxisTarget::Position);
+        let across = PositionSetPoint { axes, yaw: YawTarget::Hold };
+        let breach = Some(Breach::Distance(50.0));
+        assert_eq!(ahead(Some(Sticks::default()), PositionSetPoint::HOLD), None);
+        assert_eq!(ahead(Some(Sticks::default()), across), breach);
+        assert_eq!(ahead(None, PositionSetPoint::HOLD), breach);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::descent::descend;
+use super::super::fence_watch::stopping_place_m;
 use super::super::motion::at_rest;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
@@ -18,9 +19,6 @@ use super::task::{Lowering, Task, TaskProgress, Then};
 use crate::equipment::Operation;
 use crate::plan::Place;
 use crate::plan::step::{Delay, Navigate};
-
-/// A descent that is taken back goes on for so long, s.
-const TURNS_S: f64 = 0.5;
 
 /// What is being done for the present step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -201,10 +199,8 @@ impl Course {
 
     /// Down with what the gripper holds: on the ground it is released, and without a ground it is taken back.
     fn lower(&mut self, lowering: Lowering, situation: &Situation, proposal: &mut Proposal) -> TaskProgress {
-        let (z_m, sinks_m_s) = (situation.outputs.position_m.z, situation.outputs.velocity_m_s.z.max(0.0));
-        // It sinks on while it turns: v t + v² / (2 a), with half of the acceleration for the jerk.
-        let ends_z_m =
-            z_m + sinks_m_s * (TURNS_S + sinks_m_s / situation.limits().acceleration_vertical_m_s2);
+        // It sinks on while it turns.
+        let ends_z_m = stopping_place_m(situation, situation.limits()).z;
         if situation.landed {
             proposal.say(Severity::Info, "Payload placed");
             proposal.operate(Operation::Grip { grabs: false });
