@@ -51,7 +51,7 @@ pub fn parameter_list(settings: &Settings, format: ListFormat) -> String {
 fn rows(settings: &Settings, own: &MemberSettings) -> Vec<(Entry, Value)> {
     let values = ParameterValues {
         configuration: own.vehicle.flown_configuration(),
-        conduct: own.vehicle.conduct,
+        conduct: own.vehicle.conduct_at_start(),
         system_id: own.system_id,
         speed: settings.speed,
         statistics: Statistics { boots: 1, ..Statistics::default() },

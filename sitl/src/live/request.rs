@@ -65,15 +65,7 @@ fn within(value: f64, least: f64, most: f64, what: &str, unit: &str) -> Result<f
     if is_fine { Ok(value) } else { Err(format!("{what} {value} {unit}; use {least} to {most} {unit}")) }
 }
 
-/// Only ArduPilot has parameters for it.
 fn wind(speed_m_s: f64, from_deg: f64, autopilot: &Autopilot) -> Result<Vec<MavMessage>, String> {
-    if !autopilot.identity().is_ardupilot() {
-        return Err(
-            "PX4 has no parameters for the wind; set it at the start by --wind, or start with --autopilot \
-                    ardupilot to change it in flight"
-                .to_owned(),
-        );
-    }
     let system = autopilot.system_id();
     let from_deg = within(from_deg, -360.0, 360.0, "direction", "degrees")?;
     let speed_m_s = within(speed_m_s, 0.0, 50.0, "wind", "m/s")?;

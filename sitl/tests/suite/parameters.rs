@@ -95,7 +95,12 @@ fn the_list_offline_is_that_of_the_vehicle() {
         ),
         (
             "--wind 5 --set AF_DRAG_X=0.3 --kalman".to_owned(),
-            vec![("FRAME_DRAG_X", "0.3"), ("FRAME_DRAG_Y", "0.15"), ("SENS_KALMAN", "1")],
+            vec![
+                ("FRAME_DRAG_X", "0.3"),
+                ("FRAME_DRAG_Y", "0.15"),
+                ("SENS_KALMAN", "1"),
+                ("SIM_WIND_SPD", "5"),
+            ],
         ),
     ] {
         let settings = settings(&line).expect("valid");

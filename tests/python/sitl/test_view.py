@@ -71,7 +71,7 @@ def test_it_draws_the_vehicle_where_telemetry_says_and_a_click_flies_it_there(st
     assert {host(url) for url in shown.requests} == {host(vehicle.ready["view"])}
 
     page.get_by_role("button", name="Set wind").click()
-    page.get_by_text("wind: PX4 has no parameters for the wind").wait_for()
+    page.get_by_text("wind: accepted").wait_for()
     page.get_by_label("Fault").select_option("off")
     page.get_by_label("Unit").select_option("rotor2")
     page.get_by_role("button", name="Inject").click()

@@ -39,17 +39,25 @@ pub struct Entry {
     pub(super) source: Source,
     /// Whether it is a further name of something that is listed before: files hold it once.
     pub(super) is_other: bool,
+    /// Whether it describes the surroundings of this run rather than the vehicle: files do not hold it, so that the next run has its own.
+    pub(super) is_of_run: bool,
 }
 
 impl Entry {
     /// A parameter of the closed loop.
     pub(super) fn of_loop(name: &LoopName, parameter: &'static Parameter) -> Self {
-        Self { id: name.id, former: name.former, source: Source::Loop(parameter), is_other: false }
+        Self {
+            id: name.id,
+            former: name.former,
+            source: Source::Loop(parameter),
+            is_other: false,
+            is_of_run: false,
+        }
     }
 
     /// A parameter that has always had its name.
     pub(super) fn new(id: &'static str, source: Source) -> Self {
-        Self { id, former: None, source, is_other: false }
+        Self { id, former: None, source, is_other: false, is_of_run: false }
     }
 
     /// Public name in the closed loop, such as `airframe.mass`; `None` for the vehicle's own parameters.
@@ -62,7 +70,7 @@ impl Entry {
 
     /// Whether parameter files hold it.
     pub fn is_kept(&self) -> bool {
-        !self.is_other && self.is_of_vehicle()
+        !self.is_other && !self.is_of_run && self.is_of_vehicle()
     }
 
     /// Whether it belongs to the vehicle, not to the run, and may be in a file.

@@ -41,7 +41,7 @@ pub use named_value::NamedValue;
 pub use px4_parameters::PX4_PARAMETERS;
 pub use radio_parameters::radio_parameters;
 pub use set_error::SetError;
-pub use simulation_parameters::SIMULATION_PARAMETERS;
+pub use simulation_parameters::{SIMULATION_PARAMETERS, WIND_PARAMETERS};
 pub use speed::Speed;
 pub use statistics::{Statistic, Statistics};
 pub use surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};

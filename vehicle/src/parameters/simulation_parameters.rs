@@ -5,13 +5,19 @@ use super::conduct_parameter::{bitmask, choice, chosen, real, switch, whole};
 use crate::vehicle::WIND_FROM_DEG;
 use crate::world::WindProfile;
 
+/// The wind, which can be changed in flight. ArduPilot keeps it in its files; PX4 has no such parameters, and the vehicle none in its files when it
+/// presents itself as PX4: the wind of a run is what its start says.
+#[rustfmt::skip]
+pub static WIND_PARAMETERS: &[ConductParameter] = &[
+    chosen!("SIM_WIND_SPD", 0.0..=50.0, simulated.wind_m_s, 0.0, "m/s", "Mean speed of the wind"),
+    chosen!("SIM_WIND_DIR", -360.0..=360.0, simulated.wind_from_deg, WIND_FROM_DEG, "deg", "Direction that the wind comes from"),
+    chosen!("SIM_WIND_TURB", 0.0..=20.0, simulated.gusts_m_s, 0.0, "m/s", "Standard deviation of the gusts"),
+];
+
 /// Parameters of the simulation, which the vehicle has when it presents itself as ArduPilot.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
-    chosen!("SIM_WIND_SPD", 0.0..=50.0, simulated.wind_m_s, 0.0, "m/s", "Mean speed of the wind"),
-    chosen!("SIM_WIND_DIR", -360.0..=360.0, simulated.wind_from_deg, WIND_FROM_DEG, "deg", "Direction that the wind comes from"),
     real!("SIM_WIND_DIR_Z", None, -90.0..=90.0, simulated.wind_shape.upwards_deg, "deg", "How steeply the wind blows upwards"),
-    chosen!("SIM_WIND_TURB", 0.0..=20.0, simulated.gusts_m_s, 0.0, "m/s", "Standard deviation of the gusts"),
     real!("SIM_WIND_TC", None, 0.0..=600.0, simulated.wind_shape.change_s, "s", "Time constant with which a change of the wind takes effect"),
     choice!("SIM_WIND_T", WIND_PROFILES, simulated.wind_shape.profile, "How the wind grows with height"),
     real!("SIM_WIND_T_ALT", None, 1.0..=10_000.0, simulated.wind_shape.full_m, "m", "Height at which a wind that grows has its full speed"),

@@ -11,7 +11,7 @@ use super::loop_names::loop_name;
 use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
-use super::simulation_parameters::SIMULATION_PARAMETERS;
+use super::simulation_parameters::{SIMULATION_PARAMETERS, WIND_PARAMETERS};
 use super::suggestion::suggestion;
 use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
@@ -65,12 +65,14 @@ impl ParameterTable {
             .chain(of_modes)
             .chain(radio_parameters(ardupilot))
             .chain(around)
+            .chain(WIND_PARAMETERS)
             .chain(simulated)
             .chain(equipment_parameters().filter(|_| ardupilot))
             .flat_map(|parameter| {
                 let names = parameter.names_in(identity);
                 names.map(|(id, scale, is_other)| Entry {
                     is_other,
+                    is_of_run: !ardupilot && WIND_PARAMETERS.iter().any(|wind| wind.id == id),
                     ..Entry::new(id, Source::Conduct(parameter, scale))
                 })
             });

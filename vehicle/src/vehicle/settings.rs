@@ -3,6 +3,7 @@
 use quadrotor::Configuration;
 use serde::{Deserialize, Serialize};
 
+use super::battery::{Battery, full_voltage_v};
 use super::battery_pack::BatteryPack;
 use super::conduct::Conduct;
 use crate::equipment::EquipmentVoice;
@@ -56,6 +57,13 @@ pub struct VehicleSettings {
 }
 
 impl VehicleSettings {
+    /// Parameters of its behaviour at the start, in the wind and with the battery that there are then.
+    pub fn conduct_at_start(&self) -> Conduct {
+        let full_battery_v =
+            full_voltage_v(&self.flown_configuration().airframe, &Battery::new(self.battery));
+        Conduct { simulated: self.conduct.simulated.since(&self.wind, full_battery_v), ..self.conduct }
+    }
+
     /// The default vehicle, at the default place, in calm air, with ideal sensors and nothing to fly.
     pub fn new(identity: Identity) -> Self {
         Self {
