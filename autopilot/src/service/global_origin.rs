@@ -61,9 +61,7 @@ impl Service for GlobalOrigin {
 /// Moves the origin, and tells everyone. ArduPilot does so only before it knows where it is, and this vehicle always knows.
 fn move_origin(context: &mut Context, origin: Geodetic) -> Result<(), Refusal> {
     if context.identity().is_ardupilot() {
-        return Err(Refusal::denied(
-            "Origin refused: ArduPilot sets it once, and it is set; start with --home",
-        ));
+        return Err(Refusal::denied("Origin refused: ArduPilot's origin is already set; start with --home"));
     }
     context.vehicle.move_origin(origin)?;
     context.outbox.send(Destination::Everyone, message(&context.vehicle));

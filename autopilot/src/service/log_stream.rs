@@ -61,7 +61,10 @@ impl Service for LogStreams {
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         if context.identity().is_ardupilot() {
             let instead = "download its logs (LOG_REQUEST_LIST) instead";
-            return Err(Refusal::Unsupported(format!("ArduPilot does not stream logs so; {instead}")));
+            return Err(Refusal::Unsupported(format!("ArduPilot does not stream logs this way; {instead}")));
+        }
+        if self.receiver.is_some_and(|receiver| receiver.peer != origin.peer) {
+            return Err(Refusal::later("Another client is already receiving the log"));
         }
         if command.number == STOP {
             self.stop(context);
@@ -70,9 +73,6 @@ impl Service for LogStreams {
         if command.parameter(1) != ULOG {
             let format = command.parameter(1);
             return Err(Refusal::denied(format!("Log format {format} is not supported; use 0 (ULog)")));
-        }
-        if self.receiver.is_some_and(|receiver| receiver.peer != origin.peer) {
-            return Err(Refusal::later("Another client gets the log already"));
         }
         let Origin { peer, system, component, .. } = *origin;
         self.receiver = Some(Receiver { peer, system, component, sequence: 0, tries: 0, turns: 0 });
@@ -106,7 +106,7 @@ impl Service for LogStreams {
                 return;
             }
             if receiver.tries >= MOST_TRIES {
-                context.say(Severity::Warning, "Log stream ended: its receiver acknowledges nothing");
+                context.say(Severity::Warning, "Log stream ended: no acknowledgement from the client");
                 return self.stop(context);
             }
             left -= 1;

@@ -78,19 +78,11 @@ fn take_scan(context: &mut Context, payload: &Payload) {
         for covered in sector - half..=sector + half {
             let place = covered.rem_euclid(SECTORS as i64) as usize;
             if let Some(known) = sectors.get_mut(place) {
-                *known = nearer(*known, news);
+                *known = known.nearer(news);
             }
         }
     }
     vehicle.see_around(nose_rad, sectors);
-}
-
-fn nearer(one: Reading, other: Reading) -> Reading {
-    match (one, other) {
-        (Reading::At(one_m), Reading::At(other_m)) => Reading::At(one_m.min(other_m)),
-        (Reading::At(_), _) | (Reading::Free, Reading::Unknown | Reading::Free) => one,
-        _ => other,
-    }
 }
 
 /// DISTANCE_SENSOR of an instrument that looks around (orientations 0 to 7: in steps of 45° from the nose).
@@ -106,15 +98,23 @@ fn take_direction(context: &mut Context, payload: &Payload) {
     context.vehicle.see_ahead(f64::from(orientation) * STEP_RAD, width_rad, reading);
 }
 
-/// OBSTACLE_DISTANCE_3D: a point in the frame of the body (MAV_FRAME_BODY_FRD), m; it counts where it lies around.
+/// OBSTACLE_DISTANCE_3D: a point in the frame of the body (MAV_FRAME_BODY_FRD), m.
 fn take_point(context: &mut Context, payload: &Payload) {
     const BODY_FRD: u8 = 12;
     let [ahead, right, down, nearest, farthest] = [4, 8, 12, 16, 20].map(|at| f64::from(payload.f32(at)));
-    let range_m = ahead.hypot(right).hypot(down);
-    // NaN is not within.
-    if payload.u8(27) == BODY_FRD && (nearest..=farthest).contains(&range_m) {
-        context.vehicle.see_ahead(right.atan2(ahead), 0.0, Reading::At(ahead.hypot(right)));
+    let seen = seen_around([ahead, right, down], nearest, farthest).filter(|_| payload.u8(27) == BODY_FRD);
+    if let Some((angle_rad, range_m)) = seen {
+        context.vehicle.see_ahead(angle_rad, 0.0, Reading::At(range_m));
     }
+}
+
+/// Where a point lies around: its angle from the nose, rad, and its distance on the level, m. `None`: it is out of the range, or lies more
+/// above or below than beside, as the ground does.
+fn seen_around([ahead, right, down]: [f64; 3], nearest_m: f64, farthest_m: f64) -> Option<(f64, f64)> {
+    let level_m = libm::hypot(ahead, right);
+    // NaN is not within.
+    let within = level_m >= nearest_m && libm::hypot(level_m, down) <= farthest_m && down.abs() <= level_m;
+    within.then(|| (libm::atan2(right, ahead), level_m))
 }
 
 fn centimetres(range_m: f64) -> u16 {
@@ -212,4 +212,23 @@ fn below_in_metres(component: &Component<'_>) -> Vec<MavMessage> {
     }
     let distance = vehicle.obstacles().below_m().unwrap_or(0.0) as f32;
     vec![MavMessage::RANGEFINDER(RANGEFINDER_DATA { distance, voltage: 0.0 })]
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::FRAC_PI_2;
+
+    use super::seen_around;
+
+    #[test]
+    fn a_point_counts_where_it_lies_around_and_not_above_or_below() {
+        let seen = |point_m| seen_around(point_m, 0.5, 20.0);
+        assert_eq!(seen([3.0, 0.0, -2.0]), Some((0.0, 3.0)));
+        assert_eq!(seen([0.0, 4.0, 0.0]), Some((FRAC_PI_2, 4.0)));
+        for point_m in
+            [[0.0, 0.0, 5.0], [3.0, 0.0, 10.0], [0.4, 0.0, 0.4], [19.0, 0.0, 8.0], [f64::NAN, 1.0, 0.0]]
+        {
+            assert_eq!(seen(point_m), None, "{point_m:?}");
+        }
+    }
 }

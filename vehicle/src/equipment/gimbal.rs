@@ -123,8 +123,9 @@ impl Gimbal {
             GimbalMode::Commands => self.stay(),
             GimbalMode::Radio => self.aim = Aim::Radio,
             GimbalMode::Home => self.aim = Aim::Home,
-            // Without anything to be looked at it stays.
             GimbalMode::Region if self.looked => self.aim = Aim::Region,
+            // Without anything to be looked at it stays.
+            GimbalMode::Region if self.aim == Aim::Region => self.stay(),
             GimbalMode::Region => {}
         }
     }
@@ -137,7 +138,7 @@ impl Gimbal {
         }
     }
 
-    /// Locks on the place at which it looks, on the ground at `ground_z_m`, or on the one that it was locked on before.
+    /// Locks on the place at which it looks, on ground as high as home, or on the one that it was locked on before.
     pub fn lock_on(&mut self, around: &Surroundings) {
         let seen = || self.seen_on_the_ground(around);
         if let Some(place_m) = self.locked_on_m.or_else(seen) {
@@ -348,12 +349,12 @@ impl Gimbal {
 
     /// Begins to track what the vehicle looks at, and ends that with it.
     fn notice_region(&mut self, around: &Surroundings) {
-        match (around.looks, self.looked) {
+        let looked = core::mem::replace(&mut self.looked, around.looks);
+        match (around.looks, looked) {
             (true, false) => self.aim = Aim::Region,
             (false, true) if self.aim == Aim::Region => self.set_mode(around.mount.resting_mode()),
             _ => {}
         }
-        self.looked = around.looks;
     }
 
     /// Tracks what the vehicle looks at again: another place was named.

@@ -70,14 +70,20 @@ impl MountSettings {
         self.kind > 0
     }
 
-    /// What it reaches, and how fast it turns.
+    /// What it reaches, and how fast it turns. Ends are set one at a time: crossed ones are the range between them.
     pub fn limits(&self) -> GimbalLimits {
         let ours = GimbalLimits::OURS;
         if !self.is_set_up() {
             return ours;
         }
         let rate_rad_s = if self.kind == SERVOS { SERVO_RAD_S } else { ours.rate_rad_s };
-        GimbalLimits { roll_rad: self.roll_rad, pitch_rad: self.pitch_rad, yaw_rad: self.yaw_rad, rate_rad_s }
+        let ordered = |[one, other]: [f64; 2]| [one.min(other), one.max(other)];
+        GimbalLimits {
+            roll_rad: ordered(self.roll_rad),
+            pitch_rad: ordered(self.pitch_rad),
+            yaw_rad: ordered(self.yaw_rad),
+            rate_rad_s,
+        }
     }
 
     /// Its mode when nothing is looked at.

@@ -19,7 +19,7 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     real!("FENCE_MARGIN", None, 0.0..=1000.0, failsafe.fence_margin_m, "m", "How far inside of the fence sticks stop, and how far above its floor the vehicle must have been for that to count"),
     choice!("FENCE_AUTOENABLE", FENCE_STARTS, failsafe.fence_starts, "When the fence switches itself on"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
-    switch!("FS_VIBE_ENABLE", simulated.errors.switches.starts_again, "Go by the receiver where the accelerometers go on contradicting it"),
+    switch!("FS_VIBE_ENABLE", simulated.errors.switches.starts_again, "Trust the GPS receiver when the accelerometers keep contradicting it"),
     switch!("FS_CRASH_CHECK", crash.check, "Disarm a vehicle that has crashed"),
     bitmask!("LOG_BITMASK", LOGGED, log.bits, identity, identity, "What is logged"),
     whole!("LOG_DISARMED", 0..=3, log.disarmed, u8, "Log while disarmed, too: 0 off, 1 to 3 on"),

@@ -1,7 +1,7 @@
 //! What the vehicle carries, by ArduPilot's names: outputs, gripper, gimbal and parachute.
 
 use super::conduct_parameter::{bitmask, choice, real, switch, whole};
-use super::radio_parameters::number;
+use super::radio_parameters::{number, same};
 use super::{ConductParameter, NamedValue};
 use crate::equipment::GimbalMode;
 
@@ -84,9 +84,9 @@ static OTHERS: Group = &[
     whole!("GRIP_GRAB", 1000..=2000, equipment.grabbing_us, u16, "Pulse that grabs (us)"),
     whole!("GRIP_RELEASE", 1000..=2000, equipment.releasing_us, u16, "Pulse that releases (us)"),
     switch!("LGR_ENABLE", equipment.landing_gear, "Whether there is a landing gear"),
-    whole!("MNT1_TYPE", 0..=13, equipment.mount.kind, u8, "Kind of gimbal: 0 the one that MAVLink points, within ranges of its own; 1 servos, which come to their angles at once; any other kind turns at 180 deg/s"),
-    choice!("MNT1_DEFLT_MODE", MODES, equipment.mount.first_mode, "Mode of the gimbal at the start, and when there is nothing to look at any more, unless MNT1_TYPE is 0"),
-    real!("MNT1_RC_RATE", None, 0.0..=90.0, equipment.mount.radio_rate_rad_s, 57.295_779_513_082_32, "deg/s", "Rate of turn of the gimbal at full deflection of its channel; 0: the channel is its angle"),
+    whole!("MNT1_TYPE", 0..=13, equipment.mount.kind, u8, "Kind of gimbal: 0 is pointed by MAVLink only and has its own ranges; 1 has servos, which reach their angles at once; any other kind turns at 180 deg/s"),
+    choice!("MNT1_DEFLT_MODE", MODES, equipment.mount.first_mode, "Mode of the gimbal at startup, and when there is no longer anything to look at; without effect if MNT1_TYPE is 0"),
+    real!("MNT1_RC_RATE", None, 0.0..=90.0, equipment.mount.radio_rate_rad_s, DEGREES, "deg/s", "Rate of turn of the gimbal at full deflection of its channel; 0: the channel is its angle"),
     end!("MNT1_ROLL_MIN", -180.0..=180.0, roll_rad, 0, "Least roll of the gimbal"),
     end!("MNT1_ROLL_MAX", -180.0..=180.0, roll_rad, 1, "Largest roll of the gimbal"),
     end!("MNT1_PITCH_MIN", -90.0..=90.0, pitch_rad, 0, "Least pitch of the gimbal"),
@@ -112,10 +112,6 @@ static OTHERS: Group = &[
 /// The parameters of what the vehicle carries, which it has when it presents itself as ArduPilot.
 pub fn equipment_parameters() -> impl Iterator<Item = &'static ConductParameter> {
     OUTPUTS.iter().copied().flatten().chain(OTHERS)
-}
-
-const fn same(bits: u32) -> u32 {
-    bits
 }
 
 const CHANNELS: &[&str] = &[

@@ -308,7 +308,7 @@ static PX4_RADIO: &[ConductParameter] = &[
     choice!("MAN_ARM_GESTURE", GESTURES, radio.rudder, "Whether the sticks held low and to one side arm and disarm"),
     real!("MPC_MAN_TILT_MAX", None, 1.0..=70.0, sticks.lean_rad, 57.295_779_513_082_32, "deg", "Lean angle at full stick deflection"),
     real!("MPC_MAN_Y_MAX", None, 1.0..=400.0, sticks.turn_rad_s, 57.295_779_513_082_32, "deg/s", "Rate of turn at full stick deflection"),
-    real!("MPC_HOLD_DZ", None, 0.0..=0.9, sticks.dead_zone, "", "Share of a stick's way around its centre that holds the place"),
+    real!("MPC_HOLD_DZ", None, 0.0..=0.9, sticks.dead_zone, "", "Dead zone of the sticks around the centre, in which the vehicle holds its position"),
     real!("MPC_MANTHR_MIN", None, 0.0..=1.0, sticks.least_thrust, "norm", "Thrust at the lowest throttle in modes without control of the height"),
     choice!("MPC_THR_CURVE", CURVES, sticks.hovers_centred, "What the centred throttle means"),
     real!("MC_ACRO_R_MAX", None, 1.0..=1800.0, sticks.roll_rad_s, 57.295_779_513_082_32, "deg/s", "Roll rate at full stick deflection in Acro mode"),
@@ -317,7 +317,8 @@ static PX4_RADIO: &[ConductParameter] = &[
     real!("MC_ACRO_EXPO", None, 0.0..=1.0, sticks.exponent, "", "How much gentler the middle of the sticks is in Acro mode"),
 ];
 
-const fn same(bits: u32) -> u32 {
+/// Bits that are kept as they are shown.
+pub(super) const fn same(bits: u32) -> u32 {
     bits
 }
 

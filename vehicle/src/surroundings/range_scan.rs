@@ -30,6 +30,17 @@ pub enum Reading {
     At(f64),
 }
 
+impl Reading {
+    /// What two of the same sector tell together: the nearer thing counts.
+    pub fn nearer(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::At(one_m), Self::At(other_m)) => Self::At(one_m.min(other_m)),
+            (Self::At(_), _) | (Self::Free, Self::Unknown | Self::Free) => self,
+            _ => other,
+        }
+    }
+}
+
 /// One turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeScan {
@@ -70,6 +81,14 @@ impl RangeScan {
             }
         });
         Self { time_us, position_m, heading_rad, sectors }
+    }
+
+    /// Adds what a later scan shows whose first sector has the same heading: the nearer thing counts.
+    pub(crate) fn merge(&mut self, later: &Self) {
+        for (known, news) in self.sectors.iter_mut().zip(later.sectors) {
+            *known = known.nearer(news);
+        }
+        (self.time_us, self.position_m) = (later.time_us, later.position_m);
     }
 
     /// The nearest thing in each of some equal parts of the turn, the first of them around a heading, rad; m.

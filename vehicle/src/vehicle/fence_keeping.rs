@@ -18,9 +18,11 @@ const SMALL_M_S: f64 = 1e-6;
 /// How far apart places are whose room is compared, m.
 const APART_M: f64 = 0.05;
 
-/// Whether sticks are kept from leading over the fence now.
+/// Whether sticks lead the vehicle now, and are kept from leading it over the fence: not on its way to a place.
 pub fn keeps_sticks_inside(situation: &Situation) -> bool {
-    matches!(situation.mode, Mode::Position | Mode::ZigZag) && applies(situation)
+    let has_sticks = situation.pilot.sticks.is_some() || situation.pilot.released;
+    let by_sticks = || situation.steering.asked().is_some_and(|asked| asked.is_velocity());
+    matches!(situation.mode, Mode::Position | Mode::ZigZag) && applies(situation) && has_sticks && by_sticks()
 }
 
 fn applies(situation: &Situation) -> bool {

@@ -66,7 +66,7 @@ impl Flip {
             return refuse("not flying");
         }
         if !matches!(situation.mode, Mode::Stabilize | Mode::Acro | Mode::Altitude) {
-            return refuse("it begins in Stabilize, Acro and AltHold");
+            return refuse("enter it from Stabilize, Acro or AltHold");
         }
         let sticks = situation.pilot.sticks.unwrap_or_default();
         if situation.mode.is_flown_by_thrust() && sticks.throttle() <= 0.0 {

@@ -15,6 +15,8 @@ use crate::surroundings::{Aircraft, Obstacle, RangeScan, Reading, SECTOR_RAD, SE
 const TURN_US: u64 = 100_000;
 /// A scan older than this, µs, counts as none.
 const OLD_US: u64 = 500_000;
+/// What comes within this, µs, is of one frame: the nearest of it counts.
+const FRAME_US: u64 = 20_000;
 /// So near to the distance that is kept, m, the vehicle does not set out towards an obstacle.
 const SLACK_M: f64 = 0.6;
 /// A vehicle that was stopped sets out again when it has so much more room than it needs to brake, m.
@@ -37,8 +39,8 @@ const REACH_ARMS: f64 = 1.5;
 pub struct ObstacleWatch {
     obstacles: Vec<Obstacle>,
     lidar: Option<RangeScan>,
-    /// What a companion computer has told.
-    companion: Option<RangeScan>,
+    /// What a companion computer has told, the latest last. Each has its own time and place.
+    companion: Vec<RangeScan>,
     /// Distance below, m.
     below_m: Option<f64>,
     /// Whether it is kept from going on.
@@ -65,8 +67,15 @@ impl ObstacleWatch {
     }
 
     /// What a companion computer tells, if that is not too old.
-    pub fn companion(&self, time_us: u64) -> Option<&RangeScan> {
-        self.companion.as_ref().filter(|scan| is_fresh(scan, time_us))
+    pub fn companion(&self, time_us: u64) -> Option<RangeScan> {
+        self.told(time_us).copied().reduce(|mut together, scan| {
+            together.merge(&scan);
+            together
+        })
+    }
+
+    fn told(&self, time_us: u64) -> impl Iterator<Item = &RangeScan> {
+        self.companion.iter().filter(move |scan| is_fresh(scan, time_us))
     }
 
     /// Whether something measures around, or is to by the parameters.
@@ -78,7 +87,7 @@ impl ObstacleWatch {
     /// Whether it measures now.
     pub fn measures_around(&self, situation: &Situation) -> bool {
         let simulated = situation.conduct.surroundings.proximity_kind == SIMULATED;
-        self.lidar.is_some() || simulated || self.companion(situation.time_us).is_some()
+        self.lidar.is_some() || simulated || self.told(situation.time_us).next().is_some()
     }
 
     /// Whether a distance is kept from what is measured, as far as a switch says.
@@ -113,17 +122,22 @@ impl ObstacleWatch {
 
     /// Takes what a companion computer measures. Sectors that it does not know keep what it knew a moment ago.
     pub fn take(&mut self, scan: RangeScan) {
-        let fresh = |known: &RangeScan| scan.time_us.saturating_sub(known.time_us) < OLD_US;
-        match &mut self.companion {
-            Some(known) if fresh(known) && known.heading_rad == scan.heading_rad => {
-                for (known, news) in known.sectors.iter_mut().zip(scan.sectors) {
-                    if news != Reading::Unknown {
-                        *known = news;
-                    }
+        let ended = |known: &RangeScan| known.time_us + FRAME_US < scan.time_us;
+        for known in self.companion.iter_mut().filter(|known| ended(known)) {
+            for (known, news) in known.sectors.iter_mut().zip(scan.sectors) {
+                if news != Reading::Unknown {
+                    *known = Reading::Unknown;
                 }
-                (known.time_us, known.position_m) = (scan.time_us, scan.position_m);
             }
-            known => *known = Some(scan),
+        }
+        self.companion.retain(|known| {
+            is_fresh(known, scan.time_us)
+                && known.heading_rad == scan.heading_rad
+                && known.sectors.iter().any(|reading| *reading != Reading::Unknown)
+        });
+        match self.companion.last_mut() {
+            Some(latest) if latest.time_us == scan.time_us => latest.merge(&scan),
+            _ => self.companion.push(scan),
         }
     }
 
@@ -164,10 +178,11 @@ impl ObstacleWatch {
         self.obstacles.iter().find(|obstacle| obstacle.distance_m(&situation.truth.position_m) < reach_m)
     }
 
-    /// Whether it is so high that obstacles are avoided: above the ground if that is measured, else above home.
+    /// Whether it is so high that obstacles are avoided: above the ground if that is measured, else above home. Zero is no limit.
     fn is_high(&self, situation: &Situation) -> bool {
         let above_home_m = situation.home.position_m.z - situation.outputs.position_m.z;
-        self.below_m.unwrap_or(above_home_m) > situation.conduct.surroundings.avoided_above_m
+        let least_m = situation.conduct.surroundings.avoided_above_m;
+        least_m <= 0.0 || self.below_m.unwrap_or(above_home_m) > least_m
     }
 
     /// Ends the flight of a vehicle that touches something.
@@ -184,14 +199,15 @@ impl ObstacleWatch {
     /// What is measured, north and east of here, m; `None`: nothing has been for a while.
     fn seen_m(&self, situation: &Situation) -> Option<Vec<Vector2<f64>>> {
         let lidar = self.lidar.as_ref().filter(|scan| is_fresh(scan, situation.time_us));
-        let mut scans = lidar.into_iter().chain(self.companion(situation.time_us)).peekable();
+        let mut scans = lidar.into_iter().chain(self.told(situation.time_us)).peekable();
         scans.peek()?;
         Some(scans.flat_map(|scan| scan.seen_from(situation.outputs.position_m)).collect())
     }
 
-    /// Stops the vehicle before what is measured, in the modes that keep a distance. ArduPilot's sticks slide along it.
+    /// Stops the vehicle before what is measured, in the modes that keep a distance. ArduPilot's sticks slide along it; on a way to a
+    /// place they do not lead, and it stops there, too.
     pub fn keep_distance(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        let keeps = !self.proximity_off && keeps_distance(situation);
+        let keeps = !self.proximity_off && keeps_distance(situation) && self.is_high(situation);
         let Some(asked) = proposal.steering().asked().filter(|_| keeps) else {
             self.stopped = false;
             return;
@@ -207,8 +223,10 @@ impl ObstacleWatch {
             return;
         };
         self.told_blind = false;
-        if situation.identity.is_ardupilot() && situation.mode.leader() == Leader::Sticks {
-            if let Some(kept) = keep_away(situation, &points, &asked).filter(|_| self.is_high(situation)) {
+        let by_sticks = situation.mode.leader() == Leader::Sticks && asked.is_velocity();
+        if situation.identity.is_ardupilot() && by_sticks {
+            self.stopped = false;
+            if let Some(kept) = keep_away(situation, &points, &asked) {
                 proposal.follow(situation, &kept);
             }
             return;
@@ -233,7 +251,7 @@ fn is_fresh(scan: &RangeScan, time_us: u64) -> bool {
     time_us.saturating_sub(scan.time_us) <= OLD_US
 }
 
-/// PX4 keeps its distance in Position mode, ArduPilot in Loiter and Guided, if it has a sensor.
+/// PX4 keeps its distance in Position mode, ArduPilot in Loiter, PosHold, ZigZag and Guided, if it has a sensor.
 fn keeps_distance(situation: &Situation) -> bool {
     const PROXIMITY: u8 = 2;
     let settings = &situation.conduct.surroundings;
@@ -319,9 +337,89 @@ pub(super) fn separation_m(aircraft: &Aircraft, place_m: &Vector3<f64>, time_us:
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector2;
+    use core::f64::consts::FRAC_PI_2;
 
-    use super::free_m;
+    use nalgebra::{Vector2, Vector3};
+
+    use super::{
+        AxisTarget, Mode, ObstacleWatch, PositionSetPoint, RangeScan, Reading, free_m, one_direction,
+    };
+    use crate::identity::Identity;
+    use crate::vehicle::Conduct;
+    use crate::vehicle::scene::{Scene, said};
+    use crate::vehicle::set_point::YawTarget;
+
+    /// A point of a companion computer, seen from a place north of the origin, m.
+    fn point(time_us: u64, north_m: f64, heading_rad: f64, range_m: f64) -> RangeScan {
+        one_direction(time_us, Vector3::new(north_m, 0.0, 0.0), heading_rad, 0.0, Reading::At(range_m))
+    }
+
+    /// The nearest of a frame counts. One that is sent no more ends while others go on.
+    #[test]
+    fn every_point_has_its_own_age() {
+        let mut watch = ObstacleWatch::default();
+        let ahead = |watch: &ObstacleWatch, time_us| watch.companion(time_us).map(|scan| scan.sectors[0]);
+        watch.take(point(0, 0.0, 0.0, 3.0));
+        watch.take(point(0, 0.0, 0.0, 5.0));
+        watch.take(point(1000, 0.0, 0.0, 6.0));
+        assert_eq!(ahead(&watch, 1000), Some(Reading::At(3.0)));
+        watch.take(point(100_000, 0.0, 0.0, 7.0));
+        assert_eq!(ahead(&watch, 100_000), Some(Reading::At(7.0)), "of the next frame");
+        for tenths in 2..=7 {
+            watch.take(point(100_000 * tenths, 0.0, FRAC_PI_2, 4.0));
+        }
+        assert_eq!(ahead(&watch, 700_000), Some(Reading::Unknown), "sent no more");
+        assert_eq!(watch.companion.len(), 1);
+    }
+
+    /// What was seen before the vehicle moved on stays where it is.
+    #[test]
+    fn every_point_has_its_own_place() {
+        let mut watch = ObstacleWatch::default();
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        watch.take(point(scene.outputs.time_us, 0.0, 0.0, 5.0));
+        scene.come_to([1.0, 0.0, -10.0], [0.0; 3]);
+        scene.wait_us(100_000);
+        watch.take(point(scene.outputs.time_us, 1.0, FRAC_PI_2, 4.0));
+        let seen = watch.seen_m(&scene.situation()).expect("both");
+        for (seen_m, place_m) in seen.iter().zip([Vector2::new(4.0, 0.0), Vector2::new(0.0, 4.0)]) {
+            assert!((seen_m - place_m).norm() < 1e-9, "{seen:?}");
+        }
+        assert_eq!(seen.len(), 2);
+    }
+
+    /// Whether a way to a place is stopped by something 2.5 m ahead; the margin is 2 m.
+    fn stops(mode: Mode, height_m: f64, avoided_above_m: f64) -> bool {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -height_m]);
+        (scene.identity, scene.conduct, scene.mode) = (Identity::ArduPilot, Conduct::new(true), mode);
+        let settings = &mut scene.conduct.surroundings;
+        (settings.proximity_kind, settings.avoided_above_m) = (2, avoided_above_m);
+        let axes = [10.0, 0.0, -height_m].map(AxisTarget::Position);
+        scene.show(|situation, proposal| {
+            proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+        });
+        let mut watch = ObstacleWatch::default();
+        watch.take(point(scene.outputs.time_us, 0.0, 0.0, 2.5));
+        let requests = scene.show(|situation, proposal| watch.keep_distance(situation, proposal));
+        said(&requests) == ["Obstacle ahead: stopping"] && scene.goal_m().is_none()
+    }
+
+    /// ZigZag across and a precision Loiter go to places.
+    #[test]
+    fn a_way_to_a_place_stops_in_every_mode_that_keeps_a_distance() {
+        for mode in [Mode::Position, Mode::ZigZag, Mode::Offboard] {
+            assert!(stops(mode, 10.0, 0.0), "{mode:?}");
+        }
+        assert!(!stops(Mode::Mission, 10.0, 0.0));
+    }
+
+    #[test]
+    fn low_down_nothing_is_avoided_and_zero_is_no_limit() {
+        for mode in [Mode::Offboard, Mode::ZigZag] {
+            assert!(stops(mode, 10.0, 5.0) && !stops(mode, 4.0, 5.0), "{mode:?}");
+            assert!(stops(mode, -3.0, 0.0), "{mode:?}: home is higher");
+        }
+    }
 
     #[test]
     fn the_free_way_ends_where_the_margin_begins() {

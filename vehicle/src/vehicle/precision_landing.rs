@@ -112,9 +112,9 @@ impl PrecisionLanding {
         let centred = |deflection: f64| deflection.abs() < CENTRED;
         let free =
             situation.pilot.sticks.is_none_or(|sticks| centred(sticks.forward) && centred(sticks.right));
-        let target_m = self.target_m().filter(|_| self.loiters && free && !situation.landed);
+        let target_m = situation.landing_target_m.filter(|_| self.loiters && free && !situation.landed);
         if let (Some(target_m), Some(asked)) = (target_m, proposal.steering().asked()) {
-            proposal.follow(situation, &above(&target_m, asked));
+            proposal.follow(situation, &above(target_m, asked));
         }
     }
 
@@ -146,13 +146,10 @@ impl PrecisionLanding {
     }
 }
 
-/// What is asked for, above a target.
-fn above(target_m: &Vector3<f64>, asked: PositionSetPoint) -> PositionSetPoint {
+/// What is asked for, above a target, north and east, m.
+fn above([x, y]: [f64; 2], asked: PositionSetPoint) -> PositionSetPoint {
     let [_, _, down] = asked.axes;
-    PositionSetPoint {
-        axes: [AxisTarget::Position(target_m.x), AxisTarget::Position(target_m.y), down],
-        yaw: asked.yaw,
-    }
+    PositionSetPoint { axes: [AxisTarget::Position(x), AxisTarget::Position(y), down], yaw: asked.yaw }
 }
 
 #[cfg(test)]
@@ -193,6 +190,18 @@ mod tests {
         scene.wait_us(2_000_001);
         assert_eq!(watch(&mut landing, &mut scene), ["PrecLand: Target Lost"]);
         assert_eq!(landing.target_m(), None);
+    }
+
+    #[test]
+    fn loiter_stays_above_a_target_only_while_landings_go_to_it() {
+        let (mut scene, place_m) = (scene(4), Vector3::new(1.0, 2.0, 0.0));
+        let landing = PrecisionLanding { target: Some((place_m, 0, 0)), told: true, loiters: true };
+        for (enabled, goal_m) in [(false, [3.0, 4.0, -10.0]), (true, [1.0, 2.0, -10.0])] {
+            scene.conduct.precision.enabled = enabled;
+            scene.landing_target_m = landing.place_m(&scene.conduct.precision);
+            scene.show(|situation, proposal| landing.stay_above(situation, proposal));
+            assert_eq!(scene.goal_m(), Some(goal_m), "{enabled}");
+        }
     }
 
     #[test]

@@ -97,7 +97,7 @@ impl RotorWatch {
         let what = if descends { ": descending without yaw control" } else { "" };
         proposal.say(Severity::Critical, format!("Rotor {number} lost{what}"));
         let since_us = situation.time_us;
-        // The failsafe sees it, and lands or terminates.
+        // The failsafe sees it, and lands or terminates; if it only warns, the mode stays, and it descends all the same.
         self.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
     }
 

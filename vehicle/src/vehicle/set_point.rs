@@ -67,6 +67,11 @@ impl PositionSetPoint {
         }
     }
 
+    /// Whether it asks for velocities alone, as sticks do.
+    pub fn is_velocity(&self) -> bool {
+        self.axes.iter().all(|axis| matches!(axis, AxisTarget::Velocity(_)))
+    }
+
     /// Whether it leads upwards from z, m: on the ground nothing else takes off.
     pub fn leads_up(&self, z_m: f64) -> bool {
         const NEAR_M: f64 = 0.3;

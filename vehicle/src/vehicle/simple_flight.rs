@@ -60,7 +60,7 @@ impl SimpleFlight {
     pub fn watch(&mut self, situation: &Situation) {
         let away = (situation.outputs.position_m - situation.home.position_m).xy();
         if situation.armed && away.norm() > NEAR_M {
-            self.away_rad = away.y.atan2(away.x);
+            self.away_rad = libm::atan2(away.y, away.x);
         }
     }
 

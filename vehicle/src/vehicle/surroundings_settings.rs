@@ -16,7 +16,8 @@ pub struct SurroundingsSettings {
     pub go_without_data: bool,
     /// What is avoided: bits (ArduPilot: AVOID_ENABLE).
     pub avoided: u8,
-    /// Below this height above the ground, m, obstacles are not avoided (ArduPilot: AVOID_ALT_MIN).
+    /// Up to this height, m, obstacles are not avoided: above the ground if that is measured, else above home; zero: they always are
+    /// (ArduPilot: AVOID_ALT_MIN).
     #[serde(default)]
     pub avoided_above_m: f64,
     /// How fast it backs away from the fence, m/s (ArduPilot: AVOID_BACKUP_SPD).

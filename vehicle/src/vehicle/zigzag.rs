@@ -10,6 +10,7 @@
 use nalgebra::{Vector2, Vector3};
 use quadrotor::PositionReference;
 
+use super::fence_watch::check_goal;
 use super::manual_control::fly_by_velocity;
 use super::motion::Motion;
 use super::notice::Severity;
@@ -103,9 +104,14 @@ impl ZigZag {
         let Some(end_m) = self.ends_m[end as usize] else { return };
         let here_m = situation.outputs.setpoint.position_m;
         let goal_m = here_m.xy() + across * across.dot(&(end_m - here_m.xy()));
+        let goal_m = Vector3::new(goal_m.x, goal_m.y, here_m.z);
+        if let Err(refusal) = check_goal(situation, "ZigZag", &goal_m) {
+            proposal.say(Severity::Warning, refusal.to_string());
+            return;
+        }
         (self.goes_to, self.arrived_us) = (Some(end), None);
         proposal.say(Severity::Info, format!("ZigZag: moving to {end:?}"));
-        let axes = [goal_m.x, goal_m.y, here_m.z].map(AxisTarget::Position);
+        let axes = goal_m.data.0[0].map(AxisTarget::Position);
         proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
     }
 
@@ -171,6 +177,19 @@ mod tests {
         assert!(goal.is_some_and(|goal| (goal - Vector2::new(10.0, 0.0)).norm() < 1e-9), "{goal:?}");
         let (_, goal) = choose(&mut zigzag, &mut scene, [25.0, 3.0], End::B);
         assert!(goal.is_some_and(|goal| (goal - Vector2::new(25.0, 20.0)).norm() < 1e-9), "{goal:?}");
+    }
+
+    /// B is 20 m away, and the fence 15 m.
+    #[test]
+    fn it_does_not_go_beyond_the_fence() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -5.0]);
+        let mut zigzag = ZigZag::default();
+        for (at_m, end) in [([0.0, 0.0], End::A), ([0.0, 20.0], End::B)] {
+            choose(&mut zigzag, &mut scene, at_m, end);
+        }
+        scene.conduct.failsafe.fence_radius_m = 15.0;
+        let (told, goal) = choose(&mut zigzag, &mut scene, [10.0, 0.0], End::B);
+        assert_eq!((told, goal), (vec!["ZigZag rejected: farther than 15 m from home".to_owned()], None));
     }
 
     #[test]

@@ -146,3 +146,26 @@ fn modes_are_changed_and_nothing_to_look_at_is_the_first_one() {
     settle(&mut gimbal, &Surroundings { mount, ..around(0.0) });
     assert!(gimbal.is_retracted());
 }
+
+#[test]
+fn a_gimbal_whose_first_mode_is_the_region_rests_without_one() {
+    let mount = MountSettings { first_mode: GimbalMode::Region, ..servos(0.0) };
+    let mut gimbal = Gimbal::mounted(&mount);
+    let looking =
+        Surroundings { mount, region_m: Some(Vector3::new(10.0, 0.0, 0.0)), looks: true, ..around(0.0) };
+    settle(&mut gimbal, &looking);
+    assert!(gimbal.tracks());
+    assert!(near(settle(&mut gimbal, &Surroundings { mount, ..around(0.0) }), [0.0, -FRAC_PI_4, 0.0]));
+    assert!(!gimbal.tracks() && gimbal.rests(false));
+}
+
+#[test]
+fn crossed_ends_are_the_range_between_them() {
+    let mount = MountSettings { pitch_rad: [0.5, 0.25], yaw_rad: [1.0, -1.0], ..servos(0.0) };
+    let mut gimbal = Gimbal::mounted(&mount);
+    for (deflection, pitch_rad) in [(-1.0, 0.25), (1.0, 0.5)] {
+        let around = Surroundings { mount, deflections: [0.0, deflection, deflection], ..around(0.0) };
+        gimbal.step(&around, 0.001);
+        assert!(near(gimbal.angles_rad().data.0[0], [0.0, pitch_rad, deflection]), "{gimbal:?}");
+    }
+}

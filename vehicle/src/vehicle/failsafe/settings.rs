@@ -70,7 +70,8 @@ pub struct FailsafeSettings {
     /// What is done when the pilot is lost (NAV_RCL_ACT; ArduPilot: FS_THR_ENABLE).
     #[serde(default = "returns")]
     pub pilot_lost: RadioLossAction,
-    /// Whether it descends on the others when a rotor is lost, or stops them, too (COM_ACT_FAIL_ACT).
+    /// Whether it lands on the others when a rotor is lost, descends on them in the mode that was, or stops them, too
+    /// (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
 }
 

@@ -4,7 +4,9 @@ use super::super::notice::{Refusal, Severity};
 use super::super::region::RegionOfInterest;
 use super::super::tick::TICK_S;
 use super::Vehicle;
-use crate::equipment::{Equipment, GimbalControl, Operation, OutputFunction, Surroundings};
+use crate::equipment::{
+    Equipment, FIRST_FREE_CHANNEL, GimbalControl, Operation, OutputFunction, Surroundings,
+};
 use crate::plan::Look;
 use crate::radio::{Channel, GIMBAL_AXES};
 
@@ -25,6 +27,11 @@ impl Vehicle {
         }
         if let Operation::SetServo { channel, .. } | Operation::RepeatServo { channel, .. } = operation {
             self.refuse_functions(*channel)?;
+        }
+        if let Operation::SetActuators(values) = operation {
+            for (channel, _) in (FIRST_FREE_CHANNEL..).zip(values).filter(|(_, value)| value.is_some()) {
+                self.refuse_functions(channel)?;
+            }
         }
         if matches!(operation, Operation::MoveLandingGear { .. }) && !self.conduct().equipment.landing_gear {
             return Err(Refusal::Failed("no landing gear; LGR_ENABLE = 1 adds one".to_owned()));
@@ -117,5 +124,26 @@ impl Vehicle {
             )));
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Operation;
+    use crate::identity::Identity;
+    use crate::vehicle::{Refusal, Vehicle, VehicleSettings};
+
+    #[test]
+    fn an_output_with_a_function_takes_no_commands() {
+        let mut settings = VehicleSettings::new(Identity::ArduPilot);
+        // Output 6 follows the gripper.
+        settings.conduct.equipment.outputs[1].function = 28.0;
+        let mut vehicle = Vehicle::new(&settings).expect("valid settings");
+        let refused = "Servo 6 follows a function; set SERVO6_FUNCTION to 0 first".to_owned();
+        let both = Operation::SetActuators([Some(-1.0), Some(1.0), None, None]);
+        assert_eq!(vehicle.operate(&both), Err(Refusal::Failed(refused)));
+        assert_eq!(vehicle.equipment().servos().pulse_us(5), 0, "nothing of it is done");
+        assert_eq!(vehicle.operate(&Operation::SetActuators([Some(-1.0), None, Some(1.0), None])), Ok(()));
+        assert_eq!([5, 7].map(|channel| vehicle.equipment().servos().pulse_us(channel)), [1000, 2000]);
     }
 }

@@ -49,7 +49,7 @@ impl Vehicle {
         if !origin.is_valid() {
             let Geodetic { latitude_deg, longitude_deg, .. } = origin;
             let place = format!("latitude {latitude_deg}, longitude {longitude_deg}");
-            return Err(Refusal::denied(format!("Origin refused: no place at {place}")));
+            return Err(Refusal::denied(format!("Origin refused: {place} is not a valid place")));
         }
         let distance_m = self.frame().to_local_m(&origin).norm();
         if distance_m > FARTHEST_M {
