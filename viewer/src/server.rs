@@ -273,11 +273,17 @@ async fn film(
             "only a page with the token can have records replayed: open the address that lmpc-sitl printed";
         return refused(StatusCode::FORBIDDEN, why);
     }
-    let _lasting = work.begin();
     let largest = LARGEST_RECORD >> 20;
     let too_large =
         || NoFilm::Refused(format!("larger than {largest} MiB; run lmpc-sitl --view-record with it"));
-    match replayer.film(async { to_bytes(body, LARGEST_RECORD).await.map_err(|_| too_large()) }).await {
+    let mut _lasting = None;
+    let record = async {
+        let record = to_bytes(body, LARGEST_RECORD).await.map_err(|_| too_large());
+        // Until here a silent client is cut off, and lets others have theirs replayed.
+        _lasting = Some(work.begin());
+        record
+    };
+    match replayer.film(record).await {
         Ok(film) => ([(header::CONTENT_TYPE, "application/octet-stream")], film).into_response(),
         Err(NoFilm::Busy) => refused(StatusCode::CONFLICT, "another record is being replayed; try again"),
         Err(NoFilm::Refused(why)) => refused(StatusCode::UNPROCESSABLE_ENTITY, &why),

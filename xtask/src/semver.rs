@@ -34,7 +34,7 @@ pub fn check(
     if process::output(Command::new(PROGRAM).args(["semver-checks", "--version"]), PROGRAM).is_err() {
         return Err(Failure::Missing {
             program: PROGRAM.to_owned(),
-            remedy: "run the command with --install, which builds it for some minutes",
+            remedy: "run the command with --install; building it takes some minutes",
         });
     }
     let mut compare = cargo::cargo();

@@ -70,7 +70,7 @@ fn check_size(path: &Path, bytes: u64, most: u64, remedy: &str) -> Result<(), Fa
         return Ok(());
     }
     let [bytes, most] = [bytes, most].map(|bytes| bytes.div_ceil(1_000_000));
-    let reason = format!("{bytes} MB are more than the {most} MB that a browser can open so; {remedy}");
+    let reason = format!("{bytes} MB is too large: a browser can open at most {most} MB this way; {remedy}");
     Err(Failure::Content { path: path.to_owned(), reason })
 }
 

@@ -157,9 +157,9 @@ fn a_meaningless_choice_is_refused_with_those_that_there_are() {
     assert_eq!(told, reason);
 }
 
-/// PX4's default: nothing is done for the pilot, and the controllers do not know of the loss.
+/// Its mode stays, and it comes down on the other rotors.
 #[test]
-fn who_is_only_warned_of_a_lost_rotor_falls_in_the_mode_that_was() {
+fn who_is_only_warned_of_a_lost_rotor_descends_in_the_mode_that_was() {
     let mut bench = hovering(Cause::RotorFailure);
     set(&mut bench, "COM_ACT_FAIL_ACT", 0.0);
     let mode = bench.autopilot.vehicle().mode();
@@ -173,7 +173,8 @@ fn who_is_only_warned_of_a_lost_rotor_falls_in_the_mode_that_was() {
         bench.texts()
     );
     bench.fly_until("down", 30.0, |bench| bench.position()[2] > -0.5);
-    assert_eq!(bench.autopilot.vehicle().lost_rotor(), Some(0));
+    assert!(bench.velocity()[2] < 1.5, "a descent, not a fall: {:?}", bench.velocity());
+    assert_eq!((bench.mode(), bench.autopilot.vehicle().lost_rotor()), (mode, Some(0)));
 }
 
 /// Without a barometer and a receiver nothing corrects the height; without an accelerometer nothing is known between fixes.
