@@ -4,6 +4,7 @@ use super::landed::{LandedDetector, UNLOADED};
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::situation::Situation;
+use super::speeds::SpeedChange;
 use super::steering::SteeringKind;
 use crate::mode::{Leader, Mode};
 
@@ -15,12 +16,14 @@ pub struct Landing {
     flown: bool,
     /// Since when it has been armed and on the ground, µs.
     grounded_since_us: u64,
+    /// Largest sink rate of its own that the way down has asked for, m/s.
+    sinks_m_s: Option<f64>,
 }
 
 impl Landing {
     /// A disarmed vehicle at a height, m.
     pub fn new(height_m: f64) -> Self {
-        Self { detector: LandedDetector::new(height_m), flown: false, grounded_since_us: 0 }
+        Self { detector: LandedDetector::new(height_m), flown: false, grounded_since_us: 0, sinks_m_s: None }
     }
 
     /// Whether it stands.
@@ -47,6 +50,14 @@ impl Landing {
     /// It is disarmed.
     pub fn disarm(&mut self) {
         self.flown = false;
+    }
+
+    /// Lets a vehicle that comes down to the ground sink with the speed that is set for that, and no longer than that.
+    pub fn choose_speed(&mut self, comes_down: bool, situation: &Situation, proposal: &mut Proposal) {
+        let speed_m_s = Some(situation.conduct.land_fast_m_s).filter(|speed| comes_down && *speed > 0.0);
+        if speed_m_s != std::mem::replace(&mut self.sinks_m_s, speed_m_s) {
+            proposal.change_speeds(SpeedChange::Landing(speed_m_s));
+        }
     }
 
     /// Looks whether the vehicle has touched down or lifted off. One that stands, and is not led up, lets its rotors idle.

@@ -5,6 +5,9 @@ use quadrotor::{Configuration, Limits};
 
 use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 
+/// Place of the limit downwards.
+const DOWN: usize = 2;
+
 /// How limits of speed change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpeedChange {
@@ -18,6 +21,8 @@ pub enum SpeedChange {
     ForgetCommands,
     /// The way home has a horizontal speed of its own, m/s, until another command or its end.
     Return(Option<f64>),
+    /// A landing may sink with a speed of its own, m/s, until its end.
+    Landing(Option<f64>),
 }
 
 /// Limits of speed, m/s: horizontally, up, down.
@@ -29,6 +34,8 @@ pub struct Speeds {
     by_mission_m_s: [Option<f64>; 3],
     /// Of the way home, horizontally.
     by_return_m_s: Option<f64>,
+    /// Of a landing, down.
+    by_landing_m_s: Option<f64>,
     /// Whether the mission is flown.
     in_mission: bool,
 }
@@ -41,6 +48,7 @@ impl Speeds {
             by_command_m_s: [None; 3],
             by_mission_m_s: [None; 3],
             by_return_m_s: None,
+            by_landing_m_s: None,
             in_mission: false,
         }
     }
@@ -55,7 +63,10 @@ impl Speeds {
         core::array::from_fn(|axis| {
             let by_mission = self.by_mission_m_s[axis].filter(|_| self.in_mission);
             let by_return = self.by_return_m_s.filter(|_| axis == 0);
-            by_mission.or(by_return).or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis])
+            let limit_m_s =
+                by_mission.or(by_return).or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis]);
+            let by_landing = self.by_landing_m_s.filter(|_| axis == DOWN);
+            by_landing.map_or(limit_m_s, |landing_m_s| limit_m_s.max(landing_m_s))
         })
     }
 
@@ -82,6 +93,7 @@ impl Speeds {
             SpeedChange::ForgetMission => self.by_mission_m_s = [None; 3],
             SpeedChange::ForgetCommands => self.by_command_m_s = [None; 3],
             SpeedChange::Return(speed_m_s) => self.by_return_m_s = speed_m_s,
+            SpeedChange::Landing(speed_m_s) => self.by_landing_m_s = speed_m_s,
         }
         self
     }
@@ -102,7 +114,7 @@ fn asked(change: &ChangeSpeed) -> Option<(usize, Option<f64>)> {
     let axis = match change.kind {
         SpeedKind::Horizontal => 0,
         SpeedKind::Up => 1,
-        SpeedKind::Down => 2,
+        SpeedKind::Down => DOWN,
     };
     match change.target {
         SpeedTarget::Keep => None,

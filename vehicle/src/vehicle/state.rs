@@ -32,6 +32,7 @@ use super::follow::Follow;
 use super::hold_watch::HoldWatch;
 use super::home::Home;
 use super::injection::Injection;
+use super::landed::LandedState;
 use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
@@ -206,7 +207,11 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
         self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
         self.discharge();
-        self.consult(|parts, situation, proposal| parts.landing.watch(situation, proposal));
+        let comes_down = self.landed_state() == LandedState::Landing;
+        self.consult(|parts, situation, proposal| {
+            parts.landing.watch(situation, proposal);
+            parts.landing.choose_speed(comes_down, situation, proposal);
+        });
         self.step_equipment();
         self.step_parachute();
         Ok(())

@@ -1,8 +1,10 @@
 //! Instruments that mislead the estimator.
 
 use super::flier::*;
+use mavlink::dialects::ardupilotmega::*;
 use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
+use vehicle::plan::PlanKind;
 
 /// With instruments that have errors, once the estimator has aligned.
 fn with_instruments() -> Flier {
@@ -42,6 +44,57 @@ fn compensation_of_vibrations_can_be_switched_off() {
     flier.set("SIM_ACC1_BIAS_Z", 2.0);
     flier.fly(10.0);
     assert!(!flier.has_said("Vibration compensation"));
+}
+
+/// Whether EKF_STATUS_REPORT of now shows that the place on the map is known.
+fn knows_place(flier: &mut Flier) -> bool {
+    const EKF_STATUS_REPORT: f32 = 193.0;
+    let parameters = [EKF_STATUS_REPORT, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
+    let flags = flier.latest(|message| match message {
+        MavMessage::EKF_STATUS_REPORT(report) => Some(report.flags),
+        _ => None,
+    });
+    flags.expect("a report").contains(EkfStatusFlags::EKF_POS_HORIZ_ABS)
+}
+
+/// Suite: GPSGlitchAuto: two seconds without the receiver, then its jumps on the way of a mission.
+#[test]
+fn a_mission_is_flown_through_an_outage_and_jumps_of_the_receiver() {
+    let rows = [(22, 0.0, 0.0, 20.0), (16, 200.0, 0.0, 40.0), (16, 200.0, 60.0, 40.0), (20, 0.0, 0.0, 0.0)];
+    let mut start = crate::common::settings(Identity::ArduPilot);
+    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
+    start.plans.set(PlanKind::Mission, mission(&start, &rows));
+    let mut flier = Flier::with(&start);
+    flier.fly(4.0);
+    flier.change_mode(STABILIZE);
+    flier.arm();
+    flier.change_mode(AUTO);
+    flier.rc(3, 1500);
+    flier.wait("100 m", 90.0, |flier| flier.distance_m() > 100.0);
+    flier.change_mode(LOITER);
+    flier.set("SIM_GPS_DISABLE", 1.0);
+    flier.fly(2.0);
+    flier.set("SIM_GPS_DISABLE", 0.0);
+    flier.fly(0.5);
+    assert!(knows_place(&mut flier) && flier.mode() == LOITER);
+    flier.fly(10.0);
+    assert!(knows_place(&mut flier) && flier.mode() == LOITER);
+    flier.change_mode(AUTO);
+    for (north_deg, east_deg) in
+        [(3.0, 0.7), (7.0, 0.9), (9.4, 2.8), (10.0, 2.6), (9.4, 2.8), (7.7, 2.0), (6.2, 1.3)]
+    {
+        flier.set_all(&[("SIM_GPS_GLITCH_X", north_deg * 1e-4), ("SIM_GPS_GLITCH_Y", east_deg * 1e-4)]);
+        flier.fly(0.45);
+    }
+    flier.set_all(&[("SIM_GPS_GLITCH_X", 0.0), ("SIM_GPS_GLITCH_Y", 0.0)]);
+    flier.wait("the corner", 120.0, |flier| {
+        let place_m = flier.vehicle().truth().position_m;
+        (place_m.x - 200.0).hypot(place_m.y - 60.0) < 10.0
+    });
+    assert_eq!(flier.mode(), AUTO);
+    flier.wait_disarmed(180.0);
+    assert!(flier.vehicle().truth().position_m.xy().norm() < 10.0);
 }
 
 /// Suite: GPSGlitchLoiter: jumps of the receiver, 30 to 110 m, each for less than half a second.

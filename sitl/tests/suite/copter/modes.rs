@@ -145,3 +145,60 @@ fn a_shove_lasts_its_time() {
     flier.fly(5.0);
     assert!(flier.climb_m_s().abs() < 0.2 && flier.vehicle().conduct().simulated.pushes.shove.time_ms == 0);
 }
+
+/// Flies until the sink rate, m/s, has been within some of a value for some seconds.
+fn wait_sink_rate(flier: &mut Flier, rate_m_s: f64, within_m_s: f64, seconds: f64) {
+    let mut steady = 0;
+    for _ in 0..3000 {
+        steady = if (-flier.climb_m_s() - rate_m_s).abs() <= within_m_s { steady + 1 } else { 0 };
+        if f64::from(steady) * 0.02 >= seconds {
+            return;
+        }
+        flier.fly(0.02);
+    }
+    panic!("not {rate_m_s} m/s down: {} m/s at {} m", -flier.climb_m_s(), flier.height_m());
+}
+
+/// Suite: Landing. It sinks with one speed down to a height and with another one below it. The first may be larger than the sink rate of
+/// the rest of the flight, WP_SPD_DN.
+#[test]
+fn landings_have_a_speed_above_and_one_below_a_height() {
+    let mut flier = Flier::new();
+    let usual_m_s = flier.vehicle().simulation().configuration().limits.speed_down_m_s;
+    for (fast_m_s, slow_m_s, low_m, within_m_s) in [(0.0, 0.5, 10.0, 0.1), (5.0, 1.0, 30.0, 0.5)] {
+        flier.set_all(&[
+            ("LAND_SPEED_HIGH", fast_m_s * 100.0),
+            ("LAND_SPEED", slow_m_s * 100.0),
+            ("LAND_ALT_LOW", low_m * 100.0),
+        ]);
+        let first_m_s = if fast_m_s > 0.0 { fast_m_s } else { usual_m_s };
+        flier.take_off(5.0 * first_m_s + low_m + 20.0, GUIDED);
+        flier.change_mode(LAND);
+        wait_sink_rate(&mut flier, first_m_s, within_m_s, 5.0);
+        wait_sink_rate(&mut flier, slow_m_s, 0.1, 0.02);
+        assert!((flier.height_m() - low_m).abs() < 1.0, "{} m", flier.height_m());
+        wait_sink_rate(&mut flier, slow_m_s, 0.1, low_m / slow_m_s / 2.0);
+        flier.wait_disarmed(60.0);
+    }
+}
+
+/// A landing that is given up leaves nothing of its speed behind.
+#[test]
+fn the_speed_of_a_landing_ends_with_it() {
+    let mut flier = Flier::new();
+    let down_m_s = |flier: &Flier| flier.vehicle().simulation().configuration().limits.speed_down_m_s;
+    let usual_m_s = down_m_s(&flier);
+    flier.set("LAND_SPEED_HIGH", 500.0);
+    flier.take_off(60.0, LOITER);
+    assert_eq!(down_m_s(&flier), usual_m_s);
+    flier.change_mode(LAND);
+    flier.wait("5 m/s", 10.0, |flier| flier.climb_m_s() < -4.5);
+    flier.change_mode(LOITER);
+    flier.wait("a stop", 10.0, |flier| flier.climb_m_s().abs() < 0.1);
+    assert!(flier.height_m() > 20.0 && down_m_s(&flier) == usual_m_s, "{} m", flier.height_m());
+    flier.change_mode(GUIDED);
+    assert_eq!(flier.command(MavCmd::MAV_CMD_NAV_LAND, [0.0; 7]), ACCEPTED);
+    flier.wait_disarmed(120.0);
+    flier.fly(0.1);
+    assert_eq!(down_m_s(&flier), usual_m_s);
+}
