@@ -50,7 +50,7 @@ pub use vehicle::{
     Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings, OrbitStatus,
     Pilot, PositionSetPoint, PrecisionLanding, PrecisionSettings, Pulses, Recovery, Refusal, RemoteId,
     Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Sighting, Simulated, SteeringKind,
-    StickSettings, Sticks, SurroundingsSettings, TICK_US, TargetReport, Threat, TrackedAttitude,
+    StickSettings, Sticks, SurroundingsSettings, TICK_S, TICK_US, TargetReport, Threat, TrackedAttitude,
     TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings, Weakness, YawTarget,
     wrapped,
 };

@@ -94,11 +94,10 @@ impl FlightLog {
         self.until_us = self.until_us.filter(|_| !wanted);
         // Arming and disarming are on it, whatever comes next.
         let edge = std::mem::replace(&mut self.wanted, wanted) != wanted;
-        if self.current.as_ref().is_none_or(|current| current.rests) {
-            return;
-        }
+        let Some(current) = self.current.as_ref().filter(|current| !current.rests) else { return };
+        let sampled = time_us.is_multiple_of(GRID_US) || current.writer.is_due_between(autopilot.vehicle());
         self.write_texts(autopilot);
-        if !edge && !time_us.is_multiple_of(GRID_US) {
+        if !edge && !sampled {
             return;
         }
         self.sample(autopilot);

@@ -3,9 +3,9 @@
 use std::fmt::Debug;
 
 use autopilot::Autopilot;
-use vehicle::Severity;
 use vehicle::identity::Identity;
 use vehicle::parameters::Value;
+use vehicle::{Severity, Vehicle};
 
 use super::LogSource;
 use super::dataflash::DataFlashWriter;
@@ -45,6 +45,11 @@ pub trait LogWriter: Debug {
 
     /// A line for the pilot.
     fn text(&mut self, into: &mut Vec<u8>, time_us: u64, severity: Severity, line: &str);
+
+    /// Whether something is due now although the time is not on the grid.
+    fn is_due_between(&self, _vehicle: &Vehicle) -> bool {
+        false
+    }
 
     /// What is due now.
     fn sample(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>);

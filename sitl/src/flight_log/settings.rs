@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// All sampling times of logs are multiples of it, µs.
+/// The sampling times of logs are multiples of it, µs, but for what is faster.
 pub const GRID_US: u64 = 10_000;
 
 /// When a log begins.

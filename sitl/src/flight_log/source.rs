@@ -67,6 +67,13 @@ impl<'a> LogSource<'a> {
         stepped_place(&self.vehicle.frame().to_geodetic(&motion.position_m))
     }
 
+    /// Directions from the nose, degrees clockwise from 0 to 360, and distances, m, of what is measured around.
+    pub fn seen_around(&self) -> impl Iterator<Item = (f64, f64)> {
+        let nose_rad = self.vehicle.outputs().attitude_rad.z;
+        let seen_m = self.vehicle.seen_around_m().into_iter();
+        seen_m.map(move |way_m| (heading_deg(libm::atan2(way_m.y, way_m.x) - nose_rad), way_m.norm()))
+    }
+
     /// Speeds of the rotors as shares of the fastest, squared: shares of the thrust.
     pub fn motor_shares(&self) -> [f64; 4] {
         self.speed_shares().map(|share| share * share)

@@ -6,7 +6,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::common::Bench;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::{
+    MavCmd, MavFrame, MavMessage, MavParamType, OBSTACLE_DISTANCE_3D_DATA, PARAM_SET_DATA,
+};
 use sitl::files::LogFolder;
 use sitl::flight_log::{FlightLog, LogSettings, LogStart, MESSAGES};
 use vehicle::identity::Identity;
@@ -151,8 +153,8 @@ fn a_flight_is_in_the_log_with_its_happenings() {
     let (rows, lines) = read(&paths[0]);
     let names = ["ATT", "GPS", "IMU", "XKF4", "PARM", "MODE", "EV", "ARM", "ORGN", "UNIT", "MULT", "FMTU"];
     for name in names.iter().copied().chain(MESSAGES.iter().map(|message| message.name)) {
-        // A vehicle without a rangefinder or a target of landings says nothing of them.
-        assert_eq!(rows.contains_key(name), !["RFND", "PL"].contains(&name), "{name}");
+        // A vehicle without rangefinders or a target of landings says nothing of them.
+        assert_eq!(rows.contains_key(name), !["RFND", "PL", "PRX", "PRXR"].contains(&name), "{name}");
     }
     assert!(lines[0].contains("Copter") && lines.iter().any(|line| line == "Armed"), "{lines:?}");
     let column =
@@ -214,14 +216,68 @@ fn the_bit_mask_chooses() {
         logged.fly(2.0);
         let paths = logged.logs();
         let (rows, _) = read(&paths[0]);
-        ["ATT", "IMU", "GPS", "BARO"].map(|name| rows.get(name).map_or(0, Vec::len))
+        ["ATT", "IMU", "GPS", "BARO", "ANG"].map(|name| rows.get(name).map_or(0, Vec::len))
     };
-    let [attitude, inertial, receiver, barometer] = counts(0.0);
-    assert_eq!((attitude, inertial, receiver), (0, 0, 0));
+    let [attitude, inertial, receiver, barometer, control] = counts(0.0);
+    assert_eq!((attitude, inertial, receiver, control), (0, 0, 0, 0));
     assert!((19..=22).contains(&barometer), "{barometer}");
-    let [attitude, inertial, receiver, _] = counts(1.0 + 4.0 + 262_144.0);
+    let [attitude, inertial, receiver, _, control] = counts(1.0 + 4.0 + 262_144.0);
     assert!((195..=205).contains(&attitude) && (195..=205).contains(&inertial), "{attitude}, {inertial}");
     assert!((9..=12).contains(&receiver), "{receiver}");
+    // 400 times a second, as often as ArduCopter's control loop runs.
+    assert!((796..=804).contains(&control), "{control}");
+}
+
+/// Suite: BaseLoggingRates.
+#[test]
+fn rates_without_fast_bits_are_arducopters() {
+    let mut logged = Logged::new();
+    logged.set("LOG_DISARMED", 1.0);
+    logged.fly(4.0);
+    let (rows, _) = read(&logged.logs()[0]);
+    for (name, rate) in [("ATT", 10.0), ("ANG", 10.0), ("IMU", 25.0)] {
+        let count = rows[name].len() as f64;
+        assert!((count / 4.0 - rate).abs() < 1.0, "{name}: {count}");
+    }
+}
+
+/// Suite: AC_Avoidance_Proximity. The simulated sensor of a vehicle among no obstacles sees nothing within its range; what a companion
+/// tells is nearer.
+#[test]
+fn what_is_measured_around_is_in_the_log() {
+    let mut logged = Logged::new();
+    for (name, value) in [("LOG_DISARMED", 1.0), ("PRX1_TYPE", 10.0), ("PRX_LOG_RAW", 1.0)] {
+        logged.set(name, value);
+    }
+    logged.fly(1.0);
+    for _ in 0..10 {
+        // 4.5 m to the right and a little behind: 100 degrees from the nose.
+        let (right, ahead) = 100_f32.to_radians().sin_cos();
+        logged.bench.send(MavMessage::OBSTACLE_DISTANCE_3D(OBSTACLE_DISTANCE_3D_DATA {
+            x: 4.5 * ahead,
+            y: 4.5 * right,
+            min_distance: 0.1,
+            max_distance: 20.0,
+            frame: MavFrame::MAV_FRAME_BODY_FRD,
+            ..OBSTACLE_DISTANCE_3D_DATA::default()
+        }));
+        logged.fly(0.1);
+    }
+    let (rows, _) = read(&logged.logs()[0]);
+    for name in ["PRX", "PRXR"] {
+        assert!((19..=22).contains(&rows[name].len()), "{name}: {}", rows[name].len());
+        let (first, last) = (&rows[name][5], &rows[name][15]);
+        for direction in (0..360).step_by(45) {
+            let label = format!("D{direction}");
+            let expected_m = if direction == 90 { 4.5 } else { 40.0 };
+            assert_eq!(first[&label], 40.0, "{name} {label}");
+            assert!((last[&label] - expected_m).abs() < 0.1, "{name} {label}: {}", last[&label]);
+        }
+    }
+    let (first, last) = (&rows["PRX"][5], &rows["PRX"][15]);
+    assert_eq!((first["CDis"], last["He"], last["Layer"]), (0.0, 2.0, 2.0));
+    assert!((last["CDis"] - 4.5).abs() < 0.1, "{}", last["CDis"]);
+    assert!((last["CAn"] - 100.0).abs() <= 5.0, "{}", last["CAn"]);
 }
 
 #[test]

@@ -48,6 +48,7 @@ pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
     real!("AVOID_MARGIN", None, 1.0..=10.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Loiter, PosHold, ZigZag and Guided mode"),
     real!("AVOID_ALT_MIN", None, 0.0..=100.0, surroundings.avoided_above_m, "m", "Height above the ground, or above home without a rangefinder, up to which obstacles are not avoided; 0: they always are"),
     whole!("PRX1_TYPE", 17_u8, proximity_kind, "Proximity sensor: 0 none; any other kind is the lidar of --world and what companions send"),
+    switch!("PRX_LOG_RAW", log.proximity_raw, "Log what the proximity sensor measures as it comes, too"),
     whole!("RNGFND1_TYPE", 100_u8, rangefinder_kind, "Downward rangefinder: 0 none; any other kind is the simulated one"),
     real!("RNGFND1_MAX", None, 0.5..=100.0, surroundings.rangefinder_farthest_m, "m", "Farthest that the rangefinder measures").also(&[("RNGFND1_MAX_CM", 100.0)]),
     real!("RNGFND1_MIN", None, 0.0..=5.0, surroundings.rangefinder_nearest_m, "m", "Nearest that the rangefinder measures").also(&[("RNGFND1_MIN_CM", 100.0)]),

@@ -11,11 +11,14 @@ pub struct LogConduct {
     pub disarmed: u8,
     /// LOG_FILE_DSRMROT: whether each flight has a file of its own; otherwise there is one for each boot.
     pub rotates: bool,
+    /// PRX_LOG_RAW: whether what the proximity sensor measures is written as it comes, too.
+    #[serde(default)]
+    pub proximity_raw: bool,
 }
 
 /// ArduCopter's: everything but the fast rates; while armed; one file for each boot.
 impl Default for LogConduct {
     fn default() -> Self {
-        Self { bits: 176_126, disarmed: 0, rotates: false }
+        Self { bits: 176_126, disarmed: 0, rotates: false, proximity_raw: false }
     }
 }

@@ -167,7 +167,7 @@ pub use stick_settings::{StickSettings, Trainer};
 pub use sticks::Sticks;
 pub use surroundings_settings::{Recovery, SurroundingsSettings, TrafficSettings};
 pub use target::TargetReport;
-pub use tick::TICK_US;
+pub use tick::{TICK_S, TICK_US};
 pub use traffic_watch::{Encounter, Threat, TrafficWatch};
 pub use trail::TrailSettings;
 pub use weathervane::IntoWind;

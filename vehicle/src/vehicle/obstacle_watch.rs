@@ -197,7 +197,7 @@ impl ObstacleWatch {
     }
 
     /// What is measured, north and east of here, m; `None`: nothing has been for a while.
-    fn seen_m(&self, situation: &Situation) -> Option<Vec<Vector2<f64>>> {
+    pub fn seen_m(&self, situation: &Situation) -> Option<Vec<Vector2<f64>>> {
         let lidar = self.lidar.as_ref().filter(|scan| is_fresh(scan, situation.time_us));
         let mut scans = lidar.into_iter().chain(self.told(situation.time_us)).peekable();
         scans.peek()?;

@@ -1,8 +1,8 @@
 //! Attitude, rates, place and the references that are flown.
 
 use quadrotor::PositionReference;
-use vehicle::SteeringKind;
 use vehicle::world::heading_deg;
+use vehicle::{SteeringKind, TICK_S};
 
 use super::field::{Field, field};
 use crate::flight_log::LogSource;
@@ -74,6 +74,17 @@ pub const ATT: &[Field] = &[
     field("ErrRP", 'C', 'd', 'B', lean_error_deg),
     field("ErrYaw", 'C', 'h', 'B', yaw_error_deg),
     field("AEKF", 'B', '-', '-', |_| 3.0),
+];
+
+/// The same as the attitude controller has it, and its time step.
+pub const ANG: &[Field] = &[
+    field("DesRoll", 'f', 'd', '0', |source| wanted_deg(source)[0]),
+    field("Roll", 'f', 'd', '0', |source| attitude_deg(source)[0]),
+    field("DesPitch", 'f', 'd', '0', |source| wanted_deg(source)[1]),
+    field("Pitch", 'f', 'd', '0', |source| attitude_deg(source)[1]),
+    field("DesYaw", 'f', 'h', '0', |source| wanted_deg(source)[2]),
+    field("Yaw", 'f', 'h', '0', |source| attitude_deg(source)[2]),
+    field("Dt", 'f', 's', '0', |_| TICK_S),
 ];
 
 /// Rates, wanted and actual, and what the controllers make of them.

@@ -1,6 +1,7 @@
 //! What the instruments show.
 
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
+use vehicle::surroundings::FARTHEST_RANGE_M;
 
 use super::field::{Field, field, instance};
 use crate::flight_log::LogSource;
@@ -161,4 +162,63 @@ pub const PL: &[Field] = &[
     field("LastMeasMS", 'I', 's', 'C', |source| {
         source.vehicle.precision_landing().seen_us().map_or(0.0, |seen_us| (seen_us / 1000) as f64)
     }),
+];
+
+/// ArduPilot's number of the layer around the horizon, of its five by elevation.
+const LEVEL: f64 = 2.0;
+/// ArduPilot's number of a proximity sensor that works.
+const WORKS: f64 = 2.0;
+
+/// The nearest thing in an eighth of the turn, the first of them around the nose; m. Where nothing is in range, that range.
+fn nearest_m(source: &LogSource<'_>, eighth: usize) -> f64 {
+    let is_there = |angle_deg: f64| ((angle_deg + 22.5) / 45.0) as usize % 8 == eighth;
+    let there = source.seen_around().filter(|(angle_deg, _)| is_there(*angle_deg));
+    there.map(|(_, range_m)| range_m).fold(FARTHEST_RANGE_M, f64::min)
+}
+
+/// The nearest thing around: its direction from the nose, degrees, and how far it is, m. Zeros without any.
+fn nearest_around(source: &LogSource<'_>) -> (f64, f64) {
+    source.seen_around().min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or_default()
+}
+
+/// Distances around.
+const AROUND: [Field; 8] = [
+    field("D0", 'f', 'm', '0', |source| nearest_m(source, 0)),
+    field("D45", 'f', 'm', '0', |source| nearest_m(source, 1)),
+    field("D90", 'f', 'm', '0', |source| nearest_m(source, 2)),
+    field("D135", 'f', 'm', '0', |source| nearest_m(source, 3)),
+    field("D180", 'f', 'm', '0', |source| nearest_m(source, 4)),
+    field("D225", 'f', 'm', '0', |source| nearest_m(source, 5)),
+    field("D270", 'f', 'm', '0', |source| nearest_m(source, 6)),
+    field("D315", 'f', 'm', '0', |source| nearest_m(source, 7)),
+];
+
+/// The proximity sensor.
+pub const PRX: &[Field] = &[
+    field("Layer", 'B', '#', '-', |_| LEVEL),
+    field("He", 'B', '-', '-', |_| WORKS),
+    AROUND[0],
+    AROUND[1],
+    AROUND[2],
+    AROUND[3],
+    AROUND[4],
+    AROUND[5],
+    AROUND[6],
+    AROUND[7],
+    field("DUp", 'f', 'm', '0', |_| 0.0),
+    field("CAn", 'f', 'h', '0', |source| nearest_around(source).0),
+    field("CDis", 'f', 'm', '0', |source| nearest_around(source).1),
+];
+
+/// The same before ArduPilot's filter. There is none here.
+pub const PRXR: &[Field] = &[
+    field("Layer", 'B', '#', '-', |_| LEVEL),
+    AROUND[0],
+    AROUND[1],
+    AROUND[2],
+    AROUND[3],
+    AROUND[4],
+    AROUND[5],
+    AROUND[6],
+    AROUND[7],
 ];

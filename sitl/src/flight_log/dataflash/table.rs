@@ -1,10 +1,12 @@
 //! The messages that are written regularly.
 
+use vehicle::TICK_US;
+
 use super::estimates::{XKF1, XKF2, XKF3, XKF4};
 use super::field::Field;
-use super::motion::{ATT, CTUN, POS, PSCD, PSCE, PSCN, RATE, SIM};
+use super::motion::{ANG, ATT, CTUN, POS, PSCD, PSCE, PSCN, RATE, SIM};
 use super::power::{BAT, MOTB, PM, RCIN, RCOU};
-use super::sensors::{BARO, GPA, GPS, IMU, MAG, PL, RFND, VIBE};
+use super::sensors::{BARO, GPA, GPS, IMU, MAG, PL, PRX, PRXR, RFND, VIBE};
 use crate::flight_log::LogSource;
 
 /// Bits of LOG_BITMASK.
@@ -22,7 +24,8 @@ const COMPASS: u8 = 13;
 const MOTOR_BATTERY: u8 = 17;
 const INERTIAL_FAST: u8 = 18;
 
-/// Periods, µs; all are multiples of the grid of the log.
+/// Periods, µs. Those that are longer are multiples of the grid of the log; the shortest is that of ArduCopter's control loop.
+const LOOP_US: u64 = 2_500;
 const FAST_US: u64 = 10_000;
 const INERTIAL_US: u64 = 40_000;
 const MEDIUM_US: u64 = 100_000;
@@ -49,6 +52,11 @@ impl Message {
     pub fn period_us(&self, bits: u32) -> Option<u64> {
         let set = |bit: &Option<u8>| bit.is_none_or(|bit| bits >> bit & 1 == 1);
         self.periods.iter().filter(|(bit, _)| set(bit)).map(|(_, period_us)| *period_us).min()
+    }
+
+    /// Whether it is due at a time, µs, with a value of LOG_BITMASK.
+    pub fn is_due(&self, time_us: u64, bits: u32) -> bool {
+        self.period_us(bits).is_some_and(|period_us| is_due(time_us, period_us))
     }
 
     /// A line of its description: a letter for the time, and those of its fields.
@@ -80,6 +88,7 @@ impl Message {
 }
 
 const ATTITUDE: &[(Option<u8>, u64)] = &[(Some(ATTITUDE_FAST), FAST_US), (Some(ATTITUDE_MEDIUM), MEDIUM_US)];
+const CONTROL: &[(Option<u8>, u64)] = &[(Some(CONTROL_TUNING), MEDIUM_US)];
 const NAVIGATION: &[(Option<u8>, u64)] = &[(Some(NAVIGATION_TUNING), MEDIUM_US)];
 const RECEIVER: &[(Option<u8>, u64)] = &[(Some(GPS_BIT), RECEIVER_US)];
 const ALWAYS: &[(Option<u8>, u64)] = &[(None, MEDIUM_US)];
@@ -89,7 +98,7 @@ pub static MESSAGES: &[Message] = &[
     message(1, "ATT", ATT, ATTITUDE),
     message(2, "RATE", RATE, ATTITUDE),
     message(3, "POS", POS, ALWAYS),
-    message(4, "CTUN", CTUN, &[(Some(CONTROL_TUNING), MEDIUM_US)]),
+    message(4, "CTUN", CTUN, CONTROL),
     message(5, "PSCN", PSCN, NAVIGATION),
     message(6, "PSCE", PSCE, NAVIGATION),
     message(7, "PSCD", PSCD, NAVIGATION),
@@ -111,4 +120,23 @@ pub static MESSAGES: &[Message] = &[
     message(23, "RCIN", RCIN, &[(Some(RADIO), MEDIUM_US)]),
     message(24, "RFND", RFND, ALWAYS).when(|source| source.vehicle.has_rangefinder()),
     message(25, "PL", PL, ALWAYS).when(|source| source.vehicle.conduct().precision.enabled),
+    message(26, "PRX", PRX, CONTROL).when(measures_around),
+    message(27, "PRXR", PRXR, CONTROL)
+        .when(|source| measures_around(source) && source.vehicle.conduct().log.proximity_raw),
+    message(28, "ANG", ANG, &[(Some(ATTITUDE_FAST), LOOP_US), (Some(ATTITUDE_MEDIUM), MEDIUM_US)]),
 ];
+
+fn measures_around(source: &LogSource<'_>) -> bool {
+    let [has_proximity, _, works] = source.vehicle.proximity();
+    has_proximity && works
+}
+
+/// Whether something is due at a time, µs, between the times of the grid.
+pub fn is_due_between(time_us: u64, bits: u32) -> bool {
+    is_due(time_us, LOOP_US) && MESSAGES.iter().any(|message| message.period_us(bits) == Some(LOOP_US))
+}
+
+/// Whether a time, µs, is the first tick of a period, µs.
+fn is_due(time_us: u64, period_us: u64) -> bool {
+    time_us % period_us < TICK_US
+}

@@ -1,13 +1,13 @@
 //! A log in DataFlash.
 
 use autopilot::Autopilot;
-use vehicle::Severity;
 use vehicle::parameters::Value;
+use vehicle::{Severity, Vehicle};
 
 use super::bytes::{self, DESCRIBED, DSF};
 use super::field::Field;
 use super::happenings::Happenings;
-use super::table::MESSAGES;
+use super::table::{MESSAGES, is_due_between};
 use super::units::{MULTIPLIERS, UNITS};
 use crate::flight_log::LogSource;
 use crate::flight_log::format::LogWriter;
@@ -79,14 +79,17 @@ impl LogWriter for DataFlashWriter {
         bytes::message(into, time_us, line);
     }
 
+    fn is_due_between(&self, vehicle: &Vehicle) -> bool {
+        is_due_between(vehicle.time_us(), vehicle.conduct().log.bits)
+    }
+
     fn sample(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>) {
         let (time_us, bits) = (source.vehicle.time_us(), source.vehicle.conduct().log.bits);
         self.happenings.look(into, source);
         // The first sample of all messages stands at the beginning.
         let first = !std::mem::replace(&mut self.begun, true);
         for message in MESSAGES {
-            let Some(period_us) = message.period_us(bits) else { continue };
-            let due = first || time_us.is_multiple_of(period_us);
+            let due = message.is_due(time_us, bits) || first && message.period_us(bits).is_some();
             if !due || !(message.applies)(source) {
                 continue;
             }

@@ -74,9 +74,20 @@ fn wait_place(flier: &mut Flier, [latitude_deg, longitude_deg]: [f64; 2], second
     });
 }
 
-/// Suite: AC_Avoidance_Fence. The stick is held forward all the time, and the vehicle slides along the fence.
+/// Suite: AC_Avoidance_Fence, AC_Avoidance_Proximity. The stick is held forward all the time, and the vehicle slides along the fence; so
+/// does one with a proximity sensor, switched on by the pilot, that sees nothing.
 #[test]
 fn a_vehicle_slides_along_a_narrow_fence() {
+    const SWITCHES_PROXIMITY: f64 = 40.0;
+    for proximity_kind in [0.0, 10.0] {
+        let mut flier = behind_a_narrow_fence();
+        flier.set_all(&[("PRX1_TYPE", proximity_kind), ("RC10_OPTION", SWITCHES_PROXIMITY)]);
+        flier.rc(10, 2000);
+        slide_along_the_fence(&mut flier);
+    }
+}
+
+fn behind_a_narrow_fence() -> Flier {
     let mut start = settings(Identity::ArduPilot);
     (start.origin.latitude_deg, start.origin.longitude_deg) = (START_DEG[0], START_DEG[1]);
     start.heading_rad = 270.0_f64.to_radians();
@@ -90,15 +101,19 @@ fn a_vehicle_slides_along_a_narrow_fence() {
     start.plans.set(PlanKind::Fence, Plan::new(corners.to_vec()));
     let mut flier = Flier::with(&start);
     flier.set("FENCE_ENABLE", 1.0);
+    flier
+}
+
+fn slide_along_the_fence(flier: &mut Flier) {
     flier.take_off(10.0, LOITER);
     flier.rc(2, 1400);
-    wait_place(&mut flier, WEST_DEG, 30.0);
-    head(&mut flier, 0.0);
-    wait_place(&mut flier, NORTH_DEG, 200.0);
-    head(&mut flier, 90.0);
-    wait_place(&mut flier, EAST_DEG, 30.0);
-    head(&mut flier, 225.0);
-    wait_place(&mut flier, WEST_DEG, 200.0);
+    wait_place(flier, WEST_DEG, 30.0);
+    head(flier, 0.0);
+    wait_place(flier, NORTH_DEG, 200.0);
+    head(flier, 90.0);
+    wait_place(flier, EAST_DEG, 30.0);
+    head(flier, 225.0);
+    wait_place(flier, WEST_DEG, 200.0);
     flier.rc(2, 1500);
     assert_eq!(flier.mode(), LOITER, "{:?}", flier.bench.texts());
     flier.return_home();

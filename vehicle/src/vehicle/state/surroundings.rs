@@ -1,6 +1,6 @@
 //! What is around the vehicle, as others ask about it and tell of it.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use super::super::obstacle_watch::{ObstacleWatch, one_direction};
 use super::super::precision_landing::{PrecisionLanding, Sighting};
@@ -24,6 +24,11 @@ impl Vehicle {
     pub fn proximity(&self) -> [bool; 3] {
         let (situation, watch) = (self.situation(), &self.machines.obstacles);
         [watch.has_proximity(&situation), watch.proximity_is_on(), watch.measures_around(&situation)]
+    }
+
+    /// What is measured around, north and east of here, m.
+    pub fn seen_around_m(&self) -> Vec<Vector2<f64>> {
+        self.machines.obstacles.seen_m(&self.situation()).unwrap_or_default()
     }
 
     /// Takes a scan that somebody else has made, with the middle of its first sector at a heading, rad, from north.
