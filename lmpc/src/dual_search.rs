@@ -117,14 +117,11 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
             let sinking = self.active.exchange(split);
             // How far until the first active multiplier is used up, and until the constraint is met.
             let leaving = self.first_to_leave(&sinking);
-            let depends = split.rest_squared <= T::zero();
-            let until_met = if depends {
-                T::INFINITY
-            } else {
+            let until_met = if split.rest_squared > T::zero() {
                 let along = dot(normal.as_slice(), self.z.as_slice());
-                // Compilers divide before they look whether it counts: 0/0 would be signalled.
-                let rest_squared = if depends { T::one() } else { split.rest_squared };
-                (along - bound).max(T::zero()) / rest_squared
+                (along - bound).max(T::zero()) / split.rest_squared
+            } else {
+                T::INFINITY
             };
             let until_leaving = leaving.map_or(T::INFINITY, |(_, t)| t);
             let t = until_met.min(until_leaving);
@@ -162,6 +159,7 @@ impl<'a, const N: usize, T: Precision, C: Constraints<N, T>> DualSearch<'a, N, T
                 first = Some((column, multiplier, rate));
             }
         }
-        first.map(|(column, multiplier, rate)| (column, multiplier / rate))
+        // Compilers divide before they look whether there is one, and 0/0 would be signalled.
+        first.map(|(column, multiplier, rate)| (column, multiplier / rate.max(T::SMALLEST)))
     }
 }

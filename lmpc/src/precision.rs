@@ -16,6 +16,8 @@ pub trait Precision:
 {
     /// No bound.
     const INFINITY: Self;
+    /// The smallest number above zero by which others are divided.
+    const SMALLEST: Self;
     /// How far beyond its bound a limit of predicted signals counts as met.
     const LIMIT: Self;
     /// The same for a constraint of a quadratic program alone, whose numbers count as exact.
@@ -40,6 +42,7 @@ pub trait Precision:
 
 impl Precision for f64 {
     const INFINITY: Self = Self::INFINITY;
+    const SMALLEST: Self = Self::MIN_POSITIVE;
     const LIMIT: Self = 1e-9;
     const CONSTRAINT: Self = 1e-12;
     const DEPENDENT: Self = 1e-7;
@@ -65,6 +68,7 @@ impl Precision for f64 {
 /// Of seven decimal digits the sums of a step leave five.
 impl Precision for f32 {
     const INFINITY: Self = Self::INFINITY;
+    const SMALLEST: Self = Self::MIN_POSITIVE;
     const LIMIT: Self = 1e-5;
     const CONSTRAINT: Self = 1e-5;
     const DEPENDENT: Self = 1e-3;

@@ -99,10 +99,12 @@ impl Smoothing {
         let [first_s, second_s] = self.windows_s;
         let corners = [(0.0, 1.0), (first_s, -1.0), (second_s, -1.0), (first_s + second_s, 1.0)];
         let mut parts = [0.0; 5];
+        // Without windows there are no jumps, but compilers divide before they know.
+        let area_s2 = (first_s * second_s).max(f64::MIN_POSITIVE);
         for (corner_s, sign) in corners {
             let since_s = time_s - corner_s;
             if since_s > 0.0 {
-                let mut term = sign / (first_s * second_s);
+                let mut term = sign / area_s2;
                 for (part, order) in parts.iter_mut().rev().zip([1.0, 2.0, 3.0, 4.0, 5.0]) {
                     term *= since_s / order;
                     *part += term;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::failsafe::FenceStart;
+use super::failsafe::{Action, FenceStart};
 use super::fence_keeping::keeps_sticks_inside;
 use super::motion::Motion;
 use super::notice::Refusal;
@@ -145,7 +145,11 @@ fn height_m(situation: &Situation) -> f64 {
 
 /// What of the fence the vehicle cannot help breaching when it brakes within limits.
 pub(super) fn breach_ahead(situation: &Situation, limits: &Limits) -> Option<Breach> {
-    let stopping_m = stopping_place_m(situation, limits);
+    let mut stopping_m = stopping_place_m(situation, limits);
+    if situation.conduct.failsafe.fence == Action::Return {
+        // The way home is planned, and what is planned turns later.
+        stopping_m += situation.outputs.velocity_m_s * situation.configuration.shaping_delay_s();
+    }
     let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
     // It stops on its way, around the next corner if need be.
     let mut from_m = situation.outputs.position_m;
@@ -173,8 +177,6 @@ pub(super) fn stopping_place_m(situation: &Situation, limits: &Limits) -> Vector
     if !matches!(steering, Steering::Motion(_) | Steering::Goal(_) | Steering::Path(_)) {
         motion.position_m += motion.velocity_m_s * REACTION_S;
     }
-    // What is planned next is smoothed, and turns later.
-    motion.position_m += motion.velocity_m_s * situation.configuration.shaping_delay_s();
     let Some(ahead) = motion.velocity_m_s.try_normalize(STANDING_M_S) else { return position_m };
     let mut braking = Motion::from(motion, PositionSetPoint::HOLD, 0);
     for _ in 0..(LONGEST_STOP_S / STEP_S) as usize {
