@@ -162,9 +162,8 @@ const FIRST_DIRECTION: u8 = 10;
 /// DISTANCE_SENSOR: around, as ArduPilot tells what a companion computer has told it, and below.
 fn distances(component: &Component<'_>) -> Vec<MavMessage> {
     let vehicle = component.vehicle;
-    let [has_proximity, ..] = vehicle.proximity();
     let told = vehicle.obstacles().companion(vehicle.time_us());
-    let told = told.filter(|_| has_proximity && vehicle.identity().is_ardupilot());
+    let told = told.filter(|_| vehicle.has_proximity() && vehicle.identity().is_ardupilot());
     let nose_rad = vehicle.outputs().attitude_rad.z;
     let nearest = told.map(|scan| scan.nearest_m::<{ DIRECTIONS.len() }>(nose_rad));
     let around = nearest.into_iter().flatten().zip(0..).zip(DIRECTIONS);

@@ -29,22 +29,20 @@ const ALWAYS_PRESENT: MavSysStatusSensor = MavSysStatusSensor::MAV_SYS_STATUS_SE
 
 /// Which instruments and controllers the vehicle has.
 fn present(vehicle: &Vehicle) -> MavSysStatusSensor {
-    let [has_proximity, ..] = vehicle.proximity();
     let mut present = ALWAYS_PRESENT;
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER, vehicle.pilot().has_radio);
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE, vehicle.has_fence());
-    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY, has_proximity);
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY, vehicle.has_proximity());
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION, vehicle.has_rangefinder());
     present
 }
 
 /// Those of them that are switched on.
 fn enabled(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor {
-    let [_, proximity_is_on, _] = vehicle.proximity();
     let switches = [
         (vehicle.fence().is_some(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (vehicle.obstacles().rangefinder_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION),
-        (proximity_is_on, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+        (vehicle.obstacles().proximity_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
     ];
     without_failed(present, &switches)
 }
@@ -52,7 +50,7 @@ fn enabled(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor
 /// Those of them that work, or know enough.
 fn health(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor {
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
-    let [has_proximity, _, measures_around] = vehicle.proximity();
+    let sees_around = vehicle.measures_around() || !vehicle.has_proximity();
     let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
     let position = validity.horizontal_position && validity.horizontal_velocity;
     let charged = vehicle.battery_remaining() >= vehicle.conduct().failsafe.battery_critical;
@@ -69,7 +67,7 @@ fn health(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor 
         (charged, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY),
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
-        (measures_around || !has_proximity, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+        (sees_around, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     // No fence is not breached, either: ArduPilot says so, and MAVProxy would tell a breach at the start.

@@ -127,8 +127,7 @@ pub static MESSAGES: &[Message] = &[
 ];
 
 fn measures_around(source: &LogSource<'_>) -> bool {
-    let [has_proximity, _, works] = source.vehicle.proximity();
-    has_proximity && works
+    source.vehicle.has_proximity() && source.vehicle.measures_around()
 }
 
 /// Whether something is due at a time, µs, between the times of the grid.

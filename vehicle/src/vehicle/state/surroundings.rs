@@ -20,10 +20,14 @@ impl Vehicle {
         self.machines.obstacles.has_rangefinder(&self.situation())
     }
 
-    /// Whether something measures around, whether it is switched on, and whether it works.
-    pub fn proximity(&self) -> [bool; 3] {
-        let (situation, watch) = (self.situation(), &self.machines.obstacles);
-        [watch.has_proximity(&situation), watch.proximity_is_on(), watch.measures_around(&situation)]
+    /// Whether it has what measures around.
+    pub fn has_proximity(&self) -> bool {
+        self.machines.obstacles.has_proximity(&self.situation())
+    }
+
+    /// Whether that measures now.
+    pub fn measures_around(&self) -> bool {
+        self.machines.obstacles.measures_around(&self.situation())
     }
 
     /// What is measured around, north and east of here, m.
