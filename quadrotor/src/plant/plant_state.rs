@@ -127,11 +127,9 @@ impl<T: Scalar + Copy> PlantState<T> {
         other: &PlantState<U>,
         f: impl Fn(T, U) -> V,
     ) -> PlantState<V> {
-        PlantState {
-            body: self.body.zip_map(&other.body, &f),
-            rotor_speed_rad_s: zipped(&self.rotor_speed_rad_s, &other.rotor_speed_rad_s, &f),
-            discharge: f(self.discharge, other.discharge),
-        }
+        // As arrays, so that several numbers are calculated at once.
+        let (one, other) = (self.to_array(), other.to_array());
+        PlantState::from_array(core::array::from_fn(|number| f(one[number], other[number])))
     }
 }
 

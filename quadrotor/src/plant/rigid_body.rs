@@ -3,6 +3,7 @@
 use nalgebra::{Quaternion, Scalar, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
 use crate::plant::differentiation::real::Real;
 use crate::plant::orientation::{Orientation, times_imaginary};
 use crate::{Airframe, GRAVITY_M_S2, Wrench};
@@ -72,23 +73,6 @@ impl<T: Real> RigidBody<T> {
     }
 }
 
-impl<T: Scalar + Copy> RigidBody<T> {
-    /// Made of each of the numbers of both bodies.
-    #[inline(always)]
-    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
-        &self,
-        other: &RigidBody<U>,
-        f: impl Fn(T, U) -> V,
-    ) -> RigidBody<V> {
-        RigidBody {
-            position_m: self.position_m.zip_map(&other.position_m, &f),
-            velocity_m_s: self.velocity_m_s.zip_map(&other.velocity_m_s, &f),
-            attitude: Quaternion { coords: self.attitude.coords.zip_map(&other.attitude.coords, &f) },
-            body_rate_rad_s: self.body_rate_rad_s.zip_map(&other.body_rate_rad_s, &f),
-        }
-    }
-}
-
 impl RigidBody {
     /// The rotation FRD into NED.
     pub fn rotation(&self) -> UnitQuaternion<f64> {
@@ -101,8 +85,10 @@ impl RigidBody {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        self.position_m.iter().chain(&self.velocity_m_s).chain(&self.body_rate_rad_s).all(|x| x.is_finite())
-            && self.attitude.coords.iter().all(|x| x.is_finite())
+        are_finite(self.position_m.as_slice())
+            & are_finite(self.velocity_m_s.as_slice())
+            & are_finite(self.body_rate_rad_s.as_slice())
+            & are_finite(self.attitude.coords.as_slice())
     }
 }
 

@@ -3,6 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
+
 /// What rounding may add to a variance.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -94,21 +96,26 @@ impl<const N: usize> BoundedEstimate<N> {
     ) {
         let spread = self.covariance * row;
         let expected = row.dot(&spread) + variance;
-        let gain = SVector::from_fn(|i, _| if learned[i] { spread[i] / expected } else { 0.0 });
+        let mut gain = SVector::<f64, N>::zeros();
+        for i in (0..N).filter(|i| learned[*i]) {
+            gain[i] = spread[i] / expected;
+        }
         let mean = self.mean + gain * self.innovation(row, value);
         // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, multiplied out: P − k sᵀ − s kᵀ + k (hᵀs + r) kᵀ with s = P h. It stays
         // exactly symmetric.
-        // By columns, so that several numbers are calculated at once.
         let mut covariance = self.covariance;
-        for j in 0..N {
-            let taken = gain * spread[j] + spread * gain[j];
-            covariance.set_column(j, &(self.covariance.column(j) - taken + gain * gain[j] * expected));
+        // By columns, so that several numbers are calculated at once.
+        for (column, (s_j, k_j)) in
+            covariance.as_mut_slice().chunks_exact_mut(N).zip(spread.iter().zip(&gain))
+        {
+            for (element, (s_i, k_i)) in column.iter_mut().zip(spread.iter().zip(&gain)) {
+                *element = *element - (k_i * s_j + s_i * k_j) + k_i * k_j * expected;
+            }
         }
-        let finite = |numbers: &[f64]| numbers.iter().fold(true, |all, number| all & number.is_finite());
         // No measurement makes anything less certain.
         let narrower = (0..N)
             .all(|i| covariance[(i, i)] >= 0.0 && covariance[(i, i)] <= self.covariance[(i, i)] * ROUNDING);
-        if variance > 0.0 && narrower && finite(mean.as_slice()) && finite(covariance.as_slice()) {
+        if variance > 0.0 && narrower && are_finite(mean.as_slice()) && are_finite(covariance.as_slice()) {
             (self.mean, self.covariance) = (mean, covariance);
             self.project(prior);
         }
@@ -123,7 +130,7 @@ impl<const N: usize> BoundedEstimate<N> {
             let variance = self.covariance[(i, i)];
             if beyond != 0.0 && variance > 0.0 {
                 let mean = self.mean - self.covariance.column(i) * (beyond / variance);
-                if mean.iter().all(|number| number.is_finite()) {
+                if are_finite(mean.as_slice()) {
                     self.mean = mean;
                 }
             }
@@ -134,7 +141,7 @@ impl<const N: usize> BoundedEstimate<N> {
     /// Whether it can be an estimate: within its range, and with a covariance within the prior's.
     pub(crate) fn is_possible(&self, prior: &Prior<N>) -> bool {
         prior.clamped(&self.mean) == self.mean
-            && self.covariance.iter().all(|number| number.is_finite())
+            && are_finite(self.covariance.as_slice())
             && (0..N).all(|i| {
                 let most = prior.deviation[i] * prior.deviation[i] * ROUNDING;
                 (0.0..=most).contains(&self.covariance[(i, i)])
