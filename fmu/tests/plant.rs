@@ -1,5 +1,8 @@
 //! The plant behind the interface: its run is the engine's, its equations are those of its run, its derivatives are exact.
 
+#[path = "../../quadrotor/tests/suite/common/physics.rs"]
+mod physics;
+
 use fmi::variables::{Field, Role, Signal, Variable};
 use fmi::{Continuous, Model, Seed};
 use fmu::{ClosedLoop, Commands, Drive, FlightError, QuadrotorPlant, Settings};
@@ -59,26 +62,6 @@ fn value(model: &QuadrotorPlant, name: &str) -> f64 {
     let unknowns = unknowns::<QuadrotorPlant>();
     let (_, get) = unknowns.iter().find(|(other, _)| *other == name).unwrap();
     get(&model.outputs())
-}
-
-fn all_physics() -> Airframe {
-    Airframe {
-        inertia_kg_m2: [0.1, 0.11, 0.18],
-        products_of_inertia_kg_m2: [0.004, -0.006, 0.003],
-        centre_of_gravity_m: [0.01, -0.02, 0.03],
-        rotor_spin: RotorSpin { inertia_kg_m2: 1e-4, fall_time_ratio: 2.0 },
-        rotor_aerodynamics: RotorAerodynamics {
-            drag_coefficient_n_s2_m: 1e-4,
-            inflow_coefficient_n_s2_m: 2e-4,
-            translational_lift_coefficient_n_s2_m2: 3e-3,
-            ground_effect: true,
-            ..RotorAerodynamics::default()
-        },
-        drag_n_s_m: [0.1, 0.2, 0.3],
-        body_drag_n_s_m: [0.05, 0.04, 0.1],
-        battery: BatteryPack { sag: true, ..BatteryPack::default() },
-        ..Airframe::default()
-    }
 }
 
 /// The same with one lag for rising and falling rotors: where those meet their commands differences would cross a kink.

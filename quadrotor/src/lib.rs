@@ -108,6 +108,9 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 extern crate alloc;
+// For what unit tests share with the other tests.
+#[cfg(test)]
+extern crate self as quadrotor;
 
 mod attitude;
 mod configuration;

@@ -21,6 +21,7 @@ mod payload;
 mod position_target;
 mod scale;
 mod target;
+mod true_state;
 
 pub use attitude_target::SetAttitudeTarget;
 pub use command::{Command, CommandKind};
@@ -36,3 +37,4 @@ pub use payload::Payload;
 pub use position_target::{SetPositionTarget, TargetPosition};
 pub use scale::{boot_ms, boot_us, centimetres_per_second, floats, millimetres, scaled_degrees};
 pub use target::{COMPONENT, Target, target_of};
+pub use true_state::hil_state_quaternion;

@@ -1,6 +1,6 @@
 //! Altitude: from z and its rate to the vertical acceleration G of (7).
 
-use lmpc::{ControllerState, Sample};
+use lmpc::{ControllerState, Sample, StateFeedback};
 use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -46,31 +46,9 @@ impl AltitudeController {
         range: (f64, f64),
     ) -> (f64, ControllerActivity) {
         let law = &design.altitude.law;
-        let limits = &configuration.limits;
         let measured = Vector3::new(seen.position_m, seen.velocity_m_s, seen.acceleration_m_s2);
         let [[position, velocity, acceleration, ..]] = reference.increments_since(&self.reference);
-        let fastest = limits.speed_up_m_s.max(limits.speed_down_m_s);
-        let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
-        let error = seen.position_m - reference.position.x;
-        // Below the set-point (z down) it climbs.
-        let (ahead_m_s, speed_m_s) = if error > 0.0 {
-            (-reference.velocity.x, limits.speed_up_m_s)
-        } else {
-            (reference.velocity.x, limits.speed_down_m_s)
-        };
-        let sight = horizon_m(fastest * closing_share(speed_m_s, ahead_m_s), weakest);
-        let error = Vector1::new(error.clamp(-sight, sight));
-        let error = match law.regulator() {
-            Some(regulator) if configuration.controllers.governor => {
-                let governor = Governor {
-                    rate: integral_rate(regulator, 0, configuration.controllers.altitude.sample_time_s()),
-                    deceleration: BRAKING_SHARE * limits.acceleration_vertical_m_s2,
-                    speed: speed_m_s,
-                };
-                governor.seen_vector(&error)
-            }
-            _ => error,
-        };
+        let error = planned_error_m(configuration, law.regulator(), seen, reference, range);
         let rate_m_s = reference.velocity.x;
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let deviation =
@@ -92,7 +70,7 @@ impl AltitudeController {
             // The rotors answer late: z̈ = G − T z⃛.
             input_reference: reference.thrust + reference.jerk * lag_s,
             disturbance: Vector1::new(seen.disturbance_m_s2),
-            upper: &altitude_bounds(limits, range, rate_m_s),
+            upper: &altitude_bounds(&configuration.limits, range, rate_m_s),
             ..Sample::default()
         };
         let step = law.step(&mut self.controller, &sample);
@@ -125,5 +103,39 @@ impl AltitudeController {
         );
         self.controller.apply(&applied);
         self.observed.believe(&(self.controller.measured() - before));
+    }
+}
+
+/// What of the altitude error, z down, is planned with: as far as it can be braked within the horizon, and as the governor lets a
+/// regulator see it.
+fn planned_error_m(
+    configuration: &Configuration,
+    regulator: Option<&StateFeedback<3, 1, 1>>,
+    seen: &VerticalMotion,
+    reference: &ReferenceMotion<1>,
+    range: (f64, f64),
+) -> Vector1<f64> {
+    let limits = &configuration.limits;
+    let error = seen.position_m - reference.position.x;
+    // Below the set-point it climbs.
+    let (ahead_m_s, speed_m_s) = if error > 0.0 {
+        (-reference.velocity.x, limits.speed_up_m_s)
+    } else {
+        (reference.velocity.x, limits.speed_down_m_s)
+    };
+    let fastest = limits.speed_up_m_s.max(limits.speed_down_m_s);
+    let weakest = range.1.min(-range.0).max(SLOWEST_M_S2);
+    let sight = horizon_m(fastest * closing_share(speed_m_s, ahead_m_s), weakest);
+    let error = Vector1::new(error.clamp(-sight, sight));
+    match regulator {
+        Some(regulator) if configuration.controllers.governor => {
+            let governor = Governor {
+                rate: integral_rate(regulator, 0, configuration.controllers.altitude.sample_time_s()),
+                deceleration: BRAKING_SHARE * limits.acceleration_vertical_m_s2,
+                speed: speed_m_s,
+            };
+            governor.seen_vector(&error)
+        }
+        _ => error,
     }
 }

@@ -182,34 +182,30 @@ impl AttitudeController {
         let in_body = seen.attitude.inverse() * reference.attitude;
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
-        let rate_error_rad_s = seen.body_rate_rad_s - in_body * reference.rate_rad_s;
         let spin = Spin {
             inertia_kg_m2,
             body_rate_rad_s: seen.body_rate_rad_s,
-            rate_error_rad_s,
+            rate_error_rad_s: seen.body_rate_rad_s - in_body * reference.rate_rad_s,
             torque_n_m: seen.torque_n_m,
             delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
         };
         let [roll_n_m, pitch_n_m, yaw_n_m] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
         let most_n_m = roll_n_m.min(pitch_n_m);
         let beside = spin.beside(most_n_m);
-        let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
-
-        let lean_rad_s2 = most_n_m / inertia_kg_m2.xy().max();
-        let turn_rad_s2 = yaw_n_m / inertia_kg_m2.z;
-        let mut disturbance_rad_s2 = seen.disturbance_rad_s2;
-        let held_rad_s2 = HELD_TURN_SHARE * turn_rad_s2.max(0.0);
-        disturbance_rad_s2.z = disturbance_rad_s2.z.clamp(-held_rad_s2, held_rad_s2);
+        let most_rad_s2 = [most_n_m / inertia_kg_m2.xy().max(), yaw_n_m / inertia_kg_m2.z];
+        let disturbance_rad_s2 = holdable(&seen.disturbance_rad_s2, most_rad_s2[1]);
         let reference_acceleration = in_body * reference.acceleration_rad_s2;
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
-        let error_rad = going_on(&attitude_error(&reference.attitude, &seen.attitude), &rate_error_rad_s);
+        let error_rad =
+            going_on(&attitude_error(&reference.attitude, &seen.attitude), &spin.rate_error_rad_s);
+        let largest_rad = spin.largest_lean_rad(most_n_m, design.attitude.closing_1_s);
         let deviation = Deviation {
             angle_rad: leaning_at_most(&error_rad, largest_rad),
-            rate_rad_s: rate_error_rad_s,
+            rate_rad_s: spin.rate_error_rad_s,
             // What disturbs the vehicle turns it, too.
             acceleration_rad_s2: reached + disturbance_rad_s2 - reference_acceleration,
         };
-        let deviation = deviation.in_sight(design.attitude.sight_s, [lean_rad_s2, turn_rad_s2]);
+        let deviation = deviation.in_sight(design.attitude.sight_s, most_rad_s2);
         let told = Seen {
             deviation,
             increment: self.increment(design.attitude.motion.as_ref(), &deviation, &disturbance_rad_s2),
@@ -228,17 +224,23 @@ impl AttitudeController {
             inertia_kg_m2,
             believed: configuration.controllers.mass_factor,
         };
-        let lean = design.attitude.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
+        let (own_rad_s2, activity) = self.step_laws(&design.attitude, &told, &room);
+        (AskedTorque { own_rad_s2, beside_n_m: beside.commanded_n_m, inertia_kg_m2 }, activity)
+    }
+
+    /// A step of both laws: the angular acceleration that they ask for, rad/s², roll and pitch before yaw.
+    fn step_laws(
+        &mut self,
+        design: &AttitudeDesign,
+        told: &Seen,
+        room: &RotorRoom,
+    ) -> (Vector3<f64>, ControllerActivity) {
+        let lean = design.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
         let turn_bounds = room.turn_bounds(&lean.input, told.input_reference.z);
-        let turn = design.attitude.turn.step(&mut self.turn, &told.sample(2, &turn_bounds));
-        self.deviation = deviation;
+        let turn = design.turn.step(&mut self.turn, &told.sample(2, &turn_bounds));
+        self.deviation = told.deviation;
         self.integral_rad_s2 = joined(&lean.integral, &turn.integral);
-        let asked = AskedTorque {
-            own_rad_s2: joined(&lean.input, &turn.input),
-            beside_n_m: beside.commanded_n_m,
-            inertia_kg_m2,
-        };
-        (asked, activity(&lean, &turn))
+        (joined(&lean.input, &turn.input), activity(&lean, &turn))
     }
 
     /// The motion since the last sample: by the model, if there is one, else as it was measured.
@@ -311,6 +313,14 @@ impl AttitudeController {
             self.turn.apply(&turn);
         }
     }
+}
+
+/// A disturbance, rad/s², whose part about yaw is no more than a share of what the rotors can do about it, `turn_rad_s2`.
+fn holdable(disturbance_rad_s2: &Vector3<f64>, turn_rad_s2: f64) -> Vector3<f64> {
+    let held_rad_s2 = HELD_TURN_SHARE * turn_rad_s2.max(0.0);
+    let mut holdable_rad_s2 = *disturbance_rad_s2;
+    holdable_rad_s2.z = holdable_rad_s2.z.clamp(-held_rad_s2, held_rad_s2);
+    holdable_rad_s2
 }
 
 /// An error in which a vehicle that is upside down goes on turning as it does, rad: the shortest way changes its direction with every

@@ -13,7 +13,6 @@ use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::control::rotor_command::RotorCommand;
 use crate::design::loop_design::LoopDesign;
-use crate::guidance::heading::Heading;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlError, Controllers, Measurement,
@@ -409,31 +408,30 @@ impl ControlState {
             self.limits.watch(&design.configuration, attitude.as_ref(), &self.guidance, &seen.body, time_us);
         }
         let configuration = &self.limits.in_force(learned);
-        let followed = self.cascade.follow(configuration, (&self.guidance.reference(time_us), seen), time_us);
-        let way = |guidance: &Guidance, then_us: u64| {
-            let expected = guidance.preview(then_us);
-            followed.map_or(expected, |followed| {
+        let given = self.guidance.reference(time_us);
+        let followed = self.cascade.follow(configuration, (&given, seen), time_us);
+        let now = followed.unwrap_or(given);
+        let ahead = |guidance: &Guidance, then_us: u64| match &followed {
+            None => guidance.preview(then_us),
+            Some(followed) => {
                 let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
-                Heading::of(&expected).on(&followed.expected_after(then_s))
-            })
+                guidance.heading(then_us).on(&followed.expected_after(then_s))
+            }
         };
         if due.position {
-            let guidance = &self.guidance;
-            let references = (&way(guidance, time_us), |then_us| way(guidance, then_us));
+            let references = (&now, |then_us| ahead(&self.guidance, then_us));
             self.cascade.sample_position(configuration, cascade, seen, references, time_us);
         }
         if due.altitude {
-            let reference = way(&self.guidance, time_us);
-            self.cascade.sample_altitude(configuration, cascade, seen, &reference, time_us);
+            self.cascade.sample_altitude(configuration, cascade, seen, &now, time_us);
         }
         if due.attitude {
-            self.guidance.sample_heading(reference, limits, time_us);
+            let now = self.guidance.sample_heading(reference, limits, time_us).on(&now);
             // A command takes effect as late as the rotors answer, and in the middle of the time for which it is held.
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
             let answered_us = time_us + lag_us + configuration.controllers.attitude.sample_time_us / 2;
-            let references = [time_us, answered_us].map(|then_us| way(&self.guidance, then_us));
-            self.command =
-                self.cascade.sample_attitude(configuration, cascade, seen, (&references[0], &references[1]));
+            let answered = ahead(&self.guidance, answered_us);
+            self.command = self.cascade.sample_attitude(configuration, cascade, seen, (&now, &answered));
         }
     }
 

@@ -154,6 +154,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::FollowedWay;
+    use crate::control::required_thrust::tests::dragged;
     use crate::{Configuration, PlantState, PositionReference, RigidBody};
 
     const STEP_US: u64 = 1_000;
@@ -171,12 +172,6 @@ mod tests {
             snap_m_s4: derivative(4),
             ..PositionReference::goal(derivative(0).into(), 0.0)
         }
-    }
-
-    fn dragged() -> Configuration {
-        let mut configuration = Configuration::default();
-        configuration.airframe.drag_n_s_m = [0.4, 0.25, 0.1];
-        configuration
     }
 
     /// A vehicle that flies as a reference says.

@@ -1,6 +1,8 @@
 //! Position: from x, y and their derivatives to a horizontal acceleration, which stands for a tilt.
 
-use lmpc::{ControllerState, MovedSignals, Sample, StateFeedback};
+use core::cell::Cell;
+
+use lmpc::{ControllerState, MovedSignals, Sample, StateFeedback, Step};
 use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +14,7 @@ use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
     AXIS_STATES, Asked, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
 };
+use crate::design::translation_design::PositionLaw;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -53,12 +56,11 @@ impl PositionController {
         (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
         (present_m_s2, most_m_s2): (f64, f64),
     ) -> (Vector2<f64>, ControllerActivity) {
-        let limits = &configuration.limits;
+        let law = &design.position.law;
         let zero = Vector2::zeros();
-        let regulator = design.position.law.regulator();
         // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
         // take the rotors' part alone for a tilt that is accelerated for ever. A regulator goes by how it changes.
-        let turning = if regulator.is_some() { zero } else { seen.disturbance_m_s4 };
+        let turning = if law.regulator().is_some() { zero } else { seen.disturbance_m_s4 };
         let measured = by_axis([
             seen.position_m,
             seen.velocity_m_s,
@@ -67,36 +69,13 @@ impl PositionController {
             seen.snap_m_s4 + turning,
             seen.asked_snap_m_s4 + turning,
         ]);
-        let error = seen.position_m - reference.position;
-        // An error is closed against its direction.
-        let ahead_m_s = -error.try_normalize(0.0).unwrap_or_default().dot(&reference.velocity);
-        let speed_m_s = limits.speed_horizontal_m_s;
-        let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
-        let error = in_sight(&error, horizon_m(closing_m_s, most_m_s2));
-        let error = match regulator {
-            Some(regulator) if configuration.controllers.governor => {
-                governed(configuration, regulator, &error)
-            }
-            _ => error,
-        };
+        let error = planned_error_m(configuration, law.regulator(), seen, reference, most_m_s2);
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
-        // Where the reference rests there is nothing to look ahead at.
-        let (moved, asked) = if reference.is_at_rest() {
-            (None, Asked::default())
-        } else {
-            let moved = design.position.law.moved(|sample| {
-                let then = ahead(sample);
-                let state = turn.state(&(state_of(&then) - state_of(reference)));
-                (state, turn.vector(&(then.thrust - reference.thrust)))
-            });
-            let now = asked_by(&Asked::default(), reference);
-            (moved, ASKED.into_iter().fold(now, |asked, sample| asked_by(&asked, &ahead(sample))))
-        };
+        let (moved, asked) = foreseen(law, &turn, reference, ahead);
         let deviation = with_position(&(measured - state_of(reference)), &error);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
-        let model = design.position.motion.as_ref();
         let motion = MotionSample {
             deviation,
             change: measured - self.controller.measured() - motion_of(reference, &self.reference),
@@ -104,7 +83,7 @@ impl PositionController {
             jump: by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
-        let increment = self.observed.step(model, &motion, sample_time_s);
+        let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
         let under_way = TurnUnderWay {
             snap_m_s4: (seen.snap_m_s4 + turning).norm().max((seen.asked_snap_m_s4 + turning).norm()),
             jump_m_s3: jerk_jump.norm(),
@@ -118,19 +97,29 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(limits, (present_m_s2, most_m_s2), &asked, under_way),
+            upper: &position_bounds(&configuration.limits, (present_m_s2, most_m_s2), &asked, under_way),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
-        self.controller.turn(|state| turn.state(state), |input| turn.vector(input));
-        let mut step = design.position.law.step(&mut self.controller, &sample);
-        let back = turn.inverse();
-        self.controller.turn(|state| back.state(state), |input| back.vector(input));
-        step.input = back.vector(&step.input);
+        let step = self.step_along(law, &turn, &sample);
         self.reference = *reference;
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
+    }
+
+    /// A step of the law for a sample in turned axes; its input is in those of the world.
+    fn step_along(
+        &mut self,
+        law: &PositionLaw,
+        turn: &Turn,
+        sample: &Sample<'_, POSITION_STATES, 2, 2>,
+    ) -> Step<2> {
+        self.controller.turn(|state| turn.state(state), |input| turn.vector(input));
+        let step = law.step(&mut self.controller, sample);
+        let back = turn.inverse();
+        self.controller.turn(|state| back.state(state), |input| back.vector(input));
+        Step { input: back.vector(&step.input), ..step }
     }
 
     /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
@@ -156,6 +145,55 @@ impl PositionController {
         self.controller.apply(&applied);
         self.observed.believe(&(self.controller.measured() - before));
     }
+}
+
+/// What of the position error is planned with: as far as it can be braked within the horizon, and as the governor lets a regulator
+/// see it.
+fn planned_error_m(
+    configuration: &Configuration,
+    regulator: Option<&StateFeedback<POSITION_STATES, 2, 2>>,
+    seen: &HorizontalMotion,
+    reference: &ReferenceMotion<2>,
+    most_m_s2: f64,
+) -> Vector2<f64> {
+    let error = seen.position_m - reference.position;
+    // An error is closed against its direction.
+    let ahead_m_s = -error.try_normalize(0.0).unwrap_or_default().dot(&reference.velocity);
+    let speed_m_s = configuration.limits.speed_horizontal_m_s;
+    let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
+    let error = in_sight(&error, horizon_m(closing_m_s, most_m_s2));
+    match regulator {
+        Some(regulator) if configuration.controllers.governor => governed(configuration, regulator, &error),
+        _ => error,
+    }
+}
+
+/// By how much the reference moves what the law foresees, in turned axes, and what it will ask for. Where it rests there is nothing to
+/// look ahead at.
+fn foreseen(
+    law: &PositionLaw,
+    turn: &Turn,
+    reference: &ReferenceMotion<2>,
+    ahead: impl Fn(usize) -> ReferenceMotion<2>,
+) -> (Option<MovedSignals>, Asked) {
+    if reference.is_at_rest() {
+        return (None, Asked::default());
+    }
+    // Some samples count for both.
+    let known = [const { Cell::new(None) }; ASKED.len()];
+    let ahead = |sample: usize| {
+        let Some(place) = ASKED.iter().position(|asked| *asked == sample) else { return ahead(sample) };
+        let then: ReferenceMotion<2> = known[place].get().unwrap_or_else(|| ahead(sample));
+        known[place].set(Some(then));
+        then
+    };
+    let moved = law.moved(|sample| {
+        let then = ahead(sample);
+        let state = turn.state(&(state_of(&then) - state_of(reference)));
+        (state, turn.vector(&(then.thrust - reference.thrust)))
+    });
+    let now = asked_by(&Asked::default(), reference);
+    (moved, ASKED.into_iter().fold(now, |asked, sample| asked_by(&asked, &ahead(sample))))
 }
 
 /// The state that a reference asks for. Feedback is none of it.

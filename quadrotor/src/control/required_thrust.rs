@@ -91,7 +91,7 @@ impl RequiredThrust {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use nalgebra::Vector3;
 
     use super::RequiredThrust;
@@ -114,7 +114,8 @@ mod tests {
         }
     }
 
-    fn dragged() -> Configuration {
+    /// A vehicle with a drag of its own along each axis.
+    pub(crate) fn dragged() -> Configuration {
         let mut configuration = Configuration::default();
         configuration.airframe.drag_n_s_m = [0.4, 0.25, 0.1];
         configuration

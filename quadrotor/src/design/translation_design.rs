@@ -31,6 +31,8 @@ pub(crate) struct TranslationDesign<const N: usize, const P: usize, const S: usi
 
 /// States z, v_z, z̈; input G.
 pub(crate) type AltitudeDesign = TranslationDesign<3, 1, ALTITUDE_FEW, ALTITUDE_MANY>;
+/// That of the position.
+pub(crate) type PositionLaw = TrackingLaw<POSITION_STATES, 2, POSITION_FEW, POSITION_MANY>;
 /// States x, ẋ, ẍ, x⃛, the snap that the rotors make and the one that they are asked for, then those of y; inputs the commanded
 /// horizontal accelerations.
 pub(crate) type PositionDesign = TranslationDesign<POSITION_STATES, 2, POSITION_FEW, POSITION_MANY>;

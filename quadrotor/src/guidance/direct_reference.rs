@@ -48,9 +48,20 @@ impl DirectReference {
         if let Some(plan) = &self.plan {
             return plan.at(time_us);
         }
-        let since_s = |start_us: u64| time_us.saturating_sub(start_us) as f64 / 1e6;
-        let heading = Heading::of(&self.latest.expected_after(since_s(self.yaw_time_us)));
-        heading.on(&self.latest.expected_after(since_s(self.time_us)))
+        self.held_heading(time_us).on(&self.latest.expected_after(elapsed_s(self.time_us, time_us)))
+    }
+
+    /// The heading of [`DirectReference::reference`].
+    pub fn heading(&self, time_us: u64) -> Heading {
+        match &self.plan {
+            Some(plan) => Heading::of(&plan.at(time_us)),
+            None => self.held_heading(time_us),
+        }
+    }
+
+    /// The latest heading, moved on by its derivatives.
+    fn held_heading(&self, time_us: u64) -> Heading {
+        Heading::of(&self.latest.expected_after(elapsed_s(self.yaw_time_us, time_us)))
     }
 
     /// Looks at the input, more often than it is sampled: what is not given is found from the instants at which it changes.
@@ -84,7 +95,7 @@ impl DirectReference {
 
     /// A sample of the heading.
     pub fn sample_heading(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
-        let elapsed_s = time_us.saturating_sub(self.yaw_time_us) as f64 / 1e6;
+        let elapsed_s = elapsed_s(self.yaw_time_us, time_us);
         let most = limits.yaw_rate_rad_s * elapsed_s;
         let held = &mut self.latest;
         let turned = wrapped(reference.yaw_rad - held.yaw_rad).clamp(-most, most);
@@ -103,4 +114,8 @@ impl DirectReference {
         held.yaw_acceleration_rad_s2 = if is_free { acceleration } else { 0.0 };
         self.yaw_time_us = time_us;
     }
+}
+
+fn elapsed_s(since_us: u64, time_us: u64) -> f64 {
+    time_us.saturating_sub(since_us) as f64 / 1e6
 }

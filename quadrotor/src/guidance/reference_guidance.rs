@@ -93,7 +93,7 @@ impl Guidance {
         if let Self::Direct(direct) = self {
             direct.sample_heading(reference, limits, time_us);
         }
-        Heading::of(&self.reference(time_us))
+        self.heading(time_us)
     }
 
     /// Whether the way that is tracked at `time_us` is within limits: a plan keeps them, and its acceleration fits them. A
@@ -120,6 +120,15 @@ impl Guidance {
             #[cfg(feature = "shaper")]
             Self::Shaped(shaper) => shaper.reference(time_us),
             Self::Direct(direct) => direct.reference(time_us),
+        }
+    }
+
+    /// The heading of [`Guidance::preview`].
+    pub fn heading(&self, time_us: u64) -> Heading {
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => shaper.heading(time_us),
+            Self::Direct(direct) => direct.heading(time_us),
         }
     }
 

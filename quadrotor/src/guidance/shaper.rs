@@ -83,7 +83,12 @@ impl Shaper {
     pub fn reference(&self, time_us: u64) -> PositionReference {
         let now = self.plan.at(self.elapsed_s(time_us));
         let way = PositionReference { position_m: now.position_m + self.offset_m, ..now };
-        self.heading.heading(time_us).on(&way)
+        self.heading(time_us).on(&way)
+    }
+
+    /// The heading of the shaped reference at `time_us`.
+    pub fn heading(&self, time_us: u64) -> Heading {
+        self.heading.heading(time_us)
     }
 
     /// Plans anew if the goal or the limits have changed, and only the heading if only that has. A problem that has no

@@ -6,6 +6,8 @@ use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::forces::Forces;
 use crate::plant::ground::{HoldingMargins, cannot_be_held, contact, reach_m};
+#[cfg(feature = "fleet")]
+use crate::plant::likeness::likeness;
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
 use crate::plant::rotor_fault::goals_rad_s;
@@ -27,24 +29,47 @@ use crate::{Airframe, Environment, RotorFault};
 /// let next = hover.plus(&plant.derivative(&hover, &inputs), 1e-3).normalized();
 /// assert!((next.body.position_m - plant.step(&hover, &inputs, 1e-3).body.position_m).norm() < 1e-9);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Plant {
     airframe: Airframe,
     ground_plane: bool,
     /// No foot is farther from the centre of mass.
     reach_m: f64,
+    /// Fleets look for plants of a kind at each call.
+    #[cfg(feature = "fleet")]
+    likeness: u64,
+}
+
+/// The rest follows from what is compared.
+impl PartialEq for Plant {
+    fn eq(&self, other: &Self) -> bool {
+        self.airframe == other.airframe && self.ground_plane == other.ground_plane
+    }
 }
 
 impl Plant {
     /// The vehicle in its world. The airframe is not checked: use one of a configuration that
     /// [`CascadeDesign::new`](crate::CascadeDesign::new) accepts.
     pub fn new(airframe: &Airframe, environment: &Environment) -> Self {
-        Self { airframe: *airframe, ground_plane: environment.ground_plane, reach_m: reach_m(airframe) }
+        let ground_plane = environment.ground_plane;
+        Self {
+            airframe: *airframe,
+            ground_plane,
+            reach_m: reach_m(airframe),
+            #[cfg(feature = "fleet")]
+            likeness: likeness(airframe, ground_plane),
+        }
     }
 
     /// The vehicle's constants.
     pub fn airframe(&self) -> &Airframe {
         &self.airframe
+    }
+
+    /// A number that is equal for plants whose constants are equal bit for bit, and hardly ever for others.
+    #[cfg(feature = "fleet")]
+    pub(crate) fn likeness(&self) -> u64 {
+        self.likeness
     }
 
     /// Whether there is ground at z = 0.

@@ -72,37 +72,19 @@ fn gathered_inputs(inputs: &[PlantInputs; LANES]) -> Option<PlantInputs<Lanes>> 
 }
 
 #[cfg(test)]
+#[path = "../../tests/suite/common/physics.rs"]
+mod physics;
+
+#[cfg(test)]
 mod tests {
     use core::array::from_fn;
 
     use nalgebra::{UnitQuaternion, Vector3};
     use proptest::prelude::*;
 
+    use super::physics::all_physics;
     use crate::plant::lanes::LANES;
-    use crate::{
-        Airframe, BatteryPack, Disturbance, Environment, Plant, PlantInputs, PlantState, RigidBody,
-        RotorAerodynamics, RotorFault, RotorSpin,
-    };
-
-    /// Every term that the default leaves out.
-    fn all_physics() -> Airframe {
-        Airframe {
-            products_of_inertia_kg_m2: [0.004, -0.006, 0.003],
-            centre_of_gravity_m: [0.01, -0.02, 0.03],
-            rotor_spin: RotorSpin { inertia_kg_m2: 1e-4, fall_time_ratio: 2.0 },
-            rotor_aerodynamics: RotorAerodynamics {
-                drag_coefficient_n_s2_m: 1e-4,
-                inflow_coefficient_n_s2_m: 2e-4,
-                translational_lift_coefficient_n_s2_m2: 3e-3,
-                ground_effect: true,
-                ..RotorAerodynamics::default()
-            },
-            drag_n_s_m: [0.1, 0.2, 0.3],
-            body_drag_n_s_m: [0.05, 0.04, 0.1],
-            battery: BatteryPack { sag: true, resistance_ohm: 0.15, ..BatteryPack::default() },
-            ..Airframe::default()
-        }
-    }
+    use crate::{Airframe, Disturbance, Environment, Plant, PlantInputs, PlantState, RigidBody, RotorFault};
 
     prop_compose! {
         fn state(height_m: f64)(

@@ -16,7 +16,7 @@ pub fn check_replay(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Value`] that names the first such setting.
 pub fn check_view_record(arguments: &Arguments) -> Result<(), Failure> {
-    let fitting = ["view", "view-record", "ready-file"];
+    let fitting = ["view", "view_record", "ready_file"];
     check(arguments, &fitting, "--view-record, which shows a recorded flight")
 }
 
@@ -25,135 +25,41 @@ pub fn check_view_record(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// [`Failure::Value`] that names the first such setting.
 pub fn check_view_page(arguments: &Arguments) -> Result<(), Failure> {
-    check(arguments, &["view-record", "view-page"], "--view-page, which writes a recorded flight into a file")
+    check(arguments, &["view_record", "view_page"], "--view-page, which writes a recorded flight into a file")
 }
 
 /// Refuses all settings but some with a flag.
 fn check(arguments: &Arguments, fitting: &[&str], flag: &str) -> Result<(), Failure> {
-    let mut names = given(arguments).into_iter().filter(|(name, given)| *given && !fitting.contains(name));
-    let Some((name, _)) = names.next() else { return Ok(()) };
-    let variable = name.replace('-', "_").to_uppercase();
+    let mut names = given(arguments).filter(|name| !fitting.contains(name));
+    let Some(name) = names.next() else { return Ok(()) };
+    let (name, variable) = (name.replace('_', "-"), name.to_uppercase());
     let reason = format!(
         "cannot be used with {flag}; remove the flag, `{name}` in the configuration file, or LMPC_SITL_{variable}"
     );
     Err(Failure::Value { name: format!("--{name}"), reason })
 }
 
-/// All settings but the configuration file and the log, and whether they are given.
-fn given(arguments: &Arguments) -> Vec<(&'static str, bool)> {
-    // Without `..`: whoever adds a setting decides whether it goes with these.
-    let Arguments {
-        config: _,
-        link,
-        instance,
-        system_id,
-        vehicles,
-        ports,
-        formation,
-        clocks,
-        autopilot,
-        airframe,
-        home,
-        speed,
-        lockstep,
-        lockstep_period,
-        lockstep_timeout,
-        wind,
-        gusts,
-        sensors,
-        noise,
-        kalman,
-        seed,
-        set,
-        fault,
-        parameters,
-        list_parameters,
-        mission,
-        world,
-        traffic,
-        autostart,
-        equipment,
-        record,
-        record_size,
-        replay,
-        view,
-        view_record,
-        view_page,
-        fmu,
-        map,
-        fmu_check,
-        hil,
-        hil_mount,
-        tlog,
-        log_dir,
-        log_start,
-        log_size,
-        log_count,
-        ftp_root,
-        ftp_write,
-        signing_key,
-        accept_signing_setup,
-        rc_port,
-        ready_file,
-        duration,
-        log: _,
-        no_panel,
-    } = arguments;
-    vec![
-        ("link", link.is_some()),
-        ("instance", instance.is_some()),
-        ("system-id", system_id.is_some()),
-        ("vehicles", vehicles.is_some()),
-        ("ports", ports.is_some()),
-        ("formation", formation.is_some()),
-        ("clocks", clocks.is_some()),
-        ("autopilot", autopilot.is_some()),
-        ("airframe", airframe.is_some()),
-        ("home", home.is_some()),
-        ("speed", speed.is_some()),
-        ("lockstep", lockstep.is_some()),
-        ("lockstep-period", lockstep_period.is_some()),
-        ("lockstep-timeout", lockstep_timeout.is_some()),
-        ("wind", wind.is_some()),
-        ("gusts", gusts.is_some()),
-        ("sensors", sensors.is_some()),
-        ("noise", noise.is_some()),
-        ("kalman", kalman.is_some()),
-        ("seed", seed.is_some()),
-        ("set", set.is_some()),
-        ("fault", fault.is_some()),
-        ("parameters", parameters.is_some()),
-        ("list-parameters", list_parameters.is_some()),
-        ("mission", mission.is_some()),
-        ("world", world.is_some()),
-        ("traffic", traffic.is_some()),
-        ("autostart", autostart.is_some()),
-        ("equipment", equipment.is_some()),
-        ("record", record.is_some()),
-        ("record-size", record_size.is_some()),
-        ("replay", replay.is_some()),
-        ("view", view.is_some()),
-        ("view-record", view_record.is_some()),
-        ("view-page", view_page.is_some()),
-        ("fmu", fmu.is_some()),
-        ("map", map.is_some()),
-        ("fmu-check", fmu_check.is_some()),
-        ("hil", hil.is_some()),
-        ("hil-mount", hil_mount.is_some()),
-        ("tlog", tlog.is_some()),
-        ("log-dir", log_dir.is_some()),
-        ("log-start", log_start.is_some()),
-        ("log-size", log_size.is_some()),
-        ("log-count", log_count.is_some()),
-        ("ftp-root", ftp_root.is_some()),
-        ("ftp-write", ftp_write.is_some()),
-        ("signing-key", signing_key.is_some()),
-        ("accept-signing-setup", accept_signing_setup.is_some()),
-        ("rc-port", rc_port.is_some()),
-        ("ready-file", ready_file.is_some()),
-        ("no-panel", no_panel.is_some()),
-        ("duration", duration.is_some()),
-    ]
+/// The settings of [`Arguments`] that are given: the fields that are named, as they are named, but for those that do not count.
+/// All have to be named: whoever adds a setting decides whether it goes with these flags.
+macro_rules! given {
+    ($arguments:ident: $($name:ident)+, but $($other:ident)+) => {{
+        let Arguments { $($other: _,)+ $($name,)+ } = $arguments;
+        [$((stringify!($name), $name.is_some()),)+].into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
+    }};
+}
+
+/// All settings that are given but the configuration file and the log.
+fn given(arguments: &Arguments) -> impl Iterator<Item = &'static str> {
+    given! {
+        arguments:
+            link instance system_id vehicles ports formation clocks autopilot airframe home speed
+            lockstep lockstep_period lockstep_timeout wind gusts sensors noise kalman seed set fault
+            parameters list_parameters mission world traffic autostart equipment record record_size
+            replay view view_record view_page fmu map fmu_check hil hil_mount tlog log_dir log_start
+            log_size log_count ftp_root ftp_write signing_key accept_signing_setup rc_port
+            ready_file duration no_panel,
+        but config log
+    }
 }
 
 #[cfg(test)]

@@ -321,14 +321,22 @@ pub(super) fn vehicle(
     let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
     let home_m = Vector3::from(vehicle.configuration.initial.position_m);
     let site = Site { identity, frame: LocalFrame::new(vehicle.origin), home_m };
-    match (mission_of(arguments, system_id), parameters) {
-        (Some(path), _) => vehicle.plans = read_plans(path, &site)?,
-        (None, Some(parameters)) => {
-            vehicle.plans = kept_plans(parameters, &site)?.unwrap_or_default();
-        }
-        (None, None) => {}
-    }
+    vehicle.plans = plans(arguments, system_id, parameters, &site)?;
     Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
+}
+
+/// The plans of a vehicle: its mission's file, or else those that are kept beside its parameters.
+fn plans(
+    arguments: &Arguments,
+    system_id: u8,
+    parameters: Option<&Path>,
+    site: &Site,
+) -> Result<Plans, Failure> {
+    match (mission_of(arguments, system_id), parameters) {
+        (Some(path), _) => read_plans(path, site),
+        (None, Some(parameters)) => Ok(kept_plans(parameters, site)?.unwrap_or_default()),
+        (None, None) => Ok(Plans::default()),
+    }
 }
 
 /// What stands and flies around every vehicle.

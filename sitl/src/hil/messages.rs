@@ -1,13 +1,10 @@
 //! Messages to the autopilot.
 
-use autopilot::codec::floats;
+use autopilot::codec::{centimetres_per_second, floats, millimetres, scaled_degrees};
 use mavlink::dialects::ardupilotmega::{
-    HEARTBEAT_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HIL_STATE_QUATERNION_DATA, HilSensorUpdatedFlags,
-    MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
+    HEARTBEAT_DATA, HIL_GPS_DATA, HIL_SENSOR_DATA, HilSensorUpdatedFlags, MavAutopilot, MavMessage,
+    MavModeFlag, MavState, MavType,
 };
-use nalgebra::Vector3;
-use quadrotor::GRAVITY_M_S2;
-use vehicle::estimation::TrueMotion;
 use vehicle::estimation::gps::GpsFix;
 use vehicle::world::{LocalFrame, atmospheric_temperature_degc};
 
@@ -64,12 +61,12 @@ pub fn gps(fix: &GpsFix, frame: &LocalFrame) -> MavMessage {
     let place = frame.to_geodetic(&fix.position_m);
     let velocity = fix.velocity_m_s;
     let course_deg = libm::atan2(velocity.y, velocity.x).to_degrees().rem_euclid(360.0);
-    let [vn, ve, vd] = centi(&velocity);
+    let [vn, ve, vd] = velocity.data.0[0].map(centimetres_per_second);
     MavMessage::HIL_GPS(HIL_GPS_DATA {
         time_usec: fix.time_us,
-        lat: (place.latitude_deg * 1e7).round() as i32,
-        lon: (place.longitude_deg * 1e7).round() as i32,
-        alt: (place.altitude_m * 1e3).round() as i32,
+        lat: scaled_degrees(place.latitude_deg),
+        lon: scaled_degrees(place.longitude_deg),
+        alt: millimetres(place.altitude_m),
         // The field is a dilution of precision; PX4 reads centimetres.
         eph: (fix.horizontal_accuracy_m * 1e2).round() as u16,
         epv: (fix.vertical_accuracy_m * 1e2).round() as u16,
@@ -83,39 +80,4 @@ pub fn gps(fix: &GpsFix, frame: &LocalFrame) -> MavMessage {
         id: 0,
         yaw: 0,
     })
-}
-
-/// HIL_STATE_QUATERNION: the truth, with the acceleration along the body's axes.
-pub fn state_quaternion(motion: &TrueMotion, frame: &LocalFrame, wind_m_s: &Vector3<f64>) -> MavMessage {
-    let place = frame.to_geodetic(&motion.position_m);
-    let q = motion.attitude;
-    let gravity = q.inverse_transform_vector(&Vector3::new(0.0, 0.0, GRAVITY_M_S2));
-    let acceleration_mg = (motion.specific_force_m_s2 + gravity) * (1e3 / GRAVITY_M_S2);
-    let [rollspeed, pitchspeed, yawspeed] = floats(&motion.body_rate_rad_s);
-    let [vx, vy, vz] = centi(&motion.velocity_m_s);
-    let [xacc, yacc, zacc] = acceleration_mg.data.0[0].map(|value| value.round() as i16);
-    let airspeed = ((motion.velocity_m_s - wind_m_s).norm() * 1e2).round() as u16;
-    MavMessage::HIL_STATE_QUATERNION(HIL_STATE_QUATERNION_DATA {
-        time_usec: motion.time_us,
-        attitude_quaternion: [q.w as f32, q.i as f32, q.j as f32, q.k as f32],
-        rollspeed,
-        pitchspeed,
-        yawspeed,
-        lat: (place.latitude_deg * 1e7).round() as i32,
-        lon: (place.longitude_deg * 1e7).round() as i32,
-        alt: (place.altitude_m * 1e3).round() as i32,
-        vx,
-        vy,
-        vz,
-        ind_airspeed: airspeed,
-        true_airspeed: airspeed,
-        xacc,
-        yacc,
-        zacc,
-    })
-}
-
-/// Hundredths; beyond the range of the field its end.
-fn centi(vector: &Vector3<f64>) -> [i16; 3] {
-    vector.data.0[0].map(|value| (value * 1e2).round() as i16)
 }

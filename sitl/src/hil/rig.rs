@@ -1,5 +1,6 @@
 //! Plant, instruments and their time, without a socket and without a clock.
 
+use autopilot::codec::hil_state_quaternion;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use nalgebra::Vector3;
 use quadrotor::{
@@ -173,7 +174,7 @@ impl Rig {
             told.push(messages::heartbeat());
         }
         if self.truth_us.is_some_and(|interval_us| self.time_us.is_multiple_of(interval_us)) {
-            told.push(messages::state_quaternion(motion, &self.frame, wind_m_s));
+            told.push(hil_state_quaternion(motion, &self.frame, wind_m_s));
         }
         told.extend(readings.fix.map(|fix| messages::gps(&fix, &self.frame)));
         // Last: it makes the autopilot's time pass.

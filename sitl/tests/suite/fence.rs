@@ -1,86 +1,16 @@
-//! The fence and the safe points: ahead of a flight, and during it.
+//! The fence and the safe points in flight.
 
+use crate::common::fence_bench::{
+    DENIED, TEMPORARILY_REJECTED, forward, go_to, hovering, item, polygon, set_cast, square, there,
+};
 use crate::common::plan_client::{result, upload};
 use crate::common::{Bench, settings};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
-use nalgebra::Vector3;
 use vehicle::fence::Breach;
 use vehicle::identity::Identity;
-use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
+use vehicle::plan::{MissionItem, Plan, PlanKind, command};
 use vehicle::{Action, Mode, VehicleSettings};
-
-const TEMPORARILY_REJECTED: u8 = 1;
-const DENIED: u8 = 2;
-
-fn item(settings: &VehicleSettings, command: u16, parameter: f64, [north, east]: [f64; 2]) -> MissionItem {
-    let place = vehicle::world::LocalFrame::new(settings.origin).to_geodetic(&Vector3::new(north, east, 0.0));
-    MissionItem {
-        frame: frame::GLOBAL_RELATIVE_INT,
-        command,
-        parameters: [parameter, 0.0, 0.0, 0.0],
-        position: [place.latitude_deg, place.longitude_deg, 0.0],
-        autocontinue: true,
-    }
-}
-
-fn polygon(settings: &VehicleSettings, inclusion: bool, corners: &[[f64; 2]]) -> Vec<MissionItem> {
-    let command = if inclusion {
-        command::NAV_FENCE_POLYGON_VERTEX_INCLUSION
-    } else {
-        command::NAV_FENCE_POLYGON_VERTEX_EXCLUSION
-    };
-    corners.iter().map(|corner| item(settings, command, corners.len() as f64, *corner)).collect()
-}
-
-fn square(settings: &VehicleSettings, half_m: f64) -> Vec<MissionItem> {
-    polygon(settings, true, &[[-half_m, -half_m], [half_m, -half_m], [half_m, half_m], [-half_m, half_m]])
-}
-
-/// A vehicle with plans that hovers 10 m up.
-fn hovering(start: &VehicleSettings, fence: Vec<MissionItem>, rally: Vec<MissionItem>) -> Bench {
-    let mut start = start.clone();
-    start.plans.set(PlanKind::Fence, Plan::new(fence));
-    start.plans.set(PlanKind::Rally, Plan::new(rally));
-    let mut bench = Bench::of(&start);
-    bench.arm();
-    let altitude = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, 498.0];
-    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, altitude), 0, "{:?}", bench.texts());
-    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
-    bench
-}
-
-fn go_to(bench: &mut Bench, north: f64, east: f64) -> u8 {
-    let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(north, east, 0.0));
-    let message = MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-        command: MavCmd::MAV_CMD_DO_REPOSITION,
-        target_system: 1,
-        target_component: 1,
-        frame: MavFrame::MAV_FRAME_GLOBAL,
-        param1: -1.0,
-        param4: f32::NAN,
-        x: (place.latitude_deg * 1e7).round() as i32,
-        y: (place.longitude_deg * 1e7).round() as i32,
-        z: f32::NAN,
-        ..COMMAND_INT_DATA::default()
-    });
-    bench.heard.clear();
-    bench.send(message);
-    bench.acks().last().expect("an answer").result
-}
-
-fn there(bench: &mut Bench, north: f64, east: f64) {
-    assert_eq!(go_to(bench, north, east), 0, "{:?}", bench.texts());
-    bench.fly_until("there", 60.0, |bench| {
-        let [x, y, _] = bench.position();
-        (x - north).hypot(y - east) < 0.3 && Vector3::from(bench.velocity()).norm() < 0.1
-    });
-}
-
-fn forward(bench: &mut Bench) {
-    let stick = MANUAL_CONTROL_DATA { target: 1, x: 1000, z: 500, ..MANUAL_CONTROL_DATA::default() };
-    bench.send(MavMessage::MANUAL_CONTROL(stick));
-}
 
 /// With full stick towards the border it comes to rest in front of it, and again when the pilot insists.
 #[test]
@@ -129,40 +59,6 @@ fn an_exclusion_and_the_height_are_kept() {
         highest = highest.max(-bench.position()[2]);
     });
     assert!((18.0..20.0).contains(&highest), "{highest} m");
-}
-
-#[test]
-fn what_leads_outside_is_refused_with_the_reason() {
-    let start = settings(Identity::Px4);
-    let wall = polygon(&start, false, &[[5.0, -5.0], [8.0, -5.0], [8.0, 5.0], [5.0, 5.0]]);
-    let fence = [square(&start, 30.0), wall].concat();
-    let mut bench = hovering(&start, fence, Vec::new());
-    for (north, why) in
-        [(31.0, "Reposition rejected: outside the fence"), (6.0, "Reposition rejected: in an exclusion zone")]
-    {
-        assert_eq!(go_to(&mut bench, north, 0.0), DENIED);
-        assert!(bench.texts().iter().any(|text| text == why), "{north}: {:?}", bench.texts());
-    }
-    // Set-points that lead outside count as none.
-    let mut target = SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1111_1000),
-        x: -5.0,
-        z: -10.0,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    };
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone()));
-    assert_eq!(bench.set_mode(Mode::Offboard), 0);
-    target.x = -40.0;
-    bench.heard.clear();
-    bench.stream(8.0, |bench| bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(target.clone())));
-    let told = "Set-point rejected: outside the fence";
-    assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
-    let [x, y, _] = bench.position();
-    assert!((-6.0..-2.0).contains(&x) && y.abs() < 0.1, "{x} {y}");
-    assert_eq!(bench.mode(), Mode::Hold, "refused ones are none");
 }
 
 #[test]
@@ -381,18 +277,6 @@ fn with_fence(settings: &VehicleSettings, fence: Vec<MissionItem>) -> autopilot:
     Bench::of(&settings).autopilot
 }
 
-fn set_cast(bench: &mut Bench, id: &str, value: f32) -> Option<f32> {
-    bench.heard.clear();
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: id.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
-    }));
-    bench.parameters().pop().map(|now| now.param_value)
-}
-
 /// FENCE_ENABLE and FENCE_TYPE say what of the fence is looked at; DO_FENCE_ENABLE is told as the parameter.
 #[test]
 fn ardupilots_parameters_choose_what_of_the_fence_counts() {
@@ -423,40 +307,6 @@ fn ardupilots_parameters_choose_what_of_the_fence_counts() {
     assert_eq!(set_cast(&mut bench, "GF_ACTION", 1.0), None);
 }
 
-/// A fence that comes after the mission: it is told at once, and the mission is not begun.
-#[test]
-fn a_mission_that_a_later_fence_forbids_is_not_begun() {
-    let mut start = settings(Identity::Px4);
-    let waypoint = |north| MissionItem {
-        position: {
-            let [latitude, longitude, _] = item(&start, command::NAV_WAYPOINT, 0.0, [north, 0.0]).position;
-            [latitude, longitude, 5.0]
-        },
-        ..item(&start, command::NAV_WAYPOINT, 0.0, [north, 0.0])
-    };
-    let takeoff = MissionItem { command: command::NAV_TAKEOFF, ..waypoint(0.0) };
-    let mission = vec![takeoff, waypoint(10.0), waypoint(40.0)];
-    start.plans.set(PlanKind::Mission, Plan::new(mission));
-    let mut bench = Bench::of(&start);
-    bench.heard = upload(&mut bench, PlanKind::Fence, &square(&start, 30.0));
-    assert_eq!(result(&bench.heard), Some(0));
-    let told = "Mission cannot be flown: item 3: outside the fence";
-    assert!(bench.texts().iter().any(|text| text == told), "{:?}", bench.texts());
-    let reason = "Mission rejected: item 3: outside the fence";
-    assert_eq!(bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), DENIED);
-    assert!(bench.texts().iter().any(|text| text == reason), "{:?}", bench.texts());
-    assert_eq!(bench.set_mode(Mode::Mission), DENIED);
-    assert!(!bench.autopilot.vehicle().is_armed());
-    // In flight neither.
-    bench.arm();
-    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [f32::NAN; 7]), 0);
-    bench.fly_until("takeoff", 20.0, |bench| bench.mode() == Mode::Hold);
-    assert_eq!(bench.set_mode(Mode::Mission), DENIED);
-    assert_eq!(bench.mode(), Mode::Hold);
-    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, [0.0; 7]), 0);
-    assert_eq!(bench.set_mode(Mode::Mission), 0);
-}
-
 /// A wall that is thinner than the way to a stop: goals and missions behind it are refused, a stick stops before it.
 #[test]
 fn nothing_leads_through_a_thin_wall() {
@@ -481,69 +331,6 @@ fn nothing_leads_through_a_thin_wall() {
     // On a goal beside it nothing is in the way.
     there(&mut bench, 18.5, 20.0);
     there(&mut bench, 0.0, 0.0);
-}
-
-/// What is looked at or remembered is not flown to, and ArduPilot's first item is home, wherever it was planned.
-#[test]
-fn what_is_only_looked_at_may_lie_outside() {
-    for identity in [Identity::Px4, Identity::ArduPilot] {
-        let mut start = settings(identity);
-        start.conduct.failsafe.fence_enabled = true;
-        start.plans.set(PlanKind::Fence, Plan::new(square(&start, 30.0)));
-        let mut bench = Bench::of(&start);
-        let far = |command: u16| item(&start, command, 0.0, [100.0, 0.0]);
-        let mut mission = vec![
-            item(&start, command::NAV_WAYPOINT, 0.0, [10.0, 0.0]),
-            far(command::DO_SET_ROI_LOCATION),
-            MissionItem { parameters: [3.0, 0.0, 0.0, 0.0], ..far(command::DO_SET_ROI) },
-            MissionItem { position: [5.0, 5.0, 45.0], ..far(command::DO_SET_ROI_WPNEXT_OFFSET) },
-            far(command::DO_SET_HOME),
-            item(&start, command::NAV_WAYPOINT, 0.0, [20.0, 0.0]),
-        ];
-        if identity.is_ardupilot() {
-            mission.insert(0, far(command::NAV_WAYPOINT));
-        }
-        let heard = upload(&mut bench, PlanKind::Mission, &mission);
-        assert_eq!(result(&heard), Some(0), "{identity:?}: {heard:?}");
-        mission.push(far(command::NAV_LOITER_UNLIM));
-        let heard = upload(&mut bench, PlanKind::Mission, &mission);
-        assert_eq!(result(&heard), Some(14), "{identity:?}: {heard:?}");
-    }
-}
-
-/// ArduPilot stays where all inclusion zones are unless FENCE_OPTIONS says that one is enough; PX4 in any of them.
-#[test]
-fn inclusion_zones_combine_as_the_autopilot_does_it() {
-    let zones = |start: &VehicleSettings| {
-        let beside = polygon(start, true, &[[-30.0, -10.0], [-30.0, 60.0], [30.0, 60.0], [30.0, -10.0]]);
-        [square(start, 40.0), beside].concat()
-    };
-    let mut start = settings(Identity::ArduPilot);
-    start.conduct.failsafe.fence_enabled = true;
-    let mut bench = Bench::hovering_with(&start);
-    assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &zones(&start))), Some(0));
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED, "in one of them only");
-    assert_eq!(go_to(&mut bench, 20.0, 20.0), 0, "{:?}", bench.texts());
-    assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 3.0), Some(3.0));
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
-    assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 0.0), Some(0.0));
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED);
-    let start = settings(Identity::Px4);
-    let mut bench = hovering(&start, zones(&start), Vec::new());
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
-}
-
-/// Many clients repeat the first vertex at the end of the ring.
-#[test]
-fn a_polygon_may_be_closed_by_its_first_vertex() {
-    let mut start = settings(Identity::ArduPilot);
-    start.conduct.failsafe.fence_enabled = true;
-    let ring =
-        polygon(&start, true, &[[-20.0, -20.0], [20.0, -20.0], [20.0, 20.0], [-20.0, 20.0], [-20.0, -20.0]]);
-    let mut bench = Bench::hovering_with(&start);
-    assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &ring)), Some(0), "{:?}", bench.texts());
-    assert_eq!(bench.autopilot.vehicle().plans().get(PlanKind::Fence).items().len(), 5, "as it came");
-    assert_eq!((go_to(&mut bench, 25.0, 0.0), go_to(&mut bench, 15.0, 0.0)), (DENIED, 0));
 }
 
 /// Bit 0 of FENCE_OPTIONS: nobody chooses another mode before the vehicle is back from a breach.

@@ -5,7 +5,7 @@ use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
 use super::entry::{Entry, Source};
 use super::equipment_parameters::equipment_parameters;
-use super::limit_names::LIMIT_NAMES;
+use super::limit_names::{LIMIT_NAMES, LimitName};
 use super::loop_access::write;
 use super::loop_names::loop_name;
 use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
@@ -53,37 +53,6 @@ impl ParameterTable {
         let of_loop = PARAMETERS
             .iter()
             .filter_map(|parameter| Some(Entry::of_loop(loop_name(parameter.name)?, parameter)));
-        let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
-        let (own, of_modes, around) = if ardupilot {
-            (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS, ARDUPILOT_SURROUNDINGS)
-        } else {
-            (PX4_PARAMETERS, PX4_MODE_PARAMETERS, PX4_SURROUNDINGS)
-        };
-        let of_conduct = CONDUCT_PARAMETERS
-            .iter()
-            .chain(own)
-            .chain(of_modes)
-            .chain(radio_parameters(ardupilot))
-            .chain(around)
-            .chain(WIND_PARAMETERS)
-            .chain(simulated)
-            .chain(equipment_parameters().filter(|_| ardupilot))
-            .flat_map(|parameter| {
-                let names = parameter.names_in(identity);
-                names.map(|(id, scale, is_other)| Entry {
-                    is_other,
-                    is_of_run: !ardupilot && WIND_PARAMETERS.iter().any(|wind| wind.id == id),
-                    ..Entry::new(id, Source::Conduct(parameter, scale))
-                })
-            });
-        let of_limits = LIMIT_NAMES.iter().filter_map(|name| {
-            let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name.dotted)?;
-            let names = if ardupilot { name.ardupilot } else { name.px4 };
-            Some(names.iter().map(move |(id, scale)| Entry {
-                is_other: true,
-                ..Entry::new(id, Source::Alias(name, parameter, *scale))
-            }))
-        });
         let owner = if ardupilot { Owner::ArduPilot } else { Owner::Px4 };
         let kept = kept_parameters().filter(|(_, parameter)| parameter.owner == owner);
         let kept = kept.map(|(place, parameter)| Entry::new(parameter.id, Source::Kept(parameter, place)));
@@ -100,8 +69,8 @@ impl ParameterTable {
         let of_statistics =
             counted.iter().map(|(id, statistic)| Entry::new(id, Source::Statistic(*statistic)));
         let mut entries: Vec<Entry> = of_loop
-            .chain(of_conduct)
-            .chain(of_limits.flatten())
+            .chain(of_conduct(identity))
+            .chain(of_limits(ardupilot))
             .chain(kept)
             .chain(others)
             .chain(also)
@@ -252,6 +221,49 @@ impl ParameterTable {
             }
         }
     }
+}
+
+/// Those of the vehicle's behaviour.
+fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
+    let ardupilot = identity.is_ardupilot();
+    let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
+    let (own, of_modes, around) = if ardupilot {
+        (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS, ARDUPILOT_SURROUNDINGS)
+    } else {
+        (PX4_PARAMETERS, PX4_MODE_PARAMETERS, PX4_SURROUNDINGS)
+    };
+    CONDUCT_PARAMETERS
+        .iter()
+        .chain(own)
+        .chain(of_modes)
+        .chain(radio_parameters(ardupilot))
+        .chain(around)
+        .chain(simulated)
+        .chain(equipment_parameters().filter(move |_| ardupilot))
+        .map(|parameter| (parameter, false))
+        // PX4 has no parameters of the wind: each run has its own.
+        .chain(WIND_PARAMETERS.iter().map(move |parameter| (parameter, !ardupilot)))
+        .flat_map(move |(parameter, is_of_run)| {
+            let names = parameter.names_in(identity);
+            names.map(move |(id, scale, is_other)| Entry {
+                is_other,
+                is_of_run,
+                ..Entry::new(id, Source::Conduct(parameter, scale))
+            })
+        })
+}
+
+/// The autopilots' names of limits that the closed loop has.
+fn of_limits(ardupilot: bool) -> impl Iterator<Item = Entry> {
+    let entries = move |name: &'static LimitName| {
+        let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name.dotted)?;
+        let names = if ardupilot { name.ardupilot } else { name.px4 };
+        Some(names.iter().map(move |(id, scale)| Entry {
+            is_other: true,
+            ..Entry::new(id, Source::Alias(name, parameter, *scale))
+        }))
+    };
+    LIMIT_NAMES.iter().filter_map(entries).flatten()
 }
 
 /// `None` if the parameter cannot have the value; nothing has changed then.

@@ -1,8 +1,10 @@
 //! Plans made from items: in SI units and the local frame.
 
-use super::command::{self, Source, mission_command};
+use super::mission_command::{ROI_ITEM, Source, mission_command};
 use super::step::{Condition, Do, Step, Turn};
-use super::{FaultCode, Look, MissionItem, Place, PlanFault, PlanKind, Program, ProgramStep, Site, check};
+use super::{
+    FaultCode, Look, MissionItem, Place, PlanFault, PlanKind, Program, ProgramStep, Site, check, command,
+};
 
 /// The steps of a mission whose items were checked. The first item of ArduPilot's convention is home, and never checked: what
 /// cannot be understood is passed by.
@@ -35,7 +37,7 @@ pub fn look(item: &MissionItem, items: &[MissionItem], site: &Site) -> Result<Op
     check::item(PlanKind::Mission, index, item, site)?;
     let (count, named) = (items.len(), item.parameter(2));
     if item.command == command::DO_SET_ROI
-        && item.parameter(1) == command::ROI_ITEM
+        && item.parameter(1) == ROI_ITEM
         && !(0.0..count as f64).contains(&named)
     {
         let reason = format!("no item has sequence number {named}; the plan has {count} items");
@@ -100,6 +102,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::command::*;
+    use super::super::mission_command::mission_command;
     use super::super::step::{Condition, Do, Navigate, Step, Turn, TurnTo, Waypoint};
     use super::super::{Altitude, Look, MissionItem, Place, PlanKind, Site, check, frame};
     use super::{look, mission, rally_points};

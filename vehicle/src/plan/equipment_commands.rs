@@ -4,6 +4,7 @@
 use core::f64::consts::{PI, TAU};
 
 use super::command::*;
+use super::mission_command::{LONGEST_S, MissionCommand, PlaceRule, Source};
 use super::step::{Do, Step};
 use crate::equipment::{CameraMode, Drive, GimbalMode, Oblique, Operation, ParachuteOrder, Pointing, Switch};
 use crate::radio::Position;
@@ -300,6 +301,7 @@ mod tests {
 
     use super::*;
     use crate::identity::Identity;
+    use crate::plan::mission_command::mission_command;
     use crate::plan::{MissionItem, PlanKind, Site, check, frame};
     use crate::world::{Geodetic, LocalFrame};
 
@@ -315,19 +317,16 @@ mod tests {
         (mission_command(command).unwrap().step)(&Source { item: &item, items: &items, site: &site })
     }
 
-    /// Each command with parameters as a ground station sends them, and what it means by the specification of MAVLink.
-    #[test]
-    fn every_command_becomes_its_operation() {
-        let absent = |what| Step::Do(Do::Absent(what));
-        let mark = Step::Do(Do::Mark);
-        let point = |pitch_rad, yaw_rad, yaw_lock| {
-            operate(Operation::Point(Pointing { pitch_rad, yaw_rad, yaw_lock, ..Pointing::default() }))
-        };
+    /// A command with parameters as a ground station sends them, and what it means by the specification of MAVLink.
+    type Case = (u16, [f64; 7], Step);
+
+    /// Outputs, gripper and camera.
+    #[rustfmt::skip] // A line per case reads as the table that it is.
+    fn outputs_and_camera() -> Vec<Case> {
         let by_distance = |distance_m, oblique| {
             operate(Operation::TriggerByDistance { distance_m, at_once: true, oblique })
         };
-        #[rustfmt::skip]
-        let cases = [
+        vec![
             (DO_SET_RELAY, [2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::SetRelay { relay: 2, to: Switch::On })),
             (DO_SET_RELAY, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::SetRelay { relay: 2, to: Switch::Off })),
             (DO_SET_RELAY, [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::SetRelay { relay: 2, to: Switch::Toggle })),
@@ -339,14 +338,14 @@ mod tests {
                 operate(Operation::SetActuators([Some(0.5), None, Some(-1.0), None]))),
             (DO_GRIPPER, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::Grip { grabs: false })),
             (DO_GRIPPER, [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::Grip { grabs: true })),
-            (DO_DIGICAM_CONFIGURE, [0.0; 7], absent("settings of the camera")),
+            (DO_DIGICAM_CONFIGURE, [0.0; 7], without("settings of the camera")),
             (DO_DIGICAM_CONTROL, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0], operate(Operation::Shoot)),
-            (DO_DIGICAM_CONTROL, [0.0; 7], mark),
-            (DO_CONTROL_VIDEO, [0.0; 7], absent("old video control")),
+            (DO_DIGICAM_CONTROL, [0.0; 7], Step::Do(Do::Mark)),
+            (DO_CONTROL_VIDEO, [0.0; 7], without("old video control")),
             (DO_SET_CAM_TRIGG_DIST, [12.5, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0], by_distance(12.5, None)),
             (DO_SET_CAM_TRIGG_DIST, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], by_distance(0.0, None)),
             (DO_SET_CAM_TRIGG_INTERVAL, [1500.0, NAN, NAN, NAN, NAN, NAN, NAN], operate(Operation::TriggerByTime { interval_s: 1.5 })),
-            (DO_SET_CAM_TRIGG_INTERVAL, [-1.0, NAN, NAN, NAN, NAN, NAN, NAN], mark),
+            (DO_SET_CAM_TRIGG_INTERVAL, [-1.0, NAN, NAN, NAN, NAN, NAN, NAN], Step::Do(Do::Mark)),
             (OBLIQUE_SURVEY, [20.0, 0.0, 1.0, 3.0, 90.0, -90.0, 0.0], by_distance(20.0, Some(Oblique {
                 positions: 3, roll_rad: FRAC_PI_2, pitch_rad: -FRAC_PI_2 }))),
             (SET_CAMERA_MODE, [0.0, 2.0, NAN, NAN, NAN, NAN, NAN], operate(Operation::SetCameraMode(CameraMode::Survey))),
@@ -354,41 +353,63 @@ mod tests {
             (SET_CAMERA_ZOOM, [1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::Zoom(Drive::Continuous(-1.0)))),
             (SET_CAMERA_FOCUS, [3.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::Focus(Drive::Distance(5.0)))),
             (SET_CAMERA_FOCUS, [4.0, NAN, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::Focus(Drive::Automatic))),
-            (SET_CAMERA_SOURCE, [0.0; 7], absent("second lens of the camera")),
+            (SET_CAMERA_SOURCE, [0.0; 7], without("second lens of the camera")),
             (IMAGE_START_CAPTURE, [0.0, 2.0, 5.0, 1.0, NAN, NAN, NAN], operate(Operation::Capture { interval_s: 2.0, count: 5 })),
             (IMAGE_STOP_CAPTURE, [0.0, NAN, NAN, NAN, NAN, NAN, NAN], operate(Operation::StopCapture)),
             (DO_TRIGGER_CONTROL, [1.0, -1.0, 0.0, NAN, NAN, NAN, NAN],
                 operate(Operation::ControlTrigger { enabled: Some(true), paused: Some(false), reset: false })),
             (VIDEO_START_CAPTURE, [0.0; 7], operate(Operation::Record(true))),
             (VIDEO_STOP_CAPTURE, [0.0; 7], operate(Operation::Record(false))),
+        ]
+    }
+
+    /// The gimbal.
+    #[rustfmt::skip] // A line per case reads as the table that it is.
+    fn gimbal() -> Vec<Case> {
+        let point = |pitch_rad, yaw_rad, yaw_lock| {
+            operate(Operation::Point(Pointing { pitch_rad, yaw_rad, yaw_lock, ..Pointing::default() }))
+        };
+        vec![
             (DO_MOUNT_CONFIGURE, [0.0; 7], operate(Operation::RetractGimbal)),
             (DO_MOUNT_CONFIGURE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], operate(Operation::CentreGimbal)),
-            (DO_MOUNT_CONFIGURE, [2.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0], mark),
+            (DO_MOUNT_CONFIGURE, [2.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0], Step::Do(Do::Mark)),
             (DO_MOUNT_CONTROL, [-90.0, 0.0, 270.0, 0.0, 0.0, 0.0, 2.0], operate(Operation::Point(Pointing {
                 roll_rad: Some(0.0), pitch_rad: Some(-FRAC_PI_2), yaw_rad: Some(-FRAC_PI_2), ..Pointing::default() }))),
             (DO_GIMBAL_MANAGER_PITCHYAW, [-90.0, 90.0, NAN, NAN, 0.0, 0.0, 0.0], point(Some(-FRAC_PI_2), Some(FRAC_PI_2), false)),
             (DO_GIMBAL_MANAGER_PITCHYAW, [-90.0, NAN, NAN, NAN, 28.0, 0.0, 0.0], point(Some(-FRAC_PI_2), None, true)),
             // As a MISSION_ITEM_INT scales it.
             (DO_GIMBAL_MANAGER_PITCHYAW, [NAN, NAN, NAN, NAN, 2e-7, 0.0, 0.0], operate(Operation::CentreGimbal)),
-            (DO_GIMBAL_MANAGER_CONFIGURE, [0.0; 7], mark),
+            (DO_GIMBAL_MANAGER_CONFIGURE, [0.0; 7], Step::Do(Do::Mark)),
+        ]
+    }
+
+    /// What is for others to do, or is not there.
+    #[rustfmt::skip] // A line per case reads as the table that it is.
+    fn others() -> Vec<Case> {
+        vec![
             (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::EnableFence(true))),
-            (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("parachute")),
-            (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("landing gear")),
-            (DO_WINCH, [0.0; 7], absent("winch")),
-            (DO_SPRAYER, [0.0; 7], absent("sprayer")),
-            (DO_ENGINE_CONTROL, [0.0; 7], absent("combustion engine")),
-            (DO_AUX_FUNCTION, [0.0; 7], absent("auxiliary functions")),
-            (DO_SEND_SCRIPT_MESSAGE, [0.0; 7], absent("scripts")),
-            (DO_VTOL_TRANSITION, [0.0; 7], absent("wings")),
-            (DO_SET_REVERSE, [0.0; 7], absent("reverse drive")),
-            (DO_INVERTED_FLIGHT, [0.0; 7], absent("inverted flight")),
-            (DO_AUTOTUNE_ENABLE, [0.0; 7], absent("automatic tuning")),
-            (DO_GUIDED_LIMITS, [0.0; 7], absent("guided control within missions")),
-            (DO_SET_RESUME_REPEAT_DIST, [0.0; 7], absent("rewinding of missions")),
-            (DO_LAND_START, [0.0; 7], mark),
-            (DO_RETURN_PATH_START, [0.0; 7], mark),
-            (JUMP_TAG, [7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], mark),
-        ];
+            (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("parachute")),
+            (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("landing gear")),
+            (DO_WINCH, [0.0; 7], without("winch")),
+            (DO_SPRAYER, [0.0; 7], without("sprayer")),
+            (DO_ENGINE_CONTROL, [0.0; 7], without("combustion engine")),
+            (DO_AUX_FUNCTION, [0.0; 7], without("auxiliary functions")),
+            (DO_SEND_SCRIPT_MESSAGE, [0.0; 7], without("scripts")),
+            (DO_VTOL_TRANSITION, [0.0; 7], without("wings")),
+            (DO_SET_REVERSE, [0.0; 7], without("reverse drive")),
+            (DO_INVERTED_FLIGHT, [0.0; 7], without("inverted flight")),
+            (DO_AUTOTUNE_ENABLE, [0.0; 7], without("automatic tuning")),
+            (DO_GUIDED_LIMITS, [0.0; 7], without("guided control within missions")),
+            (DO_SET_RESUME_REPEAT_DIST, [0.0; 7], without("rewinding of missions")),
+            (DO_LAND_START, [0.0; 7], Step::Do(Do::Mark)),
+            (DO_RETURN_PATH_START, [0.0; 7], Step::Do(Do::Mark)),
+            (JUMP_TAG, [7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::Mark)),
+        ]
+    }
+
+    #[test]
+    fn every_command_becomes_its_operation() {
+        let cases = [outputs_and_camera(), gimbal(), others()].concat();
         for (command, parameters, expected) in &cases {
             assert_eq!(step(Identity::Px4, *command, *parameters), *expected, "{command} {parameters:?}");
         }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{command, frame};
+
 /// An item: a command with its parameters. What was not given is NaN.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MissionItem {
@@ -27,6 +29,23 @@ impl PartialEq for MissionItem {
 }
 
 impl MissionItem {
+    /// The number of the item that a jump leads to, if it is one.
+    pub fn jump_target_mut(&mut self) -> Option<&mut f64> {
+        let [target, ..] = &mut self.parameters;
+        (self.command == command::DO_JUMP).then_some(target)
+    }
+
+    /// Home as an item: latitude and longitude, degrees, and altitude above sea level, m.
+    pub fn home(position: [f64; 3]) -> Self {
+        Self {
+            frame: frame::GLOBAL,
+            command: command::NAV_WAYPOINT,
+            parameters: [0.0; 4],
+            position,
+            autocontinue: true,
+        }
+    }
+
     /// Parameter `n` of 1 to 7.
     pub fn parameter(&self, n: usize) -> f64 {
         let all = self.parameters.iter().chain(&self.position);

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::failsafe::{Action, FenceStart};
+use super::failsafe::FenceStart;
 use super::fence_keeping::keeps_sticks_inside;
 use super::motion::Motion;
 use super::notice::Refusal;
@@ -146,8 +146,8 @@ fn height_m(situation: &Situation) -> f64 {
 /// What of the fence the vehicle cannot help breaching when it brakes within limits.
 pub(super) fn breach_ahead(situation: &Situation, limits: &Limits) -> Option<Breach> {
     let mut stopping_m = stopping_place_m(situation, limits);
-    if situation.conduct.failsafe.fence == Action::Return {
-        // The way home is planned, and what is planned turns later.
+    if situation.conduct.failsafe.fence.plans_a_way() {
+        // What is planned turns later.
         stopping_m += situation.outputs.velocity_m_s * situation.configuration.shaping_delay_s();
     }
     let Steering::Path(path) = situation.steering else { return situation.breach_to(&stopping_m) };
@@ -233,6 +233,7 @@ mod tests {
         AxisTarget, Breach, FenceStart, FenceWatch, Mode, PositionSetPoint, check_goal, check_set_point,
     };
     use crate::identity::Identity;
+    use crate::vehicle::failsafe::Action;
     use crate::vehicle::scene::Scene;
     use crate::vehicle::set_point::YawTarget;
     use crate::vehicle::sticks::Sticks;
@@ -262,6 +263,31 @@ mod tests {
         assert_eq!(watch.record().count, 0);
         watch.count(7);
         assert_eq!((watch.record().count, watch.record().latest), (1, Some((Breach::Distance(50.0), 7))));
+    }
+
+    /// What is planned turns later, wherever it leads: its breach is seen sooner than that of a vehicle that brakes.
+    #[test]
+    fn a_way_that_is_planned_needs_more_room() {
+        let mut scene = scene();
+        scene.conduct.failsafe.fence_ahead = true;
+        let mut first_m = |action: Action| {
+            let sees = |x: &f64| {
+                scene.come_to([*x, 0.0, -10.0], [5.0, 0.0, 0.0]);
+                scene.show(|situation, proposal| proposal.follow(situation, &PositionSetPoint::HOLD));
+                scene.conduct.failsafe.fence = action;
+                let mut watch = FenceWatch::default();
+                watch.watch(&scene.situation());
+                watch.record().now.is_some()
+            };
+            (300..500).map(|tenths| 0.1 * f64::from(tenths)).find(sees).expect("it cannot stop")
+        };
+        let braked_m = first_m(Action::Hold);
+        for action in
+            [Action::Return, Action::TraceOrReturn, Action::TraceOrLand, Action::MissionLandingOrReturn]
+        {
+            assert!(first_m(action) < braked_m - 0.5, "{action:?}");
+        }
+        assert_eq!(first_m(Action::Land), braked_m);
     }
 
     /// Sticks are kept inside as they lead; a way to a place is predicted, and so is a flight without a pilot.

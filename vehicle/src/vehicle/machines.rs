@@ -1,5 +1,7 @@
 //! The machines that the vehicle consists of, each with a state of its own.
 
+use quadrotor::{Configuration, Outputs};
+
 use super::autostart::Autostart;
 use super::battery::Battery;
 use super::button_watch::ButtonWatch;
@@ -26,6 +28,7 @@ use super::receiver::Receiver;
 use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::settings::VehicleSettings;
 use super::simple_flight::SimpleFlight;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
@@ -38,6 +41,7 @@ use super::vibration_watch::VibrationWatch;
 use super::weathervane::Weathervane;
 use super::zigzag::ZigZag;
 use crate::equipment::Equipment;
+use crate::plan::Program;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
 #[derive(Debug)]
@@ -118,4 +122,55 @@ pub struct Machines {
     pub parachute: ParachuteWatch,
     /// What it carries.
     pub equipment: Equipment,
+}
+
+impl Machines {
+    /// Those of a vehicle that is `truth` at first, and whose mission is `program`.
+    pub fn new(
+        settings: &VehicleSettings,
+        configuration: &Configuration,
+        truth: &Outputs,
+        program: Program,
+    ) -> Self {
+        Self {
+            autostart: Autostart::new(settings.autostart && program.is_flown()),
+            injection: Injection::new(settings.faults.clone()),
+            battery: Battery::new(settings.battery),
+            fence: FenceWatch::default(),
+            failsafe: Failsafe::default(),
+            rotors: RotorWatch::new(truth.rotor_speed_rad_s),
+            vibration: VibrationWatch::default(),
+            hold: HoldWatch::default(),
+            crash: CrashWatch::default(),
+            landing: Landing::new(-truth.position_m.z),
+            motor_tests: MotorTests::default(),
+            takeoff: Takeoff::default(),
+            pilot_takeoff: PilotTakeoff::default(),
+            takeoff_check: TakeoffCheck::default(),
+            throw: Throw::default(),
+            flip: Flip::default(),
+            zigzag: ZigZag::default(),
+            weathervane: Weathervane::default(),
+            pushes: PushClock::default(),
+            turn: CommandedTurn::default(),
+            receiver: Receiver::default(),
+            pilot_watch: PilotWatch::default(),
+            buttons: ButtonWatch::default(),
+            simple: SimpleFlight::default(),
+            stick_flight: StickFlight::default(),
+            offboard: Offboard::default(),
+            return_home: Return::default(),
+            smart_return: SmartReturn::default(),
+            precision: PrecisionLanding::default(),
+            orbit: Orbit::default(),
+            follow: Follow::default(),
+            mission: Mission::new(program),
+            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
+            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
+            remote_id: RemoteId::default(),
+            speeds: Speeds::new(&configuration.limits),
+            parachute: ParachuteWatch::default(),
+            equipment: Equipment::new(&settings.conduct.equipment.mount),
+        }
+    }
 }

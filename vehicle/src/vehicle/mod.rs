@@ -98,6 +98,7 @@ mod reference_guide;
 mod region;
 mod remote_id;
 mod reposition;
+mod return_height;
 mod return_home;
 mod return_settings;
 mod rotor_watch;

@@ -16,6 +16,7 @@ use super::heading_policy::{HeadingPolicy, Purpose};
 use super::motion::wrapped;
 use super::notice::Severity;
 use super::proposal::Proposal;
+use super::return_height::way_z_m;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::speeds::SpeedChange;
@@ -45,9 +46,6 @@ const REACHED_M: f64 = 0.5;
 const SLOW_M_S: f64 = 0.5;
 /// So near to its heading, rad, ArduPilot lands.
 const TURNED_RAD: f64 = 0.035;
-/// ArduPilot's lowest height of the way, m, and its shallowest cone.
-const LOWEST_M: f64 = 0.3;
-const SHALLOWEST: f64 = 0.5;
 
 /// So many sides of the fence are looked at in one tick to find the way: a fraction of a millisecond.
 const WORK_PER_TICK: u64 = 10_000;
@@ -70,7 +68,8 @@ impl Return {
     /// Begins the way home.
     pub fn begin(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let goals_m = safe_points_m(situation);
-        let way_z_m = way_z_m(situation, goals_m.front().copied());
+        let distance_m = goals_m.front().map_or(f64::INFINITY, |goal| distance_m(situation, *goal));
+        let way_z_m = way_z_m(situation, distance_m);
         *self = Self { goals_m, way_z_m, ..Self::default() };
         let speed_m_s = situation.conduct.return_home.speed_m_s;
         if situation.identity.is_ardupilot() && speed_m_s > 0.0 {
@@ -251,46 +250,6 @@ fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
     (outputs.position_m - goal.position_m).norm() < REACHED_M && outputs.velocity_m_s.norm() < SLOW_M_S
 }
 
-/// Height of the way to a place, z, m: never lower than the vehicle is, and not above the fence.
-fn way_z_m(situation: &Situation, goal: Option<[f64; 2]>) -> f64 {
-    let home_z_m = situation.home.position_m.z;
-    let here_m = home_z_m - situation.outputs.position_m.z;
-    let distance_m = goal.map_or(f64::INFINITY, |goal| distance_m(situation, goal));
-    let wanted_m = if situation.identity.is_ardupilot() {
-        ardupilot_height_m(situation, here_m, distance_m)
-    } else {
-        px4_height_m(situation, distance_m)
-    };
-    let mut z_m = situation.outputs.position_m.z.min(home_z_m - wanted_m);
-    if let Some(ceiling_z_m) = situation.fence_ceiling_z_m() {
-        z_m = z_m.max(ceiling_z_m);
-    }
-    z_m
-}
-
-/// At least a climb, and near home not above a cone that widens with the height.
-fn ardupilot_height_m(situation: &Situation, here_m: f64, distance_m: f64) -> f64 {
-    let settings = &situation.conduct.return_home;
-    let least_m = LOWEST_M.max(here_m + settings.least_climb_m.max(0.0));
-    let height_m = situation.conduct.return_height_m.max(least_m);
-    if settings.cone_slope < SHALLOWEST {
-        return height_m;
-    }
-    height_m.min((distance_m * settings.cone_slope).max(least_m))
-}
-
-/// Near the place it stays below the full height, within a cone, and never so low that it touches the ground on the way.
-fn px4_height_m(situation: &Situation, distance_m: f64) -> f64 {
-    let conduct = situation.conduct;
-    let (height_m, cone_rad) = (conduct.return_height_m, conduct.return_home.cone_rad);
-    if distance_m <= conduct.acceptance_radius_m {
-        return 2.0 * distance_m;
-    }
-    let near = distance_m <= conduct.return_near_m && cone_rad > 0.0;
-    let wanted_m = if near { height_m.min(distance_m / libm::tan(cone_rad)) } else { height_m };
-    wanted_m.max(2.0 * conduct.acceptance_radius_m)
-}
-
 /// Where a return may go: home, the rally points and the fence's return point, as far as the fence allows them, the nearest
 /// first. North and east, m.
 fn safe_points_m(situation: &Situation) -> VecDeque<[f64; 2]> {
@@ -375,43 +334,9 @@ mod tests {
     }
 
     #[test]
-    fn near_home_it_need_not_climb_as_high() {
-        // PX4: within RTL_MIN_DIST in a cone of 45°, and at least twice the acceptance radius.
-        assert_eq!(heights(Scene::hovering_at([4.5, 0.0, -1.0])), [4.5]);
-        assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -1.0])), [4.0]);
-        assert_eq!(heights(Scene::hovering_at([1.0, 0.0, -1.5])), [2.0]);
-        assert_eq!(heights(Scene::hovering_at([3.0, 0.0, -10.0])), [10.0]);
-        // RTL_MIN_DIST is 10 m.
-        assert_eq!(heights(Scene::hovering_at([9.5, 0.0, -1.0])), [9.5]);
-        assert_eq!(heights(Scene::hovering_at([10.5, 0.0, -1.0])), [30.0]);
-        let mut wide = Scene::hovering_at([4.5, 0.0, -1.0]);
-        wide.conduct.return_home.cone_rad = 0.0;
-        assert_eq!(heights(wide), [30.0]);
-    }
-
-    fn ardupilot(position_m: [f64; 3]) -> Scene {
-        let mut scene = Scene::hovering_at(position_m);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
-        scene
-    }
-
-    #[test]
-    fn ardupilot_climbs_by_its_cone_and_its_least_climb() {
-        // RTL_ALT is 15 m, the cone's slope 3.
-        assert_eq!(heights(ardupilot([40.0, 0.0, -5.0])), [15.0]);
-        assert_eq!(heights(ardupilot([3.0, 0.0, -5.0])), [9.0]);
-        assert_eq!(heights(ardupilot([1.0, 0.0, -5.0])), [5.0]);
-        let mut scene = ardupilot([40.0, 0.0, -14.0]);
-        scene.conduct.return_home.least_climb_m = 4.0;
-        assert_eq!(heights(scene), [18.0]);
-        let mut scene = ardupilot([1.0, 0.0, -5.0]);
-        scene.conduct.return_home.cone_slope = 0.0;
-        assert_eq!(heights(scene), [15.0]);
-    }
-
-    #[test]
     fn ardupilot_stays_at_its_final_height_and_px4_waits_at_its_own() {
-        let mut scene = ardupilot([40.0, 0.0, -5.0]);
+        let mut scene = Scene::hovering_at([40.0, 0.0, -5.0]);
+        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
         scene.conduct.return_home.final_height_m = 3.0;
         assert_eq!(heights(scene), [15.0, 3.0]);
         for wait_s in [2.0, -1.0] {

@@ -17,60 +17,25 @@ mod surroundings;
 use nalgebra::Vector3;
 use quadrotor::ConfigurationError;
 
-use super::autostart::Autostart;
-use super::battery::{Battery, capacity_ah, full_voltage_v};
-use super::button_watch::ButtonWatch;
+use super::battery::{capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
-use super::commanded_turn::CommandedTurn;
-use super::crash_watch::CrashWatch;
 use super::decided::Decided;
 use super::descent::descend;
-use super::failsafe::{Cause, Change, Failsafe};
-use super::fence_watch::FenceWatch;
-use super::flip::Flip;
-use super::follow::Follow;
-use super::hold_watch::HoldWatch;
+use super::failsafe::{Cause, Change};
 use super::home::Home;
-use super::injection::Injection;
 use super::landed::LandedState;
-use super::landing::Landing;
 use super::limit_release::is_fitting;
 use super::machines::Machines;
 use super::manual_control::fly_by_velocity;
-use super::mission::{Helm, Mission};
-use super::motor_test::MotorTests;
+use super::mission::Helm;
 use super::notice::Severity;
-use super::obstacle_watch::ObstacleWatch;
-use super::offboard::Offboard;
-use super::orbit::Orbit;
-use super::parachute_watch::ParachuteWatch;
 use super::perception::Perception;
-use super::pilot_takeoff::PilotTakeoff;
-use super::pilot_watch::PilotWatch;
 use super::plans::KnownPlans;
-use super::precision_landing::PrecisionLanding;
-use super::pushes::PushClock;
-use super::receiver::Receiver;
-use super::remote_id::RemoteId;
-use super::return_home::Return;
-use super::rotor_watch::RotorWatch;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
-use super::simple_flight::SimpleFlight;
 use super::situation::Situation;
-use super::smart_return::SmartReturn;
-use super::speeds::Speeds;
-use super::stick_flight::StickFlight;
-use super::takeoff::Takeoff;
-use super::takeoff_check::TakeoffCheck;
-use super::throw::Throw;
 use super::tick::{TICK_S, TICK_US};
-use super::traffic_watch::TrafficWatch;
-use super::vibration_watch::VibrationWatch;
-use super::weathervane::Weathervane;
-use super::zigzag::ZigZag;
 use crate::FlightError;
-use crate::equipment::Equipment;
 use crate::estimation::{Estimate, Navigation, SensorModel};
 use crate::foreign::ForeignModel;
 use crate::mode::Mode;
@@ -114,48 +79,8 @@ impl Vehicle {
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
         let site = Site { identity: settings.identity, frame, home_m };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
-        let battery = Battery::new(settings.battery);
-        let full_battery_v = full_voltage_v(&configuration.airframe, &battery);
-        let machines = Machines {
-            autostart: Autostart::new(settings.autostart && program.is_flown()),
-            injection: Injection::new(settings.faults.clone()),
-            battery,
-            fence: FenceWatch::default(),
-            failsafe: Failsafe::default(),
-            rotors: RotorWatch::new(perception.truth().rotor_speed_rad_s),
-            vibration: VibrationWatch::default(),
-            hold: HoldWatch::default(),
-            crash: CrashWatch::default(),
-            landing: Landing::new(-perception.truth().position_m.z),
-            motor_tests: MotorTests::default(),
-            takeoff: Takeoff::default(),
-            pilot_takeoff: PilotTakeoff::default(),
-            takeoff_check: TakeoffCheck::default(),
-            throw: Throw::default(),
-            flip: Flip::default(),
-            zigzag: ZigZag::default(),
-            weathervane: Weathervane::default(),
-            pushes: PushClock::default(),
-            turn: CommandedTurn::default(),
-            receiver: Receiver::default(),
-            pilot_watch: PilotWatch::default(),
-            buttons: ButtonWatch::default(),
-            simple: SimpleFlight::default(),
-            stick_flight: StickFlight::default(),
-            offboard: Offboard::default(),
-            return_home: Return::default(),
-            smart_return: SmartReturn::default(),
-            precision: PrecisionLanding::default(),
-            orbit: Orbit::default(),
-            follow: Follow::default(),
-            mission: Mission::new(program),
-            obstacles: ObstacleWatch::new(settings.surroundings.obstacles.clone()),
-            traffic: TrafficWatch::new(settings.surroundings.aircraft.clone()),
-            remote_id: RemoteId::default(),
-            speeds: Speeds::new(&configuration.limits),
-            parachute: ParachuteWatch::default(),
-            equipment: Equipment::new(&settings.conduct.equipment.mount),
-        };
+        let machines = Machines::new(settings, &configuration, perception.truth(), program);
+        let full_battery_v = full_voltage_v(&configuration.airframe, &machines.battery);
         let mut vehicle = Self {
             setup: Setup::new(settings, full_battery_v),
             closed_loop,

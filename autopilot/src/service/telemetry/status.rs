@@ -11,53 +11,48 @@ use vehicle::{LandedState, Vehicle, Weakness};
 
 use crate::codec::{boot_ms, boot_us};
 
-/// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
-pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
-    let present = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ANGULAR_RATE_CONTROL
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
-        | MavSysStatusSensor::MAV_SYS_STATUS_AHRS
-        | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY
-        | MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK;
-    let present = if vehicle.pilot().has_radio {
-        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER
-    } else {
-        present
-    };
-    let present =
-        if vehicle.has_fence() { present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE } else { present };
-    let [has_proximity, proximity_is_on, measures_around] = vehicle.proximity();
-    let present =
-        if has_proximity { present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY } else { present };
-    let present = if vehicle.has_rangefinder() {
-        present | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
-    } else {
-        present
-    };
-    let enabled = if vehicle.fence().is_some() {
-        present
-    } else {
-        present & !MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE
-    };
-    let enabled = if vehicle.obstacles().rangefinder_is_on() {
-        enabled
-    } else {
-        enabled & !MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION
-    };
-    let enabled = if proximity_is_on {
-        enabled
-    } else {
-        enabled & !MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY
-    };
+/// Instruments and controllers that every vehicle has.
+const ALWAYS_PRESENT: MavSysStatusSensor = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_ACCEL)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ANGULAR_RATE_CONTROL)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ATTITUDE_STABILIZATION)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_YAW_POSITION)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_AHRS)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY)
+    .union(MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK);
+
+/// Which instruments and controllers the vehicle has.
+fn present(vehicle: &Vehicle) -> MavSysStatusSensor {
+    let [has_proximity, ..] = vehicle.proximity();
+    let mut present = ALWAYS_PRESENT;
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER, vehicle.pilot().has_radio);
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE, vehicle.has_fence());
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY, has_proximity);
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION, vehicle.has_rangefinder());
+    present
+}
+
+/// Those of them that are switched on.
+fn enabled(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor {
+    let [_, proximity_is_on, _] = vehicle.proximity();
+    let switches = [
+        (vehicle.fence().is_some(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
+        (vehicle.obstacles().rangefinder_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION),
+        (proximity_is_on, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+    ];
+    without_failed(present, &switches)
+}
+
+/// Those of them that work, or know enough.
+fn health(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor {
     let armable = vehicle.is_armed() || vehicle.arming_obstacles().is_empty();
+    let [has_proximity, _, measures_around] = vehicle.proximity();
     let (instruments, validity) = (vehicle.instrument_health(), vehicle.validity());
     let position = validity.horizontal_position && validity.horizontal_velocity;
     let charged = vehicle.battery_remaining() >= vehicle.conduct().failsafe.battery_critical;
@@ -77,15 +72,23 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (measures_around || !has_proximity, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
-    let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
     // No fence is not breached, either: ArduPilot says so, and MAVProxy would tell a breach at the start.
-    let sound = present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE;
-    let health = failed.fold(sound, |health, sensor| health & !sensor);
-    let battery = vehicle.battery();
+    without_failed(present | MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE, &checks)
+}
+
+/// Those whose check, if there is one, is passed.
+fn without_failed(sensors: MavSysStatusSensor, checks: &[(bool, MavSysStatusSensor)]) -> MavSysStatusSensor {
+    let failed = checks.iter().filter(|(passed, _)| !passed);
+    failed.fold(sensors, |sensors, (_, sensor)| sensors & !*sensor)
+}
+
+/// SYS_STATUS: which instruments work and which controllers know enough; the arming check tells whether it could be armed.
+pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
+    let (present, battery) = (present(vehicle), vehicle.battery());
     MavMessage::SYS_STATUS(SYS_STATUS_DATA {
         onboard_control_sensors_present: present,
-        onboard_control_sensors_enabled: enabled,
-        onboard_control_sensors_health: health,
+        onboard_control_sensors_enabled: enabled(vehicle, present),
+        onboard_control_sensors_health: health(vehicle, present),
         voltage_battery: (battery.voltage_v() * 1e3).round() as u16,
         current_battery: (battery.current_a() * 1e2).round() as i16,
         battery_remaining: percent(vehicle),

@@ -49,7 +49,7 @@ const STREAMS: &[Stream] = &[
     Stream::new(SIM_STATE_DATA::ID, [0.0, 0.0], truth::sim_state),
     Stream::new(SIMSTATE_DATA::ID, [0.0, 0.0], truth::simstate).of(Group::Extra1),
     // As PX4's simulation streams it.
-    Stream::new(HIL_STATE_QUATERNION_DATA::ID, [0.0, 25.0], truth::hil_state_quaternion),
+    Stream::new(HIL_STATE_QUATERNION_DATA::ID, [0.0, 25.0], truth::true_state),
     Stream::new(ACTUATOR_OUTPUT_STATUS_DATA::ID, [0.0, 0.0], actuators::actuator_output_status),
     Stream::new(ACTUATOR_CONTROL_TARGET_DATA::ID, [0.0, 0.0], actuators::actuator_control_target),
     Stream::new(ALTITUDE_DATA::ID, [1.0, 10.0], position::altitude).of(Group::Extra3),

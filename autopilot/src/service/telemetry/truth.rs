@@ -1,13 +1,10 @@
 //! What a real autopilot could not tell.
 
-use mavlink::dialects::ardupilotmega::{
-    HIL_STATE_QUATERNION_DATA, MavMessage, SIM_STATE_DATA, SIMSTATE_DATA,
-};
-use quadrotor::GRAVITY_M_S2;
+use mavlink::dialects::ardupilotmega::{MavMessage, SIM_STATE_DATA, SIMSTATE_DATA};
 use vehicle::Vehicle;
 use vehicle::estimation::TrueMotion;
 
-use crate::codec::{floats, scaled_degrees};
+use crate::codec::{floats, hil_state_quaternion, scaled_degrees};
 
 /// SIM_STATE: the true motion, whatever the vehicle flies by.
 pub fn sim_state(vehicle: &Vehicle) -> MavMessage {
@@ -43,33 +40,8 @@ pub fn sim_state(vehicle: &Vehicle) -> MavMessage {
 }
 
 /// HIL_STATE_QUATERNION: the same, as PX4's simulation tells it, and MAVSDK takes it for the ground truth.
-pub fn hil_state_quaternion(vehicle: &Vehicle) -> MavMessage {
-    let truth = vehicle.truth();
-    let place = vehicle.frame().to_geodetic(&truth.position_m);
-    let [rollspeed, pitchspeed, yawspeed] = floats(&truth.body_rate_rad_s);
-    // cm/s, and thousandths of the standard gravity; a cast keeps to what the fields can hold.
-    let [vx, vy, vz] = [0, 1, 2].map(|axis| (100.0 * truth.velocity_m_s[axis]).round() as i16);
-    let [xacc, yacc, zacc] =
-        [0, 1, 2].map(|axis| (1e3 * truth.acceleration_m_s2[axis] / GRAVITY_M_S2).round() as i16);
-    let airspeed = (100.0 * (truth.velocity_m_s - vehicle.wind_m_s()).norm()).round() as u16;
-    MavMessage::HIL_STATE_QUATERNION(HIL_STATE_QUATERNION_DATA {
-        time_usec: truth.time_us,
-        attitude_quaternion: truth.quaternion.map(|part| part as f32),
-        rollspeed,
-        pitchspeed,
-        yawspeed,
-        lat: scaled_degrees(place.latitude_deg),
-        lon: scaled_degrees(place.longitude_deg),
-        alt: (1e3 * place.altitude_m).round() as i32,
-        vx,
-        vy,
-        vz,
-        ind_airspeed: airspeed,
-        true_airspeed: airspeed,
-        xacc,
-        yacc,
-        zacc,
-    })
+pub fn true_state(vehicle: &Vehicle) -> MavMessage {
+    hil_state_quaternion(&TrueMotion::of(vehicle.truth()), vehicle.frame(), &vehicle.wind_m_s())
 }
 
 /// SIMSTATE: the same, as ArduPilot's simulation tells it.

@@ -2,6 +2,7 @@
 
 pub mod channel;
 pub mod failsafe_bench;
+pub mod fence_bench;
 pub mod ftp_client;
 pub mod mission_flight;
 pub mod plan_client;

@@ -4,7 +4,7 @@
 
 use autopilot::codec::{Message, MissionItemMessage, Target};
 use mavlink::dialects::ardupilotmega::{MISSION_ACK_DATA, MISSION_COUNT_DATA, MavMessage, MavMissionType};
-use vehicle::plan::{MissionItem, PlanKind};
+use vehicle::plan::{MissionItem, PlanKind, command, frame};
 
 use super::Bench;
 
@@ -70,4 +70,35 @@ pub fn upload(bench: &mut Bench, kind: PlanKind, items: &[MissionItem]) -> Vec<M
         heard = send(bench, item_message(kind, sequence.into(), items[usize::from(sequence)], true));
     }
     heard
+}
+
+/// A waypoint so far north of the origin, at an altitude above home, m.
+pub fn waypoint(north: f64, altitude: f64) -> MissionItem {
+    MissionItem {
+        frame: frame::GLOBAL_RELATIVE_INT,
+        command: command::NAV_WAYPOINT,
+        parameters: [0.0, 2.0, 0.0, f64::NAN],
+        // A whole number of the message's units.
+        position: [f64::from(473_977_420 + (north * 90.0) as i32) / 1e7, 85_455_940.0 / 1e7, altitude],
+        autocontinue: true,
+    }
+}
+
+/// Items of a kind that are taken.
+pub fn items(kind: PlanKind, count: usize) -> Vec<MissionItem> {
+    let item = |index: usize| {
+        let waypoint = waypoint(index as f64, 10.0 + index as f64);
+        match kind {
+            PlanKind::Mission => waypoint,
+            PlanKind::Fence => MissionItem {
+                command: command::NAV_FENCE_CIRCLE_INCLUSION,
+                parameters: [80.0 + index as f64, 0.0, 0.0, 0.0],
+                ..waypoint
+            },
+            PlanKind::Rally => {
+                MissionItem { command: command::NAV_RALLY_POINT, parameters: [0.0; 4], ..waypoint }
+            }
+        }
+    };
+    (0..count).map(item).collect()
 }

@@ -1,9 +1,10 @@
 //! What is taken into a mission.
 
-use super::super::command::{
-    self, FASTEST_M_S, LONGEST_S, MissionCommand, PlaceRule, ROI_ITEM, ROI_LOCATION, mission_command,
+use super::super::item_search::tagged_item;
+use super::super::mission_command::{
+    FASTEST_M_S, LONGEST_S, MissionCommand, PlaceRule, ROI_ITEM, ROI_LOCATION, mission_command,
 };
-use super::super::{FaultCode, MissionItem, PlanFault, Site};
+use super::super::{FaultCode, MissionItem, PlanFault, Site, command};
 use super::{ItemFault, place};
 
 /// Checks an item by itself. In ArduPilot's convention the first one is home, whatever it says.
@@ -83,7 +84,7 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
 /// Checks how the items belong together: a jump goes to an item that there is.
 pub fn whole(items: &[MissionItem]) -> Result<(), PlanFault> {
     for (index, item) in items.iter().enumerate() {
-        if item.command == command::DO_JUMP_TAG && command::tagged_item(items, item.parameter(1)).is_none() {
+        if item.command == command::DO_JUMP_TAG && tagged_item(items, item.parameter(1)).is_none() {
             let reason = format!("no item has tag {}", item.parameter(1));
             return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
         }

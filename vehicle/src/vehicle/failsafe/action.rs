@@ -65,6 +65,11 @@ impl Action {
         }
     }
 
+    /// Whether it flies a planned way home, or to a landing: the others brake where they are.
+    pub fn plans_a_way(self) -> bool {
+        matches!(self.mode(), Some(Mode::Return | Mode::SmartReturn | Mode::Mission))
+    }
+
     /// What is done without the pilot.
     pub fn without_pilot(action: RadioLossAction) -> Self {
         match action {

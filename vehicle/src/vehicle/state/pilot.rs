@@ -146,24 +146,22 @@ impl Vehicle {
                 Ok(())
             }
             (Function::SaveWaypoint, Position::High) => self.save_waypoint(),
-            (Function::SaveWaypoint, _) => Ok(()),
             (Function::Fence, position) => {
                 self.enable_fence(position == Position::High);
                 Ok(())
             }
             (Function::ResetMission, Position::High) => self.set_mission_item(0, true),
             (Function::ClearMission, Position::High) => self.clear_mission(),
-            (Function::ResetMission | Function::ClearMission, _) => Ok(()),
+            (Function::SaveWaypoint | Function::ResetMission | Function::ClearMission, _) => Ok(()),
             (Function::EmergencyStop, Position::High) | (Function::ArmingOrStop, Position::Low) => {
                 self.disarm_by("Emergency stop: rotors stopped")
             }
-            (Function::EmergencyStop, _) => Ok(()),
             (Function::Arming | Function::ArmingOrStop, Position::High) => self.arm(false),
             (Function::Arming | Function::ArmingOrStop, Position::Middle) => Ok(()),
             (Function::Arming, Position::Low) | (Function::Disarming, Position::High) => {
                 self.disarm_by("Disarmed by switch")
             }
-            (Function::Disarming, _) => Ok(()),
+            (Function::EmergencyStop | Function::Disarming, _) => Ok(()),
             (Function::Simple | Function::SuperSimple, position) => {
                 let reference = StickReference::of(position, function == Function::SuperSimple);
                 self.machines.simple.choose(reference);
@@ -190,13 +188,18 @@ impl Vehicle {
                 Ok(())
             }
             (Function::Parachute, position) => {
-                let enabled = position != Position::Low;
-                self.order_parachute(if enabled { ParachuteOrder::Enable } else { ParachuteOrder::Disable });
-                if position == Position::High {
-                    self.order_parachute(ParachuteOrder::Release);
-                }
+                self.switch_parachute(position);
                 Ok(())
             }
+        }
+    }
+
+    /// Low disables the parachute, the middle enables it, and high releases it, too.
+    fn switch_parachute(&mut self, position: Position) {
+        let enabled = position != Position::Low;
+        self.order_parachute(if enabled { ParachuteOrder::Enable } else { ParachuteOrder::Disable });
+        if position == Position::High {
+            self.order_parachute(ParachuteOrder::Release);
         }
     }
 

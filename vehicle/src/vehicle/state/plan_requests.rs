@@ -4,7 +4,8 @@ use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_rally_points, check_reach, check_way};
 use super::Vehicle;
 use crate::mode::Mode;
-use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, command, compile, return_path};
+use crate::plan::item_search::{LARGEST_TAG, landing_start, tagged_item};
+use crate::plan::{MissionItem, PlanFault, PlanKind, Site, check, compile, return_path};
 
 impl Vehicle {
     /// Replaces a plan.
@@ -118,12 +119,11 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without such a tag, and as [`Vehicle::set_mission_item`].
     pub fn jump_to_tag(&mut self, tag: f64) -> Result<(), Refusal> {
-        if !(0.0..=command::LARGEST_TAG).contains(&tag) {
-            let largest = command::LARGEST_TAG;
-            return Err(Refusal::denied(format!("Jump denied: tag {tag} is outside 0 to {largest}")));
+        if !(0.0..=LARGEST_TAG).contains(&tag) {
+            return Err(Refusal::denied(format!("Jump denied: tag {tag} is outside 0 to {LARGEST_TAG}")));
         }
         let items = self.plans().get(PlanKind::Mission).items();
-        let index = command::tagged_item(items, tag)
+        let index = tagged_item(items, tag)
             .ok_or_else(|| Refusal::Failed(format!("Jump rejected: no item has tag {tag}")))?;
         self.set_mission_item(index, false)
     }
@@ -143,7 +143,7 @@ impl Vehicle {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let items = self.plans().get(PlanKind::Mission).items();
         let joined = return_path::joined(items, &site, &here_m);
-        let index = joined.or_else(|| command::landing_start(items, &site, &here_m)).ok_or_else(|| {
+        let index = joined.or_else(|| landing_start(items, &site, &here_m)).ok_or_else(|| {
             Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned())
         })?;
         self.fly_mission(Some(index))?;
