@@ -122,7 +122,7 @@ impl<T: Scalar + Copy> PlantState<T> {
 
     /// Made of each of the numbers of both states.
     #[inline(always)]
-    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
+    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar + Copy>(
         &self,
         other: &PlantState<U>,
         f: impl Fn(T, U) -> V,
