@@ -10,9 +10,6 @@ use crate::Precision;
 /// Rows that are summed up side by side: as many as a processor has room for while it goes through the columns.
 const ROWS: usize = 8;
 
-/// So few rows are summed up one by one.
-const NARROW: usize = 3;
-
 /// A matrix in tiles of a few neighbouring rows, of which each holds the columns that are not zero in all of its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "T: Precision")]
@@ -84,15 +81,8 @@ impl<T: Precision> SparseColumns<T> {
             if tile.columns.is_empty() {
                 continue;
             }
-            let columns = &self.columns[tile.columns.clone()];
+            let product = product(&self.columns[tile.columns.clone()], x);
             let sums = &mut sums[tile.rows.clone()];
-            if sums.len() <= NARROW {
-                for (row, sum) in sums.iter_mut().enumerate() {
-                    *sum += columns.iter().fold(T::zero(), |sum, of| sum + of.values[row] * x[of.source]);
-                }
-                continue;
-            }
-            let product = product(columns, x);
             if let Some(sums) = sums.first_chunk_mut() {
                 add_whole(sums, &product);
             } else {

@@ -122,14 +122,16 @@ impl<T: Scalar + Copy> PlantState<T> {
 
     /// Made of each of the numbers of both states.
     #[inline(always)]
-    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar + Copy>(
+    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
         &self,
         other: &PlantState<U>,
         f: impl Fn(T, U) -> V,
     ) -> PlantState<V> {
-        // As arrays, so that several numbers are calculated at once.
-        let (one, other) = (self.to_array(), other.to_array());
-        PlantState::from_array(core::array::from_fn(|number| f(one[number], other[number])))
+        PlantState {
+            body: self.body.zip_map(&other.body, &f),
+            rotor_speed_rad_s: zipped(&self.rotor_speed_rad_s, &other.rotor_speed_rad_s, &f),
+            discharge: f(self.discharge, other.discharge),
+        }
     }
 }
 

@@ -73,6 +73,23 @@ impl<T: Real> RigidBody<T> {
     }
 }
 
+impl<T: Scalar + Copy> RigidBody<T> {
+    /// Made of each of the numbers of both bodies.
+    #[inline(always)]
+    pub(crate) fn zip_map<U: Scalar + Copy, V: Scalar>(
+        &self,
+        other: &RigidBody<U>,
+        f: impl Fn(T, U) -> V,
+    ) -> RigidBody<V> {
+        RigidBody {
+            position_m: self.position_m.zip_map(&other.position_m, &f),
+            velocity_m_s: self.velocity_m_s.zip_map(&other.velocity_m_s, &f),
+            attitude: Quaternion { coords: self.attitude.coords.zip_map(&other.attitude.coords, &f) },
+            body_rate_rad_s: self.body_rate_rad_s.zip_map(&other.body_rate_rad_s, &f),
+        }
+    }
+}
+
 impl RigidBody {
     /// The rotation FRD into NED.
     pub fn rotation(&self) -> UnitQuaternion<f64> {

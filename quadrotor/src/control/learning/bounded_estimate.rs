@@ -96,21 +96,15 @@ impl<const N: usize> BoundedEstimate<N> {
     ) {
         let spread = self.covariance * row;
         let expected = row.dot(&spread) + variance;
-        let mut gain = SVector::<f64, N>::zeros();
-        for i in (0..N).filter(|i| learned[*i]) {
-            gain[i] = spread[i] / expected;
-        }
+        let gain = SVector::from_fn(|i, _| if learned[i] { spread[i] / expected } else { 0.0 });
         let mean = self.mean + gain * self.innovation(row, value);
         // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, multiplied out: P − k sᵀ − s kᵀ + k (hᵀs + r) kᵀ with s = P h. It stays
         // exactly symmetric.
-        let mut covariance = self.covariance;
         // By columns, so that several numbers are calculated at once.
-        for (column, (s_j, k_j)) in
-            covariance.as_mut_slice().chunks_exact_mut(N).zip(spread.iter().zip(&gain))
-        {
-            for (element, (s_i, k_i)) in column.iter_mut().zip(spread.iter().zip(&gain)) {
-                *element = *element - (k_i * s_j + s_i * k_j) + k_i * k_j * expected;
-            }
+        let mut covariance = self.covariance;
+        for j in 0..N {
+            let taken = gain * spread[j] + spread * gain[j];
+            covariance.set_column(j, &(self.covariance.column(j) - taken + gain * gain[j] * expected));
         }
         // No measurement makes anything less certain.
         let narrower = (0..N)
