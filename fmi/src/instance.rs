@@ -25,7 +25,7 @@ pub(crate) struct Instance<M: Model> {
     /// The run; its parameters are those of `settings`.
     model: Option<Box<M>>,
     /// Outputs at the current time, if they were requested.
-    outputs: Option<M::Outputs>,
+    pub(super) outputs: Option<M::Outputs>,
     last_step_failed: bool,
     /// Held as long as the instance is there.
     _share: Box<dyn Any>,
@@ -141,7 +141,7 @@ impl<M: Model> Instance<M> {
         }
         let inputs = &self.settings.inputs;
         let outcome = if derivatives.is_empty() {
-            model.advance_to(end.time_us, &|_| inputs.clone())
+            model.advance_under(end.time_us, inputs)
         } else {
             let signal = Extrapolated::<M> { inputs, derivatives: &derivatives, begin_us: model.time_us() };
             model.advance_to(end.time_us, &|time_us| signal.at(time_us))

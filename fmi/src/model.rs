@@ -95,6 +95,15 @@ pub trait Model: Sized + 'static {
     /// those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
+    /// The same under inputs that do not change within the step, as most do not. A model whose inputs take time to copy can override this
+    /// to look at them where they are.
+    ///
+    /// # Errors
+    /// As for [`Model::advance_to`].
+    fn advance_under(&mut self, time_us: u64, inputs: &Self::Inputs) -> Result<(), Self::Error> {
+        self.advance_to(time_us, &|_| inputs.clone())
+    }
+
     /// The outputs at the current time. An output that is not finite ends the run.
     fn outputs(&self) -> Self::Outputs;
 

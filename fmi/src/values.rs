@@ -23,7 +23,7 @@ impl<M: Model> Instance<M> {
             typed::<M>(reference, value_type)?;
         }
         for (place, &reference) in references.iter().enumerate() {
-            let value = self.value(reference, typed::<M>(reference, value_type)?)?;
+            let value = self.value(reference, variable::<M>(reference)?)?;
             put(place, value);
         }
         Ok(())
@@ -128,6 +128,10 @@ impl<M: Model> Instance<M> {
     }
 
     fn value(&mut self, reference: ValueReference, variable: &Variable<M>) -> Result<Value, CallError> {
+        // Mostly several outputs are read, and from the second one on they are there.
+        if let (Role::Output { signal, .. }, Some(outputs)) = (&variable.role, &self.outputs) {
+            return finite(variable, signal.get(outputs));
+        }
         Ok(match &variable.role {
             Role::Input(field) => field.get(&self.settings.inputs),
             Role::Parameter { field, .. } => field.get(&M::as_read(&self.settings.parameters)),

@@ -1,5 +1,7 @@
 //! The look for the constraint that signals violate most.
 
+use core::iter;
+
 use crate::Precision;
 use crate::limited_signals::{COMPONENTS, PlacedLimit};
 
@@ -58,47 +60,38 @@ impl<T: Precision> Worst<'_, T> {
             }
         }
         let Some(side) = worst_side else { return };
-        self.look_along_side(limit, signals, &components, (side, bounds[side] + give));
+        // Mostly that is the constraint.
+        self.look_along_side(limit, &components, (side, bounds[side] + give), least);
         if self.room > least {
-            for (side, bound) in bounds.iter().enumerate() {
-                self.look_along_side(limit, signals, &components, (side, *bound + give));
+            for side in iter::once(side).chain(0..bounds.len()) {
+                self.look_along_side(limit, &components, (side, bounds[side] + give), T::INFINITY);
             }
         }
     }
 
-    /// Looks at one direction sample by sample.
+    /// Looks at one direction sample by sample, at what leaves as little room as `most` or less.
     fn look_along_side<const C: usize>(
         &mut self,
         limit: &PlacedLimit<T>,
-        signals: &[T],
         components: &[&[T]; C],
         (side, upper): (usize, T),
+        most: T,
     ) {
         let direction = &limit.directions[side];
         for (sample, scale) in limit.scales(side, self.scales).iter().enumerate() {
             let signal = components.map(|component| component[sample]);
-            if room(direction, &signal, upper, *scale) < self.room {
-                self.take_worse(limit, signals, (sample, side), upper);
+            let room = room(direction, &signal, upper, *scale);
+            if room <= most && room < self.room {
+                let size: T = signal.iter().map(|component| component.abs()).sum();
+                let rounding = T::LIMIT * (upper.abs() + size) * *scale;
+                self.take_worse(limit.row(sample, side), room, rounding);
             }
         }
     }
 
-    /// Takes a constraint if it is worse than the worst so far.
-    #[inline]
-    fn take_worse(
-        &mut self,
-        limit: &PlacedLimit<T>,
-        signals: &[T],
-        (sample, side): (usize, usize),
-        upper: T,
-    ) {
-        let signal = limit.at(sample, signals);
-        let scale = limit.scales(side, self.scales)[sample];
-        let room = room(&limit.directions[side], &signal, upper, scale);
-        let size: T = signal.iter().map(|component| component.abs()).sum();
-        let rounding = T::LIMIT * (upper.abs() + size) * scale;
-        let constraint = limit.row(sample, side);
-        if room < self.room && room < -rounding && !self.active.contains(&constraint) {
+    /// Takes a constraint, which leaves less room than the worst so far, if it is not active and leaves less than rounding does.
+    fn take_worse(&mut self, constraint: usize, room: T, rounding: T) {
+        if room < -rounding && !self.active.contains(&constraint) {
             (self.constraint, self.room) = (Some(constraint), room);
         }
     }

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use crate::design::design_cache::is_same;
 use crate::kinds::Kinds;
-use crate::lane_flight::{LaneFlight, advance_side_by_side};
+use crate::lane_flight::{LaneFlight, advance_lanes};
 use crate::plant::lanes::LANES;
 use crate::{
     Configuration, ConfigurationError, InputSignal, Inputs, Outputs, PreparedDesign, Simulation,
@@ -50,6 +50,25 @@ use crate::{
 pub struct Fleet<V = Simulation> {
     members: Vec<Member<V>>,
     threads: ThreadPool,
+}
+
+/// A vehicle of a fleet around a closed loop, which can fly [side by side](Fleet::advance_side_by_side) with those of others.
+pub trait ClosedLoopVehicle {
+    /// Its closed loop, if it has one.
+    fn closed_loop(&self) -> Option<&Simulation>;
+
+    /// The same, to fly.
+    fn closed_loop_mut(&mut self) -> Option<&mut Simulation>;
+}
+
+impl ClosedLoopVehicle for Simulation {
+    fn closed_loop(&self) -> Option<&Simulation> {
+        Some(self)
+    }
+
+    fn closed_loop_mut(&mut self) -> Option<&mut Simulation> {
+        Some(self)
+    }
 }
 
 /// A vehicle of a fleet.
@@ -156,6 +175,67 @@ impl<V: Send + Sync> Fleet<V> {
     }
 }
 
+impl<V: ClosedLoopVehicle + Send + Sync> Fleet<V> {
+    /// Flies each vehicle that has a closed loop on to the time, µs, and under the inputs that `order` tells by its index, as
+    /// [`Simulation::advance_to`] does, bit for bit. The plants of vehicles with the same airframe step together, which
+    /// [`Fleet::advance_each`] cannot do. One that cannot go on has failed.
+    ///
+    /// ```
+    /// use quadrotor::{ClosedLoopVehicle, Configuration, Fleet, Inputs, Simulation};
+    ///
+    /// struct Courier {
+    ///     simulation: Simulation,
+    ///     inputs: Inputs,
+    /// }
+    ///
+    /// impl ClosedLoopVehicle for Courier {
+    ///     fn closed_loop(&self) -> Option<&Simulation> {
+    ///         Some(&self.simulation)
+    ///     }
+    ///
+    ///     fn closed_loop_mut(&mut self) -> Option<&mut Simulation> {
+    ///         Some(&mut self.simulation)
+    ///     }
+    /// }
+    ///
+    /// # if !cfg!(feature = "shaper") { return Ok(()); }
+    /// let inputs = Inputs::default();
+    /// let simulation = Simulation::new(&Configuration::default(), &inputs)?;
+    /// let couriers = (0..8).map(|_| Courier { simulation: simulation.clone(), inputs }).collect();
+    /// let mut fleet = Fleet::of(couriers, None)?;
+    /// // Each half a second on from where it is.
+    /// fleet.advance_side_by_side(|_, courier| (courier.simulation.time_us() + 500_000, courier.inputs));
+    /// assert!(fleet.vehicles().all(|courier| courier.simulation.outputs().position_m.z < 0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn advance_side_by_side<S: InputSignal>(&mut self, order: impl Fn(usize, &V) -> (u64, S) + Sync) {
+        let flying = self.members.iter_mut().enumerate().filter(|(_, member)| member.failure.is_none());
+        let mut flying: Vec<_> = flying
+            .filter_map(|(index, member)| {
+                Some((member.vehicle.closed_loop()?.plant().likeness(), index, member))
+            })
+            .collect();
+        flying.sort_unstable_by_key(|(likeness, index, _)| (*likeness, *index));
+        let fly = |side_by_side: &mut [(u64, usize, &mut Member<V>)]| {
+            let flights = side_by_side.iter_mut().filter_map(|(_, index, member)| {
+                let Member { vehicle, failure } = &mut **member;
+                let order = order(*index, vehicle);
+                Some(LaneFlight::new(vehicle.closed_loop_mut()?, failure, order))
+            });
+            advance_lanes(&mut flights.collect::<Vec<_>>());
+        };
+        self.threads.install(|| {
+            flying
+                .par_chunk_by_mut(|(likeness, _, member), (other_likeness, _, other)| {
+                    let [plant, other] =
+                        [member, other].map(|member| member.vehicle.closed_loop().map(Simulation::plant));
+                    likeness == other_likeness && plant == other
+                })
+                .for_each(|of_one_plant| of_one_plant.par_chunks_mut(LANES).for_each(fly));
+        });
+    }
+}
+
 impl Fleet {
     /// Flights at time zero, one for each configuration, under these inputs by index. Vehicles that are alike share a design. There is
     /// a thread for each core.
@@ -197,23 +277,7 @@ impl Fleet {
     /// Flies all vehicles on to `time_us` under inputs by index, as [`Simulation::advance_to`] does. [`Fleet::failures`] tells which could
     /// not.
     pub fn advance_to<S: InputSignal>(&mut self, time_us: u64, inputs: impl Fn(usize) -> S + Sync) {
-        let flying = self.members.iter_mut().enumerate().filter(|(_, member)| member.failure.is_none());
-        let mut flying: Vec<_> =
-            flying.map(|(index, member)| (member.vehicle.plant().likeness(), index, member)).collect();
-        flying.sort_unstable_by_key(|(plant, index, _)| (*plant, *index));
-        let fly = |side_by_side: &mut [(u64, usize, &mut Member<Simulation>)]| {
-            let flights = side_by_side.iter_mut().map(|(_, index, member)| {
-                LaneFlight::new(&mut member.vehicle, &mut member.failure, inputs(*index))
-            });
-            advance_side_by_side(&mut flights.collect::<Vec<_>>(), time_us);
-        };
-        self.threads.install(|| {
-            flying
-                .par_chunk_by_mut(|(likeness, _, member), (other_likeness, _, other)| {
-                    likeness == other_likeness && member.vehicle.plant() == other.vehicle.plant()
-                })
-                .for_each(|of_one_plant| of_one_plant.par_chunks_mut(LANES).for_each(fly));
-        });
+        self.advance_side_by_side(|index, _| (time_us, inputs(index)));
     }
 
     /// What can be observed of each vehicle now.

@@ -12,27 +12,36 @@ const WORTHWHILE: usize = 3;
 pub(crate) struct LaneFlight<'a, S> {
     simulation: &'a mut Simulation,
     failure: &'a mut Option<SimulationError>,
+    /// Where it flies to, µs.
+    time_us: u64,
     inputs: S,
     /// Where its plant flies to, µs, if it has not come to its end.
     next_us: Option<u64>,
 }
 
 impl<'a, S: InputSignal> LaneFlight<'a, S> {
-    /// Of a vehicle, and where to tell why it could not go on.
+    /// Of a vehicle, and where to tell why it could not go on, to a time, µs, under these inputs.
     pub(crate) fn new(
         simulation: &'a mut Simulation,
         failure: &'a mut Option<SimulationError>,
-        inputs: S,
+        (time_us, inputs): (u64, S),
     ) -> Self {
-        Self { simulation, failure, inputs, next_us: None }
+        Self { simulation, failure, time_us, inputs, next_us: None }
     }
 
-    /// Samples at its last event if that is due, and looks for its next event before `time_us` or there.
-    fn look_ahead(&mut self, time_us: u64) {
+    /// Refuses a time that has passed.
+    fn check_order(&mut self) {
+        if let Err(failure) = self.simulation.check_order(self.time_us) {
+            self.fail(failure);
+        }
+    }
+
+    /// Samples at its last event if that is due, and looks for its next event on its way.
+    fn look_ahead(&mut self) {
         if self.failure.is_some() {
             return;
         }
-        match self.simulation.next_event_us(time_us, &self.inputs) {
+        match self.simulation.next_event_us(self.time_us, &self.inputs) {
             Ok(next_us) => self.next_us = next_us,
             Err(failure) => self.fail(failure),
         }
@@ -56,29 +65,28 @@ impl<'a, S: InputSignal> LaneFlight<'a, S> {
             self.fail(failure);
         }
     }
-}
 
-/// Flies up to [`LANES`] vehicles of one plant on to `time_us`, each as [`Simulation::advance_to`] does, bit for bit: at each event all of
-/// them sample one after the other, and then their plants step at once.
-pub(crate) fn advance_side_by_side<S: InputSignal>(flights: &mut [LaneFlight<'_, S>], time_us: u64) {
-    for flight in flights.iter_mut() {
-        if let Err(failure) = flight.simulation.check_order(time_us) {
-            flight.fail(failure);
+    /// Has come to its end, unless it has failed.
+    fn rest(&mut self) {
+        if self.failure.is_none() {
+            self.simulation.rest_at(self.time_us);
         }
     }
+}
+
+/// Flies up to [`LANES`] vehicles of one plant on, each as [`Simulation::advance_to`] does, bit for bit: at each event all of them sample
+/// one after the other, and then their plants step at once.
+pub(crate) fn advance_lanes<S: InputSignal>(flights: &mut [LaneFlight<'_, S>]) {
+    flights.iter_mut().for_each(LaneFlight::check_order);
     loop {
-        for flight in flights.iter_mut() {
-            flight.look_ahead(time_us);
-        }
+        flights.iter_mut().for_each(LaneFlight::look_ahead);
         let Some(first) = flights.iter().position(|flight| flight.next_us.is_some()) else { break };
         let stepped = stepped(flights, first);
         for (flight, stepped) in flights.iter_mut().zip(stepped) {
             flight.arrive(stepped);
         }
     }
-    for flight in flights.iter_mut().filter(|flight| flight.failure.is_none()) {
-        flight.simulation.rest_at(time_us);
-    }
+    flights.iter_mut().for_each(LaneFlight::rest);
 }
 
 /// Plants at the next events of the `first` vehicle and of all that step by the same time, if they can step at once.

@@ -116,6 +116,7 @@ mod attitude;
 mod configuration;
 mod control;
 mod design;
+mod finite;
 #[cfg(feature = "fleet")]
 mod fleet;
 mod guidance;
@@ -168,7 +169,7 @@ pub use design::stability::noise_effect::NoiseEffect;
 pub use design::stability::stability_report::StabilityReport;
 pub use design::stability::stability_warning::StabilityWarning;
 #[cfg(feature = "fleet")]
-pub use fleet::{Fleet, FleetError};
+pub use fleet::{ClosedLoopVehicle, Fleet, FleetError};
 pub use guidance::attitude_target::AttitudeTarget;
 pub use guidance::derivative_estimator::Derivatives;
 pub use guidance::eased_limits::EasedLimits;

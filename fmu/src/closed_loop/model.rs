@@ -88,6 +88,10 @@ impl Model for ClosedLoop {
         Ok(self.0.advance_to(time_us, inputs)?)
     }
 
+    fn advance_under(&mut self, time_us: u64, inputs: &Inputs) -> Result<(), FlightError> {
+        Ok(self.0.advance_to(time_us, inputs)?)
+    }
+
     fn outputs(&self) -> Outputs {
         self.0.outputs()
     }

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString};
-use quadrotor::{Configuration, FleetError, Kinds, SimulationError};
+use quadrotor::{ClosedLoopVehicle, Configuration, FleetError, Kinds, Simulation};
 
 use super::actuation::Actuation;
 use super::commands::Commands;
@@ -29,14 +29,20 @@ struct Member {
 }
 
 impl Member {
-    fn advance_by(&mut self, duration_us: u64) -> Result<(), SimulationError> {
-        self.vehicle.advance_to(self.vehicle.time_us().saturating_add(duration_us))
-    }
-
     fn restart(&mut self, motion: Option<&[f64; MOTION]>) -> Result<(), String> {
         self.start.commands = self.vehicle.commands;
         self.vehicle.restore(&self.start)?;
         motion.map_or(Ok(()), |motion| self.vehicle.place(motion))
+    }
+}
+
+impl ClosedLoopVehicle for Member {
+    fn closed_loop(&self) -> Option<&Simulation> {
+        self.vehicle.closed_loop()
+    }
+
+    fn closed_loop_mut(&mut self) -> Option<&mut Simulation> {
+        self.vehicle.closed_loop_mut()
     }
 }
 
@@ -100,6 +106,20 @@ impl Fleet {
         match names {
             Some(names) => outputs::named(python, &names, self.actuation),
             None => Ok(outputs::of(self.actuation).collect()),
+        }
+    }
+
+    /// All vehicles that can fly on to the times that are told by their indices, µs. The plants of closed loops step together.
+    fn advance_to(&mut self, end_us: impl Fn(usize, &Vehicle) -> u64 + Sync) {
+        if self.actuation == Actuation::Rotors {
+            self.fleet.advance_each(|index, member| {
+                let end_us = end_us(index, &member.vehicle);
+                member.vehicle.advance_to(end_us)
+            });
+        } else {
+            self.fleet.advance_side_by_side(|index, member| {
+                (end_us(index, &member.vehicle), member.vehicle.inputs())
+            });
         }
     }
 
@@ -221,8 +241,7 @@ impl Fleet {
 
     /// All vehicles that can fly on by a duration.
     fn advance(&mut self, python: Python<'_>, duration_us: u64) {
-        let fleet = &mut self.fleet;
-        python.detach(|| fleet.advance_each(|_, member| member.advance_by(duration_us)));
+        python.detach(|| self.advance_to(|_, vehicle| vehicle.time_us().saturating_add(duration_us)));
     }
 
     #[pyo3(signature = (names = None))]
@@ -252,9 +271,7 @@ impl Fleet {
         let mut table = Vec::with_capacity(instants.len() * self.fleet.len() * chosen.len());
         python.detach(|| {
             for instant in &instants {
-                self.fleet.advance_each(|vehicle, member| {
-                    member.vehicle.advance_to(begun[vehicle].saturating_add(*instant))
-                });
+                self.advance_to(|vehicle, _| begun[vehicle].saturating_add(*instant));
                 table.extend(self.rows(&chosen));
             }
         });

@@ -4,8 +4,8 @@ use std::fmt::Display;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quadrotor::{
-    Activity, Configuration, Outputs, PlantSimulation, PlantState, PositionReference, Simulation,
-    SimulationError,
+    Activity, ClosedLoopVehicle, Configuration, InputSignal, Inputs, Outputs, PlantSimulation, PlantState,
+    PositionReference, Simulation, SimulationError,
 };
 
 use super::actuation::Actuation;
@@ -87,18 +87,25 @@ impl Vehicle {
 
     /// Flies on to a time.
     pub fn advance_to(&mut self, time_us: u64) -> Result<(), SimulationError> {
-        let commands = self.commands;
-        match (&mut self.engine, self.actuation) {
-            (Engine::Loop(simulation), Actuation::Rates) => {
-                let (from, start_us) = (attitude(simulation.plant_state()), simulation.time_us());
-                let elapsed_s = |now_us: u64| now_us.saturating_sub(start_us) as f64 / 1e6;
-                simulation.advance_to(time_us, &|now_us: u64| commands.turning(&from, elapsed_s(now_us)))
-            }
-            (Engine::Loop(simulation), _) => simulation.advance_to(time_us, &commands.flight),
-            (Engine::Plant(simulation), _) => {
-                let inputs = commands.of_plant();
+        let inputs = self.inputs();
+        match &mut self.engine {
+            Engine::Loop(simulation) => simulation.advance_to(time_us, &inputs),
+            Engine::Plant(simulation) => {
+                let inputs = self.commands.of_plant();
                 simulation.advance_to(time_us, &|_| inputs)
             }
+        }
+    }
+
+    /// The inputs of its closed loop from now on.
+    pub fn inputs(&self) -> Asked {
+        match (&self.engine, self.actuation) {
+            (Engine::Loop(simulation), Actuation::Rates) => Asked::Turn {
+                commands: self.commands,
+                from: attitude(simulation.plant_state()),
+                start_us: simulation.time_us(),
+            },
+            _ => Asked::Flight(self.commands.flight),
         }
     }
 
@@ -200,6 +207,48 @@ impl Vehicle {
             _ => *self = Self::from_saved(saved)?,
         }
         Ok(())
+    }
+}
+
+/// What a vehicle with our controllers is asked for.
+pub enum Asked {
+    /// The same all the time.
+    Flight(Inputs),
+    /// To turn at the commanded rates, from an attitude that it had at a time, µs.
+    Turn { commands: Commands, from: UnitQuaternion<f64>, start_us: u64 },
+}
+
+impl InputSignal for Asked {
+    fn at(&self, time_us: u64) -> Inputs {
+        match self {
+            Self::Flight(inputs) => *inputs,
+            Self::Turn { commands, from, start_us } => {
+                commands.turning(from, time_us.saturating_sub(*start_us) as f64 / 1e6)
+            }
+        }
+    }
+
+    fn with<R>(&self, time_us: u64, look: impl FnOnce(&Inputs) -> R) -> R {
+        match self {
+            Self::Flight(inputs) => look(inputs),
+            Self::Turn { .. } => look(&self.at(time_us)),
+        }
+    }
+}
+
+impl ClosedLoopVehicle for Vehicle {
+    fn closed_loop(&self) -> Option<&Simulation> {
+        match &self.engine {
+            Engine::Loop(simulation) => Some(simulation),
+            Engine::Plant(_) => None,
+        }
+    }
+
+    fn closed_loop_mut(&mut self) -> Option<&mut Simulation> {
+        match &mut self.engine {
+            Engine::Loop(simulation) => Some(simulation),
+            Engine::Plant(_) => None,
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::turned;
 use crate::control::mass_belief::MassBelief;
 use crate::design::estimator_design::EstimatorDesign;
+use crate::finite::are_finite;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// Share of the difference between a rotor's speed and its command that is left after a time:
@@ -73,9 +74,10 @@ impl Estimator {
     }
 
     fn is_finite(&self) -> bool {
-        let disturbances = self.disturbance_m_s2.iter().chain(&self.disturbance_rad_s2);
         self.body.is_possible()
-            && disturbances.chain(&self.rotor_speed_rad_s).all(|number| number.is_finite())
+            && are_finite(self.disturbance_m_s2.as_slice())
+            && are_finite(self.disturbance_rad_s2.as_slice())
+            && are_finite(&self.rotor_speed_rad_s)
     }
 
     /// Acceleration that thrust, gravity and drag do not explain, NED, m/s².

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
 use crate::{ControlError, RigidBody};
 
 /// The vehicle as it is measured or estimated at one instant.
@@ -17,7 +18,7 @@ pub struct Measurement {
 impl Measurement {
     /// Whether a vehicle can be measured like this: its motion is possible, its rotor speeds are finite.
     pub(crate) fn is_possible(&self) -> bool {
-        self.motion.is_possible() && self.rotor_speed_rad_s.iter().all(|speed| speed.is_finite())
+        self.motion.is_possible() && are_finite(&self.rotor_speed_rad_s)
     }
 
     /// The measurement itself, unless it is impossible.

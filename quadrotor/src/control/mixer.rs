@@ -122,12 +122,18 @@ impl Mixer {
         let headroom = (YAW_HEADROOM * (strongest - weakest)).min(most - to_tilt);
         let range = |left: f64| {
             // Mostly nothing gives way.
-            let (least, largest) = if left == mean { whole } else { self.yaw_bounds(&tilt, left) };
+            let reduced;
+            let (least, largest) = if left == mean {
+                &whole
+            } else {
+                reduced = self.yaw_bounds(&tilt, left);
+                &reduced
+            };
             let ends = |bounds: &[YawBound; 4]| {
                 bounds.iter().map(|bound| bound.room - share * bound.size).fold(f64::INFINITY, f64::min)
             };
             // Rounding may leave less than nothing.
-            (-ends(&least).max(0.0), ends(&largest).max(0.0))
+            (-ends(least).max(0.0), ends(largest).max(0.0))
         };
         let ((low, high), (low_after, high_after)) =
             (range(mean - to_tilt), range(mean - to_tilt - headroom));

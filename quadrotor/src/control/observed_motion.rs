@@ -4,6 +4,8 @@ use lmpc::{DesignError, StateSpace};
 use nalgebra::{DMatrix, SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
+
 /// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1
 /// would be an incremental law by measured increments, which passes on the noise of the velocity undiminished, and forgets one
 /// half of a kick that a limit cuts off. At this one a disturbance is found within two samples.
@@ -132,9 +134,9 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// what an acceleration explains more, d explains less. The motion itself is what it was.
     pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
         let believed = self.deviation + more;
-        let disturbance =
+        let disturbance: SVector<f64, P> =
             SVector::from_fn(|channel, _| self.disturbance[channel] - more[N / P * channel + 2]);
-        if believed.iter().chain(&disturbance).all(|value| value.is_finite()) {
+        if are_finite(believed.as_slice()) && are_finite(disturbance.as_slice()) {
             (self.deviation, self.disturbance) = (believed, disturbance);
         }
     }

@@ -82,10 +82,13 @@ impl Smoothing {
     /// What the jumps of the jerk after a piece of a profile have made of its derivatives until a time, s.
     pub fn of_jumps(&self, profile: &MotionProfile, first: usize, time_s: f64) -> [f64; 5] {
         let mut made = [0.0; 5];
-        for (since_s, jump) in profile.jumps(first).map(|(start_s, jump)| (time_s - start_s, jump)) {
-            if since_s > 0.0 {
-                made = sum(made, self.step(since_s).map(|part| jump * part));
+        for (start_s, jump) in profile.jumps(first) {
+            let since_s = time_s - start_s;
+            // Later ones are still to come.
+            if since_s <= 0.0 {
+                break;
             }
+            made = sum(made, self.step(since_s).map(|part| jump * part));
         }
         made
     }
@@ -97,19 +100,20 @@ impl Smoothing {
     /// ```
     pub fn step(&self, time_s: f64) -> [f64; 5] {
         let [first_s, second_s] = self.windows_s;
-        let corners = [(0.0, 1.0), (first_s, -1.0), (second_s, -1.0), (first_s + second_s, 1.0)];
-        let mut parts = [0.0; 5];
         // Without windows there are no jumps, but compilers divide before they know.
-        let area_s2 = (first_s * second_s).max(f64::MIN_POSITIVE);
-        for (corner_s, sign) in corners {
+        let share = 1.0 / (first_s * second_s).max(f64::MIN_POSITIVE);
+        // Corner by corner side by side: what is negative in brackets counts as zero.
+        let mut terms = [share, -share, -share, share];
+        let since_s = [0.0, first_s, second_s, first_s + second_s].map(|corner_s| {
             let since_s = time_s - corner_s;
-            if since_s > 0.0 {
-                let mut term = sign / area_s2;
-                for (part, order) in parts.iter_mut().rev().zip([1.0, 2.0, 3.0, 4.0, 5.0]) {
-                    term *= since_s / order;
-                    *part += term;
-                }
+            if since_s > 0.0 { since_s } else { 0.0 }
+        });
+        let mut parts = [0.0; 5];
+        for (part, order) in parts.iter_mut().rev().zip([1.0, 2.0, 3.0, 4.0, 5.0]) {
+            for (term, since_s) in terms.iter_mut().zip(since_s) {
+                *term *= since_s / order;
             }
+            *part = terms[0] + terms[1] + terms[2] + terms[3];
         }
         parts
     }

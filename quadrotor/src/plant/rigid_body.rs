@@ -3,6 +3,7 @@
 use nalgebra::{Quaternion, Scalar, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
 use crate::plant::differentiation::real::Real;
 use crate::plant::orientation::{Orientation, times_imaginary};
 use crate::{Airframe, GRAVITY_M_S2, Wrench};
@@ -101,8 +102,10 @@ impl RigidBody {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        self.position_m.iter().chain(&self.velocity_m_s).chain(&self.body_rate_rad_s).all(|x| x.is_finite())
-            && self.attitude.coords.iter().all(|x| x.is_finite())
+        are_finite(self.position_m.as_slice())
+            & are_finite(self.velocity_m_s.as_slice())
+            & are_finite(self.body_rate_rad_s.as_slice())
+            & are_finite(self.attitude.coords.as_slice())
     }
 }
 

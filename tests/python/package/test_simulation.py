@@ -169,17 +169,20 @@ def test_time_does_not_run_back():
         flight.advance_to(0.5)
 
 
-def test_a_fleet_flies_as_its_members_alone_on_any_number_of_threads():
-    masses, seeds = [0.6, 0.7, 0.8, 0.7], [1, 2, 3, 4]
+@pytest.mark.parametrize(
+    ("actuation", "name", "least"),
+    [("reference", "reference.position.x", 1.0), ("rates", "command.body_rate.p", 0.1), ("rotors", "rotor.command[1]", 250.0)],
+)
+def test_a_fleet_flies_as_its_members_alone_on_any_number_of_threads(actuation, name, least):
+    # The plants of three of them step together.
+    masses, seeds, values = [0.7, 0.6, 0.7, 0.7], [1, 2, 3, 4], [least, least + 0.1, least + 0.2, least + 0.3]
     parameters = {"sensor.position_noise": 0.02}
-    inputs = {"reference.position.x": [1.0, 2.0, 3.0, 4.0]}
-    tables = [
-        Fleet(4, {**parameters, "airframe.mass": masses, "sensor.seed": seeds}, inputs, threads=threads).fly(2.0, 0.1) for threads in (1, 3)
-    ]
+    several = {**parameters, "airframe.mass": masses, "sensor.seed": seeds}
+    tables = [Fleet(4, several, {name: values}, actuation=actuation, threads=threads).fly(2.0, 0.1) for threads in (1, 3)]
     np.testing.assert_array_equal(tables[0], tables[1])
     for vehicle in range(4):
         single = {**parameters, "airframe.mass": masses[vehicle], "sensor.seed": seeds[vehicle]}
-        flight = Simulation(single, {"reference.position.x": inputs["reference.position.x"][vehicle]})
+        flight = Simulation(single, {name: values[vehicle]}, actuation=actuation)
         np.testing.assert_array_equal(tables[0][:, vehicle], flight.fly(2.0, 0.1))
 
 

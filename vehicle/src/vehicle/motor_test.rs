@@ -82,6 +82,11 @@ impl MotorTests {
         }
     }
 
+    /// Whether there is a test.
+    pub fn is_running(&self) -> bool {
+        self.running.is_some()
+    }
+
     /// Goes on with the test. It is over with its last rotor, and when the vehicle is armed.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let Some(Running { test, begun_us }) = self.running else { return };

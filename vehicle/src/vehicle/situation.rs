@@ -17,8 +17,8 @@ use crate::mode::{Mode, Needs};
 use crate::plan::{Place, Site};
 use crate::world::LocalFrame;
 
-/// The vehicle as it is now. It consists of references and small copies: it is made anew for every call of a machine, and a test of
-/// one machine can make it by hand.
+/// The vehicle as it is now. It consists of references and small copies: it is made anew for every call of a machine behind which it may
+/// have changed, and a test of one machine can make it by hand.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// Simulation time, µs after the start.

@@ -121,16 +121,22 @@ impl Vehicle {
         if self.decided.is_armed() {
             self.fly();
         }
-        self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
+        if self.machines.motor_tests.is_running() {
+            self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
+        }
         self.advance()?;
         self.perceive();
-        self.consult(|parts, situation, proposal| {
-            parts.obstacles.measure(situation);
-            parts.obstacles.watch_contact(situation, proposal);
-        });
-        self.consult(|parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S));
-        self.consult(|parts, situation, proposal| parts.hold.watch(situation, proposal));
-        self.consult(|parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S));
+        self.consult_both(
+            |parts, situation, proposal| {
+                parts.obstacles.measure(situation);
+                parts.obstacles.watch_contact(situation, proposal);
+            },
+            |parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S),
+        );
+        self.consult_both(
+            |parts, situation, proposal| parts.hold.watch(situation, proposal),
+            |parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S),
+        );
         self.discharge();
         let comes_down = self.landed_state() == LandedState::Landing;
         self.consult(|parts, situation, proposal| {
@@ -155,7 +161,7 @@ impl Vehicle {
             self.consult(|parts, situation, proposal| parts.precision.watch(situation, proposal));
         }
         let easing = self.closed_loop.simulation().control().state().is_easing();
-        if is_fitting(&self.situation(), easing) {
+        if self.closed_loop.limits().is_eased() && is_fitting(&self.situation(), easing) {
             self.closed_loop.release_limits();
         }
         let (situation, parts) = self.situation_and_machines();

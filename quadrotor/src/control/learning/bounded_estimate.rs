@@ -3,6 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::finite::are_finite;
+
 /// What rounding may add to a variance.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
@@ -104,11 +106,10 @@ impl<const N: usize> BoundedEstimate<N> {
             let taken = gain * spread[j] + spread * gain[j];
             covariance.set_column(j, &(self.covariance.column(j) - taken + gain * gain[j] * expected));
         }
-        let finite = |numbers: &[f64]| numbers.iter().fold(true, |all, number| all & number.is_finite());
         // No measurement makes anything less certain.
         let narrower = (0..N)
             .all(|i| covariance[(i, i)] >= 0.0 && covariance[(i, i)] <= self.covariance[(i, i)] * ROUNDING);
-        if variance > 0.0 && narrower && finite(mean.as_slice()) && finite(covariance.as_slice()) {
+        if variance > 0.0 && narrower && are_finite(mean.as_slice()) && are_finite(covariance.as_slice()) {
             (self.mean, self.covariance) = (mean, covariance);
             self.project(prior);
         }
@@ -123,7 +124,7 @@ impl<const N: usize> BoundedEstimate<N> {
             let variance = self.covariance[(i, i)];
             if beyond != 0.0 && variance > 0.0 {
                 let mean = self.mean - self.covariance.column(i) * (beyond / variance);
-                if mean.iter().all(|number| number.is_finite()) {
+                if are_finite(mean.as_slice()) {
                     self.mean = mean;
                 }
             }
@@ -134,7 +135,7 @@ impl<const N: usize> BoundedEstimate<N> {
     /// Whether it can be an estimate: within its range, and with a covariance within the prior's.
     pub(crate) fn is_possible(&self, prior: &Prior<N>) -> bool {
         prior.clamped(&self.mean) == self.mean
-            && self.covariance.iter().all(|number| number.is_finite())
+            && are_finite(self.covariance.as_slice())
             && (0..N).all(|i| {
                 let most = prior.deviation[i] * prior.deviation[i] * ROUNDING;
                 (0.0..=most).contains(&self.covariance[(i, i)])

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::GRAVITY_M_S2;
+use crate::finite::are_finite;
 
 /// Time constant of each stage of the filter, s: short beside the manoeuvres that show a mass, long beside the sample time
 /// of a sensor.
@@ -115,9 +116,11 @@ impl Terms {
 
     /// Whether all of them are finite.
     pub(crate) fn is_finite(&self) -> bool {
-        let vectors = self.specific_force_m_s2.iter().chain(&self.acceleration_m_s2);
-        let mut numbers = vectors.chain(&self.velocity_m_s).chain(&self.in_body);
-        self.thrust_m_s2.is_finite() && numbers.all(|number| number.is_finite())
+        self.thrust_m_s2.is_finite()
+            && are_finite(self.specific_force_m_s2.as_slice())
+            && are_finite(self.acceleration_m_s2.as_slice())
+            && are_finite(self.velocity_m_s.as_slice())
+            && are_finite(self.in_body.as_slice())
     }
 }
 

@@ -30,6 +30,29 @@ impl Vehicle {
         answer
     }
 
+    /// Shows the same situation to two machines, the first of which changes nothing that a situation tells; the second is shown a new one
+    /// if the first has asked for something.
+    pub(super) fn consult_both(
+        &mut self,
+        one: impl FnOnce(&mut Machines, &Situation, &mut Proposal),
+        other: impl FnOnce(&mut Machines, &Situation, &mut Proposal),
+    ) {
+        let (situation, parts) = self.situation_and_machines();
+        let mut proposal = Proposal::new(&situation);
+        one(parts, &situation, &mut proposal);
+        if proposal.asks_nothing(&situation) {
+            other(parts, &situation, &mut proposal);
+            if !proposal.asks_nothing(&situation) {
+                let outcome = proposal.into_outcome();
+                self.decide(outcome);
+            }
+            return;
+        }
+        let outcome = proposal.into_outcome();
+        self.decide(outcome);
+        self.consult(other);
+    }
+
     fn decide(&mut self, outcome: Outcome) {
         if let Some(steering) = outcome.steering {
             self.decided.steer(steering);
