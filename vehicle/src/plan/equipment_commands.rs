@@ -6,6 +6,7 @@ use core::f64::consts::{PI, TAU};
 use super::command::*;
 use super::step::{Do, Step};
 use crate::equipment::{CameraMode, Drive, GimbalMode, Oblique, Operation, ParachuteOrder, Pointing, Switch};
+use crate::fence::FenceSwitch;
 use crate::radio::Position;
 
 /// Ranges of parameters, with their names.
@@ -91,7 +92,7 @@ pub(super) static EQUIPMENT_COMMANDS: &[MissionCommand] = &[
         (1, "pitch", ANGLE.0, ANGLE.1), (2, "yaw", ANGLE.0, ANGLE.1),
         (3, "pitch rate", RATE.0, RATE.1), (4, "yaw rate", RATE.0, RATE.1)], pitch_and_yaw),
     absent(DO_GIMBAL_MANAGER_CONFIGURE, |_| Step::Do(Do::Mark)),
-    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], |source| Step::Do(Do::EnableFence(source.value(1) > 0.5))),
+    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], switch_fence),
     command(DO_PARACHUTE, &[1], &[(1, "action", 0.0, 2.0)], parachute),
     command(AIRFRAME_CONFIGURATION, &[2], &[(2, "landing gear", 0.0, 1.0)], |source| {
         if !source.site.identity.is_ardupilot() {
@@ -224,6 +225,11 @@ fn parachute(source: &Source<'_>) -> Step {
         1 => ParachuteOrder::Enable,
         _ => ParachuteOrder::Release,
     }))
+}
+
+fn switch_fence(source: &Source<'_>) -> Step {
+    let switch = FenceSwitch::of_number(libm::round(source.value(1)));
+    Step::Do(switch.map_or(Do::Mark, Do::SwitchFence))
 }
 
 /// MAV_MOUNT_MODE of DO_MOUNT_CONFIGURE.
@@ -371,7 +377,8 @@ mod tests {
             // As a MISSION_ITEM_INT scales it.
             (DO_GIMBAL_MANAGER_PITCHYAW, [NAN, NAN, NAN, NAN, 2e-7, 0.0, 0.0], operate(Operation::CentreGimbal)),
             (DO_GIMBAL_MANAGER_CONFIGURE, [0.0; 7], mark),
-            (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::EnableFence(true))),
+            (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::On))),
+            (DO_FENCE_ENABLE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::FloorOff))),
             (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("parachute")),
             (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], absent("landing gear")),
             (DO_WINCH, [0.0; 7], absent("winch")),
