@@ -2,6 +2,7 @@
 
 use mavlink::dialects::ardupilotmega::{MavCmd, MavProtocolCapability};
 use vehicle::fault::Fault;
+use vehicle::fence::FenceSwitch;
 use vehicle::identity::Identity;
 use vehicle::plan::{self, ChangeSpeed, FaultCode, MissionItem, PlanKind, compile};
 use vehicle::{Mode, Refusal, Reposition, Severity, Vehicle};
@@ -31,7 +32,7 @@ const ACTIONS: [(MavCmd, CarryOut); 19] = [
     (MavCmd::MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET, look),
     (MavCmd::MAV_CMD_DO_SET_ROI_NONE, look),
     (MavCmd::MAV_CMD_DO_SET_ROI, look),
-    (MavCmd::MAV_CMD_DO_FENCE_ENABLE, enable_fence),
+    (MavCmd::MAV_CMD_DO_FENCE_ENABLE, switch_fence),
     (MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, pause),
     (MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arm),
     (MavCmd::MAV_CMD_INJECT_FAILURE, inject_failure),
@@ -167,17 +168,14 @@ fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     }
 }
 
-fn enable_fence(context: &mut Context, command: &Command) -> Result<(), Refusal> {
-    let vehicle = &mut context.vehicle;
-    match command.parameter(1) {
-        0.0 => vehicle.enable_fence(false),
-        1.0 => vehicle.enable_fence(true),
-        other => {
-            return Err(Refusal::denied(format!(
-                "Invalid value {other}: 1 enables the fence, 0 disables it"
-            )));
-        }
-    }
+fn switch_fence(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let number = command.parameter(1);
+    let Some(switch) = FenceSwitch::of_number(number) else {
+        return Err(Refusal::denied(format!(
+            "Invalid value {number}: 1 enables the fence, 0 disables it, 2 disables its floor"
+        )));
+    };
+    context.vehicle.switch_fence(switch);
     parameter::tell(context, "FENCE_ENABLE");
     Ok(())
 }

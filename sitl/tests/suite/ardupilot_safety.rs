@@ -126,20 +126,32 @@ fn a_weak_battery_returns_twice() {
     assert!((bench.autopilot.vehicle().battery_remaining() - 1.0).abs() < 1e-3);
 }
 
-/// FENCE_ALT_MIN: below it after it has been above, the vehicle returns, and lands through it.
-#[test]
-fn the_floor_of_the_fence_is_kept_to() {
-    let mut bench = Bench::hovering_with(&ardupilot());
-    set_all(&mut bench, &[("FENCE_ALT_MIN", 6.0), ("FENCE_TYPE", 8.0), ("FENCE_ENABLE", 1.0)]);
-    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+/// Leads a vehicle in the guided mode to a height above home, m.
+fn lead_to_height(bench: &mut Bench, height_m: f32) {
     bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
         target_system: 1,
         target_component: 1,
         coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
         type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1111_1000),
-        z: -3.0,
+        z: -height_m,
         ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
     }));
+}
+
+/// FENCE_ALT_MIN: below it after it has been above, the vehicle returns, and lands through it. DO_FENCE_ENABLE 2 switches it off, 1 on.
+#[test]
+fn the_floor_of_the_fence_is_kept_to() {
+    let mut bench = Bench::hovering_with(&ardupilot());
+    set_all(&mut bench, &[("FENCE_ALT_MIN", 6.0), ("FENCE_TYPE", 8.0), ("FENCE_ENABLE", 1.0)]);
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    for (switch, height_m) in [(2.0, 3.0), (1.0, 10.0)] {
+        let parameters = [switch, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_FENCE_ENABLE, parameters), 0);
+        lead_to_height(&mut bench, height_m);
+        bench.fly_until("there", 20.0, |bench| (bench.position()[2] + f64::from(height_m)).abs() < 0.1);
+        assert_eq!(bench.mode(), Mode::Offboard, "{:?}", bench.texts());
+    }
+    lead_to_height(&mut bench, 3.0);
     bench.fly_until("below the floor", 20.0, |bench| bench.mode() == Mode::Return);
     assert!((-bench.position()[2] - 6.0).abs() < 0.3, "{:?}", bench.position());
     assert!(said(&bench, "Min Alt fence breached"), "{:?}", bench.texts());

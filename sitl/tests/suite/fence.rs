@@ -356,3 +356,38 @@ fn ardupilot_keeps_the_mode_that_comes_back_from_a_breach() {
         }
     }
 }
+
+/// Along and towards a border at 8 m/s, Loiter begins with the stick held towards it and back: none of what that asks for takes a share of
+/// the braking.
+#[test]
+fn who_enters_loiter_fast_stops_before_the_border() {
+    let mut start = settings(Identity::ArduPilot);
+    start.conduct.failsafe.fence_enabled = true;
+    let corners = [[-100.0, -300.0], [40.0, -300.0], [40.0, 300.0], [-100.0, 300.0]];
+    start.plans.set(PlanKind::Fence, Plan::new(polygon(&start, true, &corners)));
+    start.conduct.failsafe.fence_radius_m = 500.0;
+    let mut bench = Bench::hovering_with(&start);
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    while bench.position()[0] < 29.0 {
+        bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+            target_system: 1,
+            target_component: 1,
+            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+            type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1100_0111),
+            vx: 4.0,
+            vy: 7.0,
+            ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+        }));
+        bench.fly(0.1);
+        assert_eq!(bench.mode(), Mode::Offboard, "{:?}", bench.texts());
+    }
+    assert_eq!(bench.set_mode(Mode::Position), 0);
+    let mut farthest: f64 = 0.0;
+    bench.stream(15.0, |bench| {
+        let stick =
+            MANUAL_CONTROL_DATA { target: 1, x: 1000, y: -1000, z: 500, ..MANUAL_CONTROL_DATA::default() };
+        bench.send(MavMessage::MANUAL_CONTROL(stick));
+        farthest = farthest.max(bench.position()[0]);
+    });
+    assert!(bench.mode() == Mode::Position && farthest < 39.0, "{farthest} m");
+}

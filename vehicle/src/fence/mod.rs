@@ -6,6 +6,7 @@
 //! ```
 
 mod breach;
+mod fence_switch;
 mod inclusions;
 mod polygon;
 mod route;
@@ -13,6 +14,7 @@ mod zone;
 mod zones;
 
 pub use breach::{Breach, Fence};
+pub use fence_switch::FenceSwitch;
 pub use inclusions::Inclusions;
 pub use polygon::{Polygon, PolygonFault, distance_to};
 pub use route::{Progress, RouteSearch};

@@ -7,6 +7,7 @@ use super::command::*;
 use super::mission_command::{LONGEST_S, MissionCommand, PlaceRule, Source};
 use super::step::{Do, Step};
 use crate::equipment::{CameraMode, Drive, GimbalMode, Oblique, Operation, ParachuteOrder, Pointing, Switch};
+use crate::fence::FenceSwitch;
 use crate::radio::Position;
 
 /// Ranges of parameters, with their names.
@@ -92,7 +93,7 @@ pub(super) static EQUIPMENT_COMMANDS: &[MissionCommand] = &[
         (1, "pitch", ANGLE.0, ANGLE.1), (2, "yaw", ANGLE.0, ANGLE.1),
         (3, "pitch rate", RATE.0, RATE.1), (4, "yaw rate", RATE.0, RATE.1)], pitch_and_yaw),
     absent(DO_GIMBAL_MANAGER_CONFIGURE, |_| Step::Do(Do::Mark)),
-    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], |source| Step::Do(Do::EnableFence(source.value(1) > 0.5))),
+    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], switch_fence),
     command(DO_PARACHUTE, &[1], &[(1, "action", 0.0, 2.0)], parachute),
     command(AIRFRAME_CONFIGURATION, &[2], &[(2, "landing gear", 0.0, 1.0)], |source| {
         if !source.site.identity.is_ardupilot() {
@@ -225,6 +226,11 @@ fn parachute(source: &Source<'_>) -> Step {
         1 => ParachuteOrder::Enable,
         _ => ParachuteOrder::Release,
     }))
+}
+
+fn switch_fence(source: &Source<'_>) -> Step {
+    let switch = FenceSwitch::of_number(libm::round(source.value(1)));
+    Step::Do(switch.map_or(Do::Mark, Do::SwitchFence))
 }
 
 /// MAV_MOUNT_MODE of DO_MOUNT_CONFIGURE.
@@ -387,7 +393,8 @@ mod tests {
     #[rustfmt::skip] // A line per case reads as the table that it is.
     fn others() -> Vec<Case> {
         vec![
-            (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::EnableFence(true))),
+            (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::On))),
+            (DO_FENCE_ENABLE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::FloorOff))),
             (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("parachute")),
             (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("landing gear")),
             (DO_WINCH, [0.0; 7], without("winch")),

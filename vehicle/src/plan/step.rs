@@ -2,6 +2,7 @@
 
 use super::{ChangeSpeed, Look, Place, TimeOfDay};
 use crate::equipment::Operation;
+use crate::fence::FenceSwitch;
 use crate::radio::Position;
 
 /// One step.
@@ -181,8 +182,8 @@ pub enum Do {
     Look(Option<Look>),
     /// Asks something of the equipment.
     Operate(Operation),
-    /// Switches the fence on or off.
-    EnableFence(bool),
+    /// Switches the fence.
+    SwitchFence(FenceSwitch),
     /// Does what a switch of the pilot does that comes to a position, by ArduPilot's number.
     MoveSwitch {
         /// RCn_OPTION's number.

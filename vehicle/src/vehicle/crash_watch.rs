@@ -55,8 +55,8 @@ impl CrashWatch {
         self.armed_since_us.get_or_insert(situation.time_us);
         let change = situation.outputs.acceleration_m_s2 - self.acceleration_m_s2;
         self.acceleration_m_s2 += change * (dt_s * FILTER_RAD_S).min(1.0);
-        // Without a rotor it spins and leans, and its own watch lets it down.
-        if situation.lost_rotor.is_some() {
+        // On its way down without a rotor it spins and leans, and its own watch lets it down.
+        if situation.descends_without_rotor().is_some() {
             (self.crashing, self.rolling, self.pitching, self.weak) = Default::default();
             return;
         }

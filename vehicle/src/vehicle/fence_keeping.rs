@@ -15,6 +15,8 @@ const GAIN_PER_S: f64 = 1.0;
 const SHARE: f64 = 0.5;
 /// A difference of speed that does not matter, m/s.
 const SMALL_M_S: f64 = 1e-6;
+/// Faster towards a border than it may be by this, m/s, it brakes that before anything else.
+const TOO_FAST_M_S: f64 = 0.5;
 /// How far apart places are whose room is compared, m.
 const APART_M: f64 = 0.05;
 
@@ -39,10 +41,18 @@ pub fn keep_inside(situation: &Situation, set_point: PositionSetPoint) -> Positi
     else {
         return set_point;
     };
-    let over_ground = keep_over_ground(situation, &fence, Vector2::new(north, east));
+    let over_ground = lead_over_ground(situation, &fence, Vector2::new(north, east));
     let down = keep_height(situation, &fence, down);
     let velocity = Vector3::new(over_ground.x, over_ground.y, down);
     PositionSetPoint { axes: velocity.data.0[0].map(AxisTarget::Velocity), ..set_point }
+}
+
+/// The velocity over ground that is steered to. Who comes too fast towards a border brakes that first: what the sticks ask for
+/// sideways would take its share of the acceleration, and of the way that is left.
+fn lead_over_ground(situation: &Situation, fence: &Fence, asked: Vector2<f64>) -> Vector2<f64> {
+    let now = situation.outputs.velocity_m_s.xy();
+    let kept = keep_over_ground(situation, fence, now);
+    if (now - kept).norm() > TOO_FAST_M_S { kept } else { keep_over_ground(situation, fence, asked) }
 }
 
 /// In a corner what one side leaves may lead over the other: they are looked at in turns, so often at most.
@@ -177,6 +187,18 @@ mod tests {
         assert_eq!(kept(&scene, [-5.0, 0.0, 0.0]), [-5.0, 0.0, 0.0], "inwards it may go");
         scene.conduct.surroundings.avoided = 2;
         assert_eq!(kept(&scene, [5.0, 0.0, 0.0]), [5.0, 0.0, 0.0]);
+    }
+
+    /// Coming in fast it keeps what leads along the border until it is slow enough towards it, whatever the sticks ask for.
+    #[test]
+    fn who_comes_too_fast_brakes_that_first() {
+        let mut scene = scene();
+        let sideways = [0.0, -5.0, 0.0];
+        scene.come_to([8.0, 0.0, -10.0], [7.0, 2.0, 0.0]);
+        let [north, east, _] = kept(&scene, sideways);
+        assert!((0.0..4.0).contains(&north) && (east - 2.0).abs() < 1e-6, "{north} {east}");
+        scene.come_to([8.0, 0.0, -10.0], [north, 2.0, 0.0]);
+        assert_eq!(kept(&scene, sideways), sideways);
     }
 
     /// Two areas far from one another: where one is enough, sticks are free in it.

@@ -10,7 +10,7 @@ use super::notice::Refusal;
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
 use super::steering::{Steering, SteeringKind};
-use crate::fence::Breach;
+use crate::fence::{Breach, FenceSwitch};
 use crate::mode::Mode;
 
 /// An attitude that leads outside is left this late, s.
@@ -57,6 +57,8 @@ pub struct FenceWatch {
     by_itself: ByItself,
     /// Whether the vehicle has been above the floor, and does not come down to land.
     floor_counts: bool,
+    /// Whether somebody has switched the floor off.
+    floor_is_off: bool,
 }
 
 impl FenceWatch {
@@ -75,9 +77,10 @@ impl FenceWatch {
         self.floor_counts
     }
 
-    /// Somebody switches it on or off.
-    pub fn switch(&mut self, on: bool) {
-        if !on && self.is_on_by_itself() {
+    /// Somebody switches it.
+    pub fn switch(&mut self, switch: FenceSwitch) {
+        self.floor_is_off = switch == FenceSwitch::FloorOff;
+        if switch == FenceSwitch::Off && self.is_on_by_itself() {
             self.by_itself = ByItself::Off;
         }
     }
@@ -99,8 +102,10 @@ impl FenceWatch {
             now => now,
         };
         let lands = matches!(situation.mode, Mode::Land | Mode::Return | Mode::SmartReturn);
+        self.floor_is_off &= situation.armed;
         self.floor_counts = in_the_air
             && !lands
+            && !self.floor_is_off
             && (self.floor_counts || height_m(situation) > settings.fence_floor_m + settings.fence_margin_m);
     }
 
@@ -230,7 +235,8 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::{
-        AxisTarget, Breach, FenceStart, FenceWatch, Mode, PositionSetPoint, check_goal, check_set_point,
+        AxisTarget, Breach, FenceStart, FenceSwitch, FenceWatch, Mode, PositionSetPoint, check_goal,
+        check_set_point,
     };
     use crate::identity::Identity;
     use crate::vehicle::failsafe::Action;
@@ -344,6 +350,24 @@ mod tests {
     }
 
     #[test]
+    fn a_floor_that_is_switched_off_does_not_count_until_the_fence_is_switched_on() {
+        let mut scene = scene();
+        let settings = &mut scene.conduct.failsafe;
+        (settings.fence_parts.floor, settings.fence_floor_m, settings.fence_ahead) = (true, 20.0, false);
+        let mut watch = FenceWatch::default();
+        let mut at = |height_m: f64, switch: Option<FenceSwitch>| {
+            switch.into_iter().for_each(|switch| watch.switch(switch));
+            scene.come_to([0.0, 0.0, -height_m], [0.0; 3]);
+            watch.watch(&scene.situation());
+            watch.record().now
+        };
+        assert_eq!((at(25.0, None), at(19.0, None)), (None, Some(Breach::Floor(20.0))));
+        assert_eq!(at(19.0, Some(FenceSwitch::FloorOff)), None);
+        assert_eq!((at(25.0, None), at(19.0, None)), (None, None));
+        assert_eq!((at(25.0, Some(FenceSwitch::On)), at(19.0, None)), (None, Some(Breach::Floor(20.0))));
+    }
+
+    #[test]
     fn a_fence_that_starts_with_arming_ends_with_it_and_can_be_switched_off() {
         let mut scene = Scene::on_the_ground();
         scene.conduct.failsafe.fence_starts = FenceStart::Armed;
@@ -351,7 +375,7 @@ mod tests {
         let mut is_on = |armed: bool, switched_off: bool| {
             scene.armed = armed;
             if switched_off {
-                watch.switch(false);
+                watch.switch(FenceSwitch::Off);
             }
             watch.watch(&scene.situation());
             watch.is_on_by_itself()

@@ -54,11 +54,11 @@ impl HoldWatch {
     }
 }
 
-/// Whether it flies with all rotors, by a position that it knows.
+/// Whether it flies by a position that it knows, and does not come down without a rotor.
 fn follows_a_position(situation: &Situation) -> bool {
     situation.armed
         && !situation.landed
-        && situation.lost_rotor.is_none()
+        && situation.descends_without_rotor().is_none()
         && situation.steering.kind() == SteeringKind::Position
         && situation.knows_its_place()
 }

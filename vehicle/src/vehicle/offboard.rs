@@ -158,7 +158,7 @@ impl Offboard {
     /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds
     /// its place there.
     pub fn hold_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        let follows = situation.mode == Mode::Offboard && situation.lost_rotor.is_none();
+        let follows = situation.mode == Mode::Offboard && situation.descends_without_rotor().is_none();
         let stopped = !situation.set_points_are_recent && !situation.identity.is_ardupilot();
         if follows && stopped && !self.expired {
             self.expired = true;
@@ -255,8 +255,12 @@ mod tests {
 
     #[test]
     fn ardupilot_keeps_a_place_and_ends_a_velocity() {
+        let [to_a_place, at_rest] = [AxisTarget::Position(5.0), AxisTarget::Velocity(0.0)]
+            .map(|axis| SetPoint::Position(PositionSetPoint { axes: [axis; 3], yaw: YawTarget::Rate(0.1) }));
         for (set_point, ends) in [
             (place([5.0, 0.0, -10.0]), false),
+            (to_a_place, false),
+            (at_rest, true),
             (
                 SetPoint::Position(PositionSetPoint {
                     axes: [AxisTarget::Velocity(1.0); 3],

@@ -236,7 +236,7 @@ impl PilotWatch {
             Leader::Vehicle => AUTOMATIC,
         };
         let may = !situation.identity.is_ardupilot() && settings.take_over & of_mode != 0;
-        let flies = situation.flies() && !situation.landed && situation.lost_rotor.is_none();
+        let flies = situation.flies() && !situation.landed && situation.descends_without_rotor().is_none();
         if !may || !flies || farthest <= settings.take_over_percent / 100.0 {
             return None;
         }

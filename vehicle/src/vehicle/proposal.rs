@@ -16,6 +16,7 @@ use super::speeds::SpeedChange;
 use super::steering::Steering;
 use super::trajectory::PieceFlight;
 use crate::equipment::Operation;
+use crate::fence::FenceSwitch;
 use crate::mode::Mode;
 use crate::radio::Position;
 use crate::world::FARTHEST_M;
@@ -37,8 +38,8 @@ pub enum Request {
     Operate(Operation),
     /// The landing of the mission, or without one the way home.
     JoinLanding,
-    /// The fence is to be switched on or off.
-    EnableFence(bool),
+    /// The fence is to be switched.
+    SwitchFence(FenceSwitch),
     /// What a switch does, by ArduPilot's number, that comes to a position.
     MoveSwitch(u32, Position),
     /// The rotors are to stop; the text says why.
@@ -121,9 +122,9 @@ impl<'a> Proposal<'a> {
         self.steer(Steering::Idle { yaw_rad: situation.outputs.attitude_rad.z });
     }
 
-    /// Steers by position, unless a rotor is lost.
+    /// Steers by position, unless it comes down without a rotor.
     pub fn follow(&mut self, situation: &Situation, set_point: &PositionSetPoint) {
-        if situation.lost_rotor.is_none() {
+        if situation.descends_without_rotor().is_none() {
             self.steering.to_mut().follow(set_point, situation.outputs);
         }
     }
@@ -274,9 +275,9 @@ impl<'a> Proposal<'a> {
         self.requests.push(Request::Operate(operation));
     }
 
-    /// Asks that the fence is switched on or off.
-    pub fn enable_fence(&mut self, enabled: bool) {
-        self.requests.push(Request::EnableFence(enabled));
+    /// Asks that the fence is switched.
+    pub fn switch_fence(&mut self, switch: FenceSwitch) {
+        self.requests.push(Request::SwitchFence(switch));
     }
 
     /// Asks for what a switch of the pilot does, by ArduPilot's number, that comes to a position.

@@ -88,16 +88,17 @@ impl RotorWatch {
 
     fn lose(&mut self, rotor: usize, situation: &Situation, proposal: &mut Proposal) {
         let number = rotor + 1;
-        if situation.landed {
+        let settings = &situation.conduct.failsafe;
+        if situation.landed && settings.rotor_failure > Action::Warn {
             proposal.stop_rotors(format!("Disarmed: rotor {number} failed"));
             return;
         }
         let alone = !self.is_another_lost(rotor);
-        let descends = alone && situation.conduct.failsafe.rotor_failure == Action::Land;
+        let descends = alone && settings.rotor_failure == Action::Land;
         let what = if descends { ": descending without yaw control" } else { "" };
         proposal.say(Severity::Critical, format!("Rotor {number} lost{what}"));
         let since_us = situation.time_us;
-        // The failsafe sees it, and lands or terminates; if it only warns, the mode stays, and it descends all the same.
+        // The failsafe sees it, and lands or terminates; if it only warns, the mode goes on with the rotors that are left.
         self.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
     }
 

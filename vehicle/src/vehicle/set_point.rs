@@ -112,7 +112,8 @@ impl PositionSetPoint {
         self
     }
 
-    /// Whether something in it runs on for ever: without news it has to end.
+    /// Whether something in it runs on for ever: without news it has to end. Who goes to a place goes on to it, and turns as it was
+    /// asked to.
     pub fn runs_on(&self) -> bool {
         let moves = |axis: &AxisTarget| match *axis {
             AxisTarget::Position(_) => false,
@@ -122,7 +123,9 @@ impl PositionSetPoint {
                 velocity_m_s != 0.0 || acceleration_m_s2 != 0.0
             }
         };
-        self.axes.iter().any(moves) || matches!(self.yaw, YawTarget::Rate(_) | YawTarget::Track(..))
+        let turns = matches!(self.yaw, YawTarget::Rate(_) | YawTarget::Track(..));
+        let to_a_place = self.axes.iter().all(|axis| matches!(axis, AxisTarget::Position(_)));
+        self.axes.iter().any(moves) || turns && !to_a_place
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 
 use super::conduct::Conduct;
+use super::failsafe::Action;
 use super::home::Home;
 use super::notice::Refusal;
 use super::receiver::Pilot;
@@ -154,12 +155,18 @@ impl<'a> Situation<'a> {
         instruments.into_iter().filter(|(works, _)| !works).map(|(_, sensor)| sensor.name()).collect()
     }
 
-    /// Refuses what cannot be flown without a rotor.
+    /// The lost rotor that it comes down without. Not one that is only warned of: then it flies on in its mode as well as three
+    /// rotors do.
+    pub fn descends_without_rotor(&self) -> Option<usize> {
+        self.lost_rotor.filter(|_| self.conduct.failsafe.rotor_failure > Action::Warn)
+    }
+
+    /// Refuses what is not flown on the way down without a rotor.
     ///
     /// # Errors
     /// [`Refusal::TemporarilyRejected`] that names the rotor.
     pub fn refuse_without_rotor(&self) -> Result<(), Refusal> {
-        match self.lost_rotor {
+        match self.descends_without_rotor() {
             Some(rotor) => Err(Refusal::later(format!("Rotor {} lost: only landing is possible", rotor + 1))),
             None => Ok(()),
         }

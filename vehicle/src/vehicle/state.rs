@@ -192,7 +192,7 @@ impl Vehicle {
     /// One tick of the armed vehicle, by mode.
     fn fly(&mut self) {
         self.consult(|parts, situation, proposal| match situation.mode {
-            _ if situation.lost_rotor.is_some() => parts.rotors.descend(situation, proposal),
+            _ if situation.descends_without_rotor().is_some() => parts.rotors.descend(situation, proposal),
             _ if parts.takeoff_check.blocks(situation, proposal) => {}
             Mode::Throw => parts.throw.step(situation, proposal),
             Mode::Takeoff => parts.takeoff.step(situation, proposal),

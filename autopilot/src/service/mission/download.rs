@@ -41,7 +41,9 @@ pub fn request(context: &mut Context, origin: &Origin, frame: &Frame) {
         answer::refused_aloud(context, origin, number, &fault);
         return;
     };
-    let flown = Some(context.vehicle.mission_status().current).filter(|_| kind == PlanKind::Mission);
+    let home = context.vehicle.identity().is_ardupilot().then_some(0);
+    let flown = Some(context.vehicle.mission_status().current)
+        .filter(|current| kind == PlanKind::Mission && Some(*current) != home);
     let message = MissionItemMessage {
         sequence,
         item,

@@ -70,8 +70,8 @@ pub struct FailsafeSettings {
     /// What is done when the pilot is lost (NAV_RCL_ACT; ArduPilot: FS_THR_ENABLE).
     #[serde(default = "returns")]
     pub pilot_lost: RadioLossAction,
-    /// Whether it lands on the others when a rotor is lost, descends on them in the mode that was, or stops them, too
-    /// (COM_ACT_FAIL_ACT).
+    /// Whether it lands on the others when a rotor is lost, stops them, too, or only warns and goes on in the mode that was, as if
+    /// there were four (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
 }
 

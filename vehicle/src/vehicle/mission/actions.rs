@@ -119,7 +119,7 @@ fn carry_out(action: &Do, situation: &Situation, proposal: &mut Proposal) {
         Do::ChangeSpeed(change) => proposal.change_speeds(SpeedChange::Mission(*change)),
         Do::SetHome(place) => set_home(place.as_ref(), situation, proposal),
         Do::Operate(operation) => proposal.operate(*operation),
-        Do::EnableFence(enabled) => proposal.enable_fence(*enabled),
+        Do::SwitchFence(switch) => proposal.switch_fence(*switch),
         Do::MoveSwitch { function, position } => proposal.move_switch(*function, *position),
         Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: skipped")),
         Do::Mark => {}

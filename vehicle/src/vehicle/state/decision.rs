@@ -82,7 +82,7 @@ impl Vehicle {
                         self.enter(Mode::Return);
                     }
                 }
-                Request::EnableFence(enabled) => self.enable_fence(enabled),
+                Request::SwitchFence(switch) => self.switch_fence(switch),
                 Request::MoveSwitch(number, position) => {
                     if let Err(refusal) = self.move_switch(number, position) {
                         self.decided.say(Severity::Warning, format!("Mission: {refusal}"));

@@ -9,6 +9,7 @@ use super::super::tick::TICK_S;
 use super::super::zigzag::End;
 use super::Vehicle;
 use crate::equipment::{GimbalMode, Operation, ParachuteOrder, Switch};
+use crate::fence::FenceSwitch;
 use crate::mode::{Leader, Mode};
 use crate::plan::{MissionItem, PlanKind, frame};
 use crate::radio::{CHANNELS, Function, Position, RadioLossAction, function};
@@ -147,7 +148,7 @@ impl Vehicle {
             }
             (Function::SaveWaypoint, Position::High) => self.save_waypoint(),
             (Function::Fence, position) => {
-                self.enable_fence(position == Position::High);
+                self.switch_fence(FenceSwitch::on(position == Position::High));
                 Ok(())
             }
             (Function::ResetMission, Position::High) => self.set_mission_item(0, true),

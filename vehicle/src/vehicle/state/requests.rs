@@ -21,6 +21,7 @@ use super::super::steering::{Steering, SteeringKind};
 use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
+use crate::fence::FenceSwitch;
 use crate::foreign::ForeignRole;
 use crate::mode::{Leader, Mode};
 use crate::plan::step::Turn;
@@ -118,9 +119,17 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Switches the fence on or off.
-    pub fn enable_fence(&mut self, enabled: bool) {
-        self.machines.fence.switch(enabled);
+    /// Switches the fence.
+    pub fn switch_fence(&mut self, switch: FenceSwitch) {
+        self.machines.fence.switch(switch);
+        let enabled = match switch {
+            FenceSwitch::Off => false,
+            FenceSwitch::On => true,
+            FenceSwitch::FloorOff => {
+                self.decided.say(Severity::Info, "Fence floor disabled");
+                return;
+            }
+        };
         let mut conduct = *self.conduct();
         if conduct.failsafe.fence_enabled != enabled {
             conduct.failsafe.fence_enabled = enabled;
