@@ -104,7 +104,7 @@ const PACKAGE_LAYERS: [Layer; 1] = [Layer {
 
 /// ROS 2, for the bridge of the examples.
 const ROS2_LAYERS: [Layer; 1] = [Layer {
-    what: "Installing ROS 2 (first time; downloads about 30 MB)",
+    what: "Installing ROS 2 (first time; downloads about 70 MB)",
     lists: &[Pinned { file: "ros2.txt", complete: true }],
     made_from: "made-from.txt",
 }];
