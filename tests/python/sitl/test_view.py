@@ -140,7 +140,7 @@ def test_every_control_has_a_name_and_is_reached_by_keys(start, look):
     for _ in range(60):
         shown.page.keyboard.press("Tab")
         reached.add(shown.page.evaluate("() => document.activeElement.id || document.activeElement.dataset.action || document.activeElement.name"))
-    for form in ("Fly to a place", "Wind", "Fault"):
+    for form in ("Fly to a place", "Wind", "Failure"):
         assert shown.page.get_by_role("form", name=form).is_visible(), form
     # The legends of the plots have values for a mouse only.
     assert shown.page.get_by_role("table").count() == 0
