@@ -78,21 +78,37 @@ fn names_and_versions(tree: &str) -> BTreeSet<(String, String)> {
 /// The list of packages, and each licence text once with the packages that carry it.
 fn notices(product: &str, packages: &[Package]) -> Result<String, Failure> {
     let mut page = format!("Libraries that are linked into {product}.\n\n");
-    let mut carriers: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    let mut texts = Texts::default();
     for package in packages {
         let license = package.license.as_deref().unwrap_or("see its text");
         let home = package.repository.as_deref().unwrap_or("");
         // Writing to a String cannot fail.
         let _ = writeln!(page, "{} {}: {license} {home}", package.name, package.version);
         for text in license_texts(package)? {
-            carriers.entry(text).or_default().push(&package.name);
+            texts.add(&package.name, text);
         }
     }
     page.push_str("Rust standard library: MIT OR Apache-2.0 https://github.com/rust-lang/rust\n");
-    for (text, names) in carriers {
+    for (text, names) in texts.by_words.values() {
         let _ = write!(page, "\n{}\n{}\n\n{}\n", "=".repeat(80), names.join(", "), text.trim_end());
     }
     Ok(page)
+}
+
+/// Texts of licences with the packages that carry them. Texts of the same words are one, however their lines are broken and indented.
+#[derive(Default)]
+struct Texts<'a> {
+    by_words: BTreeMap<String, (String, Vec<&'a str>)>,
+}
+
+impl<'a> Texts<'a> {
+    fn add(&mut self, package: &'a str, text: String) {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let (_, carriers) = self.by_words.entry(words.join(" ")).or_insert((text, Vec::new()));
+        if carriers.last() != Some(&package) {
+            carriers.push(package);
+        }
+    }
 }
 
 /// The licence files that a package brings along, with uniform line ends.
@@ -115,7 +131,20 @@ fn is_license(path: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::names_and_versions;
+    use super::{Texts, names_and_versions};
+
+    #[test]
+    fn texts_that_differ_in_spaces_are_one() {
+        let mut texts = Texts::default();
+        for (package, text) in
+            [("a", "No\n  warranty."), ("b", "No warranty.\n"), ("b", "Warranty."), ("b", "Warranty.\n")]
+        {
+            texts.add(package, text.to_owned());
+        }
+        let found: Vec<_> = texts.by_words.into_values().collect();
+        let expected = [("No\n  warranty.", vec!["a", "b"]), ("Warranty.", vec!["b"])];
+        assert_eq!(found, expected.map(|(text, carriers)| (text.to_owned(), carriers)));
+    }
 
     #[test]
     fn reads_names_and_versions_of_a_tree() {

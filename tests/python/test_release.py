@@ -79,6 +79,17 @@ def test_the_same_files_give_the_same_bytes(packed, tmp_path):
     assert assets.zipped(files) == assets.zipped(dict(reversed(files.items())))
 
 
+def test_an_image_of_more_than_ten_megabytes_is_refused(tmp_path):
+    program = tmp_path / "built"
+    script = ROOT / "xtask" / "python" / "image.py"
+    for size, code in ((9_900_000, 0), (10_000_000, 1)):
+        program.write_bytes(bytes(size))
+        command = [sys.executable, script, program, "amd64", "1.2.3", tmp_path / f"{size}.tar"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
+        assert done.returncode == code and (tmp_path / f"{size}.tar").exists() == (code == 0), done.stderr
+    assert "10.00 MB" in done.stderr and "make the program smaller" in done.stderr
+
+
 @pytest.mark.parametrize("name", ["lmpc-sitl-1.2.3-linux64.tar.gz", "lmpc-sitl-1.2.3-win64.zip"])
 def test_an_archive_unpacks_into_a_folder_of_its_name(tmp_path, name):
     (tmp_path / "built").write_bytes(PROGRAM)

@@ -1,5 +1,9 @@
 //! The files of the page, within the program.
 
+use std::io::Read;
+
+use flate2::read::GzDecoder;
+
 /// A file.
 #[derive(Clone, Copy, Debug)]
 pub struct Asset {
@@ -7,8 +11,23 @@ pub struct Asset {
     pub path: &'static str,
     /// What browsers are told it is.
     pub content_type: &'static str,
+    /// Its bytes, packed with gzip: what browsers take.
+    pub packed: &'static [u8],
+}
+
+impl Asset {
     /// Its bytes.
-    pub content: &'static [u8],
+    pub fn content(&self) -> Vec<u8> {
+        let mut content = Vec::new();
+        // What the build has packed can be unpacked: a test unpacks all of it.
+        let _whole = GzDecoder::new(self.packed).read_to_end(&mut content);
+        content
+    }
+
+    /// Its bytes as text.
+    pub fn text(&self) -> String {
+        String::from_utf8_lossy(&self.content()).into_owned()
+    }
 }
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -22,7 +41,7 @@ macro_rules! file {
         Asset {
             path: concat!("/", $path),
             content_type: $content_type,
-            content: include_bytes!(concat!("../assets/", $path)),
+            packed: include_bytes!(concat!(env!("OUT_DIR"), "/", $path, ".gz")),
         }
     };
 }
@@ -76,7 +95,7 @@ mod tests {
     #[test]
     fn every_file_that_one_of_them_imports_is_there() {
         for script in ASSETS.iter().filter(|asset| asset.content_type == SCRIPT) {
-            let text = std::str::from_utf8(script.content).expect("text");
+            let text = script.text();
             let folder = script.path.rsplit_once('/').expect("a folder").0;
             for import in text.split("from \"").skip(1).filter_map(|rest| rest.split('"').next()) {
                 let path = match import.strip_prefix("../") {
@@ -90,9 +109,17 @@ mod tests {
     }
 
     #[test]
+    fn every_file_is_the_one_that_was_packed() {
+        for file in ASSETS {
+            let original = concat!(env!("CARGO_MANIFEST_DIR"), "/assets").to_owned() + file.path;
+            assert_eq!(file.content(), std::fs::read(original).expect("is there"), "{}", file.path);
+        }
+    }
+
+    #[test]
     fn the_page_asks_for_nothing_from_elsewhere() {
         for file in ASSETS.iter().filter(|file| file.path.starts_with("/page/")) {
-            let text = std::str::from_utf8(file.content).expect("text");
+            let text = file.text();
             for line in
                 text.lines().filter(|line| line.contains("//") && !line.contains("www.w3.org/2000/svg"))
             {

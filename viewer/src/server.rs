@@ -296,9 +296,25 @@ fn is_trusted(headers: &HeaderMap, token: &Token) -> bool {
     value.and_then(|value| value.strip_prefix("Bearer ")).is_some_and(|word| token.is(word))
 }
 
-async fn file(uri: Uri) -> Response {
-    match asset(uri.path()) {
-        Some(asset) => ([(header::CONTENT_TYPE, asset.content_type)], asset.content).into_response(),
-        None => (StatusCode::NOT_FOUND, "There is no such file.\n").into_response(),
+async fn file(headers: HeaderMap, uri: Uri) -> Response {
+    let Some(asset) = asset(uri.path()) else {
+        return (StatusCode::NOT_FOUND, "There is no such file.\n").into_response();
+    };
+    let head = [(header::CONTENT_TYPE, asset.content_type), (header::VARY, "accept-encoding")];
+    if takes_gzip(&headers) {
+        (head, [(header::CONTENT_ENCODING, "gzip")], asset.packed).into_response()
+    } else {
+        (head, asset.content()).into_response()
     }
+}
+
+/// Whether a client unpacks gzip (RFC 9110, section 12.5.3).
+fn takes_gzip(headers: &HeaderMap) -> bool {
+    let values = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
+    values.flat_map(|value| value.split(',')).any(|coding| {
+        let (name, weight) = coding.split_once(';').unwrap_or((coding, ""));
+        // A weight of zero refuses.
+        let refused = weight.trim().strip_prefix("q=").is_some_and(|q| q.trim().parse() == Ok(0.0));
+        name.trim().eq_ignore_ascii_case("gzip") && !refused
+    })
 }

@@ -50,7 +50,7 @@ pub fn standalone(recording: &Recording) -> String {
 }
 
 fn text_of(path: &str) -> String {
-    asset(path).map(|asset| String::from_utf8_lossy(asset.content).into_owned()).unwrap_or_default()
+    asset(path).map(Asset::text).unwrap_or_default()
 }
 
 /// Name of a module.
@@ -60,10 +60,9 @@ fn name_of(path: &str) -> &str {
 
 /// An address that has a script in it.
 fn address_of(script: &Asset) -> String {
-    let text = String::from_utf8_lossy(script.content);
     let folder = script.path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let named =
-        IMPORTS.iter().fold(text.into_owned(), |text, (before, quote)| named(&text, before, *quote, folder));
+        IMPORTS.iter().fold(script.text(), |text, (before, quote)| named(&text, before, *quote, folder));
     format!("data:text/javascript;base64,{}", STANDARD.encode(named))
 }
 

@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 
+use flate2::read::GzDecoder;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::protocol::WebSocket;
@@ -26,8 +27,13 @@ fn get(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> String {
     ask(address, &format!("GET {path}"), headers, b"")
 }
 
-/// The answer to a request.
+/// The answer to a request, as text.
 fn ask(address: SocketAddr, what: &str, headers: &[(&str, &str)], body: &[u8]) -> String {
+    String::from_utf8_lossy(&answer(address, what, headers, body)).into_owned()
+}
+
+/// The answer to a request.
+fn answer(address: SocketAddr, what: &str, headers: &[(&str, &str)], body: &[u8]) -> Vec<u8> {
     let mut stream = TcpStream::connect(address).expect("a server");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     let lines: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
@@ -36,7 +42,7 @@ fn ask(address: SocketAddr, what: &str, headers: &[(&str, &str)], body: &[u8]) -
     let _refused = stream.write_all(body);
     let mut bytes = Vec::new();
     stream.read_to_end(&mut bytes).expect("an answer");
-    String::from_utf8_lossy(&bytes).into_owned()
+    bytes
 }
 
 fn get_ours(address: SocketAddr, path: &str) -> String {
@@ -121,6 +127,34 @@ fn the_page_and_its_files_are_served_with_their_types_and_a_strict_policy() {
     }
     for path in ["/page/", "/Cargo.toml", "/../Cargo.toml", "/%2e%2e/Cargo.toml", "/recording"] {
         assert!(get_ours(viewer.address(), path).starts_with("HTTP/1.1 404"), "{path}");
+    }
+}
+
+#[test]
+fn files_are_packed_for_those_who_unpack_them() {
+    let viewer = viewer();
+    let host = viewer.address().to_string();
+    let original = include_bytes!("../assets/three/three.core.min.js");
+    for (accepted, is_packed) in [
+        ("gzip, deflate, br", true),
+        ("br;q=1.0, GZIP;q=0.5", true),
+        ("br, gzip;q=0", false),
+        ("identity", false),
+    ] {
+        let headers = [("Host", host.as_str()), ("Accept-Encoding", accepted)];
+        let answer = answer(viewer.address(), "GET /three/three.core.min.js", &headers, b"");
+        let end = answer.windows(4).position(|four| four == b"\r\n\r\n").expect("a head") + 4;
+        let (head, body) = (String::from_utf8_lossy(&answer[..end]), &answer[end..]);
+        assert_eq!(head.contains("content-encoding: gzip"), is_packed, "{accepted}: {head}");
+        assert!(head.contains("vary: accept-encoding"), "{accepted}: {head}");
+        let mut content = Vec::new();
+        if is_packed {
+            assert!(body.len() < original.len() / 2, "{}", body.len());
+            GzDecoder::new(body).read_to_end(&mut content).expect("gzip");
+        } else {
+            content.extend_from_slice(body);
+        }
+        assert!(content == original, "{accepted}");
     }
 }
 

@@ -16,6 +16,8 @@ PORT = 5760
 #: The same sources give the same bytes: times are those of the FMUs, the beginning of 1980.
 TIME, TIME_TEXT = 315532800, "1980-01-01T00:00:00Z"
 OCI = "application/vnd.oci.image"
+#: Most bytes of the files in the image.
+MOST = 10_000_000
 
 
 class Tar:
@@ -111,8 +113,13 @@ def main() -> int:
     parser.add_argument("out", type=Path, help="file to write")
     parser.add_argument("notices", type=Path, nargs="*", help="licences")
     arguments = parser.parse_args()
+    files = layer(arguments.program, arguments.notices)
+    if len(files) > MOST:
+        print(f"error: the files of the image have {len(files) / 1e6:.2f} MB, more than {MOST / 1e6:.0f} MB: "
+              f"make the program smaller ({arguments.program.stat().st_size / 1e6:.2f} MB)", file=sys.stderr)
+        return 1
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    arguments.out.write_bytes(image(layer(arguments.program, arguments.notices), arguments.version, arguments.architecture))
+    arguments.out.write_bytes(image(files, arguments.version, arguments.architecture))
     return 0
 
 

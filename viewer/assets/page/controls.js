@@ -56,9 +56,13 @@ export class Controls {
   }
 
   say(action, refused) {
-    const name = action.replaceAll("_", " ");
-    this.answer.textContent = refused ? `${name}: ${refused}` : `${name}: accepted`;
-    this.answer.classList.toggle("bad", Boolean(refused));
+    this.tell(`${action.replaceAll("_", " ")}: ${refused || "accepted"}`, Boolean(refused));
+  }
+
+  /** Shows what has become of an order. */
+  tell(text, bad) {
+    this.answer.textContent = text;
+    this.answer.classList.toggle("bad", bad);
   }
 
   /** Whether orders are taken; recordings are steered without. */

@@ -38,7 +38,6 @@ function vector(value, name, parts = ["x", "y", "z"]) {
 }
 
 function stateOf(value) {
-  const whole = (name) => (Number.isFinite(value(name)) ? value(name) : 0);
   const laws = ["altitude", "position", "attitude"];
   const setpoint = vector(value, "setpoint.position");
   const angles = vector(value, "attitude", ["phi", "theta", "psi"]);
@@ -57,8 +56,8 @@ function stateOf(value) {
     armed: !(value("armed") === 0),
     landed: Math.abs(value("position.z")) < 0.01,
     // The FMU's enumeration is counted from one.
-    status: laws.map((law) => Math.max(0, whole(`controller.${law}.status_number`) - 1)),
-    active: laws.map((law) => whole(`controller.${law}.active_constraints`)),
-    iterations: laws.map((law) => whole(`controller.${law}.iterations`)),
+    status: laws.map((law) => Math.max(0, value(`controller.${law}.status_number`) - 1)),
+    active: laws.map((law) => value(`controller.${law}.active_constraints`)),
+    iterations: laws.map((law) => value(`controller.${law}.iterations`)),
   });
 }

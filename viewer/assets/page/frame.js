@@ -40,9 +40,10 @@ function vehicle(data, start) {
 
 /** A vehicle of which nothing is known but what is given: recordings lack much. */
 export function unknown(known) {
-  const state = { id: 1, status: [0, 0, 0], active: [0, 0, 0], iterations: [0, 0, 0], item: 0 };
+  const state = { id: 1, item: 0 };
   for (const name of FLAGS) state[name] = false;
   for (const [name, count] of REALS) state[name] = count === 1 ? NaN : new Array(count).fill(NaN);
+  for (const name of ["status", "active", "iterations"]) state[name] = [NaN, NaN, NaN];
   state.quaternion = [1, 0, 0, 0];
   return { ...state, ...known };
 }

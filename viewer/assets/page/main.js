@@ -40,7 +40,7 @@ const view = works ? new View(find("view"), find("labels"), isSoftware, {
   change: () => redraw.ask(),
 }) : null;
 const horizon = new Horizon(find("horizon"));
-const plots = new Plots(find("charts"));
+const plots = new Plots(find("plots"));
 const panel = new Panel(find("state"), find("vehicles"), find("texts"), choose);
 const numbers = new Rarely(READ_MS, () => {
   const state = chosenState();
@@ -86,7 +86,7 @@ function play(now) {
     }
   }
   take(recording.frame());
-  panel.say(recording.textsNow());
+  panel.say(recording.textsNow(), recording.states.size > 1);
   const seek = find("seek");
   if (document.activeElement !== seek || !recording.paused) seek.value = recording.time;
   seek.setAttribute("aria-valuetext", `${recording.time.toFixed(1)} s of ${recording.end.toFixed(1)} s`);
@@ -98,7 +98,7 @@ function draw(now, waited) {
   const goesOn = Boolean(page.recording && !page.recording.paused);
   const { frame, chosen } = page;
   if (!frame || frame.vehicles.length === 0) return goesOn;
-  write("time", `${frame.time.toFixed(1)} s`);
+  write("time", `${frame.time.toFixed(1)} s,`);
   write("pace", pace(frame));
   controls.showSpeed(frame.speed);
   view?.draw(frame.vehicles, (id) => historyOf(id).places, chosen);
@@ -143,7 +143,7 @@ function connect() {
     },
     news: (news) => {
       page.news = news;
-      if (!page.recording) panel.say(news.texts);
+      if (!page.recording) panel.say(news.texts, news.vehicles.length > 1);
       redraw.ask();
     },
     controls: (isPilot) => {
@@ -184,7 +184,7 @@ function show(recording) {
   find("messages").hidden = recording?.texts.length === 0;
   panel.forget();
   find("close").hidden = !recording || !page.stream;
-  if (!recording) panel.say(page.news.texts);
+  if (!recording) panel.say(page.news.texts, page.news.vehicles.length > 1);
   if (recording) {
     write("recording-name", recording.name);
     Object.assign(find("seek"), { min: recording.start, max: recording.end, value: recording.start });
@@ -204,7 +204,7 @@ async function open(name, buffer) {
     }
     show(new Recording(name, readRecording(name, content)));
   } catch (error) {
-    write("answer", `${name}: ${error.message}`);
+    controls.tell(`${name}: ${error.message}`, true);
     write("connection", `${name}: ${error.message}`);
     find("connection").dataset.state = "lost";
   }

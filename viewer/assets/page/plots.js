@@ -9,26 +9,26 @@ const PERIOD_MS = 30;
 const UNSEEN_MS = 2000;
 const HEIGHT_REM = 12;
 
-/** Title, unit of the axis, and the series: column of the history, label, colour, dashed or not. */
+/** Title, unit of the axis, its least height, and the series: column of the history, label, colour, dashed or not. Counts have no unit. */
 const PLOTS = [
-  ["Position", "m", [
+  ["Position", "m", 1, [
     ["north", "north", "--one"], ["east", "east", "--two"], ["up", "up", "--three"],
     ["northTarget", "north set-point", "--one", true], ["eastTarget", "east set-point", "--two", true],
     ["upTarget", "up set-point", "--three", true],
   ]],
-  ["Tracking error", "m", [["northError", "north", "--one"], ["eastError", "east", "--two"], ["upError", "up", "--three"]]],
-  ["Thrust", "N", [["thrust", "thrust", "--one"], ["strongest", "strongest", "--soft", true]]],
-  ["Active limits of the controllers", "", [
+  ["Tracking error", "m", 0.02, [["northError", "north", "--one"], ["eastError", "east", "--two"], ["upError", "up", "--three"]]],
+  ["Thrust", "N", 1, [["thrust", "thrust", "--one"], ["strongest", "strongest", "--soft", true]]],
+  ["Active limits of the controllers", "", null, [
     ["altitudeActive", "altitude", "--one"], ["positionActive", "position", "--two"], ["attitudeActive", "attitude", "--three"],
   ]],
-  ["Solvers (0 optimal, 1 relaxed, 2 limit, 3 held)", "", [["iterations", "iterations", "--one"], ["status", "state", "--two"]]],
+  ["Solvers", "", null, [["iterations", "iterations", "--one"], ["status", "0 optimal, 1 relaxed, 2 limit, 3 held", "--two"]]],
 ];
 
-/** The ends of an axis for values between two. */
-function span(low, high, unit) {
+/** The ends of an axis for values between two. Counts stand on zero; what is measured needs some height, or noise would fill the plot. */
+function span(low, high, least) {
   if (low === null || high === null) return [0, 1];
-  if (!unit) return [0, Math.max(1, high) * 1.05];
-  const margin = Math.max(0.05 * (high - low), 0.01);
+  if (least === null) return [0, Math.max(1, high) * 1.05];
+  const margin = Math.max(0.05 * (high - low), (least - (high - low)) / 2);
   return [low - margin, high + margin];
 }
 
@@ -60,7 +60,7 @@ export class Plots {
     const colour = (name) => style.getPropertyValue(name).trim();
     this.seen.disconnect();
     this.parent.replaceChildren();
-    this.plots = PLOTS.map(([title, unit, series]) => {
+    this.plots = PLOTS.map(([title, unit, least, series]) => {
       const figure = document.createElement("figure");
       const caption = document.createElement("figcaption");
       caption.textContent = unit ? `${title}, ${unit}` : title;
@@ -72,12 +72,12 @@ export class Plots {
       const options = {
         width: Math.max(100, figure.clientWidth),
         height: HEIGHT_REM * rem(),
-        // Counts stand on zero; what is measured needs some height, or noise would fill the plot.
-        scales: { x: { time: false }, y: { range: (_, low, high) => span(low, high, unit) } },
+        scales: { x: { time: false }, y: { range: (_, low, high) => span(low, high, least) } },
         cursor: { drag: { x: false, y: false } },
         axes: [{ ...axis, size: 2.2 * rem() }, { ...axis, size: 3.4 * rem() }],
+        legend: { markers: { dash: (_, index) => (series[index - 1]?.[3] ? "dashed" : "solid") } },
         series: [
-          { label: "s", value: (_, value) => value?.toFixed(2) ?? "" },
+          { label: "time, s", value: (_, value) => value?.toFixed(2) ?? "" },
           ...series.map(([, label, name, dashed]) => ({
             label, stroke: colour(name), width: dashed ? 1 : 1.6, dash: dashed ? [5, 4] : undefined, points: { show: false },
             value: (_, value) => (value === null || value === undefined ? "" : value.toFixed(3)),
@@ -89,6 +89,8 @@ export class Plots {
       const canvas = figure.querySelector("canvas");
       canvas.setAttribute("role", "img");
       canvas.setAttribute("aria-label", `Plot over time, s: ${caption.textContent}`);
+      // Its values are those under the mouse.
+      figure.querySelector(".u-legend").setAttribute("aria-hidden", "true");
       return { plot, figure, columns, isSeen: false, isOld: true, drawn: -Infinity };
     });
     for (const { figure } of this.plots) this.seen.observe(figure);

@@ -17,13 +17,13 @@ export class Trail extends Line {
   clear() {
     this.geometry.setDrawRange(0, 0);
     this.count = 0;
-    this.first = null;
+    this.places = null;
   }
 
-  /** Shows places, NED, m. Usually these are the ones of the last time and some more: only these are written. */
+  /** Shows places, NED, m. Usually these are the ones of the last time and some more, in the same array: only these are written. */
   show(places) {
     const shown = places.length > MOST ? places.slice(-MOST) : places;
-    if (shown[0] !== this.first || shown.length < this.count) this.clear();
+    if (places !== this.places || shown[0] !== this.first || shown.length < this.count) this.clear();
     if (shown.length === this.count) return;
     const { position } = this.geometry.attributes;
     for (let index = this.count; index < shown.length; index += 1) {
@@ -32,6 +32,6 @@ export class Trail extends Line {
     position.addUpdateRange(3 * this.count, 3 * (shown.length - this.count));
     position.needsUpdate = true;
     this.geometry.setDrawRange(0, shown.length);
-    [this.first, this.count] = [shown[0], shown.length];
+    [this.places, this.first, this.count] = [places, shown[0], shown.length];
   }
 }
