@@ -208,8 +208,8 @@ impl ControlState {
         self.guidance.reference(time_us)
     }
 
-    /// What the cascade will track at `time_us`, as far as it is known now: see [`PositionReference::expected_after`] for a
-    /// reference that is not shaped.
+    /// What the cascade will track at `time_us`, as far as it is known now. A reference that is neither shaped nor planned goes on
+    /// turning if it turns, and else as [`PositionReference::expected_after`] has it.
     pub fn preview(&self, time_us: u64) -> PositionReference {
         self.guidance.preview(time_us)
     }
@@ -414,12 +414,19 @@ impl ControlState {
             let expected = guidance.preview(then_us);
             followed.map_or(expected, |followed| {
                 let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
-                Heading::of(&expected).on(&followed.expected_after(then_s))
+                Heading::of(&expected).on(&followed.foreseen_after(then_s))
             })
         };
         if due.position {
             let guidance = &self.guidance;
-            let references = (&way(guidance, time_us), |then_us| way(guidance, then_us));
+            let is_foretold = followed.is_none() && guidance.is_foretold();
+            let expected = |then_us: u64| {
+                let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
+                followed
+                    .map_or_else(|| guidance.reference(then_us), |followed| followed.expected_after(then_s))
+            };
+            let asked = |then_us| (!is_foretold).then(|| expected(then_us));
+            let references = (&way(guidance, time_us), |then_us| way(guidance, then_us), asked);
             self.cascade.sample_position(configuration, cascade, seen, references, time_us);
         }
         if due.altitude {

@@ -53,6 +53,21 @@ impl DirectReference {
         heading.on(&self.latest.expected_after(since_s(self.time_us)))
     }
 
+    /// Whether its way is known.
+    pub fn is_planned(&self) -> bool {
+        self.plan.is_some()
+    }
+
+    /// What a plan counts on: see [`PositionReference::foreseen_after`].
+    pub fn preview(&self, time_us: u64) -> PositionReference {
+        if self.is_planned() {
+            return self.reference(time_us);
+        }
+        let since_s = |start_us: u64| time_us.saturating_sub(start_us) as f64 / 1e6;
+        let heading = Heading::of(&self.latest.expected_after(since_s(self.yaw_time_us)));
+        heading.on(&self.latest.foreseen_after(since_s(self.time_us)))
+    }
+
     /// Looks at the input, more often than it is sampled: what is not given is found from the instants at which it changes.
     pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         self.input.observe(reference, time_us);
