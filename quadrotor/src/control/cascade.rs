@@ -10,6 +10,7 @@ use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration
 use crate::control::flat_attitude::FlatAttitude;
 use crate::control::followed_way::FollowedWay;
 use crate::control::mass_belief::MassBelief;
+use crate::control::narrowed_way::NarrowedWay;
 use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::required_thrust::RequiredThrust;
@@ -36,6 +37,7 @@ pub struct Cascade {
     position: PositionController,
     altitude: AltitudeController,
     attitude: AttitudeController,
+    narrowed: NarrowedWay,
     followed: FollowedWay,
     turning: SmoothedAcceleration,
     /// What feedback adds to the acceleration of the reference, NED, m/s².
@@ -69,6 +71,7 @@ impl Cascade {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
             attitude: AttitudeController::new(&body.rotation()),
+            narrowed: NarrowedWay::default(),
             followed: FollowedWay::default(),
             turning: SmoothedAcceleration::default(),
             feedback_m_s2: Vector3::zeros(),
@@ -127,16 +130,23 @@ impl Cascade {
         (reference, seen): (&PositionReference, &Observation),
         time_us: u64,
     ) -> Option<PositionReference> {
-        self.followed.follow(configuration, (reference, &seen.body), time_us)
+        let narrowed = self.narrowed.follow(configuration, reference, time_us);
+        let way = narrowed.as_ref().unwrap_or(reference);
+        self.followed.follow(configuration, (way, &seen.body), time_us).or(narrowed)
     }
 
-    /// A sample of the position controller, for a reference that is expected to go on as `ahead` tells for a time, µs.
+    /// A sample of the position controller, for a reference that is foreseen to go on as `ahead` tells for a time, µs, and
+    /// may ask for what `asked` tells beside.
     pub(crate) fn sample_position(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &Observation,
-        (reference, ahead): (&PositionReference, impl Fn(u64) -> PositionReference),
+        (reference, ahead, asked): (
+            &PositionReference,
+            impl Fn(u64) -> PositionReference,
+            impl Fn(u64) -> Option<PositionReference>,
+        ),
         time_us: u64,
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
@@ -154,7 +164,9 @@ impl Cascade {
             }
         };
         let now = motion(reference, interval_s(&mut self.sampled.position_us, time_us, period_us));
-        let later = |sample: usize| motion(&ahead(time_us + sample as u64 * period_us), 0.0);
+        let at = |sample: usize| time_us + sample as u64 * period_us;
+        let later = |sample: usize| motion(&ahead(at(sample)), 0.0);
+        let asked = |sample: usize| asked(at(sample)).map(|reference| motion(&reference, 0.0));
         let tilt_rad = configuration.limits.tilt_rad;
         // The thrust of a climb that begins does not last, and one that is under way will be braked.
         let (_, down) = vertical_range(configuration, upright(&seen.body));
@@ -165,7 +177,7 @@ impl Cascade {
             configuration,
             design,
             &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
-            (&now, later),
+            (&now, later, asked),
             (present, most_horizontal(lightest, tilt_rad).min(holding)),
         );
         let feedback = applied - now.thrust;

@@ -207,8 +207,8 @@ impl ControlState {
         self.guidance.reference(time_us)
     }
 
-    /// What the cascade will track at `time_us`, as far as it is known now: see [`PositionReference::expected_after`] for a
-    /// reference that is not shaped.
+    /// What the cascade will track at `time_us`, as far as it is known now. A reference that is neither shaped nor planned goes on
+    /// turning if it turns, and else as [`PositionReference::expected_after`] has it.
     pub fn preview(&self, time_us: u64) -> PositionReference {
         self.guidance.preview(time_us)
     }
@@ -415,11 +415,18 @@ impl ControlState {
             None => guidance.preview(then_us),
             Some(followed) => {
                 let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
-                guidance.heading(then_us).on(&followed.expected_after(then_s))
+                guidance.heading(then_us).on(&followed.foreseen_after(then_s))
             }
         };
         if due.position {
-            let references = (&now, |then_us| ahead(&self.guidance, then_us));
+            let guidance = &self.guidance;
+            let is_foretold = followed.is_none() && guidance.is_foretold();
+            let expected = |then_us: u64| match &followed {
+                None => guidance.reference(then_us),
+                Some(followed) => followed.expected_after(then_us.saturating_sub(time_us) as f64 / 1e6),
+            };
+            let asked = |then_us| (!is_foretold).then(|| expected(then_us));
+            let references = (&now, |then_us| ahead(guidance, then_us), asked);
             self.cascade.sample_position(configuration, cascade, seen, references, time_us);
         }
         if due.altitude {

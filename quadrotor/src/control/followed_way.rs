@@ -11,8 +11,8 @@ use crate::{Configuration, PositionReference, RigidBody};
 const RETURN_RAD_S: f64 = 0.7;
 const DAMPING: f64 = 0.7;
 /// Rate, 1/s, at which the way gives way to the vehicle: what a disturbance, or the delay of the tilt, takes while the thrust is used up
-/// could only be won back by more thrust.
-const YIELDING_1_S: f64 = 0.5;
+/// could only be won back by more thrust. Faster, it would drift away with what a swing takes on one side and gives back on the other.
+const YIELDING_1_S: f64 = 0.25;
 /// A reference that has been within the limits for so long, µs, is one to return to: the controllers do that as fast as the limits allow.
 const RELEASED_US: u64 = 2_000_000;
 

@@ -20,6 +20,7 @@ mod learning;
 pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;
+pub(crate) mod narrowed_way;
 pub(crate) mod observation;
 pub(crate) mod observed_motion;
 pub(crate) mod position_controller;

@@ -23,8 +23,11 @@ use crate::{CascadeDesign, Configuration};
 const BRAKING_SHARE: f64 = 0.25;
 
 /// Samples ahead at which it is looked what the reference will ask for, as far as its motion is limited: a reference that will be too fast
-/// for the limit would be run ahead of.
-const ASKED: [usize; 8] = [5, 10, 15, 20, 30, 45, 75, 110];
+/// for the limit would be run ahead of. From the fourth on they are those at which the speed is limited: a speed that comes and goes between
+/// them is not missed. What is only foreseen to turn may also go straight on.
+const ASKED: [usize; 9] = [5, 10, 15, 20, 26, 34, 50, 80, 110];
+/// So many of them until what goes straight on does not speed up any more.
+const FADED: usize = 4;
 
 /// State of the position controller.
 ///
@@ -53,7 +56,11 @@ impl PositionController {
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &HorizontalMotion,
-        (reference, ahead): (&ReferenceMotion<2>, impl Fn(usize) -> ReferenceMotion<2>),
+        (reference, ahead, asked): (
+            &ReferenceMotion<2>,
+            impl Fn(usize) -> ReferenceMotion<2>,
+            impl Fn(usize) -> Option<ReferenceMotion<2>>,
+        ),
         (present_m_s2, most_m_s2): (f64, f64),
     ) -> (Vector2<f64>, ControllerActivity) {
         let law = &design.position.law;
@@ -73,7 +80,7 @@ impl PositionController {
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
-        let (moved, asked) = foreseen(law, &turn, reference, ahead);
+        let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked));
         let deviation = with_position(&(measured - state_of(reference)), &error);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let motion = MotionSample {
@@ -174,7 +181,7 @@ fn foreseen(
     law: &PositionLaw,
     turn: &Turn,
     reference: &ReferenceMotion<2>,
-    ahead: impl Fn(usize) -> ReferenceMotion<2>,
+    (ahead, asked): (impl Fn(usize) -> ReferenceMotion<2>, impl Fn(usize) -> Option<ReferenceMotion<2>>),
 ) -> (Option<MovedSignals>, Asked) {
     if reference.is_at_rest() {
         return (None, Asked::default());
@@ -192,8 +199,9 @@ fn foreseen(
         let state = turn.state(&(state_of(&then) - state_of(reference)));
         (state, turn.vector(&(then.thrust - reference.thrust)))
     });
-    let now = asked_by(&Asked::default(), reference);
-    (moved, ASKED.into_iter().fold(now, |asked, sample| asked_by(&asked, &ahead(sample))))
+    let beside = ASKED[..FADED].iter().filter_map(|sample| asked(*sample));
+    let all = ASKED.into_iter().map(ahead).chain(beside).chain([*reference]);
+    (moved, all.fold(Asked::default(), |most, then| asked_by(&most, &then)))
 }
 
 /// The state that a reference asks for. Feedback is none of it.

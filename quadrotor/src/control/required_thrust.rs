@@ -36,7 +36,7 @@ impl RequiredThrust {
     }
 
     /// a + D v and its derivatives.
-    fn whole(configuration: &Configuration, reference: &PositionReference) -> Self {
+    pub(crate) fn whole(configuration: &Configuration, reference: &PositionReference) -> Self {
         let drag_1_s = configuration.drag_1_s();
         let against = |motion: &Vector3<f64>, slower: &Vector3<f64>| motion + drag_1_s.component_mul(slower);
         Self {
@@ -52,7 +52,7 @@ impl RequiredThrust {
     }
 
     /// The largest horizontal acceleration beside the vertical one, m/s².
-    fn most_horizontal_m_s2(&self, configuration: &Configuration) -> f64 {
+    pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration) -> f64 {
         let vertical_m_s2 = self.acceleration_m_s2.z;
         most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
             .min(holding_horizontal_m_s2(configuration, -vertical_m_s2))

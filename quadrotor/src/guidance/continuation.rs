@@ -8,6 +8,10 @@ use crate::PositionReference;
 const KNOWN_S: f64 = 0.3;
 /// And within this time, s, its acceleration ends.
 const FADING_S: f64 = 0.7;
+/// A motion that turns more slowly, rad/s, is not foreseen to turn: within the horizon of a plan it may as well end.
+const SLOWEST_RAD_S: f64 = 0.5;
+/// One that turns faster is foreseen at this rate, rad/s: nobody flies so.
+const FASTEST_RAD_S: f64 = 5.0;
 
 impl PositionReference {
     /// The point `time_s` later under constant snap and constant yaw acceleration.
@@ -46,6 +50,45 @@ impl PositionReference {
         let end = fading.after(FADING_S);
         let zero = Vector3::zeros();
         Self { acceleration_m_s2: zero, jerk_m_s3: zero, ..end }.after(faded_s - FADING_S)
+    }
+
+    /// The point that a plan counts on `time_s` later. What turns is expected to go on turning: a plan for a way that straightens would
+    /// pull against the turns that come. Everything else goes on as [`PositionReference::expected_after`] has it.
+    ///
+    /// ```text
+    /// a(t) = a cos ωt + j/ω sin ωt,  ω² = −(v·j + a·s)/(v·v + a·a)
+    /// ```
+    ///
+    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. This is
+    /// the way alone: the heading of what turns stays that of now.
+    pub(crate) fn foreseen_after(&self, time_s: f64) -> Self {
+        if time_s <= KNOWN_S {
+            return self.after(time_s);
+        }
+        let Some(turning_1_s2) = self.turning_1_s2() else { return self.expected_after(time_s) };
+        let (t, rate) = (time_s, libm::sqrt(turning_1_s2));
+        let (sine, cosine) = libm::sincos(rate * t);
+        let (v, a, j) = (self.velocity_m_s, self.acceleration_m_s2, self.jerk_m_s3 / turning_1_s2);
+        let acceleration = a * cosine + j * (rate * sine);
+        Self {
+            position_m: self.position_m + (v + j) * t + a * ((1.0 - cosine) / turning_1_s2)
+                - j * (sine / rate),
+            velocity_m_s: v + a * (sine / rate) + j * (1.0 - cosine),
+            acceleration_m_s2: acceleration,
+            jerk_m_s3: (j * cosine - a * (sine / rate)) * turning_1_s2,
+            snap_m_s4: acceleration * -turning_1_s2,
+            ..*self
+        }
+    }
+
+    /// ω² of a motion that turns.
+    fn turning_1_s2(&self) -> Option<f64> {
+        let (v, a, j, s) = (self.velocity_m_s, self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4);
+        let known = if s == Vector3::zeros() { 0.0 } else { 1.0 };
+        let size = v.norm_squared() + known * a.norm_squared();
+        let turning = -(v.dot(&j) + a.dot(&s));
+        (turning > SLOWEST_RAD_S * SLOWEST_RAD_S * size)
+            .then(|| (turning / size).min(FASTEST_RAD_S * FASTEST_RAD_S))
     }
 }
 
@@ -103,21 +146,56 @@ mod tests {
     }
 
     /// A circle of 4 m at 1.5 rad/s.
+    fn circle(t: f64) -> PositionReference {
+        let derivative = |order: i32| {
+            let angle = 1.5 * t + f64::from(order) * core::f64::consts::FRAC_PI_2;
+            Vector3::new(angle.cos(), angle.sin(), 0.0) * (4.0 * 1.5_f64.powi(order))
+        };
+        PositionReference {
+            velocity_m_s: derivative(1),
+            acceleration_m_s2: derivative(2),
+            jerk_m_s3: derivative(3),
+            snap_m_s4: derivative(4),
+            ..PositionReference::goal(derivative(0).into(), 0.0)
+        }
+    }
+
+    /// Also where its snap is not known: the speed tells the rate alone.
+    #[test]
+    fn a_circle_is_foreseen_as_a_circle() {
+        let without_snap = PositionReference { snap_m_s4: Vector3::zeros(), ..circle(1.0) };
+        for time_s in [0.31, 1.0, 2.5, 5.5] {
+            for now in [circle(1.0), without_snap] {
+                let (found, then) = (now.foreseen_after(time_s), circle(1.0 + time_s));
+                let derivatives = |at: &PositionReference| {
+                    [at.position_m, at.velocity_m_s, at.acceleration_m_s2, at.jerk_m_s3, at.snap_m_s4]
+                };
+                for (found, then) in derivatives(&found).into_iter().zip(derivatives(&then)) {
+                    assert!((found - then).norm() < 1e-9, "{time_s}");
+                }
+            }
+        }
+    }
+
+    /// What speeds up or runs straight on does not turn.
+    #[test]
+    fn a_straight_motion_is_foreseen_as_expected() {
+        let straight = PositionReference {
+            velocity_m_s: Vector3::new(3.0, 1.0, 0.0),
+            acceleration_m_s2: Vector3::new(2.0, -1.0, 0.5),
+            ..PositionReference::goal([1.0, 2.0, 3.0], 0.5)
+        };
+        let faster = PositionReference { jerk_m_s3: Vector3::new(1.0, 0.0, 0.0), ..straight };
+        let rest = PositionReference::goal([1.0, 2.0, 3.0], 0.5);
+        for now in [straight, faster, rest] {
+            for time_s in [0.1, 0.5, 4.0] {
+                assert_eq!(now.foreseen_after(time_s), now.expected_after(time_s));
+            }
+        }
+    }
+
     #[test]
     fn a_circle_is_known_for_a_while() {
-        let circle = |t: f64| {
-            let derivative = |order: i32| {
-                let angle = 1.5 * t + f64::from(order) * core::f64::consts::FRAC_PI_2;
-                Vector3::new(angle.cos(), angle.sin(), 0.0) * (4.0 * 1.5_f64.powi(order))
-            };
-            PositionReference {
-                velocity_m_s: derivative(1),
-                acceleration_m_s2: derivative(2),
-                jerk_m_s3: derivative(3),
-                snap_m_s4: derivative(4),
-                ..PositionReference::goal(derivative(0).into(), 0.0)
-            }
-        };
         let off = |time_s: f64| {
             (circle(1.0).expected_after(time_s).position_m - circle(1.0 + time_s).position_m).norm()
         };

@@ -64,6 +64,19 @@ impl DirectReference {
         Heading::of(&self.latest.expected_after(elapsed_s(self.yaw_time_us, time_us)))
     }
 
+    /// Whether its way is known.
+    pub fn is_planned(&self) -> bool {
+        self.plan.is_some()
+    }
+
+    /// What a plan counts on: see [`PositionReference::foreseen_after`].
+    pub fn preview(&self, time_us: u64) -> PositionReference {
+        if self.is_planned() {
+            return self.reference(time_us);
+        }
+        self.held_heading(time_us).on(&self.latest.foreseen_after(elapsed_s(self.time_us, time_us)))
+    }
+
     /// Looks at the input, more often than it is sampled: what is not given is found from the instants at which it changes.
     pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         self.input.observe(reference, time_us);

@@ -132,9 +132,23 @@ impl Guidance {
         }
     }
 
+    /// Whether it is known what will be tracked unless the goal changes: it is shaped or comes with a plan.
+    pub fn is_foretold(&self) -> bool {
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(_) => true,
+            Self::Direct(direct) => direct.is_planned(),
+        }
+    }
+
     /// What will be tracked at `time_us`, as far as it is known now: exactly if it is shaped or comes with a plan, unless the goal
-    /// changes. Another one is carried on by its derivatives for a short time: see [`PositionReference::expected_after`].
+    /// changes. Another one is carried on by its derivatives: it goes on turning if it turns, and else see
+    /// [`PositionReference::expected_after`].
     pub fn preview(&self, time_us: u64) -> PositionReference {
-        self.reference(time_us)
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => shaper.reference(time_us),
+            Self::Direct(direct) => direct.preview(time_us),
+        }
     }
 }

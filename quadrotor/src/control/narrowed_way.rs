@@ -1,0 +1,253 @@
+//! A reference far beyond the limits, narrowed about its middle.
+
+use nalgebra::{Vector2, Vector3};
+use serde::{Deserialize, Serialize};
+
+use crate::control::required_thrust::RequiredThrust;
+use crate::guidance::found_derivatives::FOLLOWED;
+use crate::{Configuration, GRAVITY_M_S2, PositionReference};
+
+/// Rates, 1/s, at which what is asked for counts and is forgotten: what lasts for less than a second is no way.
+const NOTICED_1_S: f64 = 1.0;
+const FORGOTTEN_1_S: f64 = 0.3;
+/// Rate, 1/s, at which the share follows what is asked for. It is a double pole, so that acceleration and jerk do not jump.
+const SHARE_1_S: f64 = 5.0;
+/// Motions slower than this, rad/s, are followed whole: the middle of the way is where the reference is in the mean.
+const MIDDLE_RAD_S: f64 = 0.5;
+/// A way so near to its reference, m, is the reference.
+const NEAR_M: f64 = 0.01;
+/// The longest step of time, s: that of the slowest controllers.
+const STEP_S: f64 = 0.1;
+
+/// What is followed of a reference that asks for far more than the limits of lean, tilt rate and tilt acceleration: a way of the same
+/// shape, narrowed about its middle to a share κ of its size. The offset δ from the reference r is
+///
+/// ```text
+/// δ = (s + 3ω) x,  (s + ω)³ x = −(1 − κ) r̈
+/// ```
+///
+/// κ is such that what is followed asks for about [`FOLLOWED`] times the limits: a lean by less beyond them is flattened at its peaks, see
+/// [`FollowedWay`](crate::control::followed_way::FollowedWay). δ is −(1 − κ) r of motions that are fast against ω, and nothing of a
+/// constant velocity. It is bounded as r is, whatever κ does: no feedback has to win over a saturation. Only the horizontal motion is
+/// narrowed.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct NarrowedWay {
+    /// `None` while the reference is followed itself.
+    narrowing: Option<Narrowing>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Narrowing {
+    /// Size of what was asked for lately as a multiple of what is followed as it is, of the acceleration and its two derivatives.
+    asked: f64,
+    /// κ and its derivatives.
+    share: [f64; 3],
+    /// x and its derivatives, up to the fourth.
+    filter: [Vector2<f64>; 5],
+    time_us: u64,
+}
+
+impl NarrowedWay {
+    /// Goes on to a reference at a time, µs. What is followed then, unless it is the reference itself.
+    pub(crate) fn follow(
+        &mut self,
+        configuration: &Configuration,
+        reference: &PositionReference,
+        time_us: u64,
+    ) -> Option<PositionReference> {
+        if reference.is_at_rest() {
+            self.narrowing = None;
+            return None;
+        }
+        let asked = asked(configuration, reference);
+        let mut narrowing = match self.narrowing {
+            None if asked > 1.0 => Narrowing::none(time_us),
+            None => return None,
+            Some(narrowing) => narrowing.after(asked, time_us),
+        };
+        narrowing.drive(reference);
+        let way = narrowing.beside(reference);
+        let away_m = (way.position_m - reference.position_m).norm();
+        let ends = narrowing.asked <= 1.0 && asked <= 1.0 && away_m < NEAR_M;
+        self.narrowing = (!ends && away_m.is_finite()).then_some(narrowing);
+        self.narrowing.map(|_| way)
+    }
+}
+
+/// The largest multiple of what is followed as it is that a reference asks for.
+fn asked(configuration: &Configuration, reference: &PositionReference) -> f64 {
+    let whole = RequiredThrust::whole(configuration, reference);
+    let limits = &configuration.limits;
+    let lean = whole.acceleration_m_s2.xy().norm() / whole.most_horizontal_m_s2(configuration).max(1e-3);
+    let rate = whole.jerk_m_s3.xy().norm() / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+    let acceleration = whole.snap_m_s4.xy().norm() / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+    lean.max(rate).max(acceleration) / FOLLOWED
+}
+
+impl Narrowing {
+    fn none(time_us: u64) -> Self {
+        Self { asked: 1.0, share: [1.0, 0.0, 0.0], filter: [Vector2::zeros(); 5], time_us }
+    }
+
+    /// Later, when so much is asked for.
+    fn after(&self, asked: f64, time_us: u64) -> Self {
+        let t = (time_us.saturating_sub(self.time_us) as f64 / 1e6).min(STEP_S);
+        let rate_1_s = if asked > self.asked { NOTICED_1_S } else { FORGOTTEN_1_S };
+        let asked = self.asked + (asked - self.asked) * (rate_1_s * t);
+        let [share, rate, bend] = self.share;
+        let (share, rate) = (share + (rate + bend * (t / 2.0)) * t, rate + bend * t);
+        let wanted = 1.0 / asked.max(1.0);
+        let [x0, x1, x2, x3, x4] = self.filter;
+        Self {
+            asked,
+            share: [share, rate, SHARE_1_S * (SHARE_1_S * (wanted - share) - 2.0 * rate)],
+            filter: [
+                x0 + (x1 + (x2 / 2.0 + (x3 / 6.0 + x4 * (t / 24.0)) * t) * t) * t,
+                x1 + (x2 + (x3 / 2.0 + x4 * (t / 6.0)) * t) * t,
+                x2 + (x3 + x4 * (t / 2.0)) * t,
+                x3,
+                x4,
+            ],
+            time_us,
+        }
+    }
+
+    /// u = −(1 − κ) r̈ and its derivative: x⃛ = u − 3ω ẍ − 3ω² ẋ − ω³ x.
+    fn drive(&mut self, reference: &PositionReference) {
+        const W: f64 = MIDDLE_RAD_S;
+        let [u, du, _] = self.narrowed_by(reference);
+        let [x0, x1, x2, ..] = self.filter;
+        self.filter[3] = u - x2 * (3.0 * W) - x1 * (3.0 * W * W) - x0 * (W * W * W);
+        self.filter[4] = du - self.filter[3] * (3.0 * W) - x2 * (3.0 * W * W) - x1 * (W * W * W);
+    }
+
+    /// −(1 − κ) r̈ and its two derivatives.
+    fn narrowed_by(&self, reference: &PositionReference) -> [Vector2<f64>; 3] {
+        let [a, j, s] = [reference.acceleration_m_s2, reference.jerk_m_s3, reference.snap_m_s4]
+            .map(|derivative| derivative.xy());
+        let [share, rate, bend] = self.share;
+        let less = share - 1.0;
+        [a * less, j * less + a * rate, s * less + j * (2.0 * rate) + a * bend]
+    }
+
+    /// The narrowed way beside a reference.
+    fn beside(&self, reference: &PositionReference) -> PositionReference {
+        const W: f64 = MIDDLE_RAD_S;
+        let [u, du, ddu] = self.narrowed_by(reference);
+        let [x0, x1, x2, x3, _] = self.filter;
+        let with = |whole: &Vector3<f64>, offset: Vector2<f64>| whole + Vector3::new(offset.x, offset.y, 0.0);
+        // δ̈ = u − 3ω² ẋ − ω³ x
+        let middle = |fast: Vector2<f64>, slow: Vector2<f64>| fast * (3.0 * W * W) + slow * (W * W * W);
+        PositionReference {
+            position_m: with(&reference.position_m, x1 + x0 * (3.0 * W)),
+            velocity_m_s: with(&reference.velocity_m_s, x2 + x1 * (3.0 * W)),
+            acceleration_m_s2: with(&reference.acceleration_m_s2, u - middle(x1, x0)),
+            jerk_m_s3: with(&reference.jerk_m_s3, du - middle(x2, x1)),
+            snap_m_s4: with(&reference.snap_m_s4, ddu - middle(x3, x2)),
+            ..*reference
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use nalgebra::Vector3;
+
+    use super::NarrowedWay;
+    use crate::{Configuration, GRAVITY_M_S2, PositionReference};
+
+    const STEP_US: u64 = 1_000;
+
+    /// A circle of 4 m.
+    fn circle(rate_rad_s: f64, time_us: u64) -> PositionReference {
+        let derivative = |order: i32| {
+            let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * core::f64::consts::FRAC_PI_2;
+            Vector3::new(libm::cos(angle), libm::sin(angle), 0.0) * (4.0 * rate_rad_s.powi(order))
+        };
+        PositionReference {
+            velocity_m_s: derivative(1),
+            acceleration_m_s2: derivative(2),
+            jerk_m_s3: derivative(3),
+            snap_m_s4: derivative(4),
+            ..PositionReference::goal(derivative(0).into(), 0.0)
+        }
+    }
+
+    /// The ways beside a circle.
+    fn ways(configuration: &Configuration, rate_rad_s: f64, steps: u64) -> Vec<PositionReference> {
+        let mut way = NarrowedWay::default();
+        (0..steps)
+            .map(|step| {
+                let reference = circle(rate_rad_s, step * STEP_US);
+                way.follow(configuration, &reference, step * STEP_US).unwrap_or(reference)
+            })
+            .collect()
+    }
+
+    /// Each derivative is that of the one before, while the way narrows and afterwards.
+    #[test]
+    fn the_way_is_a_motion() {
+        let ways = ways(&Configuration::default(), 3.0, 20_000);
+        for of_three in ways.windows(3).step_by(97) {
+            let [before, now, after] = of_three else { unreachable!() };
+            let slope = |of: fn(&PositionReference) -> Vector3<f64>| (of(after) - of(before)) / 2e-3;
+            assert!((slope(|way| way.position_m) - now.velocity_m_s).norm() < 1e-3);
+            assert!((slope(|way| way.velocity_m_s) - now.acceleration_m_s2).norm() < 1e-2);
+            assert!((slope(|way| way.acceleration_m_s2) - now.jerk_m_s3).norm() < 0.1);
+            // Of the 324 m/s⁴ of the circle.
+            let snap = slope(|way| way.jerk_m_s3) - now.snap_m_s4;
+            assert!(snap.norm() < 10.0, "{snap}");
+        }
+    }
+
+    /// At 3 rad/s the circle takes 36 m/s², six times the lean, and tilt rates of 2 rad/s and 8 rad/s² are exceeded by 5.5 and 4.1 times: κ is
+    /// 0.25. By the transfer function 0.75 · 1.07 · 4 m are left out of it, and 1.16 of the lean are asked for.
+    #[test]
+    fn a_circle_far_beyond_is_narrowed_to_what_is_nearly_within() {
+        let configuration = Configuration::default();
+        let largest = libm::tan(0.91 * configuration.limits.tilt_rad) * GRAVITY_M_S2;
+        for (step, way) in ways(&configuration, 3.0, 30_000).iter().enumerate().skip(20_000) {
+            let leant = way.acceleration_m_s2.norm() / largest;
+            assert!((1.1..1.3).contains(&leant), "{step}: {leant}");
+            let away_m = (way.position_m - circle(3.0, step as u64 * STEP_US).position_m).norm();
+            assert!((3.1..3.4).contains(&away_m), "{step}: {away_m} m");
+        }
+    }
+
+    /// By tilt rate and tilt acceleration, too.
+    #[test]
+    fn turns_beyond_the_tilt_rate_are_narrowed() {
+        let mut configuration = Configuration::default();
+        configuration.limits.tilt_rate_rad_s = 0.3;
+        let ways = ways(&configuration, 1.1, 30_000);
+        let jerk = ways[29_999].jerk_m_s3.norm() / (GRAVITY_M_S2 * 0.3);
+        assert!((1.3..1.6).contains(&jerk), "{jerk}");
+    }
+
+    #[test]
+    fn what_is_not_far_beyond_is_followed_itself() {
+        let configuration = Configuration::default();
+        let mut way = NarrowedWay::default();
+        let mut narrowed = |rate_rad_s: f64, step: u64| {
+            way.follow(&configuration, &circle(rate_rad_s, step * STEP_US), step * STEP_US).is_some()
+        };
+        // 9 m/s² of 6
+        assert!((0..5_000).all(|step| !narrowed(1.48, step)));
+        assert!((5_000..8_000).all(|step| narrowed(2.0, step)));
+        // Forgotten by and by.
+        assert!(narrowed(1.0, 8_001));
+        assert!((8_002..60_000).any(|step| !narrowed(1.0, step)));
+        assert!((60_000..61_000).all(|step| !narrowed(1.0, step)));
+    }
+
+    #[test]
+    fn a_goal_at_rest_is_followed_at_once() {
+        let configuration = Configuration::default();
+        let mut way = NarrowedWay::default();
+        assert!(way.follow(&configuration, &circle(3.0, 0), 0).is_some());
+        assert_eq!(way.follow(&configuration, &PositionReference::goal([1.0; 3], 0.0), STEP_US), None);
+        assert_eq!(way, NarrowedWay::default());
+    }
+}
