@@ -29,6 +29,7 @@ pub(crate) mod rotor_command;
 pub(crate) mod rotor_loss;
 pub(crate) mod rotor_monitor;
 pub(crate) mod spin;
+pub(crate) mod thrown;
 pub(crate) mod thrust_lag;
 pub(crate) mod tracking_law;
 pub(crate) mod vehicle_motion;

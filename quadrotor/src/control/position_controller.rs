@@ -9,10 +9,11 @@ use serde::{Deserialize, Serialize};
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
+use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
-    AXIS_STATES, Asked, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight, position_bounds,
+    AXIS_STATES, Asked, POSITION_STATES, closing_share, horizon_m, in_sight, position_bounds,
 };
 use crate::design::translation_design::PositionLaw;
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -38,6 +39,7 @@ pub struct PositionController {
     controller: ControllerState<POSITION_STATES, 2, POSITION_MANY, f64, POSITION_FEW>,
     observed: ObservedMotion<POSITION_STATES, 2>,
     reference: ReferenceMotion<2>,
+    thrown: Thrown,
 }
 
 impl PositionController {
@@ -46,7 +48,12 @@ impl PositionController {
         let zero = Vector2::zeros();
         let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
         let start = ControllerState::new(measured, Vector2::zeros(), Vector2::zeros()).keeping();
-        Self { controller: start, observed: ObservedMotion::default(), reference: ReferenceMotion::default() }
+        Self {
+            controller: start,
+            observed: ObservedMotion::default(),
+            reference: ReferenceMotion::default(),
+            thrown: Thrown::default(),
+        }
     }
 
     /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and
@@ -91,10 +98,8 @@ impl PositionController {
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
         let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
-        let under_way = TurnUnderWay {
-            snap_m_s4: (seen.snap_m_s4 + turning).norm().max((seen.asked_snap_m_s4 + turning).norm()),
-            jump_m_s3: jerk_jump.norm(),
-        };
+        let attitude = (design.attitude_loop(), sample_time_s);
+        let under_way = self.thrown.turn_under_way(seen, &turning, attitude, &jerk_jump);
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),

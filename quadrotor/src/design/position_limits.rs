@@ -71,6 +71,8 @@ pub(crate) struct TurnUnderWay {
     pub(crate) snap_m_s4: f64,
     /// By how much the jerk of the reference has jumped since the last sample, m/s³: it will be answered.
     pub(crate) jump_m_s3: f64,
+    /// Jerk that the body has, and what it takes to bring back a body that was thrown, m/s³.
+    pub(crate) jerk_m_s3: f64,
 }
 
 /// The most that a reference asks for while it is planned for. What is more than a limit is another's plan, which may be followed: a limit
@@ -96,7 +98,8 @@ pub(crate) fn position_bounds(
     let turning = with_faster(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2, asked.snap_m_s4)
         .max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning = with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3);
+    let leaning =
+        with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3).max(under_way.jerk_m_s3);
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked.speed_m_s);
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
@@ -186,11 +189,23 @@ mod tests {
         let limits = Limits::default();
         let turning = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
         for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
-            let under_way = TurnUnderWay { snap_m_s4: share * turning, jump_m_s3: 0.0 };
+            let under_way = TurnUnderWay { snap_m_s4: share * turning, ..TurnUnderWay::default() };
             assert_eq!(
                 position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way)[2 * SIDES],
                 expected * turning
             );
+        }
+    }
+
+    /// The jerk of a body that was thrown may go on; a slower one changes nothing.
+    #[test]
+    fn a_thrown_body_may_come_back() {
+        let limits = Limits::default();
+        let leaning = GRAVITY_M_S2 * limits.tilt_rate_rad_s;
+        for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
+            let under_way = TurnUnderWay { jerk_m_s3: share * leaning, ..TurnUnderWay::default() };
+            let bounds = position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way);
+            assert_eq!(bounds[2 * SIDES + COARSE_SIDES], expected * leaning);
         }
     }
 

@@ -45,6 +45,10 @@ const SURPRISE_DEVIATIONS: f64 = 5.0;
 const STEADY_FORCE_S: f64 = 3.0;
 /// Time after a surprise, or a start, in which there is no other one, s.
 const SETTLING_S: f64 = 1.5;
+/// Time in which a gust is forgotten, s: another one follows.
+const GUSTY_S: f64 = 10.0;
+/// How many times more than that along the thrust is no gust: one swings from one side of its mean to the other.
+const GUST_SWINGS: f64 = 3.0;
 
 /// Less thrust than this share of the weight is free fall, which shows no mass.
 const LEAST_THRUST_SHARE: f64 = 0.2;
@@ -90,6 +94,8 @@ pub(crate) struct MassAndDrag {
     steady_force_m_s2: Vector3<f64>,
     /// Time in which there is no surprise, s.
     settling_s: f64,
+    /// How much forces from outside change, m/s², by those across the thrust: no mass does that.
+    gusts_m_s2: f64,
 }
 
 impl MassAndDrag {
@@ -102,6 +108,7 @@ impl MassAndDrag {
             latest_us: None,
             steady_force_m_s2: Vector3::zeros(),
             settling_s: SETTLING_S,
+            gusts_m_s2: 0.0,
         }
     }
 
@@ -197,8 +204,12 @@ impl MassAndDrag {
         let prior = &prior(configuration);
         let noise_m_s2 = noise_m_s2(&configuration.sensors, interval_s);
         self.settling_s = (self.settling_s - interval_s).max(0.0);
-        let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2;
-        if self.settling_s == 0.0 && libm::fabs(self.change_along_thrust_m_s2(terms)) > surprise_m_s2 {
+        let change_m_s2 = self.change_m_s2(terms);
+        let gust_m_s2 = change_m_s2.xy().norm() - SURPRISE_DEVIATIONS * noise_m_s2;
+        let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
+        self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
+        let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
+        if self.settling_s == 0.0 && libm::fabs(change_m_s2.z) > surprise_m_s2 {
             // What the filter remembers is of before. Drag does not jump.
             self.estimate.open(prior, &learned_from(&Shown { mass: true, drag: [false; 3] }));
             self.steady_force_m_s2 = self.force_m_s2();
@@ -206,23 +217,25 @@ impl MassAndDrag {
             self.interrupt();
             return;
         }
-        let shown = self.excitation.observe(terms, interval_s, noise_m_s2);
+        // A gust across the thrust comes with one along it, which would pass for mass.
+        let along_m_s2 = libm::hypot(noise_m_s2, self.gusts_m_s2);
+        let shown = self.excitation.observe(terms, interval_s, along_m_s2);
         let learned = learned_from(&shown);
         self.estimate.forget(prior, interval_s);
         // Filtered equations repeat one another for as long as the filter remembers.
-        let variance = noise_m_s2 * noise_m_s2 * (2.0 * MEMORY_S / interval_s).max(1.0);
-        for axis in 0..3 {
-            let value = terms.specific_force_m_s2[axis];
-            self.estimate.update(prior, &learned, &row(terms, axis), (value, variance));
+        let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
+        for (axis, deviation) in [noise_m_s2, noise_m_s2, along_m_s2].into_iter().enumerate() {
+            let measured = (terms.specific_force_m_s2[axis], deviation * deviation * repeated);
+            self.estimate.update(prior, &learned, &row(terms, axis), measured);
         }
         let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
     }
 
-    /// By how much the acceleration along the thrust differs from what mass, drag and the force of the last seconds explain, m/s².
-    fn change_along_thrust_m_s2(&self, terms: &Terms) -> f64 {
+    /// By how much the acceleration differs from what mass, drag and the force of the last seconds explain, FRD, m/s².
+    fn change_m_s2(&self, terms: &Terms) -> Vector3<f64> {
         let change = terms.in_body * (self.force_m_s2() - self.steady_force_m_s2);
-        (self.innovation(terms) + change).z
+        self.innovation(terms) + change
     }
 
     /// Acceleration by forces beside thrust and drag, NED, m/s².
@@ -239,7 +252,9 @@ impl MassAndDrag {
 
     /// Whether a learner can have been in this state: saved states may come from anywhere.
     pub(crate) fn is_possible(&self, configuration: &Configuration) -> bool {
-        self.estimate.is_possible(&prior(configuration)) && (0.0..=SETTLING_S).contains(&self.settling_s)
+        self.estimate.is_possible(&prior(configuration))
+            && (0.0..=SETTLING_S).contains(&self.settling_s)
+            && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
     }
 }
 
