@@ -2,6 +2,7 @@
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::boot_fault::BootFault;
 use super::button_watch::ButtonWatch;
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
@@ -44,6 +45,8 @@ use crate::equipment::Equipment;
 pub struct Machines {
     /// The start of the mission without a pilot.
     pub autostart: Autostart,
+    /// What only a reboot mends.
+    pub boot_fault: BootFault,
     /// What is broken.
     pub injection: Injection,
     /// The battery.

@@ -75,6 +75,8 @@ pub fn sys_status(vehicle: &Vehicle) -> MavMessage {
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
         (measures_around || !has_proximity, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+        // As in ArduPilot, one that is off is not healthy.
+        (vehicle.obstacles().rangefinder_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     let failed = checks.into_iter().filter(|(good, _)| !good).map(|(_, sensor)| sensor);
