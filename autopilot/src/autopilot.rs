@@ -106,8 +106,13 @@ impl Autopilot {
         let settings = context.vehicle.settings_of_reboot(context.parameters.settings());
         let lasted_us = context.vehicle.time_us();
         let unix_start_us = context.vehicle.unix_start_us() + lasted_us;
+        let radio = context.vehicle.radio();
         context.vehicle = Vehicle::new(&settings).map_err(FlightError::from)?;
         context.vehicle.set_unix_start_us(unix_start_us);
+        // The radio goes on sending what it sends, which is told only when it changes.
+        if let Some(pulses) = radio {
+            context.vehicle.receive_radio(pulses);
+        }
         context.reboot_us = None;
         context.outbox.restart();
         context.log_queue.close();

@@ -120,12 +120,17 @@ impl Parameters {
     pub fn set(&mut self, name: &str, value: f64, vehicle: &mut Vehicle) -> Result<(), SetError> {
         let mut values = self.values(vehicle);
         let change = self.table.set(name, value, &mut values)?;
-        if change == Change::Statistics {
-            self.statistics.reset((vehicle.unix_start_us() + vehicle.time_us()) / 1_000_000);
-        } else if change != Change::Nothing {
-            let adopted = vehicle.adopt(&values.configuration, &values.conduct);
-            adopted.map_err(|source| SetError::refused(name, source))?;
-            self.speed = values.speed;
+        match change {
+            Change::Nothing => {}
+            Change::Statistics => {
+                self.statistics.reset((vehicle.unix_start_us() + vehicle.time_us()) / 1_000_000);
+            }
+            Change::Boots => self.statistics.boots = values.statistics.boots,
+            Change::ClosedLoop | Change::Conduct | Change::Speed => {
+                let adopted = vehicle.adopt(&values.configuration, &values.conduct);
+                adopted.map_err(|source| SetError::refused(name, source))?;
+                self.speed = values.speed;
+            }
         }
         self.changed = true;
         Ok(())

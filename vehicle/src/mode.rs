@@ -98,6 +98,11 @@ impl Mode {
         matches!(self, Self::Stabilize | Self::Manual | Self::Acro)
     }
 
+    /// Whether it stays where the vehicle is, wherever that is said to be, or goes from there as sticks say.
+    pub fn holds_a_felt_place(self) -> bool {
+        matches!(self, Self::Hold | Self::Position | Self::PositionHold)
+    }
+
     /// What of its motion the vehicle must know for it.
     pub fn needs(self) -> Needs {
         match self {

@@ -15,6 +15,8 @@ const NOTHING: f64 = 0.0;
 const REBOOT: f64 = 1.0;
 const SHUTDOWN: f64 = 2.0;
 const REBOOT_TO_BOOTLOADER: f64 = 3.0;
+/// The first four parameters with which ArduPilot lets its main loop hang, to try what becomes of it.
+const HANG: [f64; 4] = [42.0, 24.0, 71.0, 93.0];
 /// Value of the sixth parameter with which ArduPilot reboots although it is armed.
 const FORCE: f64 = 20_190_226.0;
 /// The answer leaves before the vehicle is gone, µs.
@@ -36,6 +38,10 @@ impl Service for Reboots {
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
         let (kind, ardupilot) = (command.parameter(1), context.identity().is_ardupilot());
         if kind == NOTHING && !ardupilot {
+            return Ok(Progress::Done);
+        }
+        if ardupilot && [1, 2, 3, 4].map(|index| command.parameter(index)) == HANG {
+            context.vehicle.hang();
             return Ok(Progress::Done);
         }
         if kind == SHUTDOWN {

@@ -227,8 +227,27 @@ fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vect
         )));
     }
     let mut position_m = vehicle.frame().to_local_m(&place);
+    if vehicle.identity().is_ardupilot() {
+        shorten(&mut position_m, &place, vehicle);
+    }
     position_m.z = vehicle.site().down_m(target.frame, altitude_m);
     Ok(position_m)
+}
+
+/// ArduPilot flies towards places however far away they are: on the way to one beyond what can be flown here, to a nearer one. As there, the way is
+/// straight on a plane map.
+fn shorten(position_m: &mut Vector3<f64>, place: &Geodetic, vehicle: &Vehicle) {
+    const REACH_M: f64 = FARTHEST_M / 2.0;
+    let here_m = vehicle.outputs().position_m;
+    if (*position_m - here_m).xy().norm() <= REACH_M {
+        return;
+    }
+    let here = vehicle.frame().to_geodetic(&here_m);
+    let middle_rad = ((here.latitude_deg + place.latitude_deg) / 2.0).to_radians();
+    let north_deg = place.latitude_deg - here.latitude_deg;
+    let east_deg = (place.longitude_deg - here.longitude_deg + 180.0).rem_euclid(360.0) - 180.0;
+    let way = Vector2::new(north_deg, east_deg * libm::cos(middle_rad)).normalize() * REACH_M;
+    (position_m.x, position_m.y) = (here_m.x + way.x, here_m.y + way.y);
 }
 
 /// A vector of the heading's frame in NED.

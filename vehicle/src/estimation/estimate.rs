@@ -1,6 +1,6 @@
 //! What the estimator knows of the vehicle.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector2};
 use quadrotor::RigidBody;
 
 /// The vehicle's motion as estimated, and how much it is worth.
@@ -20,6 +20,8 @@ pub struct Estimate {
     pub test_ratios: TestRatios,
     /// How often position, height or velocity have been set anew because measurements contradicted them for long.
     pub resets: u32,
+    /// By how much the horizontal position that is told has slid, since the start, to where the receiver leapt, m: not by flying.
+    pub slid_m: Vector2<f64>,
     /// When it started again last, as the inertial unit contradicted the receiver, µs.
     pub restarted_us: Option<u64>,
 }
@@ -87,6 +89,7 @@ impl Estimate {
             vertical_accuracy_m: 0.0,
             test_ratios: TestRatios::default(),
             resets: 0,
+            slid_m: Vector2::zeros(),
             restarted_us: None,
         }
     }

@@ -24,6 +24,8 @@ const PREDICTION_US: u64 = 5_000;
 /// fixes they then lean by a tenth of a radian.
 const POSITION_RELEASE_M_S: f64 = 0.5;
 const VELOCITY_RELEASE_M_S2: f64 = 0.5;
+/// With less than this left, m, a leap of the position has been told.
+const TOLD_M: f64 = 0.1;
 /// The antenna sits on the inertial unit.
 const NO_LEVER: [f32; 3] = [0.0; 3];
 
@@ -46,6 +48,8 @@ pub struct Estimator {
     lockout: Lockout,
     position_release: Release,
     velocity_release: Release,
+    /// Whether a leap of the position is still to be told.
+    leaps: bool,
 }
 
 impl Estimator {
@@ -72,6 +76,7 @@ impl Estimator {
             lockout: Lockout::default(),
             position_release: Release::new(POSITION_RELEASE_M_S),
             velocity_release: Release::new(VELOCITY_RELEASE_M_S2),
+            leaps: false,
         }
     }
 
@@ -130,6 +135,7 @@ impl Estimator {
             antenna,
         );
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
+        self.leaps |= place.is_reset();
         self.hold_back(&before);
         if self.lockout.update(fix, fitted(motion)) && starts_again {
             self.start_again(fix);
@@ -259,7 +265,13 @@ impl Estimator {
         // The position that is told goes on with the velocity that is told.
         self.position_release.hold(&(held_velocity * dt_s));
         let body = &mut self.estimate.body;
-        body.position_m = double(state.position.to_array()) - self.position_release.step(dt_s);
+        let held_m = self.position_release.held();
+        let still_held_m = self.position_release.step(dt_s);
+        body.position_m = double(state.position.to_array()) - still_held_m;
+        if self.leaps {
+            self.estimate.slid_m += (held_m - still_held_m).xy();
+            self.leaps = still_held_m.xy().norm() > TOLD_M;
+        }
         body.velocity_m_s = double(state.velocity.to_array()) - held_velocity;
         body.attitude = UnitQuaternion::new_normalize(attitude).into_inner();
         body.body_rate_rad_s = reading.body_rate_rad_s - double(state.gyro_bias.to_array());

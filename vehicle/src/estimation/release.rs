@@ -27,6 +27,11 @@ impl Release {
         self.held += correction;
     }
 
+    /// What is held.
+    pub fn held(&self) -> Vector3<f64> {
+        self.held
+    }
+
     /// Goes on by `dt_s` and returns what is still held.
     pub fn step(&mut self, dt_s: f64) -> Vector3<f64> {
         let size = self.held.norm();

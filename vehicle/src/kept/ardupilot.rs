@@ -208,7 +208,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SCHED_DEBUG", 0, 0..=3, "", "Debugging of the scheduler"),
         ("SIM_RATE_HZ", 1200, 50..=20000, "Hz", "Rate of the simulation; here 1 kHz"),
         ("SIM_IMU_COUNT", 2, 0..=5, "", "Number of inertial units; here one"),
-        ("SIM_BARO_COUNT", 2, 0..=3, "", "Number of barometers; here one"),
         ("SIM_ESC_TELEM", 1, 0..=1, "", "Telemetry of motor controllers"),
         ("SIM_ADSB_TX", 0, 0..=1, "", "Transponder"),
         ("SIM_FLOW_ENABLE", 0, 0..=1, "", "Simulate optical flow"),

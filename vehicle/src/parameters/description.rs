@@ -92,7 +92,7 @@ impl Entry {
                 bits: &[],
                 group: "Statistics",
                 needs_restart: false,
-                read_only: statistic != Statistic::Reset,
+                read_only: !matches!(statistic, Statistic::Boots | Statistic::Reset),
             },
             Source::Speed => Description {
                 text: "Simulated seconds per second; 0 pauses, -1 is as fast as possible".to_owned(),

@@ -52,7 +52,7 @@ impl Statistic {
     /// What it means.
     pub fn text(self) -> &'static str {
         match self {
-            Self::Boots => "Number of boots since the statistics were reset (read-only)",
+            Self::Boots => "Number of boots since the statistics were reset, or since it was set",
             Self::FlightTime => "Time in the air since the statistics were reset (read-only)",
             Self::RunTime => "Time switched on since the statistics were reset (read-only)",
             Self::Reset => {
@@ -92,6 +92,15 @@ impl Statistic {
 }
 
 impl Statistics {
+    /// Counts boots from a number on. Returns whether it is one.
+    pub fn set_boots(&mut self, boots: f64) -> bool {
+        let is_count = boots.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(&boots);
+        if is_count {
+            self.boots = boots as u32;
+        }
+        is_count
+    }
+
     /// All counts from now, s since 1970.
     pub fn reset(&mut self, unix_s: u64) {
         *self = Self { boots: 1, reset_unix_s: unix_s, ..Self::default() };

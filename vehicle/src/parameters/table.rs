@@ -38,6 +38,8 @@ pub enum Change {
     Speed,
     /// What it counts begins anew.
     Statistics,
+    /// How often it has booted.
+    Boots,
 }
 
 /// All parameters, in alphabetical order: the order of their indices.
@@ -149,6 +151,9 @@ impl ParameterTable {
                 values.statistics = Statistics::default();
                 Change::Statistics
             }),
+            Source::Statistic(Statistic::Boots) => {
+                values.statistics.set_boots(value).then_some(Change::Boots)
+            }
             Source::Statistic(_) => return Err(SetError::Counted(name.to_owned())),
             Source::Speed => Speed::from_parameter(value).map(|speed| {
                 values.speed = speed;

@@ -78,6 +78,12 @@ pub struct Conduct {
     /// Orbits.
     #[serde(default)]
     pub orbit: OrbitSettings,
+    /// ArduPilot's number of the mode at the start.
+    #[serde(default = "loiter")]
+    pub initial_mode: u8,
+    /// Loops that PID_TUNING tells of, as ArduPilot's parameter adds them up.
+    #[serde(default)]
+    pub told_loops: u8,
     /// Options of ArduPilot's guided mode, as the parameter adds them up.
     #[serde(default = "thrust_as_thrust")]
     pub guided_options: u8,
@@ -138,6 +144,10 @@ pub struct Conduct {
 }
 
 /// Records of before it could be chosen have this one.
+fn loiter() -> u8 {
+    5
+}
+
 fn two() -> f64 {
     2.0
 }
@@ -203,6 +213,8 @@ impl Conduct {
                 HeadingPolicy::NextPlace
             },
             orbit: OrbitSettings::default(),
+            initial_mode: loiter(),
+            told_loops: 0,
             guided_options: 0,
             auto_options: 0,
             weathervane: WeathervaneSettings::default(),

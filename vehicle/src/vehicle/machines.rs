@@ -4,6 +4,7 @@ use quadrotor::{Configuration, Outputs};
 
 use super::autostart::Autostart;
 use super::battery::Battery;
+use super::boot_fault::BootFault;
 use super::button_watch::ButtonWatch;
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
@@ -48,6 +49,8 @@ use crate::plan::Program;
 pub struct Machines {
     /// The start of the mission without a pilot.
     pub autostart: Autostart,
+    /// What only a reboot mends.
+    pub boot_fault: BootFault,
     /// What is broken.
     pub injection: Injection,
     /// The battery.
@@ -134,6 +137,7 @@ impl Machines {
     ) -> Self {
         Self {
             autostart: Autostart::new(settings.autostart && program.is_flown()),
+            boot_fault: settings.boot_fault(),
             injection: Injection::new(settings.faults.clone()),
             battery: Battery::new(settings.battery),
             fence: FenceWatch::default(),

@@ -65,6 +65,12 @@ impl Motion {
         self.set_point.leads_up(z_m)
     }
 
+    /// Goes on elsewhere, m north and east: what is known of the place has changed, not the place.
+    pub fn slide(&mut self, slid_m: &Vector2<f64>) {
+        self.state.position_m.x += slid_m.x;
+        self.state.position_m.y += slid_m.y;
+    }
+
     /// Asks for another heading on the same way.
     pub fn turn_to(&mut self, yaw: YawTarget) {
         self.set_point.yaw = yaw;

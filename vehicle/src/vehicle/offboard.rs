@@ -2,6 +2,7 @@
 
 use super::attitude_flight::AttitudeFlight;
 use super::failsafe::Cause;
+use super::guided_heading::Lead;
 use super::notice::Severity;
 use super::proposal::Proposal;
 use super::set_point::{PositionSetPoint, SetPoint};
@@ -17,6 +18,11 @@ pub struct Offboard {
     latest: Option<(SetPoint, u64)>,
     /// Whether it has been steered to.
     applied: bool,
+    /// How it leads the vehicle, and whether a heading has been asked for since it does (ArduPilot).
+    lead: Option<Lead>,
+    heading_is_asked: bool,
+    /// Whether the nose points to what is looked at (ArduPilot).
+    looks: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
     expired: bool,
     /// What a pause has interrupted.
@@ -28,12 +34,39 @@ pub struct Offboard {
 }
 
 impl Offboard {
-    /// Takes a set-point that came at a time, µs.
-    pub fn take(&mut self, set_point: SetPoint, time_us: u64) {
+    /// Takes a set-point that came at a time, µs. Returns whether it leads the vehicle in another way than before.
+    pub fn take(&mut self, set_point: SetPoint, time_us: u64) -> bool {
+        let changed = self.lead_by(Lead::of(&set_point));
+        self.heading_is_asked |= set_point.turns();
         if matches!(set_point, SetPoint::Position(_)) {
             self.attitude.forget();
         }
         (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
+        changed
+    }
+
+    /// The vehicle is led in a way. Returns whether that is another one than before; then no heading is asked for any more, and the nose no longer looks.
+    pub fn lead_by(&mut self, lead: Lead) -> bool {
+        let changed = self.lead != Some(lead);
+        self.lead = Some(lead);
+        self.heading_is_asked &= !changed;
+        self.looks &= !changed;
+        changed
+    }
+
+    /// How the vehicle is led.
+    pub fn lead(&self) -> Option<Lead> {
+        self.lead
+    }
+
+    /// The nose points to what is looked at from now on.
+    pub fn look(&mut self) {
+        (self.heading_is_asked, self.looks) = (false, true);
+    }
+
+    /// Whether the nose points to what is looked at.
+    pub fn looks(&self) -> bool {
+        self.looks
     }
 
     /// Holds the place until [`resume`](Self::resume), whatever set-points come.
@@ -69,13 +102,15 @@ impl Offboard {
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
         (self.applied, self.paused) = (false, None);
+        // ArduPilot's guided mode begins as if a velocity of zero led it.
+        (self.lead, self.heading_is_asked) = (Some(Lead::Velocity), false);
         self.attitude.forget();
         self.stream = StreamedMotion::default();
     }
 
-    /// Whether the set-point that is steered to asks for a heading.
+    /// Whether the set-points that are steered to have asked for a heading.
     pub fn turns(&self) -> bool {
-        self.applied && self.latest.is_some_and(|(set_point, _)| set_point.turns())
+        self.applied && self.heading_is_asked
     }
 
     /// Whether the latest set-point is not older than a timeout, s, at a time, µs.

@@ -1,7 +1,7 @@
 //! What the vehicle knows of its own motion: the truth, or what an estimator makes of instruments, or what the
 //! controllers measure with noise.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
 use super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
@@ -24,14 +24,23 @@ pub struct Perception {
     /// Instruments and estimator, unless the truth is known.
     navigation: Option<Navigation>,
     ideal_sensors: IdealSensors,
+    /// By how much the horizontal position slid with the last tick, m, and since the start.
+    slid_m: Vector2<f64>,
+    slid_before_m: Vector2<f64>,
 }
 
 impl Perception {
     /// Begins with the motion of the closed loop, with instruments and an estimator or without.
     pub fn new(closed_loop: &ClosedLoop, navigation: Option<Navigation>) -> Self {
         let truth = closed_loop.outputs();
-        let mut perception =
-            Self { truth, outputs: truth, navigation, ideal_sensors: IdealSensors::default() };
+        let mut perception = Self {
+            truth,
+            outputs: truth,
+            navigation,
+            ideal_sensors: IdealSensors::default(),
+            slid_m: Vector2::zeros(),
+            slid_before_m: Vector2::zeros(),
+        };
         perception.outputs = perception.known(closed_loop);
         perception
     }
@@ -49,6 +58,8 @@ impl Perception {
         match &mut self.navigation {
             Some(navigation) => {
                 navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, stands);
+                let slid_m = navigation.estimate().slid_m;
+                (self.slid_m, self.slid_before_m) = (slid_m - self.slid_before_m, slid_m);
             }
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
@@ -80,6 +91,11 @@ impl Perception {
     /// What the closed loop shows in truth.
     pub fn truth(&self) -> &Outputs {
         &self.truth
+    }
+
+    /// By how much the horizontal position that is known slid with the last tick, m: see [`Estimate::slid_m`].
+    pub fn slid_m(&self) -> Vector2<f64> {
+        self.slid_m
     }
 
     /// What of its motion it knows well enough to fly by.

@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use quadrotor::{Heading, PositionReference};
 
 use super::failsafe::Cause;
+use super::heading_policy::HeadingPolicy;
 use super::home::Home;
 use super::notice::{Notice, Refusal, Severity};
 use super::path_steering::PathSteering;
@@ -204,6 +205,28 @@ impl<'a> Proposal<'a> {
     pub fn turn_to_region(&mut self, situation: &Situation) {
         if let Some(region) = self.region {
             self.turn_on(region.heading(&situation.outputs.setpoint, None));
+        }
+    }
+
+    /// The same; but ArduPilot's guided mode has a choice of its own unless the nose is to look.
+    pub fn choose_heading(&mut self, situation: &Situation, looks: bool) {
+        let guided = situation.mode == Mode::Offboard && situation.identity.is_ardupilot();
+        if !guided || looks && self.region.is_some() {
+            self.turn_to_region(situation);
+            return;
+        }
+        let heading = HeadingPolicy::of(situation).guided(situation);
+        if heading.is_some() || self.steering.follows_heading() {
+            self.turn_on(heading);
+        }
+    }
+
+    /// Moves a reference that only stays where it is, or goes as sticks say, with the position that is known, m.
+    pub fn slide(&mut self, slid_m: &Vector2<f64>) {
+        if matches!(*self.steering, Steering::Motion(_))
+            && let Steering::Motion(motion) = self.steering.to_mut()
+        {
+            motion.slide(slid_m);
         }
     }
 

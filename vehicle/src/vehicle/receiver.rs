@@ -73,6 +73,11 @@ impl Receiver {
         self.radio = Some(pulses);
     }
 
+    /// What the radio sends, if there is one.
+    pub fn radio(&self) -> Option<Pulses> {
+        self.radio
+    }
+
     /// Overrides channels: `None` leaves one as it is, 0 gives it back.
     pub fn take_overrides(&mut self, pulses: &[Option<u16>; CHANNELS], time_us: u64) {
         for (channel, pulse) in self.overrides.iter_mut().zip(pulses) {

@@ -5,12 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::battery::{Battery, full_voltage_v};
 use super::battery_pack::BatteryPack;
+use super::boot_fault::BootFault;
 use super::conduct::Conduct;
 use crate::equipment::EquipmentVoice;
 use crate::estimation::SensorSettings;
 use crate::fault::ScheduledFault;
 use crate::foreign::ForeignDescription;
 use crate::identity::Identity;
+use crate::mode::Mode;
 use crate::plan::Plans;
 use crate::surroundings::Surroundings;
 use crate::world::{Geodetic, WindSettings};
@@ -82,6 +84,18 @@ impl VehicleSettings {
             foreign: None,
             equipment: EquipmentVoice::default(),
         }
+    }
+
+    /// The mode after a boot.
+    pub fn mode_at_boot(&self) -> Mode {
+        let chosen = self.identity.mode(u32::from(self.conduct.initial_mode));
+        chosen.filter(|_| self.identity.is_ardupilot()).unwrap_or(self.identity.first_mode())
+    }
+
+    /// What a boot finds that only another one mends.
+    pub(super) fn boot_fault(&self) -> BootFault {
+        let barometers = if self.identity.is_ardupilot() { self.conduct.simulated.barometers } else { 1 };
+        BootFault::with_barometers(barometers)
     }
 
     /// The closed loop as the vehicle flies it: with ground and shaper, at rest with its heading.

@@ -26,6 +26,10 @@ pub struct Simulated {
     pub weak_share: f64,
     /// Errors of the instruments.
     pub errors: SensorErrors,
+    /// Barometers on the board; all of them measure the same. Below 1 the vehicle does not boot whole.
+    pub barometers: i8,
+    /// Kinds of outer barometers that are looked for, as ArduPilot's parameter adds them up: one is found.
+    pub outer_barometers: u32,
     /// Pushes and twists.
     pub pushes: Pushes,
 }
@@ -41,6 +45,8 @@ impl Default for Simulated {
             weak_rotors: 0.0,
             weak_share: 0.0,
             errors: SensorErrors::default(),
+            barometers: 2,
+            outer_barometers: 0,
             pushes: Pushes::default(),
         }
     }
@@ -50,6 +56,11 @@ impl Default for Simulated {
 pub const WIND_FROM_DEG: f64 = 180.0;
 
 impl Simulated {
+    /// How many barometers tell their pressure.
+    pub fn told_barometers(&self) -> u8 {
+        self.barometers.max(0) as u8 + u8::from(self.outer_barometers > 0)
+    }
+
     /// With the start in place of what has not been chosen.
     pub fn since(mut self, wind: &WindSettings, full_battery_v: f64) -> Self {
         if wind.speed_m_s > 0.0 || wind.gusts_m_s > 0.0 {

@@ -14,7 +14,7 @@ mod reboot;
 mod requests;
 mod surroundings;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use quadrotor::ConfigurationError;
 
 use super::battery::{capacity_ah, full_voltage_v};
@@ -86,7 +86,7 @@ impl Vehicle {
             closed_loop,
             perception,
             plans: KnownPlans::new(settings.plans.clone(), &site),
-            decided: Decided::new(settings.identity.first_mode(), home),
+            decided: Decided::new(settings.mode_at_boot(), home),
             machines,
         };
         vehicle.announce_plans();
@@ -150,6 +150,9 @@ impl Vehicle {
 
     /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
     fn watch(&mut self) {
+        if self.machines.boot_fault.is_present() {
+            self.consult(|parts, situation, proposal| parts.boot_fault.watch(situation, proposal));
+        }
         self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
         let restarted_us = self.perception.estimate().and_then(|estimate| estimate.restarted_us);
         if let Some(restarted_us) = restarted_us.filter(|_| self.identity().is_ardupilot()) {
@@ -240,7 +243,7 @@ impl Vehicle {
             if parts.turn.is_on() && !turned {
                 parts.turn.step(proposal);
             } else if !turned && situation.chooses_its_heading() {
-                proposal.turn_to_region(situation);
+                proposal.choose_heading(situation, parts.offboard.looks());
             }
             parts.landing.wait(situation, proposal);
             parts.obstacles.keep_distance(situation, proposal);
@@ -295,6 +298,10 @@ impl Vehicle {
         let (closed_loop, faults) = (&self.closed_loop, self.faults());
         let (stands, errors) = (self.stands(), &self.setup.conduct().simulated.errors);
         self.perception.step(closed_loop, self.setup.frame(), &faults, errors, stands);
+        let slid_m = self.perception.slid_m();
+        if slid_m != Vector2::zeros() && self.mode().holds_a_felt_place() {
+            self.consult(|_, _, proposal| proposal.slide(&slid_m));
+        }
     }
 
     /// Draws the power of the tick from the battery.

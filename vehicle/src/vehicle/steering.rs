@@ -88,6 +88,15 @@ impl Steering {
         }
     }
 
+    /// Whether its heading follows something that moves.
+    pub(super) fn follows_heading(&self) -> bool {
+        match self {
+            Self::Goal(goal) => goal.yaw_rate_rad_s != 0.0,
+            Self::Motion(motion) => matches!(motion.set_point().yaw, YawTarget::Follow(..)),
+            Self::Idle { .. } | Self::Path(_) | Self::Attitude { .. } | Self::Descent { .. } => false,
+        }
+    }
+
     /// Whether it is asked for body rates, and for no attitude.
     pub(super) fn is_by_rates(&self) -> bool {
         matches!(self, Self::Attitude { set_point, .. } if set_point.attitude.is_none())

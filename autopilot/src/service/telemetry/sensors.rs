@@ -2,7 +2,7 @@
 
 use mavlink::dialects::ardupilotmega::{
     GPS_RAW_INT_DATA, GpsFixType, HIGHRES_IMU_DATA, HighresImuUpdatedFlags, MavMessage, RAW_IMU_DATA,
-    SCALED_IMU_DATA, SCALED_PRESSURE_DATA, VIBRATION_DATA,
+    SCALED_IMU_DATA, SCALED_PRESSURE_DATA, SCALED_PRESSURE2_DATA, SCALED_PRESSURE3_DATA, VIBRATION_DATA,
 };
 use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
@@ -148,15 +148,37 @@ fn whole(vector: &Vector3<f64>, scale: f64) -> [i16; 3] {
 
 /// SCALED_PRESSURE: the barometer, at the temperature of the standard atmosphere.
 pub fn scaled_pressure(vehicle: &Vehicle) -> MavMessage {
+    MavMessage::SCALED_PRESSURE(pressure(vehicle))
+}
+
+/// SCALED_PRESSURE2: a second barometer, which measures the same.
+pub fn scaled_pressure2(vehicle: &Vehicle) -> Option<MavMessage> {
+    let SCALED_PRESSURE_DATA { time_boot_ms, press_abs, press_diff, temperature, temperature_press_diff } =
+        pressure(vehicle);
+    (vehicle.conduct().simulated.told_barometers() > 1).then_some(MavMessage::SCALED_PRESSURE2(
+        SCALED_PRESSURE2_DATA { time_boot_ms, press_abs, press_diff, temperature, temperature_press_diff },
+    ))
+}
+
+/// SCALED_PRESSURE3: a third one.
+pub fn scaled_pressure3(vehicle: &Vehicle) -> Option<MavMessage> {
+    let SCALED_PRESSURE_DATA { time_boot_ms, press_abs, press_diff, temperature, temperature_press_diff } =
+        pressure(vehicle);
+    (vehicle.conduct().simulated.told_barometers() > 2).then_some(MavMessage::SCALED_PRESSURE3(
+        SCALED_PRESSURE3_DATA { time_boot_ms, press_abs, press_diff, temperature, temperature_press_diff },
+    ))
+}
+
+fn pressure(vehicle: &Vehicle) -> SCALED_PRESSURE_DATA {
     let reading = vehicle.readings().barometer;
     let altitude_m = reading.map_or(0.0, |reading| reading.altitude_m());
-    MavMessage::SCALED_PRESSURE(SCALED_PRESSURE_DATA {
+    SCALED_PRESSURE_DATA {
         time_boot_ms: boot_ms(reading.map_or(0, |reading| reading.time_us)),
         press_abs: reading.map_or(0.0, |reading| (reading.pressure_pa / 100.0) as f32),
         press_diff: 0.0,
         temperature: (atmospheric_temperature_degc(altitude_m) * 1e2).round() as i16,
         temperature_press_diff: 0,
-    })
+    }
 }
 
 /// VIBRATION: of the accelerometers. The rigid body has none, so that ideal ones do not shake.

@@ -68,6 +68,8 @@ fn health(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor 
         (vehicle.fence_record().now.is_none(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (!vehicle.pilot().lost, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_RC_RECEIVER),
         (sees_around, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+        // As in ArduPilot, one that is off is not healthy.
+        (vehicle.obstacles().rangefinder_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION),
         (armable, MavSysStatusSensor::MAV_SYS_STATUS_PREARM_CHECK),
     ];
     // No fence is not breached, either: ArduPilot says so, and MAVProxy would tell a breach at the start.

@@ -29,6 +29,12 @@ const STREAMS: &[Stream] = &[
     Stream::new(SCALED_IMU_DATA::ID, [0.0, 0.0], sensors::scaled_imu).of(Group::RawSensors),
     Stream::new(RAW_IMU_DATA::ID, [0.0, 0.0], sensors::raw_imu).of(Group::RawSensors),
     Stream::new(SCALED_PRESSURE_DATA::ID, [0.0, 0.0], sensors::scaled_pressure).of(Group::RawSensors),
+    Stream::when(SCALED_PRESSURE2_DATA::ID, [0.0, 0.0], Build::Perhaps(sensors::scaled_pressure2))
+        .of(Group::RawSensors)
+        .of_ardupilot(),
+    Stream::when(SCALED_PRESSURE3_DATA::ID, [0.0, 0.0], Build::Perhaps(sensors::scaled_pressure3))
+        .of(Group::RawSensors)
+        .of_ardupilot(),
     Stream::new(ATTITUDE_DATA::ID, [15.0, 100.0], attitude::attitude).of(Group::Extra1),
     Stream::new(ATTITUDE_QUATERNION_DATA::ID, [15.0, 50.0], attitude::attitude_quaternion).of(Group::Extra1),
     Stream::new(LOCAL_POSITION_NED_DATA::ID, [10.0, 30.0], position::local_position_ned).of(Group::Position),
@@ -45,6 +51,9 @@ const STREAMS: &[Stream] = &[
     )
     .of(Group::Position),
     Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int),
+    Stream::when(PID_TUNING_DATA::ID, [4.0, 10.0], Build::Several(targets::pid_tuning))
+        .of(Group::Extra1)
+        .of_ardupilot(),
     Stream::new(HIGHRES_IMU_DATA::ID, [0.0, 50.0], sensors::highres_imu),
     Stream::new(SIM_STATE_DATA::ID, [0.0, 0.0], truth::sim_state),
     Stream::new(SIMSTATE_DATA::ID, [0.0, 0.0], truth::simstate).of(Group::Extra1),

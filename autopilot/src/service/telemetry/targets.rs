@@ -1,12 +1,13 @@
 //! What the vehicle is steered to.
 
 use mavlink::dialects::ardupilotmega::{
-    ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, POSITION_TARGET_GLOBAL_INT_DATA,
-    POSITION_TARGET_LOCAL_NED_DATA, PositionTargetTypemask,
+    ATTITUDE_TARGET_DATA, AttitudeTargetTypemask, MavFrame, MavMessage, PID_TUNING_DATA,
+    POSITION_TARGET_GLOBAL_INT_DATA, POSITION_TARGET_LOCAL_NED_DATA, PidTuningAxis, PositionTargetTypemask,
 };
 use vehicle::{AxisTarget, Mode, PositionSetPoint, SteeringKind, TrackedAttitude, Vehicle, wrapped};
 
 use crate::codec::{boot_ms, floats, scaled_degrees};
+use crate::stream::Component;
 
 /// ATTITUDE_TARGET: what the attitude controller tracks.
 pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {
@@ -20,6 +21,34 @@ pub fn attitude_target(vehicle: &Vehicle) -> MavMessage {
         thrust: thrust as f32,
         type_mask: AttitudeTargetTypemask::empty(),
     })
+}
+
+/// PID_TUNING: what the inner loops of GCS_PID_MASK are asked for and reach, body rates in rad/s and the acceleration down in m/s². They
+/// predict: of a PID's terms there are none.
+pub fn pid_tuning(component: &Component<'_>) -> Vec<MavMessage> {
+    let (vehicle, told) = (component.vehicle, component.vehicle.conduct().told_loops);
+    if told == 0 {
+        return Vec::new();
+    }
+    let (asked, outputs) = (vehicle.tracked_attitude().body_rate_rad_s, vehicle.outputs());
+    let rates = outputs.body_rate_rad_s;
+    let (down, reached_down) = (outputs.setpoint.acceleration_m_s2.z, outputs.acceleration_m_s2.z);
+    let loops = [
+        (PidTuningAxis::PID_TUNING_ROLL, asked.x, rates.x),
+        (PidTuningAxis::PID_TUNING_PITCH, asked.y, rates.y),
+        (PidTuningAxis::PID_TUNING_YAW, asked.z, rates.z),
+        (PidTuningAxis::PID_TUNING_ACCZ, down, reached_down),
+    ];
+    let chosen = (0..).zip(loops).filter(|(bit, _)| told & (1 << bit) != 0);
+    let message = |(_, (axis, desired, achieved)): (u8, (_, f64, f64))| {
+        MavMessage::PID_TUNING(PID_TUNING_DATA {
+            axis,
+            desired: desired as f32,
+            achieved: achieved as f32,
+            ..PID_TUNING_DATA::default()
+        })
+    };
+    chosen.map(message).collect()
 }
 
 /// Everything is ignored while the vehicle is not steered by position.

@@ -1,12 +1,15 @@
 //! What ArduCopter's own test suite flies, in our words: the same parameters, sticks, commands and bars.
 
 mod arming;
+mod boot;
 mod equipment;
 mod estimation;
 mod fences;
 mod flier;
+mod guided;
 mod missions;
 mod modes;
+mod payload;
 mod precision;
 mod proximity;
 mod sticks;

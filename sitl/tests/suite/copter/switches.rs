@@ -82,7 +82,9 @@ fn a_switch_switches_the_rangefinder() {
         flier.rc(9, pulse);
         flier.bench.heard.clear();
         flier.fly(2.1);
-        assert_eq!(enabled(&flier, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION), Some(on));
+        let [present, enabled, healthy] =
+            states(&flier, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION);
+        assert!(present && enabled == on && healthy == on, "{on}: {enabled} {healthy}");
     }
 }
 
@@ -123,10 +125,15 @@ fn buttons_are_told_and_do_what_switches_do() {
     flier.wait_mode(STABILIZE, 1.0);
 }
 
-/// Whether SYS_STATUS shows a sensor as enabled.
-fn enabled(flier: &Flier, sensor: MavSysStatusSensor) -> Option<bool> {
-    flier.latest(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_enabled.contains(sensor)),
+/// Whether SYS_STATUS shows a sensor as present, enabled and healthy.
+fn states(flier: &Flier, sensor: MavSysStatusSensor) -> [bool; 3] {
+    let states = flier.latest(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some([
+            status.onboard_control_sensors_present,
+            status.onboard_control_sensors_enabled,
+            status.onboard_control_sensors_health,
+        ]),
         _ => None,
-    })
+    });
+    states.expect("a status").map(|sensors| sensors.contains(sensor))
 }

@@ -12,6 +12,7 @@ use super::super::speeds::SpeedChange;
 use super::super::tick::TICK_S;
 use super::super::turning::Turning;
 use super::leg::Leg;
+use crate::equipment::Operation;
 use crate::plan::step::{Condition, Do, Step, Turn};
 use crate::plan::{Place, Program};
 
@@ -118,7 +119,13 @@ fn carry_out(action: &Do, situation: &Situation, proposal: &mut Proposal) {
     match action {
         Do::ChangeSpeed(change) => proposal.change_speeds(SpeedChange::Mission(*change)),
         Do::SetHome(place) => set_home(place.as_ref(), situation, proposal),
-        Do::Operate(operation) => proposal.operate(*operation),
+        Do::Operate(operation) => {
+            proposal.operate(*operation);
+            if let (Operation::Grip { grabs }, true) = (operation, situation.identity.is_ardupilot()) {
+                let what = if *grabs { "Grabbed" } else { "Released" };
+                proposal.say(Severity::Info, format!("Gripper {what}"));
+            }
+        }
         Do::SwitchFence(switch) => proposal.switch_fence(*switch),
         Do::MoveSwitch { function, position } => proposal.move_switch(*function, *position),
         Do::Absent(what) => proposal.say(Severity::Info, format!("Mission: no {what}: skipped")),

@@ -25,7 +25,8 @@ impl Vehicle {
         let items = self.missing_items().map(|text| ArmingObstacle::new(Subject::Mission, text));
         let radio = radio(&situation).map(|text| ArmingObstacle::from(text.to_owned()));
         let values = bad_values(&situation.conduct.kept).map(ArmingObstacle::from);
-        battery.into_iter().chain(fence).chain(items).chain(radio).chain(values).collect()
+        let boot = self.machines.boot_fault.obstacle().map(|text| ArmingObstacle::from(text.to_owned()));
+        boot.into_iter().chain(battery).chain(fence).chain(items).chain(radio).chain(values).collect()
     }
 
     /// Items that ARMING_MIS_ITEMS asks for, and that there are not.

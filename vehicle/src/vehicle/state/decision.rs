@@ -148,6 +148,12 @@ impl Vehicle {
         });
     }
 
+    /// Lets the main loop hang, until the vehicle boots again.
+    pub fn hang(&mut self) {
+        let time_us = self.time_us();
+        self.machines.boot_fault.hang(time_us);
+    }
+
     /// Ends the flight at once: the rotors stop wherever it is.
     pub fn terminate(&mut self) {
         if self.decided.is_armed() {

@@ -30,6 +30,11 @@ impl Vehicle {
         self.machines.receiver.receive(pulses);
     }
 
+    /// What the pilot's radio sends, if there is one.
+    pub fn radio(&self) -> Option<Pulses> {
+        self.machines.receiver.radio()
+    }
+
     /// Overrides channels of the radio: `None` leaves one as it is, 0 gives it back.
     pub fn override_channels(&mut self, pulses: &[Option<u16>; CHANNELS]) {
         let time_us = self.time_us();

@@ -9,6 +9,7 @@ use super::super::failsafe::Cause;
 use super::super::fence_watch::{check_goal, check_set_point};
 use super::super::flip::Flip;
 use super::super::follow::Follow;
+use super::super::guided_heading::Lead;
 use super::super::motor_test::MotorTest;
 use super::super::notice::{Notice, Refusal, Severity};
 use super::super::orbit_request::OrbitRequest;
@@ -338,6 +339,7 @@ impl Vehicle {
         check_distance(&target)?;
         check_goal(&situation, "Reposition", &target)?;
         self.machines.failsafe.release();
+        let lead = (mode == self.mode()).then(|| self.machines.offboard.lead()).flatten();
         self.enter(mode);
         let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
         let axes = target.data.0[0].map(AxisTarget::Position);
@@ -347,7 +349,12 @@ impl Vehicle {
                 proposal.look_at(None);
             }
             proposal.follow(situation, &PositionSetPoint { axes, yaw });
+            let looks = lead == Some(Lead::Command) && parts.offboard.looks();
             parts.offboard.forget();
+            parts.offboard.lead_by(Lead::Command);
+            if looks {
+                parts.offboard.look();
+            }
         });
         Ok(())
     }
@@ -438,11 +445,11 @@ impl Vehicle {
         }
         self.see(Cause::SetPointsLost, false);
         self.leave_takeoff();
-        if set_point.turns() {
+        let time_us = self.time_us();
+        let another = self.machines.offboard.take(set_point, time_us) && self.identity().is_ardupilot();
+        if set_point.turns() || another {
             self.machines.turn.forget();
         }
-        let time_us = self.time_us();
-        self.machines.offboard.take(set_point, time_us);
         Ok(())
     }
 
@@ -477,6 +484,7 @@ impl Vehicle {
     pub fn look(&mut self, look: Option<&Look>) {
         self.consult(|parts, situation, proposal| {
             parts.turn.forget();
+            parts.offboard.look();
             let (here_m, home_z_m) = (situation.outputs.position_m, situation.home.position_m.z);
             proposal.look_at(look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m)));
             if look.is_none() && situation.chooses_its_heading() {
