@@ -115,7 +115,7 @@ class Bridge(Node):
         return self.command(answer, mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, *mode)
 
     def command(self, answer, number: int, *values):
-        """Sends a command and waits for what the vehicle says to it."""
+        """Sends a command and waits for the vehicle's answer."""
         self.answers.pop(number, None)
         self.link.mav.command_long_send(1, 1, number, 0, *values, *[0] * (7 - len(values)))
         end = time.monotonic() + PATIENCE
@@ -124,13 +124,13 @@ class Bridge(Node):
             time.sleep(0.002)
         result = self.answers.get(number)
         answer.success = result == mavlink.MAV_RESULT_ACCEPTED
-        answer.message = "no answer" if result is None else mavlink.enums["MAV_RESULT"][result].name
+        answer.message = f"no answer within {PATIENCE:.0f} s: check --connect" if result is None else mavlink.enums["MAV_RESULT"][result].name
         return answer
 
 
 def main():
     parser = argparse.ArgumentParser(description="Connects ROS 2 and a vehicle that speaks MAVLink.")
-    parser.add_argument("--connect", default="udpin:127.0.0.1:14540", help="pymavlink's address of the vehicle (default: %(default)s)")
+    parser.add_argument("--connect", default="udpin:127.0.0.1:14540", help="pymavlink connection string (default: %(default)s)")
     options = parser.parse_args()
     # Ctrl-C is Python's: rclpy's own handler would end the node while it publishes.
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)

@@ -35,7 +35,7 @@ class Pilot(Node):
         while not condition():
             rclpy.spin_once(self, timeout_sec=0.1)
             if time.monotonic() > end:
-                raise SystemExit(f"{what}: not within {PATIENCE:.0f} s")
+                raise SystemExit(f"waited {PATIENCE:.0f} s in vain until {what}; check that the bridge and the vehicle run")
 
     def call(self, kind, name: str, request):
         """Asks for something until it is accepted: Offboard is refused, for example, until the vehicle has set-points."""

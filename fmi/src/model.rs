@@ -95,8 +95,8 @@ pub trait Model: Sized + 'static {
     /// those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
-    /// The same under inputs that do not change within the step, as most do not. A model whose inputs take time to copy can override this
-    /// to look at them where they are.
+    /// As [`Model::advance_to`], with inputs that are constant within the step, as most are. A model whose inputs take time to copy can
+    /// override this to read them in place.
     ///
     /// # Errors
     /// As for [`Model::advance_to`].

@@ -52,12 +52,12 @@ pub struct Fleet<V = Simulation> {
     threads: ThreadPool,
 }
 
-/// A vehicle of a fleet around a closed loop, which can fly [side by side](Fleet::advance_side_by_side) with those of others.
+/// A vehicle of a fleet that may contain a closed loop, which then flies [side by side](Fleet::advance_side_by_side) with those of others.
 pub trait ClosedLoopVehicle {
     /// Its closed loop, if it has one.
     fn closed_loop(&self) -> Option<&Simulation>;
 
-    /// The same, to fly.
+    /// The same closed loop, mutable.
     fn closed_loop_mut(&mut self) -> Option<&mut Simulation>;
 }
 
@@ -176,9 +176,9 @@ impl<V: Send + Sync> Fleet<V> {
 }
 
 impl<V: ClosedLoopVehicle + Send + Sync> Fleet<V> {
-    /// Flies each vehicle that has a closed loop on to the time, µs, and under the inputs that `order` tells by its index, as
-    /// [`Simulation::advance_to`] does, bit for bit. The plants of vehicles with the same airframe step together, which
-    /// [`Fleet::advance_each`] cannot do. One that cannot go on has failed.
+    /// Advances each vehicle that has a closed loop, as [`Simulation::advance_to`] does, bit for bit. For each index and vehicle, `order`
+    /// returns the time to advance to, µs, and the inputs. The plants of vehicles with the same airframe step together, which
+    /// [`Fleet::advance_each`] cannot do. A vehicle that cannot go on has failed.
     ///
     /// ```
     /// use quadrotor::{ClosedLoopVehicle, Configuration, Fleet, Inputs, Simulation};

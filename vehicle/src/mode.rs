@@ -98,7 +98,7 @@ impl Mode {
         matches!(self, Self::Stabilize | Self::Manual | Self::Acro)
     }
 
-    /// Whether it stays where the vehicle is, wherever that is said to be, or goes from there as sticks say.
+    /// Whether it holds the present place, whatever its coordinates, or moves from there as the sticks command.
     pub fn holds_a_felt_place(self) -> bool {
         matches!(self, Self::Hold | Self::Position | Self::PositionHold)
     }

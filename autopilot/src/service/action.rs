@@ -170,9 +170,13 @@ fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 
 fn switch_fence(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let number = command.parameter(1);
-    let Some(switch) = FenceSwitch::of_number(number) else {
+    let is_ardupilot = context.vehicle.identity().is_ardupilot();
+    let known = FenceSwitch::of_number(number);
+    // PX4's fence has no floor.
+    let Some(switch) = known.filter(|switch| is_ardupilot || *switch != FenceSwitch::FloorOff) else {
+        let floor = if is_ardupilot { ", 2 disables its floor" } else { "" };
         return Err(Refusal::denied(format!(
-            "Invalid value {number}: 1 enables the fence, 0 disables it, 2 disables its floor"
+            "Invalid value {number}: 1 enables the fence, 0 disables it{floor}"
         )));
     };
     context.vehicle.switch_fence(switch);
@@ -263,7 +267,9 @@ fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let down_m = Some(command.z)
         .filter(|altitude| altitude.is_finite())
         .map(|altitude| vehicle.site().down_m(frame, altitude));
-    let yaw_rad = Some(command.parameter(4)).filter(|yaw| yaw.is_finite());
+    // As in ArduPilot's guided mode, the nose then points where the vehicle flies.
+    let turns = !vehicle.identity().is_ardupilot();
+    let yaw_rad = Some(command.parameter(4)).filter(|yaw| turns && yaw.is_finite());
     vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
     let speed_m_s = command.parameter(1);
     if speed_m_s > 0.0 { use_speed(vehicle, 1.0, speed_m_s) } else { Ok(()) }

@@ -16,7 +16,11 @@ const SHARE_1_S: f64 = 5.0;
 const MIDDLE_RAD_S: f64 = 0.5;
 /// A way so near to its reference, m, is the reference.
 const NEAR_M: f64 = 0.01;
-/// The longest step of time, s: that of the slowest controllers.
+/// And so slow beside it, m/s: on a line, the way crosses its reference at speed.
+const NEAR_M_S: f64 = 0.01;
+/// The most that counts of what is asked for: a single point that asks for anything is no way.
+const MOST_ASKED: f64 = 20.0;
+/// The longest step of time, s; after a longer one the way goes on from there.
 const STEP_S: f64 = 0.1;
 
 /// What is followed of a reference that asks for far more than the limits of lean, tilt rate and tilt acceleration: a way of the same
@@ -68,7 +72,8 @@ impl NarrowedWay {
         narrowing.drive(reference);
         let way = narrowing.beside(reference);
         let away_m = (way.position_m - reference.position_m).norm();
-        let ends = narrowing.asked <= 1.0 && asked <= 1.0 && away_m < NEAR_M;
+        let apart_m_s = (way.velocity_m_s - reference.velocity_m_s).norm();
+        let ends = narrowing.asked <= 1.0 && asked <= 1.0 && away_m < NEAR_M && apart_m_s < NEAR_M_S;
         self.narrowing = (!ends && away_m.is_finite()).then_some(narrowing);
         self.narrowing.map(|_| way)
     }
@@ -81,7 +86,7 @@ fn asked(configuration: &Configuration, reference: &PositionReference) -> f64 {
     let lean = whole.acceleration_m_s2.xy().norm() / whole.most_horizontal_m_s2(configuration).max(1e-3);
     let rate = whole.jerk_m_s3.xy().norm() / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
     let acceleration = whole.snap_m_s4.xy().norm() / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
-    lean.max(rate).max(acceleration) / FOLLOWED
+    (lean.max(rate).max(acceleration) / FOLLOWED).min(MOST_ASKED)
 }
 
 impl Narrowing {
@@ -240,6 +245,57 @@ mod tests {
         assert!(narrowed(1.0, 8_001));
         assert!((8_002..60_000).any(|step| !narrowed(1.0, step)));
         assert!((60_000..61_000).all(|step| !narrowed(1.0, step)));
+    }
+
+    /// Along a line the way crosses its reference at speed: it does not end there, but where velocities agree, too.
+    #[test]
+    fn the_way_ends_without_a_jump() {
+        let configuration = Configuration::default();
+        let line = |amplitude_m: f64, rate_rad_s: f64, time_us: u64| {
+            let circle = circle(rate_rad_s, time_us);
+            let along = |vector: Vector3<f64>| Vector3::new(vector.x * amplitude_m / 4.0, 0.0, 0.0);
+            PositionReference {
+                velocity_m_s: along(circle.velocity_m_s),
+                acceleration_m_s2: along(circle.acceleration_m_s2),
+                jerk_m_s3: along(circle.jerk_m_s3),
+                snap_m_s4: along(circle.snap_m_s4),
+                ..PositionReference::goal(along(circle.position_m).into(), 0.0)
+            }
+        };
+        let mut way = NarrowedWay::default();
+        let (mut apart_m_s, mut ended) = (f64::INFINITY, false);
+        for step in 0..60_000 {
+            let time_us = step * STEP_US;
+            let reference = if step < 10_000 { line(4.0, 3.0, time_us) } else { line(5.0, 1.2, time_us) };
+            match way.follow(&configuration, &reference, time_us) {
+                Some(followed) => apart_m_s = (followed.velocity_m_s - reference.velocity_m_s).norm(),
+                None if step > 10_000 && !ended => {
+                    assert!(apart_m_s < 0.02, "{step}: {apart_m_s} m/s");
+                    ended = true;
+                }
+                None => {}
+            }
+        }
+        assert!(ended);
+    }
+
+    /// One point that asks for anything is no way.
+    #[test]
+    fn a_single_point_is_no_way() {
+        let configuration = Configuration::default();
+        let mut way = NarrowedWay::default();
+        let mut narrowed = |step: u64, snap_m_s4: f64| {
+            let reference = PositionReference {
+                snap_m_s4: Vector3::new(snap_m_s4, 0.0, 0.0),
+                ..circle(1.0, step * STEP_US)
+            };
+            way.follow(&configuration, &reference, step * STEP_US)
+                .map_or(0.0, |followed| (followed.position_m - reference.position_m).norm())
+        };
+        assert!((0..100).all(|step| narrowed(step, 4.0) == 0.0));
+        narrowed(100, 1e300);
+        let away_m = (101..3_000).map(|step| narrowed(step, 4.0)).fold(0.0, f64::max);
+        assert!(away_m < 0.05, "{away_m} m");
     }
 
     #[test]

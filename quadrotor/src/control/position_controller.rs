@@ -24,7 +24,7 @@ use crate::{CascadeDesign, Configuration};
 const BRAKING_SHARE: f64 = 0.25;
 
 /// Samples ahead at which it is looked what the reference will ask for, as far as its motion is limited: a reference that will be too fast
-/// for the limit would be run ahead of. From the fourth on they are those at which the speed is limited: a speed that comes and goes between
+/// for the limit would be run ahead of. From the fourth on, but for the last, they are those at which the speed is limited: a speed that comes and goes between
 /// them is not missed. What is only foreseen to turn may also go straight on.
 const ASKED: [usize; 9] = [5, 10, 15, 20, 26, 34, 50, 80, 110];
 /// So many of them until what goes straight on does not speed up any more.
@@ -98,8 +98,8 @@ impl PositionController {
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
         let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
-        let attitude = (design.attitude_loop(), sample_time_s);
-        let under_way = self.thrown.turn_under_way(seen, &turning, attitude, &jerk_jump);
+        let under_way =
+            self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),

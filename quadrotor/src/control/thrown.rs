@@ -7,6 +7,9 @@ use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::position_limits::TurnUnderWay;
 
+/// How many times more jerk than what has thrown it lately made, a body is brought back from.
+const BRAKED: f64 = 5.0;
+
 /// By how much what turns the body beside its rotors has changed within the time in which the attitude loop answers.
 ///
 /// The limits on the rate and the acceleration of the tilt are those of commands. A body that something else has thrown turns faster than
@@ -36,10 +39,11 @@ impl Thrown {
         self.turning_m_s4 = *turning_m_s4;
         let made_m_s4 = (seen.snap_m_s4 + turning_m_s4).norm();
         let asked_m_s4 = (seen.asked_snap_m_s4 + turning_m_s4).norm();
+        let thrown_m_s3 = self.thrown_m_s4 * delay_s;
         TurnUnderWay {
             snap_m_s4: made_m_s4.max(asked_m_s4) + self.thrown_m_s4,
             jump_m_s3: jump_m_s3.norm(),
-            jerk_m_s3: seen.jerk_m_s3.norm() + self.thrown_m_s4 * delay_s,
+            jerk_m_s3: seen.jerk_m_s3.norm().min(BRAKED * thrown_m_s3) + thrown_m_s3,
         }
     }
 }
@@ -85,7 +89,7 @@ mod tests {
         }
     }
 
-    /// Nothing that turns the body: what it does, and no more.
+    /// Nothing that turns the body: the limits hold, but for a turn that is under way.
     #[test]
     fn without_a_torque_there_is_what_is_seen() {
         let seen = HorizontalMotion {
@@ -97,6 +101,6 @@ mod tests {
         let zero = Vector2::zeros();
         let jump = Vector2::new(0.0, 2.0);
         let under_way = Thrown::default().turn_under_way(&seen, &zero, (None, 0.05), &jump);
-        assert_eq!((under_way.snap_m_s4, under_way.jump_m_s3, under_way.jerk_m_s3), (10.0, 2.0, 5.0));
+        assert_eq!((under_way.snap_m_s4, under_way.jump_m_s3, under_way.jerk_m_s3), (10.0, 2.0, 0.0));
     }
 }

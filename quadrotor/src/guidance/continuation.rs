@@ -59,7 +59,7 @@ impl PositionReference {
     /// a(t) = a cos ωt + j/ω sin ωt,  ω² = −(v·j + a·s)/(v·v + a·a)
     /// ```
     ///
-    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. This is
+    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. What brakes on a line is foreseen to swing back. This is
     /// the way alone: the heading of what turns stays that of now.
     pub(crate) fn foreseen_after(&self, time_s: f64) -> Self {
         if time_s <= KNOWN_S {

@@ -145,7 +145,7 @@ fn a_steady_force_leaves_no_offset_and_no_mass() {
     }
 }
 
-/// A force that comes and goes obliquely is no mass: one within a quarter of the airframe's own is believed in throughout, and the vehicle
+/// A force that comes and goes obliquely is no mass: one within 35 % of the airframe's own is believed in throughout, and the vehicle
 /// holds its place when it is over. Taken for two and a half masses it shook the vehicle for ever.
 #[test]
 fn gusts_are_no_mass() {
@@ -174,7 +174,7 @@ fn gusts_are_no_mass() {
             for time_us in (0..OVER_US + 6_000_000).step_by(100_000) {
                 flight.advance_to(time_us, &inputs).unwrap();
                 let factor = flight.control().believed_mass_kg() / configuration.airframe.mass_kg;
-                assert!((0.75..1.25).contains(&factor), "{preset:?} {kind:?}: {factor} at {time_us} µs");
+                assert!((0.65..1.35).contains(&factor), "{preset:?} {kind:?}: {factor} at {time_us} µs");
             }
             let away_m = (flight.outputs().position_m - Vector3::from(GOAL_M)).norm();
             assert!(away_m < 0.01, "{preset:?} {kind:?}: {away_m} m");

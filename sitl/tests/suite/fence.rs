@@ -368,7 +368,10 @@ fn who_enters_loiter_fast_stops_before_the_border() {
     start.conduct.failsafe.fence_radius_m = 500.0;
     let mut bench = Bench::hovering_with(&start);
     assert_eq!(bench.set_mode(Mode::Offboard), 0);
-    while bench.position()[0] < 29.0 {
+    for _ in 0..300 {
+        if bench.position()[0] >= 29.0 {
+            break;
+        }
         bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
             target_system: 1,
             target_component: 1,
@@ -381,6 +384,7 @@ fn who_enters_loiter_fast_stops_before_the_border() {
         bench.fly(0.1);
         assert_eq!(bench.mode(), Mode::Offboard, "{:?}", bench.texts());
     }
+    assert!((29.0..31.0).contains(&bench.position()[0]), "{:?}", bench.position());
     assert_eq!(bench.set_mode(Mode::Position), 0);
     let mut farthest: f64 = 0.0;
     bench.stream(15.0, |bench| {

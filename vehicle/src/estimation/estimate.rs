@@ -20,7 +20,7 @@ pub struct Estimate {
     pub test_ratios: TestRatios,
     /// How often position, height or velocity have been set anew because measurements contradicted them for long.
     pub resets: u32,
-    /// By how much the horizontal position that is told has slid, since the start, to where the receiver leapt, m: not by flying.
+    /// How far the reported horizontal position has shifted since the start because the receiver's position jumped, m, motion not included.
     pub slid_m: Vector2<f64>,
     /// When it started again last, as the inertial unit contradicted the receiver, µs.
     pub restarted_us: Option<u64>,

@@ -7,7 +7,7 @@ pub enum FenceSwitch {
     Off,
     /// On, as a whole.
     On,
-    /// Only its floor is off, until the fence is switched on again or the vehicle is armed anew.
+    /// Only its floor is off, until the fence is switched on or off again or the vehicle disarms.
     FloorOff,
 }
 

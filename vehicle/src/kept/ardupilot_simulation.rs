@@ -113,7 +113,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SIM_GND_BEHAV", -1, -1..=3, "", "Behaviour on the ground"),
         ("SIM_GRPE_ENABLE", 0, 0..=1, "", "Electromagnetic gripper"),
         ("SIM_GRPS_ENABLE", 0, 0..=1, "", "Servo gripper"),
-        ("SIM_GRPS_PIN", -1, -1..=16, "", "Output of the servo gripper; here SERVOn_FUNCTION = 28 chooses"),
+        ("SIM_GRPS_PIN", -1, -1..=16, "", "Output of the servo gripper; here SERVOn_FUNCTION = 28 selects it"),
         ("SIM_GRPE_PIN", -1, -1..=16, "", "Output of the electromagnetic gripper"),
         ("SIM_LOOP_DELAY", 0, 0..=100000, "us", "Delay of the main loop"),
         ("SIM_ODOM_ENABLE", 0, 0..=1, "", "Visual odometry"),

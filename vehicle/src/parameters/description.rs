@@ -86,7 +86,7 @@ impl Entry {
             },
             Source::Statistic(statistic) => Description {
                 text: statistic.text().to_owned(),
-                range: ValueRange { minimum: 0.0, maximum: f64::from(i32::MAX), unit: statistic.unit() },
+                range: ValueRange { minimum: 0.0, maximum: statistic.most(), unit: statistic.unit() },
                 whole: true,
                 names: statistic.choices().iter().map(|(value, name)| NamedValue::new(*value, name)).collect(),
                 bits: &[],

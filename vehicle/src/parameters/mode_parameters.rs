@@ -79,7 +79,7 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     real!("RTL_CLIMB_MIN_M", Some(("RTL_CLIMB_MIN", 100.0)), 0.0..=1000.0, return_home.least_climb_m, "m", "Least climb of a return before it travels").also(&[("RTL_CLIMB_MIN_M", 1.0)]),
     choice!("WP_YAW_BEHAVIOR", ARDUPILOT_HEADINGS, heading_policy, "Heading on missions and returns, and in Guided"),
     whole!("INITIAL_MODE", 0.0..=28.0, initial_mode, u8, "Number of the mode after a boot, until the mode switch chooses another one"),
-    bitmask!("GCS_PID_MASK", TOLD_LOOPS, told_loops, u32::from, options, "Loops that PID_TUNING reports; there are no PID terms, so only what is asked for and what is reached have values"),
+    bitmask!("GCS_PID_MASK", TOLD_LOOPS, told_loops, u32::from, options, "Loops that PID_TUNING reports; there are no PID terms, so only the desired and achieved values are filled in"),
     real!("CIRCLE_RADIUS_M", Some(("CIRCLE_RADIUS", 100.0)), 0.0..=2000.0, orbit.radius_m, "m", "Radius of the circle mode; 0 turns on the spot").also(&[("CIRCLE_RADIUS_M", 1.0)]),
     degrees!("CIRCLE_RATE", -90.0..=90.0, orbit.rate_rad_s, "deg/s", "Rate of the circle mode; negative is counter-clockwise"),
     bitmask!("CIRCLE_OPTIONS", CIRCLE_OPTIONS, orbit.options, u32::from, options, "Options of the circle mode"),

@@ -55,7 +55,7 @@ pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
     real!("SIM_GYR1_BIAS_Z", None, -5.0..=5.0, simulated.errors.gyroscope_bias_rad_s.z, "rad/s", "Offset of the yaw gyroscope"),
     switch!("SIM_GYR_FAIL_MSK", simulated.errors.switches.gyroscope_off, "Whether the gyroscopes are silent"),
     whole!("SIM_BARO_COUNT", -1..=3, simulated.barometers, i8, "Barometers on the board, which all measure the same; with 0 or less the vehicle reports a configuration error after a reboot"),
-    whole!("BARO_PROBE_EXT", 0..=16_383, simulated.outer_barometers, u32, "Kinds of outer barometers that are looked for: if any, one is found, which measures the same"),
+    whole!("BARO_PROBE_EXT", 0..=16_383, simulated.outer_barometers, u32, "Types of external barometers to look for; if not 0, one is found, which measures the same"),
     real!("SIM_BARO_RND", None, 0.0..=100.0, simulated.errors.barometer_noise_m, "m", "Standard deviation of additional noise of the barometer"),
     real!("SIM_BARO_DRIFT", None, -100.0..=100.0, simulated.errors.barometer_drift_m_s, "m/s", "How fast the barometer's height drifts"),
     real!("SIM_BARO_GLITCH", None, -10_000.0..=10_000.0, simulated.errors.barometer_glitch_m, "m", "Error of the barometer's height"),

@@ -52,7 +52,7 @@ impl Statistic {
     /// What it means.
     pub fn text(self) -> &'static str {
         match self {
-            Self::Boots => "Number of boots since the statistics were reset, or since it was set",
+            Self::Boots => "Number of boots since the statistics were reset, or from the value that was set",
             Self::FlightTime => "Time in the air since the statistics were reset (read-only)",
             Self::RunTime => "Time switched on since the statistics were reset (read-only)",
             Self::Reset => {
@@ -69,6 +69,14 @@ impl Statistic {
         match self {
             Self::FlightTime | Self::RunTime | Self::Reset => "s",
             Self::Boots | Self::MissionItems | Self::FenceItems | Self::RallyPoints => "",
+        }
+    }
+
+    /// The largest value that it can have.
+    pub fn most(self) -> f64 {
+        match self {
+            Self::Boots => f64::from(u16::MAX),
+            _ => f64::from(i32::MAX),
         }
     }
 
@@ -92,9 +100,9 @@ impl Statistic {
 }
 
 impl Statistics {
-    /// Counts boots from a number on. Returns whether it is one.
+    /// Counts boots on from a number. Returns whether it is a valid count.
     pub fn set_boots(&mut self, boots: f64) -> bool {
-        let is_count = boots.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(&boots);
+        let is_count = boots.fract() == 0.0 && (0.0..=Statistic::Boots.most()).contains(&boots);
         if is_count {
             self.boots = boots as u32;
         }

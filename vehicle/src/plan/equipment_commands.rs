@@ -229,8 +229,10 @@ fn parachute(source: &Source<'_>) -> Step {
 }
 
 fn switch_fence(source: &Source<'_>) -> Step {
-    let switch = FenceSwitch::of_number(libm::round(source.value(1)));
-    Step::Do(switch.map_or(Do::Mark, Do::SwitchFence))
+    match FenceSwitch::of_number(libm::round(source.value(1))) {
+        Some(FenceSwitch::FloorOff) if !source.site.identity.is_ardupilot() => without("floor of the fence"),
+        switch => Step::Do(switch.map_or(Do::Mark, Do::SwitchFence)),
+    }
 }
 
 /// MAV_MOUNT_MODE of DO_MOUNT_CONFIGURE.
@@ -394,7 +396,7 @@ mod tests {
     fn others() -> Vec<Case> {
         vec![
             (DO_FENCE_ENABLE, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::On))),
-            (DO_FENCE_ENABLE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], Step::Do(Do::SwitchFence(FenceSwitch::FloorOff))),
+            (DO_FENCE_ENABLE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("floor of the fence")),
             (DO_PARACHUTE, [2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("parachute")),
             (AIRFRAME_CONFIGURATION, [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0], without("landing gear")),
             (DO_WINCH, [0.0; 7], without("winch")),

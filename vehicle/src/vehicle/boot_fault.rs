@@ -46,7 +46,7 @@ impl BootFault {
     pub fn obstacle(&self) -> Option<&'static str> {
         Some(match self.fault? {
             Fault::NoBarometer => "Config Error: no barometer; set SIM_BARO_COUNT to 1 or more, then reboot",
-            Fault::Hangs(_) => "Main loop hangs: reboot",
+            Fault::Hangs(_) => "Main loop hangs: reboot the vehicle",
         })
     }
 

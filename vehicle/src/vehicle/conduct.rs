@@ -81,7 +81,7 @@ pub struct Conduct {
     /// ArduPilot's number of the mode at the start.
     #[serde(default = "loiter")]
     pub initial_mode: u8,
-    /// Loops that PID_TUNING tells of, as ArduPilot's parameter adds them up.
+    /// Loops that PID_TUNING reports, as the sum of bits of ArduPilot's parameter.
     #[serde(default)]
     pub told_loops: u8,
     /// Options of ArduPilot's guided mode, as the parameter adds them up.
@@ -143,11 +143,12 @@ pub struct Conduct {
     pub precision: PrecisionSettings,
 }
 
-/// Records of before it could be chosen have this one.
+/// Records of before the first mode could be chosen begin in Loiter.
 fn loiter() -> u8 {
     5
 }
 
+/// Records of before it could be chosen have this one.
 fn two() -> f64 {
     2.0
 }

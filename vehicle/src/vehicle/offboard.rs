@@ -45,7 +45,8 @@ impl Offboard {
         changed
     }
 
-    /// The vehicle is led in a way. Returns whether that is another one than before; then no heading is asked for any more, and the nose no longer looks.
+    /// The vehicle is led in a way. Returns whether that is another one than before; then no heading is asked for any more, and the nose
+    /// no longer looks.
     pub fn lead_by(&mut self, lead: Lead) -> bool {
         let changed = self.lead != Some(lead);
         self.lead = Some(lead);
@@ -60,8 +61,8 @@ impl Offboard {
     }
 
     /// The nose points to what is looked at from now on.
-    pub fn look(&mut self) {
-        (self.heading_is_asked, self.looks) = (false, true);
+    pub fn look(&mut self, at_something: bool) {
+        (self.heading_is_asked, self.looks) = (false, at_something);
     }
 
     /// Whether the nose points to what is looked at.
@@ -103,7 +104,7 @@ impl Offboard {
     pub fn begin(&mut self) {
         (self.applied, self.paused) = (false, None);
         // ArduPilot's guided mode begins as if a velocity of zero led it.
-        (self.lead, self.heading_is_asked) = (Some(Lead::Velocity), false);
+        (self.lead, self.heading_is_asked, self.looks) = (Some(Lead::Velocity), false, false);
         self.attitude.forget();
         self.stream = StreamedMotion::default();
     }

@@ -112,8 +112,8 @@ impl PositionSetPoint {
         self
     }
 
-    /// Whether something in it runs on for ever: without news it has to end. Who goes to a place goes on to it, and turns as it was
-    /// asked to.
+    /// Whether something in it runs on for ever: without news it has to end. A vehicle on the way to a place goes on to it, and turns as
+    /// it was asked to.
     pub fn runs_on(&self) -> bool {
         let moves = |axis: &AxisTarget| match *axis {
             AxisTarget::Position(_) => false,

@@ -28,7 +28,7 @@ pub struct Simulated {
     pub errors: SensorErrors,
     /// Barometers on the board; all of them measure the same. Below 1 the vehicle does not boot whole.
     pub barometers: i8,
-    /// Kinds of outer barometers that are looked for, as ArduPilot's parameter adds them up: one is found.
+    /// Types of external barometers to look for, as the sum of bits of ArduPilot's parameter: one is found.
     pub outer_barometers: u32,
     /// Pushes and twists.
     pub pushes: Pushes,

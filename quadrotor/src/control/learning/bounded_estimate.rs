@@ -85,6 +85,11 @@ impl<const N: usize> BoundedEstimate<N> {
         value - row.dot(&self.mean)
     }
 
+    /// √(hᵀ P h): how far what the estimate says of a measurement may be off.
+    pub(crate) fn deviation(&self, row: &SVector<f64, N>) -> f64 {
+        libm::sqrt(row.dot(&(self.covariance * row)).max(0.0))
+    }
+
     /// Takes in a measurement y = hᵀ x with noise of this variance, and learns those numbers that are `learned` from it: the
     /// others stay, and count with their uncertainty (Schmidt 1966). One that rounding makes useless is ignored.
     pub(crate) fn update(

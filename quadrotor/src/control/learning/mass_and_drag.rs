@@ -45,10 +45,14 @@ const SURPRISE_DEVIATIONS: f64 = 5.0;
 const STEADY_FORCE_S: f64 = 3.0;
 /// Time after a surprise, or a start, in which there is no other one, s.
 const SETTLING_S: f64 = 1.5;
+/// The part of it, s, in which a steady force is found: it is no gust.
+const BEGINNING_S: f64 = 0.5;
+/// So many deviations of what is not known of the drag are drag.
+const DRAG_DEVIATIONS: f64 = 2.0;
 /// Time in which a gust is forgotten, s: another one follows.
 const GUSTY_S: f64 = 10.0;
-/// How many times more than that along the thrust is no gust: one swings from one side of its mean to the other.
-const GUST_SWINGS: f64 = 3.0;
+/// How many times more a gust may change the force along the thrust than it shows at once across it.
+const GUST_SWINGS: f64 = 5.0;
 
 /// Less thrust than this share of the weight is free fall, which shows no mass.
 const LEAST_THRUST_SHARE: f64 = 0.2;
@@ -168,6 +172,7 @@ impl MassAndDrag {
     pub(crate) fn take_off(&mut self, configuration: &Configuration) {
         self.estimate.open(&prior(configuration), &[true; UNKNOWNS]);
         self.settling_s = SETTLING_S;
+        self.gusts_m_s2 = 0.0;
         self.interrupt();
     }
 
@@ -193,6 +198,7 @@ impl MassAndDrag {
         let Some(terms) = self.equation.observe(sampled) else { return };
         let Some(latest_us) = self.latest_us.replace(sample.time_us) else { return };
         let interval_s = (sample.time_us - latest_us) as f64 / 1e6;
+        self.settling_s = (self.settling_s - interval_s).max(0.0);
         if !terms.is_finite() {
             self.interrupt();
         } else if terms.velocity_m_s.norm() > AT_REST_M_S && !is_saturated(configuration, sample) {
@@ -203,11 +209,8 @@ impl MassAndDrag {
     fn learn(&mut self, configuration: &Configuration, terms: &Terms, interval_s: f64) {
         let prior = &prior(configuration);
         let noise_m_s2 = noise_m_s2(&configuration.sensors, interval_s);
-        self.settling_s = (self.settling_s - interval_s).max(0.0);
         let change_m_s2 = self.change_m_s2(terms);
-        let gust_m_s2 = change_m_s2.xy().norm() - SURPRISE_DEVIATIONS * noise_m_s2;
-        let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
-        self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
+        self.watch_gusts(terms, (noise_m_s2, interval_s));
         let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
         if self.settling_s == 0.0 && libm::fabs(change_m_s2.z) > surprise_m_s2 {
             // What the filter remembers is of before. Drag does not jump.
@@ -218,7 +221,7 @@ impl MassAndDrag {
             return;
         }
         // A gust across the thrust comes with one along it, which would pass for mass.
-        let along_m_s2 = libm::hypot(noise_m_s2, self.gusts_m_s2);
+        let along_m_s2 = libm::hypot(noise_m_s2, GUST_SWINGS * self.gusts_m_s2);
         let shown = self.excitation.observe(terms, interval_s, along_m_s2);
         let learned = learned_from(&shown);
         self.estimate.forget(prior, interval_s);
@@ -230,6 +233,19 @@ impl MassAndDrag {
         }
         let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+    }
+
+    /// Takes a change of the force across the thrust for a gust, as far as it is not a drag that is still to be learned. What a flight
+    /// begins with is no gust.
+    fn watch_gusts(&mut self, terms: &Terms, (noise_m_s2, interval_s): (f64, f64)) {
+        let drag_m_s2 =
+            (0..2).map(|axis| self.estimate.deviation(&drag_row(terms, axis))).fold(0.0, f64::max);
+        let expected_m_s2 = SURPRISE_DEVIATIONS * noise_m_s2 + DRAG_DEVIATIONS * drag_m_s2;
+        let begins = self.settling_s > SETTLING_S - BEGINNING_S;
+        let change_m_s2 = if begins { 0.0 } else { self.innovation(terms).xy().norm() };
+        let gust_m_s2 = change_m_s2 - expected_m_s2;
+        let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
+        self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
     }
 
     /// By how much the acceleration differs from what mass, drag and the force of the last seconds explain, FRD, m/s².
@@ -277,6 +293,12 @@ fn row(terms: &Terms, axis: usize) -> Unknowns {
         row[4 + world] = terms.in_body[(axis, world)];
     }
     row
+}
+
+/// The same of drag alone.
+fn drag_row(terms: &Terms, axis: usize) -> Unknowns {
+    let whole = row(terms, axis);
+    Unknowns::from_fn(|unknown, _| if (1..4).contains(&unknown) { whole[unknown] } else { 0.0 })
 }
 
 /// Forces are always learned, mass and drag where they show.

@@ -339,7 +339,8 @@ impl Vehicle {
         check_distance(&target)?;
         check_goal(&situation, "Reposition", &target)?;
         self.machines.failsafe.release();
-        let lead = (mode == self.mode()).then(|| self.machines.offboard.lead()).flatten();
+        let offboard = &self.machines.offboard;
+        let looks = mode == self.mode() && offboard.lead() == Some(Lead::Command) && offboard.looks();
         self.enter(mode);
         let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
         let axes = target.data.0[0].map(AxisTarget::Position);
@@ -349,12 +350,9 @@ impl Vehicle {
                 proposal.look_at(None);
             }
             proposal.follow(situation, &PositionSetPoint { axes, yaw });
-            let looks = lead == Some(Lead::Command) && parts.offboard.looks();
             parts.offboard.forget();
             parts.offboard.lead_by(Lead::Command);
-            if looks {
-                parts.offboard.look();
-            }
+            parts.offboard.look(looks);
         });
         Ok(())
     }
@@ -484,7 +482,7 @@ impl Vehicle {
     pub fn look(&mut self, look: Option<&Look>) {
         self.consult(|parts, situation, proposal| {
             parts.turn.forget();
-            parts.offboard.look();
+            parts.offboard.look(look.is_some());
             let (here_m, home_z_m) = (situation.outputs.position_m, situation.home.position_m.z);
             proposal.look_at(look.map(|look| RegionOfInterest::of(look, &here_m, home_z_m)));
             if look.is_none() && situation.chooses_its_heading() {
