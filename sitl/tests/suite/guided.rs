@@ -108,6 +108,8 @@ fn a_turn_and_a_speed_hold_during_a_takeoff() {
 #[test]
 fn a_turn_has_its_rate_and_its_direction_whatever_is_flown() {
     let mut bench = Bench::hovering(Identity::ArduPilot);
+    // The first velocity after a takeoff would end the turn.
+    bench.stream(0.2, |bench| velocity(bench, [1.0, 0.0, 0.0]));
     // The long way round: 270° counter-clockwise at 10°/s.
     assert_eq!(bench.command(MavCmd::MAV_CMD_CONDITION_YAW, [90.0, 10.0, -1.0, 0.0, 0.0, 0.0, 0.0]), 0);
     bench.stream(9.0, |bench| velocity(bench, [1.0, 0.0, 0.0]));

@@ -141,8 +141,8 @@ fn a_region_of_interest_is_looked_at_wherever_its_altitude_is_from() {
         if !identity.is_ardupilot() {
             continue;
         }
-        // ArduPilot keeps looking while set-points without a heading lead it past the place.
-        bench.stream(20.0, |bench| {
+        // In ArduPilot the first velocity turns the nose ahead. Looking anew, it keeps looking while velocities lead it past the place.
+        let go_north = |bench: &mut Bench| {
             bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
                 target_system: 1,
                 coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
@@ -150,7 +150,10 @@ fn a_region_of_interest_is_looked_at_wherever_its_altitude_is_from() {
                 vx: 2.5,
                 ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
             }));
-        });
+        };
+        bench.stream(0.2, go_north);
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_ROI, look), 0, "{:?}", bench.texts());
+        bench.stream(20.0, go_north);
         let heading_deg = bench.autopilot.vehicle().outputs().attitude_rad.z.to_degrees();
         assert!((heading_deg - 135.0).abs() < 6.0, "{heading_deg}");
     }
