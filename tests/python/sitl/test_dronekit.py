@@ -122,13 +122,14 @@ def test_guided_set_speed_yaw(vehicle):
     wait(lambda: abs(vehicle.heading - 180) <= 2, "heading south")
     send_ned_velocity(-2, 0, 0, 8)
     assert vehicle.velocity[0] == pytest.approx(-2, abs=0.2)
-    assert abs(vehicle.heading - 180) <= 3, "a velocity without a yaw keeps it"
+    assert abs(vehicle.heading - 180) <= 3, "the nose points where it flies"
     send_ned_velocity(0, 2, -0.5, 6)
     assert vehicle.velocity[1] == pytest.approx(2, abs=0.2)
     assert vehicle.location.local_frame.down < home.down - 1
     send_ned_velocity(0, 0, 0, 2)
+    wait(lambda: abs(vehicle.heading - 90) <= 3, "it flew east")
     condition_yaw(90, relative=True)
-    wait(lambda: abs(vehicle.heading - 270) <= 3, "a quarter more")
+    wait(lambda: abs(vehicle.heading - 180) <= 3, "a quarter more")
     set_roi(get_location_metres(vehicle.location.global_relative_frame, 100, 0))
     wait(lambda: min(vehicle.heading, 360 - vehicle.heading) <= 3, "looking north")
     goto(vehicle, 0, -10, groundspeed=5)
