@@ -20,6 +20,9 @@ from pathlib import Path
 
 os.environ.setdefault("MAVLINK20", "1")
 
+#: A change of a rotor's speed that counts, as a share of the fastest: a hovering rotor changes less by itself.
+SEEN = 2e-6
+
 from pymavlink import mavutil  # noqa: E402
 from pymavlink.dialects.v20 import common as mavlink  # noqa: E402
 
@@ -137,7 +140,7 @@ def wait(connection, kind: str, condition=lambda message: True, seconds: float =
         message = connection.recv_match(type=kind, blocking=True, timeout=left)
         if message is not None and condition(message):
             return message
-    raise SystemExit(f"no such {kind} within {seconds} s")
+    raise TimeoutError(f"no such {kind} within {seconds} s")
 
 
 def take_off(connection):
@@ -162,6 +165,8 @@ def round_trips(program, count: int):
 def thrust_latencies(program, count: int):
     """ms of the wall clock from sending another thrust to changed motors, on the ground."""
     with flying(program, "udpin:0,onboard") as (_, connection):
+        connection.mav.param_set_send(1, 1, b"COM_DISARM_PRFLT", -1, mavlink.MAV_PARAM_TYPE_REAL32)  # stays armed though it never takes off
+        wait(connection, "PARAM_VALUE", lambda told: told.param_id == "COM_DISARM_PRFLT" and told.param_value == -1)
         send_thrust(connection.mav, 0)
         command(connection, mavlink.MAV_CMD_DO_SET_MODE, 1, 6)
         command(connection, mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
@@ -178,9 +183,10 @@ def position_latencies(program, count: int):
 
 
 def latencies(connection, count: int, rest: float, spread: float, send):
-    """ms from sending the other one of two set-points to the first SERVO_OUTPUT_RAW, sent every millisecond, that differs from the one
-    at rest. The times of sending are spread over the samples of the controller."""
-    command(connection, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW, 1000)
+    """ms from sending the other one of two set-points to the first ACTUATOR_OUTPUT_STATUS, sent every millisecond, whose first rotor
+    differs from the one at rest. The times of sending are spread over the samples of the controller."""
+    told = "ACTUATOR_OUTPUT_STATUS"
+    command(connection, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ACTUATOR_OUTPUT_STATUS, 1000)
     found = []
     for number in range(count):
         end = time.monotonic() + rest + spread * (number % 15)
@@ -189,10 +195,10 @@ def latencies(connection, count: int, rest: float, spread: float, send):
             time.sleep(min(0.05, left))
             while connection.recv_match(blocking=False) is not None:
                 pass
-        settled = wait(connection, "SERVO_OUTPUT_RAW", seconds=1).servo1_raw
+        settled = wait(connection, told, seconds=1).actuator[0]
         begin = time.perf_counter()
         send(connection.mav, (number + 1) % 2)
-        wait(connection, "SERVO_OUTPUT_RAW", lambda servo: abs(servo.servo1_raw - settled) >= 2, seconds=1)
+        wait(connection, told, lambda rotors: abs(rotors.actuator[0] - settled) >= SEEN, seconds=1)
         found.append((time.perf_counter() - begin) * 1e3)
     return found
 
