@@ -9,9 +9,9 @@ impl Configuration {
     /// The configuration with its preset applied: what flies.
     ///
     /// Every `airframe.*` parameter that has its start value gets the preset's, and so does the layout. Then every `limits.*` and
-    /// `controller.*` parameter that has its start value gets the one of [`Configuration::for_airframe`] for the airframe that results. Whatever has
-    /// another value keeps it. The result therefore does not depend on the order in which values were set. With the paper's preset nothing
-    /// changes.
+    /// `controller.*` parameter that has its start value gets the one of [`Configuration::for_airframe`] for the airframe that results.
+    /// Whatever has another value keeps it. The result therefore does not depend on the order in which values were set. With the paper's
+    /// preset nothing changes.
     ///
     /// ```
     /// use quadrotor::{AirframePreset, Configuration};

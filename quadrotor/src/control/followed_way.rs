@@ -155,23 +155,14 @@ mod tests {
 
     use super::FollowedWay;
     use crate::control::required_thrust::tests::dragged;
+    use crate::guidance::known_motion;
     use crate::{Configuration, PlantState, PositionReference, RigidBody};
 
     const STEP_US: u64 = 1_000;
 
     /// A circle of 4 m at 1.5 rad/s: 9 m/s², of which the default limits allow 6.
     fn circle(time_us: u64) -> PositionReference {
-        let derivative = |order: i32| {
-            let angle = 1.5e-6 * time_us as f64 + f64::from(order) * core::f64::consts::FRAC_PI_2;
-            Vector3::new(libm::cos(angle), libm::sin(angle), 0.0) * (4.0 * 1.5_f64.powi(order))
-        };
-        PositionReference {
-            velocity_m_s: derivative(1),
-            acceleration_m_s2: derivative(2),
-            jerk_m_s3: derivative(3),
-            snap_m_s4: derivative(4),
-            ..PositionReference::goal(derivative(0).into(), 0.0)
-        }
+        known_motion::circle(4.0, 1.5, 1e-6 * time_us as f64)
     }
 
     /// A vehicle that flies as a reference says.

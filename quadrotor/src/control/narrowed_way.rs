@@ -161,23 +161,14 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::NarrowedWay;
+    use crate::guidance::known_motion;
     use crate::{Configuration, GRAVITY_M_S2, PositionReference};
 
     const STEP_US: u64 = 1_000;
 
     /// A circle of 4 m.
     fn circle(rate_rad_s: f64, time_us: u64) -> PositionReference {
-        let derivative = |order: i32| {
-            let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * core::f64::consts::FRAC_PI_2;
-            Vector3::new(libm::cos(angle), libm::sin(angle), 0.0) * (4.0 * rate_rad_s.powi(order))
-        };
-        PositionReference {
-            velocity_m_s: derivative(1),
-            acceleration_m_s2: derivative(2),
-            jerk_m_s3: derivative(3),
-            snap_m_s4: derivative(4),
-            ..PositionReference::goal(derivative(0).into(), 0.0)
-        }
+        known_motion::circle(4.0, rate_rad_s, 1e-6 * time_us as f64)
     }
 
     /// The ways beside a circle.

@@ -95,23 +95,17 @@ pub(crate) mod tests {
     use nalgebra::Vector3;
 
     use super::RequiredThrust;
+    use crate::guidance::known_motion::motion;
     use crate::{Configuration, PositionReference};
 
     /// A spiral whose acceleration grows and turns, with its derivatives by the product rule in the complex plane: b e^{ct}.
     fn spiral(time_s: f64) -> PositionReference {
         let (growth, turn) = (0.3, 1.7);
-        let derivative = |order: i32| {
+        motion(|order| {
             let size = 6.0 * libm::exp(growth * time_s) * libm::hypot(growth, turn).powi(order);
             let angle = turn * time_s + f64::from(order) * libm::atan2(turn, growth);
             Vector3::new(size * libm::cos(angle), size * libm::sin(angle), 0.0)
-        };
-        PositionReference {
-            velocity_m_s: derivative(1),
-            acceleration_m_s2: derivative(2),
-            jerk_m_s3: derivative(3),
-            snap_m_s4: derivative(4),
-            ..PositionReference::goal(derivative(0).into(), 0.0)
-        }
+        })
     }
 
     /// A vehicle with a drag of its own along each axis.

@@ -59,8 +59,8 @@ impl PositionReference {
     /// a(t) = a cos ωt + j/ω sin ωt,  ω² = −(v·j + a·s)/(v·v + a·a)
     /// ```
     ///
-    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. What brakes on a line is foreseen to swing back. This is
-    /// the way alone: the heading of what turns stays that of now.
+    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. What
+    /// brakes on a line is foreseen to swing back. This is the way alone: the heading of what turns stays that of now.
     pub(crate) fn foreseen_after(&self, time_s: f64) -> Self {
         if time_s <= KNOWN_S {
             return self.after(time_s);
@@ -99,6 +99,7 @@ mod tests {
 
     use super::{FADING_S, KNOWN_S};
     use crate::PositionReference;
+    use crate::guidance::known_motion;
 
     fn reference() -> impl Strategy<Value = PositionReference> {
         (prop::array::uniform15(-5.0..5.0_f64), prop::array::uniform3(-2.0..2.0_f64)).prop_map(
@@ -146,18 +147,8 @@ mod tests {
     }
 
     /// A circle of 4 m at 1.5 rad/s.
-    fn circle(t: f64) -> PositionReference {
-        let derivative = |order: i32| {
-            let angle = 1.5 * t + f64::from(order) * core::f64::consts::FRAC_PI_2;
-            Vector3::new(angle.cos(), angle.sin(), 0.0) * (4.0 * 1.5_f64.powi(order))
-        };
-        PositionReference {
-            velocity_m_s: derivative(1),
-            acceleration_m_s2: derivative(2),
-            jerk_m_s3: derivative(3),
-            snap_m_s4: derivative(4),
-            ..PositionReference::goal(derivative(0).into(), 0.0)
-        }
+    fn circle(time_s: f64) -> PositionReference {
+        known_motion::circle(4.0, 1.5, time_s)
     }
 
     /// Also where its snap is not known: the speed tells the rate alone.

@@ -105,27 +105,18 @@ fn gives_all(point: &PositionReference) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use core::f64::consts::FRAC_PI_2;
-
     use nalgebra::Vector3;
 
     use super::FoundDerivatives;
+    use crate::guidance::known_motion::{self, motion};
     use crate::{Limits, PositionReference};
 
     /// A point of a circle of 5 m at 0.5 rad/s with so many of its derivatives.
     fn circle(t: f64, derivatives: i32) -> PositionReference {
-        let given = |order: i32| {
-            let angle = 0.5 * t + f64::from(order) * FRAC_PI_2;
-            let size = if order <= derivatives { 5.0 * libm::pow(0.5, f64::from(order)) } else { 0.0 };
-            Vector3::new(libm::cos(angle), libm::sin(angle), 0.0) * size
-        };
-        PositionReference {
-            velocity_m_s: given(1),
-            acceleration_m_s2: given(2),
-            jerk_m_s3: given(3),
-            snap_m_s4: given(4),
-            ..PositionReference::goal(given(0).into(), 0.0)
-        }
+        let whole = known_motion::circle(5.0, 0.5, t);
+        let all =
+            [whole.position_m, whole.velocity_m_s, whole.acceleration_m_s2, whole.jerk_m_s3, whole.snap_m_s4];
+        motion(|order| if order <= derivatives { all[order as usize] } else { Vector3::zeros() })
     }
 
     /// The points of a signal that is set each `period_us` for 6 s, as they are given and with what is found: time, s, and both.

@@ -10,6 +10,8 @@ pub(crate) mod heading;
 #[cfg(feature = "shaper")]
 pub(crate) mod heading_shaper;
 pub(crate) mod held_input;
+#[cfg(test)]
+pub(crate) mod known_motion;
 pub(crate) mod motion_profile;
 #[cfg(feature = "shaper")]
 pub(crate) mod past_motion;
