@@ -7,10 +7,11 @@
 //! # Map
 //!
 //! Calls arrive in [`fmi2`] or [`fmi3`], where `guard` checks the instance and whether the call is allowed; the other modules are
-//! independent of C and, but for `layout`, which knows the arrays of FMI 3.0, of the version of the interface. `component` is an instance of any model of the `library`; `instance` and
-//! `values` implement that of one [`Model`] with its table of [`variables`]; `continuous` is a model's equations, which `exchange` gives to
-//! importers' solvers and `derivatives` differentiates; `choice_number` reads enumerations as integers; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID.
-//! `guard` catches panics, `logger` filters messages, `pointer` checks what C passes.
+//! independent of C and, but for `layout`, which knows the arrays of FMI 3.0, of the version of the interface. `component` is an instance
+//! of any model of the `library`; `instance` and `values` implement that of one [`Model`] with its table of [`variables`]; `continuous` is
+//! a model's equations, which `exchange` gives to importers' solvers and `derivatives` differentiates; `choice_number` reads enumerations
+//! as integers; `clock` is its time, `snapshot` its state, `serialized` that state as bytes, `identity` the GUID. `guard` catches panics,
+//! `logger` filters messages, `pointer` checks what C passes.
 //!
 //! There is no mutable global state: instances are independent and can run on any number of threads.
 

@@ -91,8 +91,8 @@ pub trait Model: Sized + 'static {
     /// microsecond add up. `inputs` returns the inputs at a time in µs; call it for any time within the step.
     ///
     /// # Errors
-    /// When the run fails: it cannot be continued, or a number is no longer finite. The instance is then in the state "error", in which outputs can still be read: they are
-    /// those of the point where the run failed.
+    /// When the run fails: it cannot be continued, or a number is no longer finite. The instance is then in the state "error", in which
+    /// outputs can still be read: they are those of the point where the run failed.
     fn advance_to(&mut self, time_us: u64, inputs: &impl Fn(u64) -> Self::Inputs) -> Result<(), Self::Error>;
 
     /// As [`Model::advance_to`], with inputs that are constant within the step, as most are. A model whose inputs take time to copy can

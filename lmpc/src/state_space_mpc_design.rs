@@ -11,8 +11,8 @@ use crate::{Augmented, DesignError, Quantity, StateSpace, Weights, spectral_radi
 /// Design of a state-space MPC.
 ///
 /// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without the
-/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; the input stays where it is after them. U = 1 u₋₁ + T ΔU makes the
-/// cost (34) the quadratic form
+/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; the input stays where it is after them.
+/// U = 1 u₋₁ + T ΔU makes the cost (34) the quadratic form
 ///
 /// ```text
 /// J = ½ ‖Y − R‖²_Q + ½ ‖ΔU‖²_S = ½ ΔUᵀ H ΔU + ΔUᵀ (Φ T)ᵀ Q (F x̂ + Φ 1 u₋₁ − R) + const

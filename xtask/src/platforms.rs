@@ -18,7 +18,8 @@ use xtask::workspace::Workspace;
 /// Platforms whose programs a Linux machine on x86 can build and run. The first of them is what the others are compared with.
 pub const CHECKED: [Platform; 3] = [Platform::X86_64Linux, Platform::Aarch64Linux, Platform::X86_64Windows];
 
-/// Builds for the platforms and runs the tests of tests/python/platforms, or only those of the FMU. A machine that cannot is an error, never a silent gap.
+/// Builds for the platforms and runs the tests of tests/python/platforms, or only those of the FMU. A machine that cannot is an error,
+/// never a silent gap.
 pub fn check(
     workspace: &Workspace,
     progress: &Progress,

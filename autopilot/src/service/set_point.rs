@@ -234,8 +234,8 @@ fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vect
     Ok(position_m)
 }
 
-/// ArduPilot flies towards places however far away they are: on the way to one beyond what can be flown here, to a nearer one. As there, the way is
-/// straight on a plane map.
+/// ArduPilot flies towards places however far away they are: on the way to one beyond what can be flown here, to a nearer one. As there,
+/// the way is straight on a plane map.
 fn shorten(position_m: &mut Vector3<f64>, place: &Geodetic, vehicle: &Vehicle) {
     const REACH_M: f64 = FARTHEST_M / 2.0;
     let here_m = vehicle.outputs().position_m;

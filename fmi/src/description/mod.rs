@@ -1,6 +1,7 @@
 //! `modelDescription.xml` in both versions, written from the table of variables.
 //!
-//! `fmi2` and `fmi3` write the documents, `terminals` the groups of variables that are connected together; they share `document` (what surrounds the variables), `units`, `dependencies` and `numbers`.
+//! `fmi2` and `fmi3` write the documents, `terminals` the groups of variables that are connected together; they share `document` (what
+//! surrounds the variables), `units`, `dependencies` and `numbers`.
 
 mod dependencies;
 mod document;

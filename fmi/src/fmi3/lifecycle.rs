@@ -1,7 +1,7 @@
 //! Which call is legal when: the state machines of FMI 3.0.2, sections 2.3, 3.2 and 4.2, as one table of bit masks.
 //!
-//! What the standard calls "terminated" after a failed step is our phase "error". Functions that no model here offers, such as those of clocks, are
-//! legal in all phases: whoever calls one reads why it is not there.
+//! What the standard calls "terminated" after a failed step is our phase "error". Functions that no model here offers, such as those of
+//! clocks, are legal in all phases: whoever calls one reads why it is not there.
 
 use crate::lifecycle::Function;
 use crate::lifecycle::phases::*;

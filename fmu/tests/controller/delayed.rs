@@ -1,16 +1,16 @@
 //! Controllers and plant under a master that steps both at once: each command acts a step later.
 //!
-//! A plant that is driven by u(t − h) in place of u(t) is driven by u and a disturbance w(t) = u(t − h) − u(t). To first order the closed loop answers with
-//! δ = g ∗ w, where g is its answer to an impulse at the plant's input. The integral of w is −h times the mean of u over the last step, so that
-//! integration by parts leaves δ = −h ġ ∗ ū and
+//! A plant that is driven by u(t − h) in place of u(t) is driven by u and a disturbance w(t) = u(t − h) − u(t). To first order the closed
+//! loop answers with δ = g ∗ w, where g is its answer to an impulse at the plant's input. The integral of w is −h times the mean of u over
+//! the last step, so that integration by parts leaves δ = −h ġ ∗ ū and
 //!
 //! ```text
 //! |δ| ≤ h ∫|ġ| dt · max|u − u_trim|
 //! ```
 //!
-//! An impulse of the thrust kicks the velocity, one of a torque the body rate. K = ∫|ġ| dt is therefore the way that the vehicle goes until it has
-//! recovered from a kick of one unit, back and forth; the rotors' lag only smooths it. With a the commanded acceleration without gravity's part, and ω̇ the
-//! commanded angular acceleration:
+//! An impulse of the thrust kicks the velocity, one of a torque the body rate. K = ∫|ġ| dt is therefore the way that the vehicle goes until
+//! it has recovered from a kick of one unit, back and forth; the rotors' lag only smooths it. With a the commanded acceleration without
+//! gravity's part, and ω̇ the commanded angular acceleration:
 //!
 //! ```text
 //! |δ_z| ≤ h K_v max|a|

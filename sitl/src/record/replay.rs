@@ -63,7 +63,8 @@ impl Audience for Nobody {
 /// record is checked first.
 ///
 /// # Errors
-/// [`Failure::Differs`] at the first digest that differs, [`Failure::FliesOn`] where only the recorded simulation failed; [`Failure`] when the file cannot be read, is not a record or is damaged.
+/// [`Failure::Differs`] at the first digest that differs, [`Failure::FliesOn`] where only the recorded simulation failed; [`Failure`] when
+/// the file cannot be read, is not a record or is damaged.
 pub fn replay(path: &Path) -> Result<Vec<Replayed>, Failure> {
     replay_before(path, &mut Nobody)
 }

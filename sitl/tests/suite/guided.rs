@@ -46,7 +46,8 @@ fn velocity(bench: &mut Bench, [vx, vy, vz]: [f32; 3]) {
     }));
 }
 
-/// MISSION_ITEM_INT, as DroneKit's `simple_goto` sends the older MISSION_ITEM: north and east of the origin, m, and a height above home, m. Returns the result.
+/// MISSION_ITEM_INT, as DroneKit's `simple_goto` sends the older MISSION_ITEM: north and east of the origin, m, and a height above home, m.
+/// Returns the result.
 fn item(bench: &mut Bench, current: u8, number: u16, [north, east]: [f64; 2], height_m: f64) -> Option<u8> {
     let place = vehicle(bench).frame().to_geodetic(&Vector3::new(north, east, 0.0));
     let message = MissionItemMessage {

@@ -5,8 +5,8 @@ use super::conduct_parameter::{bitmask, choice, chosen, real, switch, whole};
 use crate::vehicle::WIND_FROM_DEG;
 use crate::world::WindProfile;
 
-/// The wind, which can be changed in flight. ArduPilot keeps it in its files; PX4 has no such parameters, and the vehicle none in its files when it
-/// presents itself as PX4: the wind of a run is what its start says.
+/// The wind, which can be changed in flight. ArduPilot keeps it in its files; PX4 has no such parameters, and the vehicle none in its files
+/// when it presents itself as PX4: the wind of a run is what its start says.
 #[rustfmt::skip]
 pub static WIND_PARAMETERS: &[ConductParameter] = &[
     chosen!("SIM_WIND_SPD", 0.0..=50.0, simulated.wind_m_s, 0.0, "m/s", "Mean speed of the wind"),

@@ -8,7 +8,8 @@ use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget
 use super::situation::Situation;
 use super::steering::SteeringKind;
 
-/// By how much it sinks faster per metre above the height from which it is slow, 1/s, as far as a share of the vertical acceleration and jerk can brake it.
+/// By how much it sinks faster per metre above the height from which it is slow, 1/s, as far as a share of the vertical acceleration and
+/// jerk can brake it.
 const SLOWING_PER_S: f64 = 0.4;
 const BRAKING_SHARE: f64 = 0.5;
 /// By how much the reference may be faster while it brakes, m/s: a reference that follows a speed with deceleration a and jerk j

@@ -170,8 +170,8 @@ pub(super) fn breach_ahead(situation: &Situation, limits: &Limits) -> Option<Bre
     })
 }
 
-/// Where the vehicle comes to rest, NED, m, if it brakes now, within limits: the reference moves as that of the hold mode. On its way to a goal that is
-/// not beyond the goal, where the shaper stops.
+/// Where the vehicle comes to rest, NED, m, if it brakes now, within limits: the reference moves as that of the hold mode. On its way to a
+/// goal that is not beyond the goal, where the shaper stops.
 pub(super) fn stopping_place_m(situation: &Situation, limits: &Limits) -> Vector3<f64> {
     let position_m = situation.outputs.position_m;
     let steering = situation.steering;

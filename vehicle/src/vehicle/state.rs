@@ -148,7 +148,8 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the next one is looked at.
+    /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the
+    /// next one is looked at.
     fn watch(&mut self) {
         if self.machines.boot_fault.is_present() {
             self.consult(|parts, situation, proposal| parts.boot_fault.watch(situation, proposal));

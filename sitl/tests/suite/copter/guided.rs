@@ -40,8 +40,8 @@ fn turn(flier: &mut Flier, heading_deg: f32) {
     flier.wait_heading(f64::from(heading_deg));
 }
 
-/// Suite: MountYawVehicleForMountROI. The nose points to what is looked at; a first place to fly to ends that, and the nose points ahead; what is
-/// looked at then stays in view from place to place.
+/// Suite: MountYawVehicleForMountROI. The nose points to what is looked at; a first place to fly to ends that, and the nose points ahead;
+/// what is looked at then stays in view from place to place.
 #[test]
 fn the_nose_points_ahead_unless_something_is_looked_at() {
     let mut flier = Flier::new();
@@ -65,8 +65,8 @@ fn the_nose_points_ahead_unless_something_is_looked_at() {
     assert!(flier.heads(90.0, 2.0), "{} deg", flier.heading_deg());
 }
 
-/// Suite: GuidedSubModeChange, WPYawBehaviour1RTL. WP_YAW_BEHAVIOR says whether the nose points ahead; a heading that was asked for stays as long
-/// as places lead.
+/// Suite: GuidedSubModeChange, WPYawBehaviour1RTL. WP_YAW_BEHAVIOR says whether the nose points ahead; a heading that was asked for stays
+/// as long as places lead.
 #[test]
 fn the_nose_stays_where_it_is_if_that_is_asked_for() {
     let mut flier = Flier::new();

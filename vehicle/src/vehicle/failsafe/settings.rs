@@ -254,8 +254,8 @@ impl Default for FailsafeSettings {
 }
 
 impl FailsafeSettings {
-    /// The defaults, which differ by convention: ArduPilot's fence is off; it returns at it and lets nobody choose another mode until it is back, stays
-    /// where all inclusion zones are, misses its ground station after 5 s, and only warns of a weak battery.
+    /// The defaults, which differ by convention: ArduPilot's fence is off; it returns at it and lets nobody choose another mode until it is
+    /// back, stays where all inclusion zones are, misses its ground station after 5 s, and only warns of a weak battery.
     pub fn new(ardupilot: bool) -> Self {
         let px4 = Self::default();
         if !ardupilot {
