@@ -16,6 +16,7 @@ use crate::control::position_controller::PositionController;
 use crate::control::required_thrust::RequiredThrust;
 use crate::control::rotor_command::RotorCommand;
 use crate::control::thrust_lag::ThrustLag;
+use crate::control::turned_way::{ForetoldWay, TurnedWay};
 use crate::design::controller_limits::{
     COMMANDED_TILT_SHARE, holding_horizontal_m_s2, least_thrust_n, thrust_range_n,
 };
@@ -39,6 +40,7 @@ pub struct Cascade {
     attitude: AttitudeController,
     narrowed: NarrowedWay,
     followed: FollowedWay,
+    turned: TurnedWay,
     turning: SmoothedAcceleration,
     /// What feedback adds to the acceleration of the reference, NED, m/s².
     feedback_m_s2: Vector3<f64>,
@@ -73,6 +75,7 @@ impl Cascade {
             attitude: AttitudeController::new(&body.rotation()),
             narrowed: NarrowedWay::default(),
             followed: FollowedWay::default(),
+            turned: TurnedWay::default(),
             turning: SmoothedAcceleration::default(),
             feedback_m_s2: Vector3::zeros(),
             reference_m_s2: Vector3::zeros(),
@@ -123,16 +126,30 @@ impl Cascade {
         self.reference_m_s2 + self.feedback_m_s2
     }
 
-    /// What is followed at a time in place of a reference that nobody can follow; `None` of another one.
+    /// What is followed at a time in place of a reference that nobody can follow, or that no plan of the position controller reaches;
+    /// `None` of another one.
     pub(crate) fn follow(
         &mut self,
         configuration: &Configuration,
+        design: &CascadeDesign,
         (reference, seen): (&PositionReference, &Observation),
         time_us: u64,
     ) -> Option<PositionReference> {
+        if design.position.law.regulator().is_none() {
+            let attitude = design.attitude_loop();
+            let followed = self.turned.follow(configuration, attitude.as_ref(), (reference, seen), time_us);
+            if followed.is_some() {
+                return followed;
+            }
+        }
         let narrowed = self.narrowed.follow(configuration, reference, time_us);
         let way = narrowed.as_ref().unwrap_or(reference);
         self.followed.follow(configuration, (way, &seen.body), time_us).or(narrowed)
+    }
+
+    /// The way that is followed, if it is known where it leads.
+    pub(crate) fn foretold_way(&self) -> Option<ForetoldWay> {
+        self.turned.foretold()
     }
 
     /// A sample of the position controller, for a reference that is foreseen to go on as `ahead` tells for a time, µs, and

@@ -147,7 +147,10 @@ fn can_return(
 
 /// Bandwidth of the position controller, rad/s: with weights Q and R of its output and its increments, which are relative to the
 /// bandwidth ω of the design, three integrators close at ω (Q/R)^(1/6).
-fn position_bandwidth_rad_s(configuration: &Configuration, attitude: Option<&AttitudeLoop>) -> f64 {
+pub(crate) fn position_bandwidth_rad_s(
+    configuration: &Configuration,
+    attitude: Option<&AttitudeLoop>,
+) -> f64 {
     let settings = &configuration.controllers.position;
     let ratio = settings.output_weight.component_div(&settings.increment_weight).max();
     translation_design::position_bandwidth_rad_s(configuration, attitude) * libm::cbrt(libm::sqrt(ratio))

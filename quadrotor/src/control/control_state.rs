@@ -409,18 +409,20 @@ impl ControlState {
         }
         let configuration = &self.limits.in_force(learned);
         let given = self.guidance.reference(time_us);
-        let followed = self.cascade.follow(configuration, (&given, seen), time_us);
+        let followed = self.cascade.follow(configuration, cascade, (&given, seen), time_us);
         let now = followed.unwrap_or(given);
-        let ahead = |guidance: &Guidance, then_us: u64| match &followed {
-            None => guidance.preview(then_us),
-            Some(followed) => {
+        let foretold = followed.and_then(|_| self.cascade.foretold_way());
+        let ahead = |guidance: &Guidance, then_us: u64| match (&followed, &foretold) {
+            (None, _) => guidance.preview(then_us),
+            (_, Some(way)) => guidance.heading(then_us).on(&way.at(&now, then_us)),
+            (Some(followed), None) => {
                 let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
                 guidance.heading(then_us).on(&followed.foreseen_after(then_s))
             }
         };
         if due.position {
             let guidance = &self.guidance;
-            let is_foretold = followed.is_none() && guidance.is_foretold();
+            let is_foretold = foretold.is_some() || (followed.is_none() && guidance.is_foretold());
             let expected = |then_us: u64| match &followed {
                 None => guidance.reference(then_us),
                 Some(followed) => followed.expected_after(then_us.saturating_sub(time_us) as f64 / 1e6),

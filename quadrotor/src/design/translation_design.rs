@@ -114,7 +114,7 @@ pub(crate) fn position_problem(
     let settings = &configuration.controllers.position;
     let model = over_attitude(attitude, settings.sample_time_s())?;
     let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
-    Ok(LoopProblem::new(settings, &bandwidth, position_limits(), SIGHT_M, &model)?
+    Ok(LoopProblem::new(settings, &bandwidth, position_limits(settings.sample_time_s()), SIGHT_M, &model)?
         .planned_about(POSITION_STABILIZING_SHARE))
 }
 

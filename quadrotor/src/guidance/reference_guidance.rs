@@ -53,12 +53,21 @@ impl Guidance {
         shaping: bool,
         time_us: u64,
     ) -> Self {
-        let now = self.reference(time_us);
+        Self::moving(&self.reference(time_us), (limits, times), shaping, time_us)
+    }
+
+    /// A reference that goes on from a motion: shaped, it comes to rest.
+    pub fn moving(
+        now: &PositionReference,
+        (limits, times): (&EasedLimits, &ResponseTimes),
+        shaping: bool,
+        time_us: u64,
+    ) -> Self {
         #[cfg(feature = "shaper")]
         if shaping {
-            return Self::Shaped(Shaper::moving(&now, limits, times, time_us));
+            return Self::Shaped(Shaper::moving(now, limits, times, time_us));
         }
-        Self::Direct(DirectReference::new(&now, time_us))
+        Self::Direct(DirectReference::new(now, time_us))
     }
 
     /// A look at the input between samples.
