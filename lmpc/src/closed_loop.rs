@@ -44,7 +44,8 @@ pub struct TrialCost {
 }
 
 impl TrialCost {
-    /// Stage costs and violations together: what the controller minimizes.
+    /// Stage costs and violations together. A [`StabilizedMpc`](crate::StabilizedMpc) charges its plan for the worst violation once; this
+    /// charges every sample at which a limit is broken.
     pub fn total(&self) -> f64 {
         self.stage_cost + self.violation_cost
     }

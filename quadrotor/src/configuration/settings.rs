@@ -197,7 +197,7 @@ pub struct ControllerSettings<const P: usize> {
 /// | --- | --- | --- |
 /// | ΔT | 0.05 s position and altitude, 0.01 s attitude | each a tenth of its loop's time constant or less |
 /// | α | 1, the Riccati solution as terminal weight | α = 1.2 discounts the future, which costs once limits are active |
-/// | N, a | 7 and 0.55 altitude, 8 and 0.59 position, 8 and 0.63 attitude | a search over closed-loop costs on steps that saturate: within 1 % of the best, but for steps of the position that begin sideways, at which limits give way |
+/// | N, a | 7 and 0.55 altitude, 8 and 0.59 position, 8 and 0.63 attitude | a search over closed-loop costs on steps that saturate: within 1 % of the best |
 /// | N_p | 60 altitude, 150 position, 120 attitude | for the state-space MPC, and the paper's models |
 /// | weights | 1, 0.5 of the acceleration; of the horizontal speed 1.25, of its rate 1 | relative to the bandwidth: deviations of one size count alike; diagonal goals far below overshoot by 2 % instead of 5 % |
 /// | position bandwidth | from the attitude loop | 0.62/(its delay + ΔT/2) |

@@ -22,8 +22,11 @@ static PRESENT_TILT: &[usize] = &[0, 1, 2];
 static TILT: &[usize] = &[3, 4, 6, 8, 12, 18, 28];
 /// Samples of the speed, which follows later.
 static MOVING: &[usize] = &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
-/// Samples of the rate and the acceleration of the tilt: while commands change fast.
+/// Samples of the rate of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 5, 8, 13, 20];
+/// Samples of its acceleration, which follows a command within one of them. Without the fourth, plans exceed the limit there, and when it
+/// has come to be the third, all limits must give way.
+static TURNING: &[usize] = &[1, 2, 3, 4, 5, 8, 13, 20];
 
 /// By how much the speed of a reference at the speed limit may be exceeded to catch up with it, as a share of the limit.
 const CATCHING_UP: f64 = 0.01;
@@ -63,7 +66,7 @@ pub(crate) fn position_limits(sample_time_s: f64) -> [SignalLimit; 5] {
     [
         of_inputs(PRESENT_TILT),
         of_inputs(TILT),
-        of_states(4, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
+        of_states(4, COARSE_SIDES, TURNING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
         of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
         of_states(1, SIDES, MOVING).giving_way_by(SPEED_M_S),
     ]
