@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 
 use crate::Precision;
-use crate::dense::{combination, dot, subtract_scaled};
+use crate::dense::{combination, dot, subtract_scaled, turn};
 
 /// Share of a vector's square that must be left after removing the active normals, so that removing them again changes nothing but
 /// rounding. With 0.01 a step takes a tenth less time, and degenerate programs come out as if they had no solution.
@@ -196,23 +196,15 @@ impl<const N: usize, T: Precision> ActiveSet<N, T> {
             // Not near zero: a was on the diagonal, or is the length before.
             let length = (a * a + b * b).sqrt();
             let inverse = T::one() / length;
-            let turned = |(left, right): (T, T)| {
-                let (cosine, sine) = (b * inverse, -a * inverse);
-                (left * cosine + right * sine, right * cosine - left * sine)
-            };
+            let (cosine, sine) = (b * inverse, -a * inverse);
             let (before, after) = self.q.split_at_mut(j + 1);
-            for (left, right) in before[j].iter_mut().zip(&mut after[0]) {
-                (*left, *right) = turned((*left, *right));
-            }
+            turn(before[j].as_mut_slice(), after[0].as_mut_slice(), cosine, sine);
             let (before, after) = self.r_inverse.split_at_mut(j + 1);
-            let (left, right) = (&mut before[j], &mut after[0]);
-            for row in 0..column {
-                (left[row], right[row]) = turned((left[row], right[row]));
-            }
+            let (left, right) = (before[j].as_mut_slice(), after[0].as_mut_slice());
+            turn(left, right, cosine, sine);
             right[column] = length;
-            for row in column + 1..j + 2 {
-                (left[row - 1], right[row]) = turned((left[row], right[row]));
-            }
+            left.copy_within(column + 1..j + 2, column);
+            left[j + 1] = T::zero();
         }
         let later = column + 1..count;
         self.constraints.copy_within(later.clone(), column);

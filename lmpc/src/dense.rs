@@ -32,6 +32,14 @@ pub(crate) fn subtract_scaled<T: Precision>(a: &mut [T], b: &[T], t: T) {
     }
 }
 
+/// Turns two vectors towards each other: a ← a cos + b sin, b ← b cos − a sin.
+#[inline]
+pub(crate) fn turn<T: Precision>(a: &mut [T], b: &mut [T], cosine: T, sine: T) {
+    for (x, y) in a.iter_mut().zip(b) {
+        (*x, *y) = (*x * cosine + *y * sine, *y * cosine - *x * sine);
+    }
+}
+
 /// Σ tⱼ bⱼ, a few elements at a time, which stay in registers through the sum.
 #[inline]
 pub(crate) fn combination<const N: usize, T: Precision>(b: &[SVector<T, N>], t: &[T]) -> SVector<T, N> {
@@ -69,7 +77,7 @@ pub(crate) fn least<T: Precision>(values: &[T]) -> T {
 
 #[cfg(test)]
 mod tests {
-    use super::{combination, dot, dot_of_magnitudes, least, subtract_scaled};
+    use super::{combination, dot, dot_of_magnitudes, least, subtract_scaled, turn};
     use alloc::vec::Vec;
     use nalgebra::SVector;
 
@@ -104,6 +112,15 @@ mod tests {
         // row (2 · 1 − 3 · 2)
         let expected = SVector::<f64, 11>::from_fn(|row, _| -4.0 * row as f64);
         assert_eq!(combination(&columns[..2], &[2.0, -3.0, 7.0]), expected);
+    }
+
+    #[test]
+    fn a_quarter_turn_takes_one_vector_to_the_other() {
+        let (mut a, mut b) = ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]);
+        turn(&mut a, &mut b, 0.0, 1.0);
+        assert_eq!((a, b), ([4.0, 5.0, 6.0], [-1.0, -2.0, -3.0]));
+        turn(&mut a, &mut b, 0.5, 2.0);
+        assert_eq!((a, b), ([0.0, -1.5, -3.0], [-8.5, -11.0, -13.5]));
     }
 
     #[test]

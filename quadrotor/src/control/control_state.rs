@@ -6,7 +6,7 @@ use crate::control::cascade::Cascade;
 use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
-use crate::control::instants::{Clocks, LATEST_US, Phases};
+use crate::control::instants::{Clocks, Due, LATEST_US, Phases};
 use crate::control::learning::mass_and_drag::{FlightSample, MassAndDrag};
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::control::measurement::Instruments;
@@ -38,28 +38,6 @@ pub struct ControlState {
     cascade: Cascade,
     /// What is commanded while armed.
     command: RotorCommand,
-}
-
-/// Which controllers sample at an instant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Due {
-    position: bool,
-    altitude: bool,
-    attitude: bool,
-}
-
-impl Due {
-    fn at(clocks: &Clocks, time_us: u64) -> Self {
-        Self {
-            position: clocks.position.ticks(time_us),
-            altitude: clocks.altitude.ticks(time_us),
-            attitude: clocks.attitude.ticks(time_us),
-        }
-    }
-
-    fn any(self) -> bool {
-        self.position || self.altitude || self.attitude
-    }
 }
 
 impl ControlState {
@@ -240,14 +218,13 @@ impl ControlState {
         if let Target::WithoutRotor { lost, .. } = inputs.target {
             design.rotor_loss.of(lost)?;
         }
-        let clocks = self.clocks(&design.configuration.controllers);
-        let due = Due::at(&clocks, time_us);
+        let (due, next_us) = self.clocks(&design.configuration.controllers).look(time_us);
         // A takeover is measured more than once, and may be refused in its midst: only it copies the state, which `then_some` would do
         // at each sample.
         let before = if inputs.armed && self.takes_over(inputs) { Some(*self) } else { None };
         let advanced = self.advance(design, inputs, instruments, (due, time_us));
         match (advanced, before) {
-            (Ok(()), _) => self.next_us = clocks.next_instant_us(time_us),
+            (Ok(()), _) => self.next_us = next_us,
             (Err(_), Some(before)) => *self = before,
             (Err(_), None) => {}
         }

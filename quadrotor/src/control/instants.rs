@@ -19,27 +19,41 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// Whether it ticks at `time_us`.
-    pub(crate) fn ticks(&self, time_us: u64) -> bool {
-        time_us >= self.phase_us && (time_us - self.phase_us).is_multiple_of(self.period_us)
-    }
-
-    /// Its first tick after `time_us`.
-    fn next_us(&self, time_us: u64) -> u64 {
+    /// Whether it ticks at `time_us`, and its first tick after that: one division tells both.
+    #[inline]
+    fn look(&self, time_us: u64) -> (bool, u64) {
         match time_us.checked_sub(self.phase_us) {
-            Some(since_us) => self.phase_us + (since_us / self.period_us + 1) * self.period_us,
-            None => self.phase_us,
+            Some(since_us) => {
+                let rest_us = since_us % self.period_us;
+                (rest_us == 0, time_us - rest_us + self.period_us)
+            }
+            None => (false, self.phase_us),
         }
     }
 
     /// Its first tick at `time_us` or later.
     fn first_us(&self, time_us: u64) -> u64 {
-        if self.ticks(time_us) { time_us } else { self.next_us(time_us) }
+        let (ticks, next_us) = self.look(time_us);
+        if ticks { time_us } else { next_us }
     }
 
     /// The phase of a clock of another period that ticks when this one ticks first, at `time_us` or later.
     fn phase_for(&self, period_us: u64, time_us: u64) -> u64 {
         if period_us == self.period_us { self.phase_us } else { self.first_us(time_us) % period_us }
+    }
+}
+
+/// Which controllers sample at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Due {
+    pub(crate) position: bool,
+    pub(crate) altitude: bool,
+    pub(crate) attitude: bool,
+}
+
+impl Due {
+    pub(crate) fn any(self) -> bool {
+        self.position || self.altitude || self.attitude
     }
 }
 
@@ -58,9 +72,9 @@ pub struct Phases {
 /// The instants of a control loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Clocks {
-    pub(crate) position: Clock,
-    pub(crate) altitude: Clock,
-    pub(crate) attitude: Clock,
+    position: Clock,
+    altitude: Clock,
+    attitude: Clock,
 }
 
 impl Phases {
@@ -92,24 +106,28 @@ impl Phases {
 }
 
 impl Clocks {
-    fn all(&self) -> [Clock; 4] {
-        let inputs = Clock { period_us: INPUT_PERIOD_US, phase_us: 0 };
-        [inputs, self.position, self.altitude, self.attitude]
-    }
+    /// Those of the inputs.
+    const INPUTS: Clock = Clock { period_us: INPUT_PERIOD_US, phase_us: 0 };
 
     /// Whether the loop samples at `time_us`.
     pub(crate) fn is_instant(&self, time_us: u64) -> bool {
-        self.all().iter().any(|clock| clock.ticks(time_us))
+        self.first_instant_us(time_us) == time_us
     }
 
-    /// The first instant after `time_us`.
-    pub(crate) fn next_instant_us(&self, time_us: u64) -> u64 {
-        self.all().iter().map(|clock| clock.next_us(time_us)).fold(u64::MAX, u64::min)
+    /// Which controllers sample at `time_us`, and the first instant after that.
+    pub(crate) fn look(&self, time_us: u64) -> (Due, u64) {
+        let (_, inputs_us) = Self::INPUTS.look(time_us);
+        let (position, position_us) = self.position.look(time_us);
+        let (altitude, altitude_us) = self.altitude.look(time_us);
+        let (attitude, attitude_us) = self.attitude.look(time_us);
+        let next_us = inputs_us.min(position_us).min(altitude_us).min(attitude_us);
+        (Due { position, altitude, attitude }, next_us)
     }
 
     /// The first instant at `time_us` or later.
     pub(crate) fn first_instant_us(&self, time_us: u64) -> u64 {
-        self.all().iter().map(|clock| clock.first_us(time_us)).fold(u64::MAX, u64::min)
+        let clocks = [Self::INPUTS, self.position, self.altitude, self.attitude];
+        clocks.iter().map(|clock| clock.first_us(time_us)).fold(u64::MAX, u64::min)
     }
 }
 
@@ -126,7 +144,7 @@ mod tests {
 
     fn instants(phases: &Phases, controllers: &Controllers, from_us: u64, to_us: u64) -> [u64; 2] {
         let mut ticks =
-            (from_us..to_us).filter(|time_us| phases.clocks(controllers).attitude.ticks(*time_us));
+            (from_us..to_us).filter(|time_us| phases.clocks(controllers).look(*time_us).0.attitude);
         [ticks.next().unwrap_or(0), ticks.next().unwrap_or(0)]
     }
 

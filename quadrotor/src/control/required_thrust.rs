@@ -65,13 +65,18 @@ impl RequiredThrust {
     /// ```
     pub(crate) fn leaning_at_most(&self, most_m_s2: impl FnOnce() -> f64) -> Self {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
-        let r = libm::hypot(a.x, a.y);
-        if r <= NOTHING_M_S2 || !r.is_finite() {
+        // Mostly nothing is cut off, which squares tell.
+        let squared = a.norm_squared();
+        if squared <= NOTHING_M_S2 * NOTHING_M_S2 {
             return *self;
         }
         let most_m_s2 = most_m_s2();
+        if squared <= most_m_s2 * most_m_s2 {
+            return *self;
+        }
+        let r = libm::hypot(a.x, a.y);
         // A direction that nothing is left of does not turn.
-        if r <= most_m_s2 {
+        if !r.is_finite() || r <= most_m_s2 {
             return *self;
         }
         let n = a / r;

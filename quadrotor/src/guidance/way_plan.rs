@@ -34,8 +34,8 @@ const RESTS: f64 = 1e-6;
 /// Jerk-limited profiles over time along a bearing, across it to the right, and down. What is tracked is smoothed: see [`Smoothing`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct WayPlan {
-    /// Direction of the first horizontal axis, rad from north.
-    bearing_rad: f64,
+    /// From the horizontal axes to north and east.
+    turn: Rotation2<f64>,
     axes: [MotionProfile; 3],
     smoothing: Smoothing,
     /// What led to the plan, if that is smoothed over at its beginning.
@@ -72,16 +72,16 @@ impl WayPlan {
             })
         };
         let axes = [motion(0), motion(1), motion(2)];
-        Self { bearing_rad: 0.0, axes, smoothing, past: None }
+        Self { turn: Rotation2::identity(), axes, smoothing, past: None }
     }
 
     /// From a state to a goal, arriving on all axes at the same time; `None` if there is no solution. It is not smoothed yet.
     pub fn new(from: &PositionReference, goal: &PositionReference, limits: &Limits) -> Option<Self> {
         let way = (goal.position_m - from.position_m).xy();
         let bearing_rad = if way.norm() > 1e-6 { libm::atan2(way.y, way.x) } else { 0.0 };
-        let turn = Rotation2::new(-bearing_rad);
+        let turn = Rotation2::new(bearing_rad);
         let local = |world: &Vector3<f64>| {
-            let horizontal = turn * world.xy();
+            let horizontal = turn.inverse() * world.xy();
             [horizontal.x, horizontal.y, world.z]
         };
         // The axes are limited one by one, the vehicle in its horizontal plane: see STRAIGHT and TURNING.
@@ -129,7 +129,7 @@ impl WayPlan {
         .solve()?;
         let start = local(&from.position_m);
         let axes = core::array::from_fn(|axis| axes[axis].moved(start[axis]));
-        Some(Self { bearing_rad, axes, smoothing: Smoothing::default(), past: None })
+        Some(Self { turn, axes, smoothing: Smoothing::default(), past: None })
     }
 
     /// This plan, which begins `elapsed_s` after the beginning of another one, as many metres away from it, and is smoothed together
@@ -174,12 +174,11 @@ impl WayPlan {
 
     /// A vector along one of the axes.
     fn in_world(&self, axis: usize, size: f64) -> Vector3<f64> {
-        let (sine, cosine) = (libm::sin(self.bearing_rad), libm::cos(self.bearing_rad));
-        match axis {
-            0 => Vector3::new(cosine, sine, 0.0) * size,
-            1 => Vector3::new(-sine, cosine, 0.0) * size,
-            _ => Vector3::z() * size,
+        if axis == 2 {
+            return Vector3::z() * size;
         }
+        let [x, y] = self.turn.matrix().column(axis).into_owned().into();
+        Vector3::new(x, y, 0.0) * size
     }
 
     /// Position and its derivatives so many seconds after its beginning, as they are tracked. The heading is zero.
@@ -211,10 +210,9 @@ impl WayPlan {
 
     /// Position and derivatives of the axes as vectors.
     fn in_world_of(&self, parts: impl Fn(&MotionProfile) -> [f64; 5]) -> [Vector3<f64>; 5] {
-        let turn = Rotation2::new(self.bearing_rad);
         let [along, across, down] = self.axes.each_ref().map(parts);
         core::array::from_fn(|part| {
-            let horizontal = turn * Vector2::new(along[part], across[part]);
+            let horizontal = self.turn * Vector2::new(along[part], across[part]);
             Vector3::new(horizontal.x, horizontal.y, down[part])
         })
     }
@@ -222,7 +220,7 @@ impl WayPlan {
     /// Where it ends, NED, m.
     pub fn end_m(&self) -> Vector3<f64> {
         let [along, across, down] = self.axes.each_ref().map(|axis| axis.end().position);
-        let horizontal = Rotation2::new(self.bearing_rad) * Vector2::new(along, across);
+        let horizontal = self.turn * Vector2::new(along, across);
         Vector3::new(horizontal.x, horizontal.y, down)
     }
 
