@@ -122,15 +122,13 @@ impl Vehicle {
 
     /// Switches the fence.
     pub fn switch_fence(&mut self, switch: FenceSwitch) {
-        self.machines.fence.switch(switch);
-        let enabled = match switch {
-            FenceSwitch::Off => false,
-            FenceSwitch::On => true,
-            FenceSwitch::FloorOff => {
-                self.decided.say(Severity::Info, "Fence floor disabled");
-                return;
-            }
-        };
+        let parts = self.conduct().failsafe.fence_parts;
+        let is_on = self.situation().fence_is_on;
+        let enabled = self.machines.fence.switch(switch, is_on, parts);
+        if switch == FenceSwitch::FloorOff {
+            self.decided.say(Severity::Info, "Fence floor disabled");
+            return;
+        }
         let mut conduct = *self.conduct();
         if conduct.failsafe.fence_enabled != enabled {
             conduct.failsafe.fence_enabled = enabled;
