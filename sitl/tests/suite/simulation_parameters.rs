@@ -77,7 +77,7 @@ fn px4s_names_of_the_wind_change_it_in_flight() {
     set(&mut bench, "SIH_WIND_N", 3.0);
     set(&mut bench, "SIH_WIND_E", -4.0);
     assert_eq!((read(&bench, "SIM_WIND_SPD"), read(&bench, "SIH_WIND_E")), (5.0, -4.0));
-    bench.fly(60.0);
+    bench.fly(40.0);
     let wind = bench.autopilot.vehicle().wind_m_s();
     assert!((wind.x + 3.0).abs() < 0.01 && (wind.y - 4.0).abs() < 0.01, "{wind}");
     set(&mut bench, "SIH_WIND_N", 0.0);

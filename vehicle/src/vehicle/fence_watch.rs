@@ -262,8 +262,8 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::{
-        AxisTarget, Breach, FenceStart, FenceSwitch, FenceWatch, Mode, PositionSetPoint, check_goal,
-        check_set_point,
+        AxisTarget, Breach, FenceParts, FenceStart, FenceSwitch, FenceWatch, Mode, PositionSetPoint,
+        check_goal, check_set_point,
     };
     use crate::identity::Identity;
     use crate::vehicle::failsafe::Action;

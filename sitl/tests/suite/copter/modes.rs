@@ -224,12 +224,12 @@ fn the_mode_stays_after_the_landing() {
 #[test]
 fn auto_stays_after_its_landing() {
     for last in [20, 21] {
-        let mut flier = with_mission(&[(22, 0.0, 0.0, 8.0), (16, 10.0, 0.0, 8.0), (last, 0.0, 0.0, 0.0)]);
+        let mut flier = with_mission(&[(22, 0.0, 0.0, 8.0), (16, 20.0, 0.0, 8.0), (last, 0.0, 0.0, 0.0)]);
         for _ in 0..2 {
             flier.change_mode(GUIDED);
             flier.arm();
             flier.change_mode(AUTO);
-            flier.wait("the waypoint", 60.0, |flier| flier.distance_m() > 9.0 && flier.height_m() > 7.0);
+            flier.wait("the waypoint", 60.0, |flier| flier.distance_m() > 15.0);
             flier.wait_disarmed(90.0);
             flier.fly(1.0);
             assert_eq!(flier.mode(), AUTO, "after {last}");

@@ -11,8 +11,14 @@ fn per_second(flier: &mut Flier, choose: impl Fn(&MavMessage) -> bool) -> usize 
     flier.all(|message| choose(message).then_some(())).len()
 }
 
-fn attitudes(flier: &mut Flier) -> usize {
-    per_second(flier, |message| matches!(message, MavMessage::ATTITUDE(_)))
+/// A second may begin or end with a message.
+fn is_near(count: usize, rate_hz: usize) -> bool {
+    count.abs_diff(rate_hz) <= 1
+}
+
+fn check_attitudes(flier: &mut Flier, rate_hz: usize, why: &str) {
+    let count = per_second(flier, |message| matches!(message, MavMessage::ATTITUDE(_)));
+    assert!(is_near(count, rate_hz), "{count}, not {rate_hz}: {why}");
 }
 
 /// Ground stations set the rates of the first link by parameters; what a client asks for itself comes first.
@@ -20,20 +26,20 @@ fn attitudes(flier: &mut Flier) -> usize {
 fn rates_of_groups_follow_their_parameters() {
     let mut flier = Flier::new();
     flier.set("SR0_EXTRA1", 4.0);
-    assert_eq!(attitudes(&mut flier), 15, "shown as that before, and not set");
+    check_attitudes(&mut flier, 15, "shown as that before, and not set");
     flier.set("SR0_EXTRA1", 20.0);
-    assert_eq!(attitudes(&mut flier), 20);
+    check_attitudes(&mut flier, 20, "as the parameter says");
     flier.set("SR1_EXTRA1", 50.0);
-    assert_eq!(attitudes(&mut flier), 20, "another link");
+    check_attitudes(&mut flier, 20, "another link");
     flier.reboot();
-    assert_eq!(attitudes(&mut flier), 20, "kept over a reboot");
+    check_attitudes(&mut flier, 20, "kept over a reboot");
     let every_200_ms = [ATTITUDE_DATA::ID as f32, 200_000.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, every_200_ms), ACCEPTED);
     flier.set("SR0_EXTRA1", 10.0);
-    assert_eq!(attitudes(&mut flier), 5, "as the client has asked");
+    check_attitudes(&mut flier, 5, "as the client has asked");
     let default = [ATTITUDE_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, default), ACCEPTED);
-    assert_eq!(attitudes(&mut flier), 10);
+    check_attitudes(&mut flier, 10, "the default is that of the parameter");
     flier.set("SR0_EXT_STAT", 0.0);
     assert_eq!(per_second(&mut flier, |message| matches!(message, MavMessage::SYS_STATUS(_))), 0);
 }
@@ -82,7 +88,7 @@ fn groups_bring_what_arducopters_bring() {
         }));
         for id in ids {
             let count = per_second(&mut flier, |message| mavlink::Message::message_id(message) == *id);
-            assert_eq!(count, 8, "{group:?}: message {id}");
+            assert!(is_near(count, 8), "{group:?}: {count} messages {id}");
         }
     }
 }

@@ -417,8 +417,9 @@ impl Mission {
     }
 
     /// The next flight begins with the first step. A mission that is complete says so until then.
-    pub fn begin_anew(&mut self) {
+    pub fn begin_anew(&mut self, proposal: &mut Proposal) {
         if self.progress == Progress::Started {
+            proposal.change_speeds(SpeedChange::ForgetMission);
             self.give_up(None);
             self.jumps.clear();
             (self.progress, self.chosen) = (Progress::NotStarted, false);

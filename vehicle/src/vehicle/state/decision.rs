@@ -182,7 +182,7 @@ impl Vehicle {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
         if identity.is_ardupilot() {
-            self.machines.mission.begin_anew();
+            self.consult(|parts, _, proposal| parts.mission.begin_anew(proposal));
         }
         self.decided.switch_to(identity.mode_after_flight(mode));
         self.decided.say(Severity::Info, why);

@@ -125,9 +125,14 @@ impl Vehicle {
         let parts = self.conduct().failsafe.fence_parts;
         let is_on = self.situation().fence_is_on;
         let enabled = self.machines.fence.switch(switch, is_on, parts);
-        if switch == FenceSwitch::FloorOff {
-            self.decided.say(Severity::Info, "Fence floor disabled");
-            return;
+        match switch {
+            FenceSwitch::FloorOff => {
+                self.decided.say(Severity::Info, "Fence floor disabled");
+                return;
+            }
+            // The rest stays on, by hand or by itself.
+            FenceSwitch::PartsOff(_) if enabled => return,
+            _ => {}
         }
         let mut conduct = *self.conduct();
         if conduct.failsafe.fence_enabled != enabled {
