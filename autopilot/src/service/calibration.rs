@@ -84,8 +84,7 @@ impl Service for Calibrations {
         let unit = match unit(command) {
             Ok(None) => {
                 self.end(context);
-                if context.vehicle.pilot().is_calibrating {
-                    context.vehicle.calibrate_radio(false);
+                if context.vehicle.calibrate_radio(false) {
                     say(context, Severity::Info, "calibration done: radio");
                 }
                 return Ok(Progress::Done);

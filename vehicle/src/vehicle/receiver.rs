@@ -127,9 +127,9 @@ impl Receiver {
         self.optional = self.now.lost;
     }
 
-    /// Begins or ends a calibration of the radio.
-    pub fn calibrate(&mut self, begins: bool) {
-        self.calibrating = begins;
+    /// Begins or ends a calibration of the radio. Returns whether one was under way.
+    pub fn calibrate(&mut self, begins: bool) -> bool {
+        std::mem::replace(&mut self.calibrating, begins)
     }
 
     /// Looks at what has been received up to a time, µs. `timeout_s` is how long sticks count, `watched` whether anything is done about
